@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole files in memory, in and out.
+#ifndef CRAQUELURE_FILE_H
+#define CRAQUELURE_FILE_H
+
+#include <stddef.h>
+
+struct bytes {
+    unsigned char *data;
+    size_t size;
+};
+
+// All of PATH, or of standard input for "-". Exits 66 when there is no such file, 74
+// when reading fails. The caller frees .data.
+struct bytes read_whole(const char *path);
+
+// Writes all of it or nothing: beside PATH under another name, synced, then renamed.
+// "-" is standard output. Exits 73 when PATH cannot be created, 74 when writing fails;
+// what stood at PATH before is then untouched. Interrupts wait until it is done.
+void write_whole(const char *path, const void *data, size_t size);
+
+// SHA-256 as 64 hexadecimal digits, as sha256sum prints it.
+void sha256(const void *data, size_t size, char digest[65]);
+
+// The name to use in messages.
+const char *input_name(const char *path);
+
+#endif

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Allocation that cannot fail quietly: out of memory ends the program with one line and
+// status 70. Everything returned is freed with free().
+#ifndef CRAQUELURE_MEMORY_H
+#define CRAQUELURE_MEMORY_H
+
+#include <stddef.h>
+
+// COUNT zeroed elements of SIZE bytes; never NULL, also for COUNT = 0.
+void *allocate(size_t count, size_t size)
+    __attribute__((malloc, returns_nonnull, warn_unused_result));
+
+// OLD grown or shrunk to COUNT elements of SIZE bytes; what is new is not zeroed.
+void *reallocate(void *old, size_t count, size_t size)
+    __attribute__((returns_nonnull, warn_unused_result));
+
+// COUNT elements of SIZE bytes copied from SOURCE.
+void *duplicate(const void *source, size_t count, size_t size)
+    __attribute__((malloc, returns_nonnull, warn_unused_result));
+
+// NEW_ARRAY(double, n): n zeroed doubles.
+#define NEW_ARRAY(type, count) ((type *)allocate((size_t)(count), sizeof(type)))
+
+// Room for one more at the end of a growing array: capacity doubles, so appending N
+// elements costs O(N).
+#define GROW_ARRAY(array, count, capacity)                                             \
+    do {                                                                               \
+        if ((size_t)(count) == (size_t)(capacity)) {                                   \
+            (capacity) = (capacity) ? 2 * (capacity) : 64;                             \
+            (array) = reallocate((array), (size_t)(capacity), sizeof *(array));        \
+        }                                                                              \
+    } while (0)
+
+#endif

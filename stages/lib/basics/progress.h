@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A progress bar with the time left, on standard error.
+#ifndef CRAQUELURE_PROGRESS_H
+#define CRAQUELURE_PROGRESS_H
+
+#include <stdbool.h>
+
+enum progress_mode { PROGRESS_AUTO, PROGRESS_ALWAYS, PROGRESS_NEVER };
+
+struct progress {
+    bool shown;       // whether this run may draw at all
+    bool drawn;       // whether there is a line to clear
+    double started;   // s
+    double last_draw; // s
+};
+
+// AUTO draws only on a terminal, and only once the work has lasted a second.
+struct progress progress_begin(enum progress_mode mode, bool quiet);
+
+// FRACTION done, 0 to 1. Cheap: draws at most ten times a second.
+void progress_update(struct progress *progress, double fraction);
+
+// Clears the line.
+void progress_end(struct progress *progress);
+
+#endif

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vectors in three dimensions. An array of struct vector has the layout of an (n,3)
+// dataset of doubles.
+#ifndef CRAQUELURE_VECTOR_H
+#define CRAQUELURE_VECTOR_H
+
+#include <assert.h>
+#include <math.h>
+
+struct vector {
+    double x, y, z;
+};
+
+static_assert(sizeof(struct vector) == 3 * sizeof(double), "an (n,3) dataset");
+
+static inline struct vector add(struct vector a, struct vector b)
+{
+    return (struct vector){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline struct vector subtract(struct vector a, struct vector b)
+{
+    return (struct vector){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline struct vector scale(double s, struct vector a)
+{
+    return (struct vector){s * a.x, s * a.y, s * a.z};
+}
+
+static inline double dot(struct vector a, struct vector b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline struct vector cross(struct vector a, struct vector b)
+{
+    return (struct vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                           a.x * b.y - a.y * b.x};
+}
+
+static inline double norm(struct vector a)
+{
+    return sqrt(dot(a, a));
+}
+
+static inline double distance(struct vector a, struct vector b)
+{
+    return norm(subtract(a, b));
+}
+
+// Component 0, 1 or 2.
+static inline double component(struct vector a, int axis)
+{
+    return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+
+static inline void set_component(struct vector *a, int axis, double value)
+{
+    *(axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z) = value;
+}
+
+#endif

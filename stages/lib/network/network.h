@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pore network between the grains of a packing: what network.h5 holds, in memory.
+//
+// Nodes are Voronoi vertices, throats are Voronoi edges seen as cylinders [K 3.3.4],
+// and faces separate two grains, or a grain from a wall (K's fv and fc, K 3.7). The
+// faces of one grain close around it: its Voronoi cell cut by the box.
+#ifndef CRAQUELURE_NETWORK_H
+#define CRAQUELURE_NETWORK_H
+
+#include "geometry/packing.h"
+
+enum throat_kind {
+    THROAT_NETWORK = 0,
+    THROAT_BOUNDARY_LAYER = 1, // gas above the surface [K 3.3.5]
+    THROAT_IMPOSED_EMPTY = 2   // holds no liquid and lets nothing through [K 5.4]
+};
+
+struct network {
+    struct packing packing; // the grains travel along
+
+    int n_node;
+    struct vector *node_position; // (n_node) m
+    uint8_t *node_walls; // (n_node) /nodes/kind: walls it lies on, bits of enum wall
+
+    int n_throat;
+    int32_t (*throat_nodes)[2]; // (n_throat) lower node first
+    double *throat_radius;      // (n_throat) m
+    double *throat_length;      // (n_throat) m
+    uint8_t *throat_kind;       // (n_throat) enum throat_kind
+
+    int n_face;
+    int64_t *face_offset;         // (n_face+1) into face_nodes
+    int32_t *face_nodes;          // each face a closed loop of nodes
+    int32_t (*face_particles)[2]; // (n_face) two grains; -1-w for wall w = 0..5
+};
+
+// Frees what the network owns, packing included, and empties it; safe on an empty one.
+void network_free(struct network *network);
+
+// The throats at each node, as compressed rows: throats of node i are
+// throat[offset[i]] .. throat[offset[i+1]-1], in ascending order.
+struct incidence {
+    int *offset; // (n_node+1)
+    int *throat; // (2 n_throat)
+};
+
+// O(n_node + n_throat). The caller frees it with incidence_free.
+struct incidence network_incidence(const struct network *network);
+void incidence_free(struct incidence *incidence);
+
+// Liquid a full throat holds: the cylinder pi r^2 L [K 3.3.4], m3.
+double throat_volume(const struct network *network, int throat);
+
+#endif
