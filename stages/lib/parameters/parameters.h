@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters of a stage, declared once in a table.
+//
+// The table drives everything: parsing and checking of PARAMS.json and --set, the
+// defaults, --help, the JSON Schema (--schema) and so the man page.
+#ifndef CRAQUELURE_PARAMETERS_H
+#define CRAQUELURE_PARAMETERS_H
+
+#include <jansson.h>
+#include <stddef.h>
+
+enum parameter_type {
+    PARAMETER_NUMBER,  // double; NAN where the default is null and nothing is given
+    PARAMETER_INTEGER, // int64_t
+    PARAMETER_BOOLEAN, // bool
+    PARAMETER_CHOICE,  // int: place in CHOICES
+    PARAMETER_CHOICES, // unsigned: bit k set when choice k is in the list
+    PARAMETER_TEXT,   // const char *, owned by the JSON; NULL where the default is null
+    PARAMETER_COUNTS, // int64_t[3]
+    PARAMETER_FLAGS,  // bool[3]
+    PARAMETER_POINT,  // double[3]; NAN where the default is null and nothing is given
+    PARAMETER_LIST    // struct number_list
+};
+
+// A short list of numbers, in the order given.
+enum { LIST_MOST = 64 };
+struct number_list {
+    int count;
+    double value[LIST_MOST];
+};
+
+// How the bounds are read.
+enum parameter_bound { BOUND_NONE, BOUND_MINIMUM, BOUND_ABOVE, BOUND_BETWEEN };
+
+struct parameter {
+    const char *key; // "boundary_layer.layers": dots walk into objects
+    enum parameter_type type;
+    const char *unit;           // UDUNITS spelling, "1" for a pure number
+    const char *fallback;       // the default, as JSON; NULL: must be given
+    enum parameter_bound bound; // x >= low; x > low; low <= x <= high
+    double low, high;           // in the unit
+    const char *choices;        // "inviscid|immobile"
+    const char *text;           // one line for the user
+    size_t offset;              // where it goes in the stage's parameter struct
+};
+
+// A table ends with a row whose key is NULL.
+
+// Reads SECTION (an object; may be NULL: all defaults) by TABLE, checks every entry and
+// fills the stage's struct PARAMETERS. WHERE names the file and section in messages.
+// Reports every problem on stderr, one line each, then exits 65 if there was one.
+// Keys named "comment" are skipped at every level.
+// Returns all effective parameters, defaults filled in; the caller owns the reference
+// and keeps it as long as the struct is used (it holds the texts).
+json_t *parameters_fill(const struct parameter *table, const json_t *section,
+                        const char *where, void *parameters);
+
+// Puts "key.path=value" into SECTION; the value is read as JSON, or else as text.
+// Exits 64 when there is no "=" or no key.
+void parameters_set(json_t *section, const char *assignment);
+
+// The JSON Schema (2020-12) of a table; the caller owns it.
+json_t *parameters_schema(const struct parameter *table, const char *stage);
+
+// Appends the table to STREAM as --help shows it: key, unit, default, range, text.
+void parameters_print(const struct parameter *table, FILE *stream);
+
+// Sorted keys, no white space, 17 digits: equal parameters give equal bytes.
+// The caller frees the text.
+char *json_canonical(const json_t *json);
+
+#endif

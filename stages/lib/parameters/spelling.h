@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef CRAQUELURE_SPELLING_H
+#define CRAQUELURE_SPELLING_H
+
+// The least number of letters to insert, delete or change to turn A into B
+// (Levenshtein); only the first 127 letters of each count.
+int edit_distance(const char *a, const char *b);
+
+#endif

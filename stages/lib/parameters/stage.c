@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "parameters/stage.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// Sections a scene may hold: the stages, whether this one or another.
+static const char *const sections[] = {"pack",       "tessellate",     "merge-nodes",
+                                       "dry",        "force-protocol", "dem-replay",
+                                       "crackstats", "bridge",         "dem-shear",
+                                       "shearstats", "flow",           NULL};
+
+enum { KEY_THREADS = 256, KEY_PROGRESS, KEY_SCHEMA, KEY_PARAMETERS };
+
+static const struct argp_option options[] = {
+    {"params", 'p', "FILE", 0, "Parameters: this stage's section, or a whole scene", 0},
+    {"set", 's', "KEY=VALUE", 0, "Override one parameter; may be repeated", 0},
+    {"output", 'o', "FILE", 0, "Write there; '-', or nothing: standard output", 0},
+    {"threads", KEY_THREADS, "N", 0, "Threads to use [1]; results do not depend on it",
+     0},
+    {"quiet", 'q', NULL, 0, "Say nothing but errors", 0},
+    {"progress", KEY_PROGRESS, "WHEN", 0, "Progress bar: auto, always or never [auto]",
+     0},
+    {"schema", KEY_SCHEMA, NULL, 0, "Print the JSON Schema of the parameters", 1},
+    {"parameters", KEY_PARAMETERS, NULL, 0, "Print the effective parameters", 1},
+    {"version", 'V', NULL, 0, "Print program version", -1},
+    {0}};
+
+// What parsing gathers before the parameters are read.
+struct command_line {
+    const struct stage *stage;
+    struct invocation *invocation;
+    const char *params;
+    char **set;
+    int n_set;
+    bool print_parameters;
+};
+
+const char *stage_program(const struct stage *stage, char text[64])
+{
+    snprintf(text, 64, "%s %d", stage->name, stage->version);
+    return text;
+}
+
+static void print_schema(const struct stage *stage)
+{
+    json_t *schema = parameters_schema(stage->parameters, stage->name);
+    json_dumpf(schema, stdout, JSON_INDENT(2) | JSON_PRESERVE_ORDER);
+    putchar('\n');
+    json_decref(schema);
+    exit(STATUS_OK);
+}
+
+static int parse_threads(const char *text)
+{
+    char *end;
+    const long threads = strtol(text, &end, 10);
+    if (*end || end == text || threads < 1 || threads > 1024)
+        die(STATUS_USAGE, "--threads: must be from 1 to 1024, got %s", text);
+    return (int)threads;
+}
+
+static enum progress_mode parse_progress(const char *text)
+{
+    if (!strcmp(text, "auto")) return PROGRESS_AUTO;
+    if (!strcmp(text, "always")) return PROGRESS_ALWAYS;
+    if (!strcmp(text, "never")) return PROGRESS_NEVER;
+    die(STATUS_USAGE, "--progress: must be auto, always or never, got %s", text);
+}
+
+static void add_input(struct command_line *line, const char *name)
+{
+    struct invocation *invocation = line->invocation;
+    if (invocation->n_input == line->stage->most_inputs)
+        die(STATUS_USAGE, "%s: too many inputs, takes at most %d", name,
+            line->stage->most_inputs);
+    invocation->inputs = reallocate(invocation->inputs, (size_t)invocation->n_input + 1,
+                                    sizeof *invocation->inputs);
+    invocation->inputs[invocation->n_input++] = name;
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    struct command_line *line = state->input;
+    struct invocation *invocation = line->invocation;
+    switch (key) {
+    case 'p':
+        line->params = argument;
+        return 0;
+    case 's':
+        line->set = reallocate(line->set, (size_t)line->n_set + 1, sizeof *line->set);
+        line->set[line->n_set++] = argument;
+        return 0;
+    case 'o':
+        invocation->output = argument;
+        return 0;
+    case 'q':
+        invocation->quiet = true;
+        return 0;
+    case 'V':
+        printf("%s (craquelure %s) stage version %d\n", line->stage->name,
+               CRAQUELURE_VERSION, line->stage->version);
+        exit(STATUS_OK);
+    case KEY_THREADS:
+        invocation->threads = parse_threads(argument);
+        return 0;
+    case KEY_PROGRESS:
+        invocation->progress = parse_progress(argument);
+        return 0;
+    case KEY_SCHEMA:
+        print_schema(line->stage);
+        return 0;
+    case KEY_PARAMETERS:
+        line->print_parameters = true;
+        return 0;
+    case ARGP_KEY_ARG:
+        add_input(line, argument);
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+// The text of --help behind the options: parameters with their defaults, what is read
+// and written.
+static char *help_filter(int key, const char *text, void *input)
+{
+    if (key != ARGP_KEY_HELP_POST_DOC) return (char *)(uintptr_t)text;
+    const struct stage *stage = ((const struct command_line *)input)->stage;
+    char *help = NULL;
+    size_t length = 0;
+    FILE *stream = open_memstream(&help, &length);
+    fprintf(stream, "Parameters (section \"%s\" of the scene):\n", stage->name);
+    parameters_print(stage->parameters, stream);
+    if (stage->notes) fprintf(stream, "\n%s\n", stage->notes);
+    fprintf(stream, "\nReads: %s\nWrites: %s (schemas/%s.json)\n",
+            stage->reads ? stage->reads : "nothing", stage->writes, stage->writes);
+    fprintf(stream,
+            "\nExit status: 0 done; 1 the answer is no; 3 not converged or "
+            "unstable; 64 command line;\n65 bad input or parameters; 66 no such "
+            "input; 70 our fault; 73 cannot create; 74 failed I/O");
+    fclose(stream);
+    return help;
+}
+
+static json_t *load_json(const char *path)
+{
+    FILE *file = fopen(path, "r");
+    if (!file) die(STATUS_NO_INPUT, "%s: %s", path, strerror(errno));
+    json_error_t error;
+    json_t *json = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
+    fclose(file);
+    if (!json)
+        die(STATUS_BAD_DATA, "%s: line %d, column %d: %s", path, error.line,
+            error.column, error.text);
+    if (!json_is_object(json)) die(STATUS_BAD_DATA, "%s: must be a JSON object", path);
+    return json;
+}
+
+static bool is_section(const char *key)
+{
+    for (int k = 0; sections[k]; k++)
+        if (!strcmp(sections[k], key)) return true;
+    return false;
+}
+
+static bool is_scene(json_t *json)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach(json, key, value) if (is_section(key)) return true;
+    return false;
+}
+
+static json_t *section_of_scene(json_t *scene, const char *path, const char *stage)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach(scene, key, value)
+    {
+        if (!is_section(key) && strcmp(key, "comment"))
+            die(STATUS_BAD_DATA,
+                "%s: %s: unknown section; sections are named as stages", path, key);
+    }
+    json_t *section = json_object_get(scene, stage);
+    if (section && !json_is_object(section))
+        die(STATUS_BAD_DATA, "%s: %s: must be an object", path, stage);
+    return section ? json_incref(section) : json_object();
+}
+
+static json_t *load_section(const struct command_line *line)
+{
+    if (!line->params) return json_object();
+    json_t *json = load_json(line->params);
+    if (!is_scene(json)) return json;
+    json_t *section = section_of_scene(json, line->params, line->stage->name);
+    json_decref(json);
+    return section;
+}
+
+static void fill(const struct command_line *line, void *parameters)
+{
+    json_t *section = load_section(line);
+    for (int k = 0; k < line->n_set; k++)
+        parameters_set(section, line->set[k]);
+    char where[300];
+    snprintf(where, sizeof where, "%s%s%s", line->params ? line->params : "",
+             line->params ? ": " : "", line->stage->name);
+    line->invocation->parameters =
+        parameters_fill(line->stage->parameters, section, where, parameters);
+    json_decref(section);
+}
+
+struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
+                              void *parameters)
+{
+    struct invocation invocation = {.stage = stage, .output = "-", .threads = 1};
+    struct command_line line = {.stage = stage, .invocation = &invocation};
+    const struct argp argp = {.options = options,
+                              .parser = parse_option,
+                              .args_doc = stage->most_inputs ? "[INPUT...]" : "",
+                              .doc = stage->summary,
+                              .help_filter = help_filter};
+    argp_parse(&argp, argc, argv, 0, NULL, &line);
+    fill(&line, parameters);
+    free(line.set);
+    if (line.print_parameters) {
+        json_dumpf(invocation.parameters, stdout, JSON_INDENT(2) | JSON_SORT_KEYS);
+        putchar('\n');
+        exit(STATUS_OK);
+    }
+    if (!strcmp(invocation.output, "-") && isatty(STDOUT_FILENO))
+        die(STATUS_USAGE,
+            "standard output is a terminal: name a file with -o, or pipe it");
+    if (stage->reads && !invocation.n_input) add_input(&line, "-");
+    return invocation;
+}
+
+void invocation_free(struct invocation *invocation)
+{
+    free(invocation->inputs);
+    json_decref(invocation->parameters);
+    *invocation = (struct invocation){0};
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line every stage shares:
+//     STAGE [options] [-p PARAMS.json] [INPUT...] [-o OUTPUT]
+#ifndef CRAQUELURE_STAGE_H
+#define CRAQUELURE_STAGE_H
+
+#include "basics/progress.h"
+#include "parameters/parameters.h"
+
+#include <stdbool.h>
+
+// What a stage says of itself.
+struct stage {
+    const char *name;
+    int version;         // raised when results may change
+    const char *summary; // one line
+    const char *reads;   // schema name of its inputs, "packing"; NULL: takes none
+    const char *writes;  // schema name of its output
+    int most_inputs;
+    const struct parameter *parameters;
+    const char *notes; // more for --help; may be NULL
+};
+
+// What the user asked for on this call.
+struct invocation {
+    const struct stage *stage;
+    const char **inputs; // "-" is standard input; one "-" when none was named
+    int n_input;
+    const char *output; // "-" is standard output
+    int threads;
+    bool quiet;
+    enum progress_mode progress;
+    json_t *parameters; // effective, defaults filled in
+};
+
+// Parses the command line, reads the parameters, fills the stage's struct PARAMETERS.
+// Exits on --help, --version, --schema, --parameters, and on errors (64, 65, 66).
+// The invocation lasts until invocation_free.
+struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
+                              void *parameters);
+void invocation_free(struct invocation *invocation);
+
+// "dry 1": what an artifact's `program` attribute says.
+const char *stage_program(const struct stage *stage, char text[64]);
+
+#endif
