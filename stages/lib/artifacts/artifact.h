@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Artifacts: HDF5 files held as images in memory, so that files and pipes are the same.
+//
+// Types, units and shapes of what is written come from the schema, and everything that
+// is read has been checked against it, so that a stage can trust what it gets. All
+// functions end the program with one line and the right exit status on failure.
+#ifndef CRAQUELURE_ARTIFACT_H
+#define CRAQUELURE_ARTIFACT_H
+
+#include "artifacts/schema.h"
+#include "basics/file.h"
+#include "geometry/packing.h"
+#include "network/network.h"
+#include "parameters/stage.h"
+
+struct artifact {
+    const char *path;      // for messages
+    struct schema *schema; // what it is
+    hid_t file;
+    struct bytes image; // of one that was read
+    char sha256[65];    // of one that was read
+};
+
+// ---- reading ------------------------------------------------------------------------
+
+// Reads PATH ("-": standard input) and checks it against the schema called NAME; NULL
+// takes any known one. Exits 65 when it is not an artifact, of another schema,
+// truncated, or breaks a rule, naming the dataset, the row, the rule and the value.
+struct artifact *artifact_open(const char *path, const char *name);
+void artifact_close(struct artifact *artifact);
+
+// The same for bytes already read, which it then owns; PATH is for messages.
+struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
+                                     const char *name);
+
+// A whole dataset in the memory type of its schema entry (float64: double, int32:
+// int32_t, int64: int64_t, uint8: uint8_t). ROWS, if not NULL, gets the first extent.
+// The caller frees it.
+void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
+
+// A number from an attribute, "/summary/porosity".
+double artifact_get_number(const struct artifact *artifact, const char *name);
+
+// Everything a packing or network artifact holds (also drying, forces, response, which
+// carry one along).
+struct packing artifact_get_packing(const struct artifact *artifact);
+struct network artifact_get_network(const struct artifact *artifact);
+
+// ---- writing ------------------------------------------------------------------------
+
+// An empty artifact of schema NAME.
+struct artifact *artifact_create(const char *name);
+
+// Writes a whole dataset of ROWS rows; the other extents are those of the schema, where
+// a symbol among them ("n_particle") takes COLUMNS.
+void artifact_put(struct artifact *artifact, const char *name, const void *data,
+                  int rows);
+void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
+                        int rows, int columns);
+void artifact_put_number(struct artifact *artifact, const char *name, double value);
+void artifact_put_packing(struct artifact *artifact, const struct packing *packing);
+void artifact_put_network(struct artifact *artifact, const struct network *network);
+
+// Lets ParaView open it as it is: a /VTKHDF group of hard links (points from POINTS,
+// point and cell data from the named datasets; lists end with NULL), vertices when
+// throats are NULL, lines between throat nodes otherwise.
+void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point,
+                      const char *const *point_data, const int32_t (*lines)[2],
+                      int n_line, const char *const *cell_data);
+
+// Provenance, from the call, the inputs and MODEL (one line a feature that was modelled
+// or left out); then writes the artifact to the output of the call, whole or not at
+// all. Closes it.
+void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
+                     const struct artifact *const *inputs, int n_input,
+                     const char *model);
+
+// What provenance says of one input: {"schema":…, "sha256":…}. The caller owns it.
+json_t *input_digest(const struct artifact *input);
+
+// The same end for a JSON artifact: adds the provenance to DOCUMENT, whose inputs'
+// digests are INPUTS (taken over), writes it, and frees it.
+void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
+                 const char *model);
+
+#endif

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks an open HDF5 file against a schema.
+#ifndef CRAQUELURE_CHECK_H
+#define CRAQUELURE_CHECK_H
+
+#include "artifacts/schema.h"
+#include "basics/status.h"
+
+#include <stddef.h>
+
+// Every dataset is there, has the kind of numbers and the shape that the schema says,
+// with equal symbols meaning equal extents, and every value keeps its rules. IMAGE_SIZE
+// bounds what a dataset may claim to hold. Returns STATUS_BAD_DATA with dataset, row,
+// rule and value in REASON at the first breach. Reads each dataset once, in blocks.
+enum status check_file(hid_t file, const struct schema *schema, size_t image_size,
+                       struct reason *reason);
+
+#endif

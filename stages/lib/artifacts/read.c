@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Artifacts in: the image, the checks, the datasets.
+#include "artifacts/artifact.h"
+#include "artifacts/check.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <hdf5_hl.h>
+#include <stdlib.h>
+#include <string.h>
+
+static hid_t open_image(const char *path, const struct bytes *image)
+{
+    if (image->size == 0) die(STATUS_BAD_DATA, "%s: is empty", input_name(path));
+    static const unsigned char signature[8] = {0x89, 'H',  'D',  'F',
+                                               '\r', '\n', 0x1a, '\n'};
+    if (image->size < 8 || memcmp(image->data, signature, 8))
+        die(STATUS_BAD_DATA, "%s: is not an HDF5 file", input_name(path));
+    H5Eset_auto2(H5E_DEFAULT, NULL,
+                 NULL); // our own one line instead of the library's stack
+    const hid_t file =
+        H5LTopen_file_image(image->data, image->size,
+                            H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE);
+    if (file < 0)
+        die(STATUS_BAD_DATA, "%s: is a truncated or damaged HDF5 file",
+            input_name(path));
+    return file;
+}
+
+static bool read_text_attribute(hid_t file, const char *name, char text[128])
+{
+    const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
+    if (attribute < 0) return false;
+    const hid_t type = H5Aget_type(attribute);
+    const hid_t space = H5Aget_space(attribute);
+    const size_t size = H5Tget_size(type);
+    memset(text, 0, 128);
+    const bool read = H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type) &&
+                      H5Sget_simple_extent_npoints(space) == 1 && size < 128 &&
+                      H5Aread(attribute, type, text) >= 0;
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return read;
+}
+
+static struct schema *schema_of(hid_t file, const char *path, const char *name)
+{
+    char id[128];
+    if (!read_text_attribute(file, "schema", id))
+        die(STATUS_BAD_DATA, "%s: is not an artifact: it has no schema attribute",
+            input_name(path));
+    struct schema *schema = schema_find(id);
+    if (!schema || strcmp(schema->id, id))
+        die(STATUS_BAD_DATA, "%s: schema %s is unknown%s%s", input_name(path), id,
+            schema ? "; this program knows " : "", schema ? schema->id : "");
+    if (name && strcmp(schema->name, name))
+        die(STATUS_BAD_DATA, "%s: must be a %s, is a %s", input_name(path), name,
+            schema->name);
+    return schema;
+}
+
+struct artifact *artifact_open(const char *path, const char *name)
+{
+    return artifact_open_bytes(path, read_whole(path), name);
+}
+
+struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
+                                     const char *name)
+{
+    struct artifact *artifact = NEW_ARRAY(struct artifact, 1);
+    artifact->path = path;
+    artifact->image = bytes;
+    artifact->file = open_image(path, &artifact->image);
+    artifact->schema = schema_of(artifact->file, path, name);
+    sha256(artifact->image.data, artifact->image.size, artifact->sha256);
+
+    struct reason reason;
+    const enum status status =
+        check_file(artifact->file, artifact->schema, artifact->image.size, &reason);
+    if (status) die(status, "%s: %s", input_name(path), reason.text);
+    return artifact;
+}
+
+void artifact_close(struct artifact *artifact)
+{
+    if (!artifact) return;
+    H5Fclose(artifact->file);
+    schema_free(artifact->schema);
+    free(artifact->image.data);
+    free(artifact);
+}
+
+void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
+{
+    const json_t *entry = schema_dataset(artifact->schema, name);
+    if (!entry)
+        die(STATUS_INTERNAL, "%s: not in schema %s", name, artifact->schema->name);
+    const hid_t dataset = H5Dopen2(artifact->file, name, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(dataset);
+    hsize_t extent[8] = {0};
+    H5Sget_simple_extent_dims(space, extent, NULL);
+    const size_t count = (size_t)H5Sget_simple_extent_npoints(space);
+    H5Sclose(space);
+
+    void *data = allocate(count, H5Tget_size(entry_memory_type(entry)));
+    if (H5Dread(dataset, entry_memory_type(entry), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                data) < 0)
+        die(STATUS_BAD_DATA, "%s: %s: cannot be read", input_name(artifact->path),
+            name);
+    H5Dclose(dataset);
+    if (rows) *rows = (int)extent[0];
+    return data;
+}
+
+double artifact_get_number(const struct artifact *artifact, const char *name)
+{
+    char group[128];
+    snprintf(group, sizeof group, "%.*s", (int)(strrchr(name, '/') - name), name);
+    const hid_t attribute = H5Aopen_by_name(
+        artifact->file, group, strrchr(name, '/') + 1, H5P_DEFAULT, H5P_DEFAULT);
+    double value;
+    if (attribute < 0 || H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
+        die(STATUS_BAD_DATA, "%s: %s: cannot be read", input_name(artifact->path),
+            name);
+    H5Aclose(attribute);
+    return value;
+}
+
+struct packing artifact_get_packing(const struct artifact *artifact)
+{
+    struct packing packing = {0};
+    packing.position =
+        artifact_get(artifact, "/particles/position", &packing.n_particle);
+    packing.radius = artifact_get(artifact, "/particles/radius", NULL);
+    packing.bond = artifact_get(artifact, "/bonds/particles", &packing.n_bond);
+
+    struct vector *lower = artifact_get(artifact, "/domain/lower", NULL);
+    struct vector *upper = artifact_get(artifact, "/domain/upper", NULL);
+    uint8_t *periodic = artifact_get(artifact, "/domain/periodic", NULL);
+    packing.lower = *lower;
+    packing.upper = *upper;
+    memcpy(packing.periodic, periodic, sizeof packing.periodic);
+    free(lower);
+    free(upper);
+    free(periodic);
+    return packing;
+}
+
+struct network artifact_get_network(const struct artifact *artifact)
+{
+    struct network network = {.packing = artifact_get_packing(artifact)};
+    network.node_position = artifact_get(artifact, "/nodes/position", &network.n_node);
+    network.node_walls = artifact_get(artifact, "/nodes/kind", NULL);
+    network.throat_nodes = artifact_get(artifact, "/throats/nodes", &network.n_throat);
+    network.throat_radius = artifact_get(artifact, "/throats/radius", NULL);
+    network.throat_length = artifact_get(artifact, "/throats/length", NULL);
+    network.throat_kind = artifact_get(artifact, "/throats/kind", NULL);
+    network.face_offset = artifact_get(artifact, "/faces/offset", NULL);
+    network.face_nodes = artifact_get(artifact, "/faces/nodes", NULL);
+    network.face_particles =
+        artifact_get(artifact, "/faces/particles", &network.n_face);
+    return network;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The schemas of the artifacts: names, shapes, units, ranges (schemas/*.json).
+#ifndef CRAQUELURE_SCHEMA_H
+#define CRAQUELURE_SCHEMA_H
+
+#include <hdf5.h>
+#include <jansson.h>
+
+struct schema {
+    const char *name;   // "packing"
+    const char *id;     // "craquelure/packing/1"
+    json_t *document;   // the file
+    json_t *datasets;   // list of dataset entries, those of "extends" included
+    json_t *attributes; // list of attribute entries
+};
+
+// The schema called NAME ("packing"), or whose id is NAME; NULL if there is none.
+// The caller frees it with schema_free.
+struct schema *schema_find(const char *name);
+void schema_free(struct schema *schema);
+
+// The entry of dataset or attribute NAME, or NULL.
+const json_t *schema_dataset(const struct schema *schema, const char *name);
+const json_t *schema_attribute(const struct schema *schema, const char *name);
+
+// The HDF5 types of an entry: as it lies in files (little endian), and in memory.
+hid_t entry_file_type(const json_t *entry);
+hid_t entry_memory_type(const json_t *entry);
+
+#endif

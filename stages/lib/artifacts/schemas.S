@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The schemas, as they stand in schemas/, inside every program.
+    .section .rodata
+    .macro schema label, file
+    .global \label
+\label:
+    .incbin "\file"
+    .byte 0
+    .endm
+
+    schema schema_packing, "schemas/packing.json"
+    schema schema_network, "schemas/network.json"
+    schema schema_drying, "schemas/drying.json"
+    schema schema_forces, "schemas/forces.json"
+    schema schema_response, "schemas/response.json"
+    schema schema_crackstats, "schemas/crackstats.json"
+
+    .section .note.GNU-stack, "", @progbits

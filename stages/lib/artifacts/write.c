@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Artifacts out. Same input, same bytes: no time stamps, and the oldest file layout,
+// set explicitly (HDF5 1.10 writes a wrong checksum into images of newer ones).
+#include "artifacts/artifact.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { IMAGE_INCREMENT = 1 << 20 };
+
+static hid_t untimed(hid_t class)
+{
+    const hid_t list = H5Pcreate(class);
+    H5Pset_obj_track_times(list, 0);
+    return list;
+}
+
+// Ends the program when an HDF5 call fails while writing to memory: nothing the user
+// did.
+static hid_t done(hid_t result, const char *what)
+{
+    if (result < 0) die(STATUS_INTERNAL, "HDF5 failed on %s", what);
+    return result;
+}
+
+struct artifact *artifact_create(const char *name)
+{
+    struct artifact *artifact = NEW_ARRAY(struct artifact, 1);
+    artifact->schema = schema_find(name);
+    if (!artifact->schema) die(STATUS_INTERNAL, "%s: no such schema", name);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+    H5Pset_fapl_core(access, IMAGE_INCREMENT, 0);
+    const hid_t creation = untimed(H5P_FILE_CREATE);
+    artifact->file = done(H5Fcreate(name, H5F_ACC_TRUNC, creation, access), name);
+    H5Pclose(creation);
+    H5Pclose(access);
+    return artifact;
+}
+
+static void put_text_attribute(hid_t object, const char *name, const char *text)
+{
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen(text) ? strlen(text) : 1);
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    H5Tset_cset(type, H5T_CSET_UTF8);
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t attribute =
+        done(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), name);
+    done(H5Awrite(attribute, type, text), name);
+    H5Aclose(attribute);
+    H5Sclose(space);
+    H5Tclose(type);
+}
+
+// Creates the groups on the way to NAME and says with which properties links are made.
+static hid_t with_parents(void)
+{
+    const hid_t list = H5Pcreate(H5P_LINK_CREATE);
+    H5Pset_create_intermediate_group(list, 1);
+    return list;
+}
+
+// Groups made on the way by HDF5 itself would carry a time stamp: make them beforehand.
+static void make_groups(hid_t file, const char *name)
+{
+    char path[256];
+    for (const char *slash = strchr(name + 1, '/'); slash;
+         slash = strchr(slash + 1, '/')) {
+        snprintf(path, sizeof path, "%.*s", (int)(slash - name), name);
+        if (H5Lexists(file, path, H5P_DEFAULT) > 0) continue;
+        const hid_t creation = untimed(H5P_GROUP_CREATE);
+        H5Gclose(
+            done(H5Gcreate2(file, path, H5P_DEFAULT, creation, H5P_DEFAULT), path));
+        H5Pclose(creation);
+    }
+}
+
+static hid_t put_array(hid_t file, const char *name, hid_t file_type, hid_t memory_type,
+                       int rank, const hsize_t *extent, const void *data)
+{
+    make_groups(file, name);
+    const hid_t space = H5Screate_simple(rank, extent, NULL);
+    const hid_t creation = untimed(H5P_DATASET_CREATE);
+    const hid_t dataset = done(
+        H5Dcreate2(file, name, file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+        name);
+    done(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
+    H5Pclose(creation);
+    H5Sclose(space);
+    return dataset;
+}
+
+void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
+                        int rows, int columns)
+{
+    const json_t *entry = schema_dataset(artifact->schema, name);
+    if (!entry)
+        die(STATUS_INTERNAL, "%s: not in schema %s", name, artifact->schema->name);
+    const json_t *shape = json_object_get(entry, "shape");
+    hsize_t extent[8] = {(hsize_t)rows};
+    for (size_t axis = 1; axis < json_array_size(shape); axis++) {
+        const json_t *wanted = json_array_get(shape, axis);
+        extent[axis] = json_is_integer(wanted) ? (hsize_t)json_integer_value(wanted)
+                                               : (hsize_t)columns;
+    }
+    const hid_t dataset =
+        put_array(artifact->file, name, entry_file_type(entry),
+                  entry_memory_type(entry), (int)json_array_size(shape), extent, data);
+    put_text_attribute(dataset, "units",
+                       json_string_value(json_object_get(entry, "units")));
+    put_text_attribute(dataset, "long_name",
+                       json_string_value(json_object_get(entry, "text")));
+    H5Dclose(dataset);
+}
+
+void artifact_put(struct artifact *artifact, const char *name, const void *data,
+                  int rows)
+{
+    artifact_put_table(artifact, name, data, rows, 0);
+}
+
+void artifact_put_number(struct artifact *artifact, const char *name, double value)
+{
+    const json_t *entry = schema_attribute(artifact->schema, name);
+    if (!entry)
+        die(STATUS_INTERNAL, "%s: not in schema %s", name, artifact->schema->name);
+    make_groups(artifact->file, name);
+    char group[128];
+    snprintf(group, sizeof group, "%.*s", (int)(strrchr(name, '/') - name), name);
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t attribute =
+        done(H5Acreate_by_name(artifact->file, group, strrchr(name, '/') + 1,
+                               entry_file_type(entry), space, H5P_DEFAULT, H5P_DEFAULT,
+                               H5P_DEFAULT),
+             name);
+    done(H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value), name);
+    H5Aclose(attribute);
+    H5Sclose(space);
+}
+
+void artifact_put_packing(struct artifact *artifact, const struct packing *packing)
+{
+    artifact_put(artifact, "/particles/position", packing->position,
+                 packing->n_particle);
+    artifact_put(artifact, "/particles/radius", packing->radius, packing->n_particle);
+    artifact_put(artifact, "/domain/lower", &packing->lower, 3);
+    artifact_put(artifact, "/domain/upper", &packing->upper, 3);
+    artifact_put(artifact, "/domain/periodic", packing->periodic, 3);
+    artifact_put(artifact, "/bonds/particles", packing->bond, packing->n_bond);
+}
+
+void artifact_put_network(struct artifact *artifact, const struct network *network)
+{
+    const int n_face_node = (int)network->face_offset[network->n_face];
+    artifact_put_packing(artifact, &network->packing);
+    artifact_put(artifact, "/nodes/position", network->node_position, network->n_node);
+    artifact_put(artifact, "/nodes/kind", network->node_walls, network->n_node);
+    artifact_put(artifact, "/throats/nodes", network->throat_nodes, network->n_throat);
+    artifact_put(artifact, "/throats/radius", network->throat_radius,
+                 network->n_throat);
+    artifact_put(artifact, "/throats/length", network->throat_length,
+                 network->n_throat);
+    artifact_put(artifact, "/throats/kind", network->throat_kind, network->n_throat);
+    artifact_put(artifact, "/faces/offset", network->face_offset, network->n_face + 1);
+    artifact_put(artifact, "/faces/nodes", network->face_nodes, n_face_node);
+    artifact_put(artifact, "/faces/particles", network->face_particles,
+                 network->n_face);
+}
+
+// ---- ParaView -----------------------------------------------------------------------
+
+static void put_integers(hid_t file, const char *name, hid_t file_type,
+                         const int64_t *data, int count)
+{
+    H5Dclose(put_array(file, name, file_type, H5T_NATIVE_INT64, 1,
+                       &(hsize_t){(hsize_t)count}, data));
+}
+
+// Type must be ASCII, of exactly its length, padded with nulls: the readers of ParaView
+// 5.11 take the size of the string type for its length.
+static void put_vtk_header(hid_t file)
+{
+    make_groups(file, "/VTKHDF/");
+    const hid_t group = H5Gopen2(file, "/VTKHDF", H5P_DEFAULT);
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen("UnstructuredGrid"));
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    const hid_t scalar = H5Screate(H5S_SCALAR);
+    const hid_t kind =
+        H5Acreate2(group, "Type", type, scalar, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(kind, type, "UnstructuredGrid");
+    const hid_t pair = H5Screate_simple(1, &(hsize_t){2}, NULL);
+    const hid_t version =
+        H5Acreate2(group, "Version", H5T_STD_I64LE, pair, H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(version, H5T_NATIVE_INT64, (int64_t[]){1, 0});
+    H5Aclose(version);
+    H5Aclose(kind);
+    H5Sclose(pair);
+    H5Sclose(scalar);
+    H5Tclose(type);
+    H5Gclose(group);
+}
+
+// Cells of SIZE points each: vertices (1) or lines (2).
+static void put_vtk_cells(hid_t file, const int64_t *connectivity, int n_cell, int size)
+{
+    int64_t *offsets = NEW_ARRAY(int64_t, n_cell + 1);
+    int64_t *types = NEW_ARRAY(int64_t, n_cell);
+    for (int c = 0; c < n_cell; c++) {
+        offsets[c + 1] = (int64_t)size * (c + 1);
+        types[c] = size == 1 ? 1 : 3; // VTK_VERTEX, VTK_LINE
+    }
+    put_integers(file, "/VTKHDF/NumberOfCells", H5T_STD_I64LE, &(int64_t){n_cell}, 1);
+    put_integers(file, "/VTKHDF/NumberOfConnectivityIds", H5T_STD_I64LE,
+                 &(int64_t){(int64_t)size * n_cell}, 1);
+    put_integers(file, "/VTKHDF/Connectivity", H5T_STD_I64LE, connectivity,
+                 size * n_cell);
+    put_integers(file, "/VTKHDF/Offsets", H5T_STD_I64LE, offsets, n_cell + 1);
+    put_integers(file, "/VTKHDF/Types", H5T_STD_U8LE, types, n_cell);
+    free(types);
+    free(offsets);
+}
+
+static void link_data(hid_t file, const char *group, const char *const *names)
+{
+    const hid_t creation = with_parents();
+    for (int k = 0; names && names[k]; k++) {
+        char path[128];
+        snprintf(path, sizeof path, "/VTKHDF/%s/%s", group, strrchr(names[k], '/') + 1);
+        make_groups(file, path);
+        done(H5Lcreate_hard(file, names[k], file, path, creation, H5P_DEFAULT), path);
+    }
+    H5Pclose(creation);
+}
+
+void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point,
+                      const char *const *point_data, const int32_t (*lines)[2],
+                      int n_line, const char *const *cell_data)
+{
+    const hid_t file = artifact->file;
+    const int n_cell = lines ? n_line : n_point, size = lines ? 2 : 1;
+    int64_t *connectivity = NEW_ARRAY(int64_t, (size_t)size * (size_t)n_cell);
+    for (int k = 0; k < size * n_cell; k++)
+        connectivity[k] = lines ? lines[k / 2][k % 2] : k;
+    put_vtk_header(file);
+    put_integers(file, "/VTKHDF/NumberOfPoints", H5T_STD_I64LE, &(int64_t){n_point}, 1);
+    put_vtk_cells(file, connectivity, n_cell, size);
+    done(H5Lcreate_hard(file, points, file, "/VTKHDF/Points", H5P_DEFAULT, H5P_DEFAULT),
+         points);
+    link_data(file, "PointData", point_data);
+    link_data(file, "CellData", cell_data);
+    free(connectivity);
+}
+
+// ---- provenance and the end ---------------------------------------------------------
+
+json_t *input_digest(const struct artifact *input)
+{
+    return json_pack("{s:s,s:s}", "schema", input->schema->id, "sha256", input->sha256);
+}
+
+// Members every artifact carries. Takes INPUTS over.
+static json_t *provenance(const struct invocation *invocation, json_t *inputs,
+                          const char *model)
+{
+    char program[64];
+    return json_pack("{s:s,s:O,s:o,s:s}", "program",
+                     stage_program(invocation->stage, program), "parameters",
+                     invocation->parameters, "inputs", inputs, "model", model);
+}
+
+static void put_provenance(struct artifact *artifact, json_t *members)
+{
+    const hid_t root = H5Gopen2(artifact->file, "/", H5P_DEFAULT);
+    const char *key;
+    json_t *value;
+    put_text_attribute(root, "schema", artifact->schema->id);
+    json_object_foreach(members, key, value)
+    {
+        char *text = json_is_string(value) ? strdup(json_string_value(value))
+                                           : json_canonical(value);
+        put_text_attribute(root, key, text);
+        free(text);
+    }
+    H5Gclose(root);
+    json_decref(members);
+}
+
+void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
+                     const struct artifact *const *inputs, int n_input,
+                     const char *model)
+{
+    json_t *digests = json_array();
+    for (int k = 0; k < n_input; k++)
+        json_array_append_new(digests, input_digest(inputs[k]));
+    put_provenance(artifact, provenance(invocation, digests, model));
+
+    done(H5Fflush(artifact->file, H5F_SCOPE_GLOBAL), "flush");
+    const ssize_t size = H5Fget_file_image(artifact->file, NULL, 0);
+    done((hid_t)size, "image");
+    artifact->image = (struct bytes){allocate((size_t)size, 1), (size_t)size};
+    done((hid_t)H5Fget_file_image(artifact->file, artifact->image.data, (size_t)size),
+         "image");
+    write_whole(invocation->output, artifact->image.data, artifact->image.size);
+    artifact_close(artifact);
+}
+
+void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
+                 const char *model)
+{
+    json_t *members = provenance(invocation, inputs, model);
+    json_object_update(document, members);
+    json_decref(members);
+    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    json_decref(document);
+    char *line = allocate(strlen(text) + 2, 1);
+    sprintf(line, "%s\n", text);
+    write_whole(invocation->output, line, strlen(line));
+    free(line);
+    free(text);
+}

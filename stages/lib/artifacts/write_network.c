@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "artifacts/write_network.h"
+
+void write_network(const struct network *network, const struct invocation *invocation,
+                   const struct artifact *input, const char *model)
+{
+    double void_volume = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        void_volume += throat_volume(network, t);
+
+    struct artifact *artifact = artifact_create("network");
+    artifact_put_network(artifact, network);
+    artifact_put_number(artifact, "/summary/coordination",
+                        network->n_node ? 2.0 * network->n_throat / network->n_node
+                                        : 0);
+    artifact_put_number(artifact, "/summary/void_volume", void_volume);
+    artifact_put_vtk(artifact, "/nodes/position", network->n_node,
+                     (const char *const[]){"/nodes/kind", NULL},
+                     (const int32_t(*)[2])network->throat_nodes, network->n_throat,
+                     (const char *const[]){"/throats/radius", "/throats/kind", NULL});
+    artifact_finish(artifact, invocation, &input, 1, model);
+}

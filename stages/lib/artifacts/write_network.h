@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef CRAQUELURE_WRITE_NETWORK_H
+#define CRAQUELURE_WRITE_NETWORK_H
+
+#include "artifacts/artifact.h"
+
+// Writes a network artifact, made from INPUT, to the output of the call: summary,
+// ParaView view and provenance included.
+void write_network(const struct network *network, const struct invocation *invocation,
+                   const struct artifact *input, const char *model);
+
+#endif
