@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the triangulation to the arrays of the network.
+#ifndef CRAQUELURE_ASSEMBLE_H
+#define CRAQUELURE_ASSEMBLE_H
+
+#include "diagram.h"
+#include "mirrored.h"
+#include "nodes.h"
+
+// All that is known when throats and faces are read off.
+struct assembly {
+    const struct generators *generators;
+    const struct triangulation *triangulation;
+    const struct nodes *nodes;
+    const double *radius; // (n_particle) mean diameters
+    enum clearance clearance;
+};
+
+// Fills the throats of the network; returns how many have no clearance at all.
+int assemble_throats(const struct assembly *assembly, struct network *network);
+
+// Fills the faces: each a loop of nodes, normal pointing from its first side to its
+// second, sorted by the grains they separate.
+void assemble_faces(const struct assembly *assembly, struct network *network);
+
+#endif

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From grains to their pore network: the edges of the diagram are the throats [K 3.3].
+#ifndef CRAQUELURE_DIAGRAM_H
+#define CRAQUELURE_DIAGRAM_H
+
+#include "basics/status.h"
+#include "network/network.h"
+
+#include <stdbool.h>
+
+enum clearance {
+    CLEARANCE_SEGMENT, // least distance from the throat itself to the grains beside it
+    CLEARANCE_LINE     // [K 3.7]: least distance from the infinite line through it
+};
+
+struct tessellation {
+    bool power; // power diagram (K's Dirichlet); else Voronoi
+    enum clearance clearance;
+};
+
+// What the network left out or had to decide.
+struct tessellation_report {
+    int hidden;           // grains without a cell of their own (power diagrams)
+    int n_image;          // reflected grains that were needed
+    int n_closed;         // throats whose clearance is below 0, taken as 0
+    double mean_diameter; // m
+};
+
+// The network of PACKING truncated to its box. On success *NETWORK is the caller's; the
+// packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside the box, a
+// periodic box (not yet), two grains at one place.
+//
+// Nodes come in the order of the grains they lie between, so that their order says
+// where they are, not how the triangulation was built. Wall nodes that coincide (an
+// image plane makes every one degenerate) are one node; inside, nothing is merged: four
+// throats a node.
+enum status tessellate(const struct packing *packing, const struct tessellation *how,
+                       struct network *network, struct tessellation_report *report,
+                       struct reason *reason);
+
+#endif

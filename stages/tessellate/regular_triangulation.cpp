@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only file that talks to CGAL.
+#include "regular_triangulation.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Regular_triangulation_3.h>
+#include <CGAL/Regular_triangulation_cell_base_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<
+    int, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
+using CellBase = CGAL::Triangulation_cell_base_with_info_3<
+    int, Kernel, CGAL::Regular_triangulation_cell_base_3<Kernel>>;
+using Structure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
+using Triangulation = CGAL::Regular_triangulation_3<Kernel, Structure>;
+
+} // namespace
+
+extern "C" int triangulate(const struct vector *points, const double *weights, int n,
+                           struct triangulation *triangulation)
+{
+    std::vector<std::pair<Triangulation::Weighted_point, int>> weighted;
+    weighted.reserve(static_cast<size_t>(n));
+    for (int i = 0; i < n; i++)
+        weighted.emplace_back(
+            Triangulation::Weighted_point(
+                Kernel::Point_3(points[i].x, points[i].y, points[i].z),
+                weights ? weights[i] : 0.0),
+            i);
+    const Triangulation regular(weighted.begin(), weighted.end());
+    if (regular.dimension() < 3) return -1;
+
+    int count = 0;
+    for (auto cell = regular.all_cells_begin(); cell != regular.all_cells_end(); ++cell)
+        cell->info() = regular.is_infinite(cell) ? -1 : count++;
+
+    triangulation->n_cell = count;
+    triangulation->vertex = static_cast<int32_t(*)[4]>(
+        std::malloc(sizeof(int32_t[4]) * static_cast<size_t>(count)));
+    triangulation->neighbour = static_cast<int32_t(*)[4]>(
+        std::malloc(sizeof(int32_t[4]) * static_cast<size_t>(count)));
+    for (auto cell = regular.finite_cells_begin(); cell != regular.finite_cells_end();
+         ++cell)
+        for (int k = 0; k < 4; k++) {
+            triangulation->vertex[cell->info()][k] = cell->vertex(k)->info();
+            triangulation->neighbour[cell->info()][k] = cell->neighbor(k)->info();
+        }
+    return 0;
+}
+
+extern "C" void triangulation_free(struct triangulation *triangulation)
+{
+    std::free(triangulation->vertex);
+    std::free(triangulation->neighbour);
+    *triangulation = {};
+}

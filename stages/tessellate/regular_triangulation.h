@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CGAL's regular triangulation behind a C interface: the dual of the power diagram,
+// which is K's "Dirichlet" tessellation [K 3.2.3] and, for equal weights, Voronoi's.
+#ifndef CRAQUELURE_REGULAR_TRIANGULATION_H
+#define CRAQUELURE_REGULAR_TRIANGULATION_H
+
+#include "geometry/vector.h"
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Tetrahedra, the infinite ones left out. Exact predicates: also where many points are
+// cospherical, and never a flat one.
+struct triangulation {
+    int n_cell;
+    int32_t (*vertex)[4];    // (n_cell) points
+    int32_t (*neighbour)[4]; // (n_cell) cell opposite each vertex; -1: infinite
+};
+
+// Triangulates N points with WEIGHTS (radius squared; NULL: all equal). Returns 0, or
+// -1 when the points do not span three dimensions. The caller frees with
+// triangulation_free.
+int triangulate(const struct vector *points, const double *weights, int n,
+                struct triangulation *triangulation);
+void triangulation_free(struct triangulation *triangulation);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
