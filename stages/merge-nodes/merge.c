@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "merge.h"
+
+#include "basics/memory.h"
+#include "merge_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double mean(const double *values, int count)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++)
+        sum += values[i];
+    return count ? sum / count : 0;
+}
+
+// The length below which throats go, and how many may go at most.
+static void limits(const struct network *network, enum merge_measure measure,
+                   double threshold, double *length, int *most)
+{
+    *most = network->n_throat;
+    switch (measure) {
+    case MERGE_GRAIN_RADIUS:
+        *length =
+            threshold * mean(network->packing.radius, network->packing.n_particle);
+        break;
+    case MERGE_MEAN_LENGTH:
+        *length = threshold * mean(network->throat_length, network->n_throat);
+        break;
+    case MERGE_ABSOLUTE:
+        *length = threshold;
+        break;
+    case MERGE_FRACTION:
+        *length = HUGE_VAL;
+        *most = (int)floor(threshold * network->n_throat);
+        break;
+    }
+}
+
+static int count_walls(uint8_t walls)
+{
+    return __builtin_popcount(walls);
+}
+
+static bool spans_the_box(uint8_t walls)
+{
+    return (walls & 3) == 3 || (walls & 12) == 12 || (walls & 48) == 48;
+}
+
+// Moves the node at ROOT to where the union of it and OTHER belongs.
+static void place_union(struct merging *merging, int root, int other)
+{
+    const struct network *network = merging->network;
+    const int difference =
+        count_walls(merging->walls[root]) - count_walls(merging->walls[other]);
+    const double a = difference < 0 ? 0 : merging->weight[root];
+    const double b = difference > 0 ? 0 : merging->weight[other];
+    const struct vector from = merging->position[root];
+    const struct vector apart = subtract(merging->position[other], from);
+    merging->position[root] = add(from, scale(b / (a + b), apart));
+    merging->weight[root] = a + b;
+    merging->walls[root] |= merging->walls[other];
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (merging->walls[root] >> wall & 1)
+            set_component(
+                &merging->position[root], wall / 2,
+                component(wall % 2 ? network->packing.upper : network->packing.lower,
+                          wall / 2));
+}
+
+// Unites the two nodes of throat T. False when it has to stay.
+static bool merge_ends(struct merging *merging, int t)
+{
+    int a = merging_node(merging, merging->network->throat_nodes[t][0]);
+    int b = merging_node(merging, merging->network->throat_nodes[t][1]);
+    if (spans_the_box(merging->walls[a] | merging->walls[b])) return false;
+    if (merging->row[a].count < merging->row[b].count) { // the shorter list moves
+        const int kept = a;
+        a = b;
+        b = kept;
+    }
+    const struct vector before = merging->position[a];
+    place_union(merging, a, b);
+    merging->parent[b] = a;
+    merging_remove(merging, t);
+    merging_move_throats(merging, a, b, distance(before, merging->position[a]) > 0);
+    return true;
+}
+
+void merge_nodes(struct network *network, enum merge_measure measure, double threshold,
+                 struct merge_report *report)
+{
+    double shortest_kept = 0;
+    int most;
+    limits(network, measure, threshold, &shortest_kept, &most);
+    *report = (struct merge_report){.nodes_before = network->n_node,
+                                    .throats_before = network->n_throat};
+    struct merging merging = merging_begin(network);
+    int throat;
+    double length;
+    while (merging.removed < most && merging_shortest(&merging, &throat, &length)) {
+        if (!(length < shortest_kept)) break;
+        if (merge_ends(&merging, throat))
+            report->merged++;
+        else
+            report->kept++;
+    }
+    report->fused = merging.removed - report->merged;
+    merging_finish(&merging);
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Removes short throats by merging their two nodes [K 3.3.7].
+#ifndef CRAQUELURE_MERGE_H
+#define CRAQUELURE_MERGE_H
+
+#include "network/network.h"
+
+enum merge_measure {
+    MERGE_GRAIN_RADIUS, // threshold in mean grain radii
+    MERGE_MEAN_LENGTH,  // in mean throat lengths, before merging
+    MERGE_ABSOLUTE,     // in metres
+    MERGE_FRACTION      // share of the throats to remove
+};
+
+struct merge_report {
+    int nodes_before, throats_before;
+    int merged; // throats whose two nodes became one
+    int fused;  // throats that had become parallel to another and were united with it
+    int kept;   // short throats that had to stay: from wall to opposite wall
+};
+
+// Merges, the shortest throat first (of equal ones the lowest index), until none is
+// shorter than the threshold, or the asked-for share of throats is gone.
+//
+// A merged node lies at the mean of the nodes it was made from, those on most walls
+// alone counting, and exactly on all their walls. Throats that become parallel (between
+// the same two nodes) are one: they were the same opening, seen twice; the wider radius
+// stays. Lengths follow the nodes; radii are those from before. Faces stay closed
+// loops; one left with fewer than three nodes is gone.
+//
+// O(n log n). NETWORK is changed in place.
+void merge_nodes(struct network *network, enum merge_measure measure, double threshold,
+                 struct merge_report *report);
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The bookkeeping behind merge_nodes: which nodes are one, which throats they have,
+// which throat is the shortest.
+#ifndef CRAQUELURE_MERGE_PARTS_H
+#define CRAQUELURE_MERGE_PARTS_H
+
+#include "network/network.h"
+
+#include <stdbool.h>
+
+// Throats at one node, those removed since still among them.
+struct throat_row {
+    int *throat;
+    int count, capacity;
+};
+
+// A throat in the queue; out of date when its stamp is not the throat's.
+struct queued {
+    double length;
+    int throat, stamp;
+};
+
+struct merging {
+    struct network *network;
+    int *parent;             // (n_node) union-find
+    struct vector *position; // (n_node) of roots
+    double *weight; // (n_node) of roots: how many nodes its place is the mean of
+    uint8_t *walls; // (n_node) of roots
+    struct throat_row *row; // (n_node) of roots
+    bool *gone;             // (n_throat)
+    int *stamp;             // (n_throat) raised whenever its length changes
+    struct queued *queue;   // binary heap
+    int n_queue, queue_capacity;
+    int removed;
+};
+
+struct merging merging_begin(struct network *network);
+
+// The node that NODE is part of now.
+int merging_node(struct merging *merging, int node);
+
+// Takes the shortest throat left off the queue. False when none is left.
+bool merging_shortest(struct merging *merging, int *throat, double *length);
+
+void merging_remove(struct merging *merging, int throat);
+
+// Gives the throats of OTHER to ROOT, fusing those that have become parallel, and
+// measures again what has changed: the moved ones, and all of ROOT if it MOVED itself.
+void merging_move_throats(struct merging *merging, int root, int other, bool moved);
+
+// Writes what is left back into the network, renumbered in the old order, and frees.
+void merging_finish(struct merging *merging);
+
+#endif
