@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "patches.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// theta times the unit normal of the plane through the arc from direction A to
+// direction B. For unit vectors theta is the angle; small angles keep their digits.
+static struct vector arc(struct vector a, struct vector b)
+{
+    const struct vector normal = cross(a, b);
+    const double sine = norm(normal);
+    if (sine == 0) return (struct vector){0};
+    return scale(atan2(sine, dot(a, b)) / sine, normal);
+}
+
+// The integral of the unit normal over the spherical triangle A B C, counter-clockwise
+// from outside. The cone below it is closed, so the integral is minus that over its
+// three flat sides, which are sectors of area theta/2.
+static struct vector triangle_normal(struct vector a, struct vector b, struct vector c)
+{
+    return scale(0.5, add(arc(a, b), add(arc(b, c), arc(c, a))));
+}
+
+static struct vector direction(struct vector from, struct vector to)
+{
+    const struct vector apart = subtract(to, from);
+    return scale(1 / norm(apart), apart);
+}
+
+// Where the line between the two sides of a face crosses it. Between grains that is the
+// point of equal power, the middle for equal radii.
+static struct vector foot_of_face(const struct network *network, int face)
+{
+    const struct packing *packing = &network->packing;
+    const int i = network->face_particles[face][0],
+              j = network->face_particles[face][1];
+    struct vector foot = packing->position[i];
+    if (j < 0) {
+        const int wall = -1 - j;
+        const struct vector corner = wall % 2 ? packing->upper : packing->lower;
+        set_component(&foot, wall / 2, component(corner, wall / 2));
+        return foot;
+    }
+    const struct vector apart = subtract(packing->position[j], foot);
+    const double ri = packing->radius[i], rj = packing->radius[j];
+    const double share =
+        0.5 + 0.5 * (ri - rj) * (ri + rj) / dot(apart, apart); // [K 3.2]
+    return add(foot, scale(share, apart));
+}
+
+static int throat_between(const struct network *network,
+                          const struct incidence *incidence, int a, int b)
+{
+    const int lower = a < b ? a : b, upper = a < b ? b : a;
+    for (int k = incidence->offset[lower]; k < incidence->offset[lower + 1]; k++) {
+        const int t = incidence->throat[k];
+        if (network->throat_nodes[t][0] == lower &&
+            network->throat_nodes[t][1] == upper)
+            return t;
+    }
+    return -1;
+}
+
+// The patches one face gives one of its grains, a triangle a throat, written to
+// PATCHES. Turned around when the loop runs clockwise seen from that grain's outside.
+static void fan(const struct network *network, int face, int grain, const int *throats,
+                struct patch *patches)
+{
+    const int32_t *loop = network->face_nodes + network->face_offset[face];
+    const int count =
+        (int)(network->face_offset[face + 1] - network->face_offset[face]);
+    const struct vector centre = network->packing.position[grain];
+    const struct vector foot = direction(centre, foot_of_face(network, face));
+    struct vector sum = {0};
+    for (int k = 0; k < count; k++) {
+        const struct vector a = direction(centre, network->node_position[loop[k]]);
+        const struct vector b =
+            direction(centre, network->node_position[loop[(k + 1) % count]]);
+        patches[k] = (struct patch){throats[k], grain, triangle_normal(foot, a, b)};
+        sum = add(sum, patches[k].normal);
+    }
+    const double sign = dot(sum, foot) < 0 ? -1 : 1;
+    for (int k = 0; k < count; k++)
+        patches[k].normal = scale(sign, patches[k].normal);
+}
+
+static int compare_patches(const void *a, const void *b)
+{
+    const struct patch *first = a, *second = b;
+    if (first->particle != second->particle)
+        return first->particle < second->particle ? -1 : 1;
+    return (first->throat > second->throat) - (first->throat < second->throat);
+}
+
+// One patch a throat and grain, out of the two triangles.
+static int unite(struct patch *patches, int count)
+{
+    int kept = 0;
+    for (int k = 0; k < count; k++) {
+        struct patch *last = kept ? &patches[kept - 1] : NULL;
+        if (last && !compare_patches(last, &patches[k]))
+            last->normal = add(last->normal, patches[k].normal);
+        else
+            patches[kept++] = patches[k];
+    }
+    return kept;
+}
+
+static enum status find_throats(const struct network *network,
+                                const struct incidence *incidence, int face,
+                                int *throats, struct reason *reason)
+{
+    const int32_t *loop = network->face_nodes + network->face_offset[face];
+    const int count =
+        (int)(network->face_offset[face + 1] - network->face_offset[face]);
+    if (network->face_particles[face][0] < 0)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "/faces/particles: row %d: the first side must be a grain, got %d", face,
+            network->face_particles[face][0]);
+    for (int k = 0; k < count; k++) {
+        const int next = (k + 1) % count;
+        throats[k] = throat_between(network, incidence, loop[k], loop[next]);
+        if (throats[k] < 0)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/faces/nodes: face %d: no throat between nodes %d and %d",
+                          face, loop[k], loop[next]);
+    }
+    return STATUS_OK;
+}
+
+enum status find_patches(const struct network *network, struct patch **patches,
+                         int *count, struct reason *reason)
+{
+    const size_t n_face_node = (size_t)network->face_offset[network->n_face];
+    struct incidence incidence = network_incidence(network);
+    int *throats = NEW_ARRAY(int, n_face_node);
+    enum status status = STATUS_OK;
+    *patches = NEW_ARRAY(struct patch, 2 * n_face_node);
+    *count = 0;
+    for (int face = 0; face < network->n_face && !status; face++) {
+        status = find_throats(network, &incidence, face, throats, reason);
+        for (int side = 0; side < 2 && !status; side++) {
+            const int grain = network->face_particles[face][side];
+            if (grain < 0) continue;
+            fan(network, face, grain, throats, *patches + *count);
+            *count +=
+                (int)(network->face_offset[face + 1] - network->face_offset[face]);
+        }
+    }
+    if (*count) qsort(*patches, (size_t)*count, sizeof **patches, compare_patches);
+    *count = unite(*patches, *count);
+    free(throats);
+    incidence_free(&incidence);
+    if (status) free(*patches);
+    return status;
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which patch of each grain's surface faces each throat [K 3.21, 5.1; in three
+// dimensions].
+#ifndef CRAQUELURE_PATCHES_H
+#define CRAQUELURE_PATCHES_H
+
+#include "basics/status.h"
+#include "network/network.h"
+
+// The integral of the unit normal over the patch of a grain's unit sphere that faces a
+// throat; its length is at most pi. Those of one grain sum to zero to rounding,
+// whatever the cell looks like, so a grain with liquid all around feels nothing
+// [K 3.22].
+struct patch {
+    int32_t throat, particle;
+    struct vector normal;
+};
+
+// Every patch, by grain, then by throat. Each face of a grain's cell is fanned from
+// where the line between the two grains crosses it (for a wall: the grain's foot on
+// it); the triangles are projected on the sphere, and the two on both sides of a throat
+// are its patch. STATUS_BAD_DATA when two neighbours in a face's loop are not joined by
+// a throat. The caller frees *PATCHES.
+enum status find_patches(const struct network *network, struct patch **patches,
+                         int *count, struct reason *reason);
+
+#endif
