@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "describe.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// A dataset read whole, as doubles (indices up to 2^53 stay exact).
+struct values {
+    int rank;
+    hsize_t extent[8];
+    size_t count;
+    double *value;
+};
+
+static struct values read_values(hid_t file, const char *name)
+{
+    struct values values = {0};
+    const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(dataset);
+    values.rank = H5Sget_simple_extent_dims(space, values.extent, NULL);
+    values.count = (size_t)H5Sget_simple_extent_npoints(space);
+    values.value = NEW_ARRAY(double, values.count);
+    if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                values.value) < 0)
+        die(STATUS_BAD_DATA, "%s: cannot be read", name);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    return values;
+}
+
+static json_t *number(double value, const json_t *entry)
+{
+    return strcmp(json_string_value(json_object_get(entry, "type")), "float64")
+               ? json_integer((json_int_t)value)
+               : json_real(value);
+}
+
+// ---- one dataset --------------------------------------------------------------------
+
+static void put_digest(json_t *description, const struct artifact *artifact,
+                       const json_t *entry)
+{
+    const char *name = json_string_value(json_object_get(entry, "name"));
+    const hid_t dataset = H5Dopen2(artifact->file, name, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(dataset);
+    const size_t size = (size_t)H5Sget_simple_extent_npoints(space) *
+                        H5Tget_size(entry_file_type(entry));
+    void *data = allocate(size, 1);
+    char digest[65];
+    if (H5Dread(dataset, entry_file_type(entry), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) <
+        0)
+        die(STATUS_BAD_DATA, "%s: cannot be read", name);
+    sha256(data, size, digest);
+    json_object_set_new(description, "sha256", json_string(digest));
+    free(data);
+    H5Sclose(space);
+    H5Dclose(dataset);
+}
+
+static void put_extremes(json_t *description, const struct values *values,
+                         const json_t *entry)
+{
+    if (!values->count) return;
+    double least = values->value[0], most = values->value[0];
+    for (size_t k = 1; k < values->count; k++) {
+        least = values->value[k] < least ? values->value[k] : least;
+        most = values->value[k] > most ? values->value[k] : most;
+    }
+    json_object_set_new(description, "minimum", number(least, entry));
+    json_object_set_new(description, "maximum", number(most, entry));
+}
+
+static json_t *describe_dataset(const struct artifact *artifact, const json_t *entry)
+{
+    const char *name = json_string_value(json_object_get(entry, "name"));
+    struct values values = read_values(artifact->file, name);
+    json_t *shape = json_array();
+    for (int axis = 0; axis < values.rank; axis++)
+        json_array_append_new(shape, json_integer((json_int_t)values.extent[axis]));
+    json_t *description = json_pack("{s:s,s:O,s:o,s:O,s:O}", "name", name, "type",
+                                    json_object_get(entry, "type"), "shape", shape,
+                                    "units", json_object_get(entry, "units"), "text",
+                                    json_object_get(entry, "text"));
+    put_extremes(description, &values, entry);
+    put_digest(description, artifact, entry);
+    free(values.value);
+    return description;
+}
+
+// ---- the artifact -------------------------------------------------------------------
+
+static char *read_text(hid_t file, const char *name)
+{
+    const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
+    if (attribute < 0) return NULL;
+    const hid_t type = H5Aget_type(attribute);
+    char *text = NULL;
+    if (H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type)) {
+        text = allocate(H5Tget_size(type) + 1, 1);
+        if (H5Aread(attribute, type, text) < 0) text[0] = 0;
+    }
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return text;
+}
+
+static json_t *lines_of(char *text)
+{
+    json_t *lines = json_array();
+    for (char *line; text && (line = strsep(&text, "\n"));)
+        if (*line) json_array_append_new(lines, json_string(line));
+    return lines;
+}
+
+// Provenance as it lies in the file: a foreign program need not have written any.
+static void put_provenance(json_t *description, hid_t file)
+{
+    static const char *const names[] = {"program", "parameters", "inputs", "model",
+                                        NULL};
+    for (int k = 0; names[k]; k++) {
+        char *text = read_text(file, names[k]);
+        json_t *value = NULL;
+        if (text && !strcmp(names[k], "model"))
+            value = lines_of(text);
+        else if (text)
+            value = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
+        if (text && !value) value = json_string(text);
+        json_object_set_new(description, names[k], value ? value : json_null());
+        free(text);
+    }
+}
+
+static json_t *summary_of(const struct artifact *artifact)
+{
+    json_t *summary = json_object();
+    size_t k;
+    json_t *entry;
+    json_array_foreach(artifact->schema->attributes, k, entry)
+    {
+        const char *name = json_string_value(json_object_get(entry, "name"));
+        json_object_set_new(summary, strrchr(name, '/') + 1,
+                            number(artifact_get_number(artifact, name), entry));
+    }
+    return summary;
+}
+
+json_t *describe_artifact(const struct artifact *artifact)
+{
+    json_t *description =
+        json_pack("{s:s,s:s,s:I}", "schema", artifact->schema->id, "sha256",
+                  artifact->sha256, "bytes", (json_int_t)artifact->image.size);
+    put_provenance(description, artifact->file);
+    json_object_set_new(description, "summary", summary_of(artifact));
+    json_t *datasets = json_array();
+    size_t k;
+    json_t *entry;
+    json_array_foreach(artifact->schema->datasets, k, entry)
+        json_array_append_new(datasets, describe_dataset(artifact, entry));
+    json_object_set_new(description, "datasets", datasets);
+    return description;
+}
+
+static json_t *nested(const struct values *values, int axis, size_t *at,
+                      const json_t *entry)
+{
+    if (axis == values->rank) return number(values->value[(*at)++], entry);
+    json_t *list = json_array();
+    for (hsize_t k = 0; k < values->extent[axis]; k++)
+        json_array_append_new(list, nested(values, axis + 1, at, entry));
+    return list;
+}
+
+json_t *dataset_json(const struct artifact *artifact, const char *name)
+{
+    const json_t *entry = schema_dataset(artifact->schema, name);
+    if (!entry)
+        die(STATUS_BAD_DATA, "%s: has no dataset %s (a %s has none)",
+            input_name(artifact->path), name, artifact->schema->name);
+    struct values values = read_values(artifact->file, name);
+    size_t at = 0;
+    json_t *list = nested(&values, 0, &at, entry);
+    free(values.value);
+    return list;
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Any artifact as JSON.
+#ifndef CRAQUELURE_DESCRIBE_H
+#define CRAQUELURE_DESCRIBE_H
+
+#include "artifacts/artifact.h"
+
+// Attributes, summary, and of every dataset: name, type, shape, units, minimum,
+// maximum, SHA-256 of its values (little endian, in file order). The caller owns it.
+json_t *describe_artifact(const struct artifact *artifact);
+
+// One dataset as nested lists. Exits 65 when the artifact has none of that NAME.
+json_t *dataset_json(const struct artifact *artifact, const char *name);
+
+#endif

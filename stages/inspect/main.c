@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// inspect: any artifact as JSON, or as a series for ParaView.
+#include "artifacts/artifact.h"
+#include "basics/status.h"
+#include "describe.h"
+#include "series.h"
+
+#include <argp.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+    const char *input, *data, *vtk;
+    int frames;
+};
+
+enum { KEY_VTK = 256, KEY_FRAMES };
+
+static const struct argp_option option_table[] = {
+    {"data", 'd', "NAME", 0, "Print one dataset, as nested lists", 0},
+    {"vtk", KEY_VTK, "PREFIX", 0,
+     "Write what changes over time as PREFIX-0000.vtu ... and PREFIX.pvd, for "
+     "ParaView: "
+     "liquid in the throats, forces, cracks and displacements",
+     0},
+    {"frames", KEY_FRAMES, "N", 0, "Frames of a drying or of forces [11]", 0},
+    {"version", 'V', NULL, 0, "Print program version", -1},
+    {0}};
+
+static int parse_frames(const char *text)
+{
+    char *end;
+    const long frames = strtol(text, &end, 10);
+    if (*end || end == text || frames < 1 || frames > 10000)
+        die(STATUS_USAGE, "--frames: must be from 1 to 10000, got %s", text);
+    return (int)frames;
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case 'd':
+        options->data = argument;
+        return 0;
+    case KEY_VTK:
+        options->vtk = argument;
+        return 0;
+    case KEY_FRAMES:
+        options->frames = parse_frames(argument);
+        return 0;
+    case 'V':
+        printf("inspect (craquelure %s) stage version %d\n", CRAQUELURE_VERSION,
+               STAGE_VERSION);
+        exit(STATUS_OK);
+    case ARGP_KEY_ARG:
+        if (state->arg_num) die(STATUS_USAGE, "%s: one input only", argument);
+        options->input = argument;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+// A JSON artifact describes itself.
+static bool is_json(const struct bytes *bytes)
+{
+    size_t k = 0;
+    while (k < bytes->size && isspace(bytes->data[k]))
+        k++;
+    return k < bytes->size && bytes->data[k] == '{';
+}
+
+static json_t *json_artifact(const struct options *options, const struct bytes *bytes)
+{
+    json_error_t error;
+    json_t *document = json_loadb((const char *)bytes->data, bytes->size,
+                                  JSON_REJECT_DUPLICATES, &error);
+    if (!document)
+        die(STATUS_BAD_DATA, "%s: line %d: %s", input_name(options->input), error.line,
+            error.text);
+    if (!json_is_string(json_object_get(document, "schema")))
+        die(STATUS_BAD_DATA, "%s: is not an artifact: it has no schema",
+            input_name(options->input));
+    if (options->data || options->vtk)
+        die(STATUS_USAGE, "%s: is JSON: read it with jq", input_name(options->input));
+    return document;
+}
+
+static void print(json_t *json)
+{
+    char *text = json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    char *lines = NULL;
+    if (asprintf(&lines, "%s\n", text) < 0) die(STATUS_INTERNAL, "out of memory");
+    write_whole("-", lines, strlen(lines));
+    free(lines);
+    free(text);
+    json_decref(json);
+}
+
+int main(int argc, char **argv)
+{
+    struct options options = {.input = "-", .frames = 11};
+    const struct argp argp = {
+        .options = option_table,
+        .parser = parse_option,
+        .args_doc = "[ARTIFACT]",
+        .doc = "inspect -- any artifact as JSON: attributes, summary, "
+               "and of every dataset name, shape, units, minimum, "
+               "maximum and SHA-256"};
+    argp_parse(&argp, argc, argv, 0, NULL, &options);
+
+    struct bytes bytes = read_whole(options.input);
+    if (is_json(&bytes)) {
+        print(json_artifact(&options, &bytes));
+        free(bytes.data);
+        return STATUS_OK;
+    }
+    struct artifact *artifact = artifact_open_bytes(options.input, bytes, NULL);
+    if (options.vtk)
+        write_series(artifact, options.vtk, options.frames);
+    else
+        print(options.data ? dataset_json(artifact, options.data)
+                           : describe_artifact(artifact));
+    artifact_close(artifact);
+    return STATUS_OK;
+}

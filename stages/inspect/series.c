@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "series.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "vtu.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct series {
+    const char *prefix;
+    struct vtu_frame *frame;
+    int count, capacity;
+};
+
+static void add_frame(struct series *series, double time, const struct vtu_grid *grid)
+{
+    GROW_ARRAY(series->frame, series->count, series->capacity);
+    struct vtu_frame *frame = &series->frame[series->count];
+    snprintf(frame->file, sizeof frame->file, "%s-%04d.vtu", series->prefix,
+             series->count);
+    frame->time = time;
+    series->count++;
+    write_vtu(frame->file, grid);
+}
+
+static double *as_doubles(const uint8_t *values, int count)
+{
+    double *doubles = NEW_ARRAY(double, count);
+    for (int k = 0; k < count; k++)
+        doubles[k] = values[k];
+    return doubles;
+}
+
+// Liquid in the throats.
+static void drying_series(const struct artifact *artifact, struct series *series,
+                          int n_frame)
+{
+    struct network network = artifact_get_network(artifact);
+    int n_step;
+    double *time = artifact_get(artifact, "/history/time", &n_step);
+    double *saturation = artifact_get(artifact, "/history/saturation", NULL);
+    int64_t *offset = artifact_get(artifact, "/changes/offset", NULL);
+    int32_t *throat = artifact_get(artifact, "/changes/throat", NULL);
+    double *changed = artifact_get(artifact, "/changes/saturation", NULL);
+    double *liquid = NEW_ARRAY(double, network.n_throat);
+    double *kind = as_doubles(network.throat_kind, network.n_throat);
+    for (int t = 0; t < network.n_throat; t++)
+        liquid[t] = network.throat_kind[t] == THROAT_NETWORK;
+
+    const struct vtu_array cells[] = {{"saturation", liquid, 1},
+                                      {"radius", network.throat_radius, 1},
+                                      {"kind", kind, 1},
+                                      {0}};
+    const struct vtu_grid grid = {.n_point = network.n_node,
+                                  .point = network.node_position,
+                                  .n_line = network.n_throat,
+                                  .line = (const int32_t(*)[2])network.throat_nodes,
+                                  .cells = cells};
+    for (int step = 0, frame = 0; step < n_step; step++) {
+        for (int64_t k = offset[step]; k < offset[step + 1]; k++)
+            liquid[throat[k]] = changed[k];
+        const double due = 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1);
+        if (saturation[step] > due) continue;
+        add_frame(series, time[step], &grid);
+        while (frame < n_frame &&
+               saturation[step] <= 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1))
+            frame++;
+        if (frame == n_frame) break;
+    }
+    free(time);
+    free(saturation);
+    free(offset);
+    free(throat);
+    free(changed);
+    free(liquid);
+    free(kind);
+    network_free(&network);
+}
+
+// Force on the grains.
+static void forces_series(const struct artifact *artifact, struct series *series,
+                          int n_frame)
+{
+    struct packing packing = artifact_get_packing(artifact);
+    int n_time;
+    double *time = artifact_get(artifact, "/time", &n_time);
+    struct vector *force = artifact_get(artifact, "/force", NULL);
+    for (int frame = 0; frame < n_frame && n_time > 0; frame++) {
+        const int m =
+            n_frame > 1 ? (int)((int64_t)frame * (n_time - 1) / (n_frame - 1)) : 0;
+        const struct vtu_array points[] = {
+            {"force", &force[(size_t)m * (size_t)packing.n_particle].x, 3},
+            {"radius", packing.radius, 1},
+            {0}};
+        add_frame(series, time[m],
+                  &(struct vtu_grid){.n_point = packing.n_particle,
+                                     .point = packing.position,
+                                     .points = points});
+    }
+    free(time);
+    free(force);
+    packing_free(&packing);
+}
+
+// Cracks so far: per contact -1 no bond, 0 whole, 1 normal crack, 2 shear crack.
+struct crack_view {
+    int n_contact, n_crack;
+    int32_t (*contact)[2];
+    int32_t *crack_bond;
+    uint8_t *crack_mode;
+    double *crack_time;
+    double *state; // (n_contact)
+};
+
+static int contact_of_bond(const struct crack_view *view, const int32_t bond[2])
+{
+    int low = 0, high = view->n_contact;
+    while (low < high) { // contacts are sorted by first, then second grain
+        const int middle = (low + high) / 2;
+        const int32_t *at = view->contact[middle];
+        if (at[0] < bond[0] || (at[0] == bond[0] && at[1] < bond[1]))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < view->n_contact && !memcmp(view->contact[low], bond, 2 * sizeof *bond)
+               ? low
+               : -1;
+}
+
+static void update_cracks(struct crack_view *view, const struct packing *packing,
+                          double time)
+{
+    for (int c = 0; c < view->n_contact; c++)
+        view->state[c] = -1;
+    for (int b = 0; b < packing->n_bond; b++) {
+        const int c = contact_of_bond(view, packing->bond[b]);
+        if (c >= 0) view->state[c] = 0;
+    }
+    for (int k = 0; k < view->n_crack; k++) {
+        const int c = contact_of_bond(view, packing->bond[view->crack_bond[k]]);
+        if (c >= 0 && view->crack_time[k] <= time)
+            view->state[c] = 1 + view->crack_mode[k];
+    }
+}
+
+// Displacements of the grains, forces and cracks at the contacts.
+static void response_series(const struct artifact *artifact, struct series *series)
+{
+    struct packing packing = artifact_get_packing(artifact);
+    const size_t n = (size_t)packing.n_particle;
+    int n_snapshot;
+    double *time = artifact_get(artifact, "/snapshots/time", &n_snapshot);
+    struct vector *displacement =
+        artifact_get(artifact, "/snapshots/displacement", NULL);
+    struct vector *force = artifact_get(artifact, "/snapshots/force", NULL);
+    struct vector *contact_force =
+        artifact_get(artifact, "/snapshots/contact_force", NULL);
+    struct crack_view view = {0};
+    view.contact = artifact_get(artifact, "/contacts/particles", &view.n_contact);
+    view.crack_bond = artifact_get(artifact, "/cracks/bond", &view.n_crack);
+    view.crack_mode = artifact_get(artifact, "/cracks/mode", NULL);
+    view.crack_time = artifact_get(artifact, "/cracks/time", NULL);
+    view.state = NEW_ARRAY(double, view.n_contact);
+    struct vector *moved = NEW_ARRAY(struct vector, n);
+    for (int s = 0; s < n_snapshot; s++) {
+        const size_t at = (size_t)s * n;
+        for (size_t i = 0; i < n; i++)
+            moved[i] = add(packing.position[i], displacement[at + i]);
+        update_cracks(&view, &packing, time[s]);
+        const struct vtu_array points[] = {{"displacement", &displacement[at].x, 3},
+                                           {"force", &force[at].x, 3},
+                                           {"radius", packing.radius, 1},
+                                           {0}};
+        const struct vtu_array cells[] = {
+            {"contact_force", &contact_force[(size_t)s * (size_t)view.n_contact].x, 3},
+            {"crack", view.state, 1},
+            {0}};
+        add_frame(series, time[s],
+                  &(struct vtu_grid){.n_point = packing.n_particle,
+                                     .point = moved,
+                                     .n_line = view.n_contact,
+                                     .line = (const int32_t(*)[2])view.contact,
+                                     .points = points,
+                                     .cells = cells});
+    }
+    free(time);
+    free(displacement);
+    free(force);
+    free(contact_force);
+    free(view.contact);
+    free(view.crack_bond);
+    free(view.crack_mode);
+    free(view.crack_time);
+    free(view.state);
+    free(moved);
+    packing_free(&packing);
+}
+
+void write_series(const struct artifact *artifact, const char *prefix, int n_frame)
+{
+    struct series series = {.prefix = prefix};
+    const char *schema = artifact->schema->name;
+    if (!strcmp(schema, "drying"))
+        drying_series(artifact, &series, n_frame);
+    else if (!strcmp(schema, "forces"))
+        forces_series(artifact, &series, n_frame);
+    else if (!strcmp(schema, "response"))
+        response_series(artifact, &series);
+    else
+        die(STATUS_BAD_DATA,
+            "%s: nothing changes over time in a %s; ParaView opens it as it is",
+            input_name(artifact->path), schema);
+    char path[4096];
+    snprintf(path, sizeof path, "%s.pvd", prefix);
+    write_pvd(path, series.frame, series.count);
+    free(series.frame);
+}
