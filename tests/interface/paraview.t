@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Packings and networks open in ParaView as they are (read here by VTK's own readers), and
+# `inspect --vtk` writes what changes over time.
+import glob
+import os
+import sys
+import xml.etree.ElementTree as xml
+
+import h5py
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOHDF import vtkHDFReader
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+sys.path.insert(0, "tests")
+from tap import SCENE, done, ok, run, scratch
+
+def grid_of(reader, path):
+    reader.SetFileName(path)
+    reader.Update()
+    return reader.GetOutput()
+
+def points(grid):
+    return vtk_to_numpy(grid.GetPoints().GetData())
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    chain = [("pack", "packing"), ("tessellate", "tessellation"), ("merge-nodes", "network"),
+             ("dry", "drying"), ("force-protocol", "forces"), ("dem-replay", "response")]
+    before = []
+    for stage, name in chain:
+        short = ["--set", "cycles=20"] if stage == "dem-replay" else []
+        run(stage, "-p", SCENE, *short, *before, "-o", at(name + ".hdf"))
+        before = [at(name + ".hdf")]
+
+    packing, network = h5py.File(at("packing.hdf")), h5py.File(at("network.hdf"))
+    grid = grid_of(vtkHDFReader(), at("packing.hdf"))
+    ok(np.array_equal(points(grid), packing["particles/position"]),
+       "a packing opens: grain centres are its points")
+    ok(np.array_equal(vtk_to_numpy(grid.GetPointData().GetArray("radius")),
+                      packing["particles/radius"]), "with their radii")
+    grid = grid_of(vtkHDFReader(), at("network.hdf"))
+    ok(np.array_equal(points(grid), network["nodes/position"])
+       and grid.GetNumberOfCells() == 1020, "a network opens: nodes and throats")
+    ends = [grid.GetCell(7).GetPointId(k) for k in range(2)]
+    ok(ends == list(network["throats/nodes"][7]), "its cells are the throats")
+    ok(np.array_equal(vtk_to_numpy(grid.GetCellData().GetArray("radius")),
+                      network["throats/radius"]), "with their radii")
+
+    expected = {"drying": (11, 396, 1020, "saturation"), "forces": (11, 250, 250, None),
+                "response": (6, 250, None, "crack")}
+    for name, (frames, n_point, n_cell, array) in expected.items():
+        run("inspect", "--vtk", at(name), at(name + ".hdf"))
+        listed = [d.get("file") for d in xml.parse(at(name + ".pvd")).iter("DataSet")]
+        made = sorted(os.path.basename(f) for f in glob.glob(at(name + "-*.vtu")))
+        ok(listed == made and len(made) == frames, f"{name}: a series of {frames} frames", made)
+        first = grid_of(vtkXMLUnstructuredGridReader(), at(made[0]))
+        ok(first.GetNumberOfPoints() == n_point
+           and (n_cell is None or first.GetNumberOfCells() == n_cell),
+           f"{name}: VTK reads them")
+        if array:
+            ok(first.GetCellData().GetArray(array) is not None, f"{name}: {array} on the lines")
+    full = grid_of(vtkXMLUnstructuredGridReader(), at("drying-0000.vtu"))
+    dry = grid_of(vtkXMLUnstructuredGridReader(), at("drying-0010.vtu"))
+    total = lambda grid: vtk_to_numpy(grid.GetCellData().GetArray("saturation")).sum()
+    ok(total(full) == 560 and total(dry) == 0, "drying: from 560 full throats to none")
+done()

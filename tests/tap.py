@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the test scripts in Python share: TAP lines, the programs, artifacts."""
+import os
+import subprocess
+import tempfile
+
+BIN = os.environ.get("BIN") or os.path.abspath("build/bin")
+SCENE = "samples/stiff-5x5x10.json"
+
+count = 0
+failed = 0
+
+
+def ok(passes, title, detail=""):
+    """One TAP line; DETAIL is printed when it fails."""
+    global count, failed
+    count += 1
+    failed += not passes
+    print(f"{'ok' if passes else 'not ok'} {count} - {title}")
+    if not passes and str(detail):
+        print("# " + str(detail).replace("\n", "\n# "))
+
+
+def done():
+    """The plan, and the exit status."""
+    print(f"1..{count}")
+    raise SystemExit(1 if failed else 0)
+
+
+def run(stage, *arguments, input=None):
+    """Runs a stage; gives what it wrote to standard output, as bytes."""
+    return subprocess.run([f"{BIN}/{stage}", *map(str, arguments)], input=input,
+                          stdout=subprocess.PIPE, check=True).stdout
+
+
+def scratch():
+    """A folder that goes when the test ends."""
+    return tempfile.TemporaryDirectory(prefix="craquelure-test-")
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
