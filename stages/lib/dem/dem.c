@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cycle, and what acts on it from outside.
+#include "dem/engine.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+void dem_free(struct dem *dem)
+{
+    if (!dem) return;
+    free(dem->start);
+    free(dem->place);
+    free(dem->motion);
+    free(dem->external);
+    free(dem->mobility);
+    free(dem->mass);
+    free(dem->bond_particle);
+    free(dem->bond_radius);
+    free(dem->bond_strength[0]);
+    free(dem->bond_strength[1]);
+    free(dem->pairs.particle);
+    free(dem->pairs.bond);
+    free(dem->pairs.group);
+    free(dem->wall);
+    free(dem->wall_pair);
+    free(dem->slot_offset);
+    free(dem->first_group);
+    free(dem->last_group);
+    free(dem->slot);
+    free(dem->place_at_search);
+    free(dem->crack);
+    free(dem);
+}
+
+void dem_set_force(struct dem *dem, const struct vector *force)
+{
+    const double unit = dem->unit.stiffness * dem->unit.length;
+    for (int i = 0; i < dem->n_particle; i++)
+        for (int axis = 0; axis < 3; axis++)
+            dem->external[i][axis] = component(force[i], axis) / unit;
+}
+
+void dem_set_velocity(struct dem *dem, const struct vector *velocity,
+                      const struct vector *spin)
+{
+    const double unit = dem->unit.length / dem->unit.time;
+    for (int i = 0; i < dem->n_particle; i++)
+        for (int axis = 0; axis < 3 && dem->mobility[i][0] > 0; axis++) {
+            if (velocity)
+                dem->motion[i].linear[axis] = component(velocity[i], axis) / unit;
+            if (spin)
+                dem->motion[i].angular[axis] =
+                    component(spin[i], axis) * dem->unit.time;
+        }
+}
+
+// The first grain that groups before GROUP do not finish.
+static int first_unfinished(const struct dem *dem, int group)
+{
+    int low = 0, high = dem->n_particle;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (dem->last_group[middle] < group)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+struct outcome {
+    int n_broken;
+    struct pace pace;
+};
+
+static void add_pace(struct outcome *outcome, struct pace pace)
+{
+    if (pace.largest > outcome->pace.largest) outcome->pace.largest = pace.largest;
+    outcome->pace.sound = outcome->pace.sound && pace.sound;
+}
+
+// Groups BEGIN..END-1, and behind them the grains they finish.
+static struct outcome sweep_share(struct dem *dem, int begin, int end)
+{
+    enum { BLOCK = 32 }; // groups, few enough for what they touch to stay cached
+    // Velocities given at the start have displaced nothing yet.
+    const double time_step = dem->cycle > 0 ? dem->time_step : 0;
+    struct outcome outcome = {0, {0, true}};
+    int grain = begin > 0 ? first_unfinished(dem, begin) : 0;
+    for (int block = begin; block < end; block += BLOCK) {
+        const int next = block + BLOCK < end ? block + BLOCK : end;
+        outcome.n_broken += dem->sweep(dem->pairs.group, block, next, dem->place,
+                                       dem->motion, dem->slot, &dem->law, time_step);
+        const int finished = first_unfinished(dem, next);
+        add_pace(&outcome, move_grains(dem, grain, finished, begin, false));
+        grain = finished;
+    }
+    return outcome;
+}
+
+// Shares of equal size; then the grains that two of them have to do with.
+static struct outcome sweep_shares(struct dem *dem, int threads)
+{
+    const int n = dem->pairs.n_group, share = (n + threads - 1) / threads;
+    struct outcome *part = NEW_ARRAY(struct outcome, threads);
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int t = 0; t < threads; t++) {
+        const int begin = t * share < n ? t * share : n;
+        part[t] = sweep_share(dem, begin, begin + share < n ? begin + share : n);
+    }
+    struct outcome total = part[0];
+    for (int t = 1; t < threads && t * share < n; t++) {
+        const int begin = t * share, end = begin + share < n ? begin + share : n;
+        total.n_broken += part[t].n_broken;
+        add_pace(&total, part[t].pace);
+        add_pace(&total, move_grains(dem, first_unfinished(dem, begin),
+                                     first_unfinished(dem, end), begin, true));
+    }
+    free(part);
+    return total;
+}
+
+static struct outcome sweep(struct dem *dem)
+{
+    const int n = dem->pairs.n_group;
+    if (n == 0)
+        return (struct outcome){0, move_grains(dem, 0, dem->n_particle, 0, false)};
+    const bool is_large = n > 5000 / PAIRS_IN_GROUP;
+    return is_large && dem->threads > 1 ? sweep_shares(dem, dem->threads)
+                                        : sweep_share(dem, 0, n);
+}
+
+static void record_crack(struct dem *dem, int pair, int mode)
+{
+    const int bond = dem->pairs.bond[pair];
+    dem->bond_strength[DEM_CRACK_NORMAL][bond] = -1;
+    dem->bond_strength[DEM_CRACK_SHEAR][bond] = -1;
+    GROW_ARRAY(dem->crack, dem->n_crack, dem->crack_capacity);
+    dem->crack[dem->n_crack++] = (struct dem_crack){
+        .bond = bond,
+        .mode = (uint8_t)mode,
+        .cycle = dem->cycle,
+        .position = scale(dem->unit.length, pair_geometry(dem, pair, 1).position)};
+}
+
+static void record_cracks(struct dem *dem)
+{
+    for (int p = 0; p < dem->pairs.n_pair; p++) {
+        int8_t *crack = &dem->pairs.group[p / PAIRS_IN_GROUP].crack[p % PAIRS_IN_GROUP];
+        if (*crack < 0) continue;
+        record_crack(dem, p, *crack);
+        *crack = -1;
+    }
+}
+
+enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
+{
+    for (int64_t k = 0; k < cycles; k++) {
+        keep_pairs(dem);
+        sweep_walls(dem);
+        const struct outcome outcome = sweep(dem);
+        if (outcome.n_broken > 0) record_cracks(dem);
+        dem->travelled += dem->time_step * sqrt(outcome.pace.largest);
+        if (!outcome.pace.sound)
+            return refuse(
+                reason, STATUS_NOT_CONVERGED,
+                "diverged in cycle %lld: a grain would move more than %g mean "
+                "radii in one time step of %g s (stable below %g s)",
+                (long long)dem->cycle, 0.5 * SEARCH_SKIN, dem_time_step(dem),
+                dem_time_step_limit(dem));
+        dem->cycle++;
+    }
+    return STATUS_OK;
+}
+
+enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,
+                          struct reason *reason)
+{
+    enum { LOOK_EVERY = 16 };
+    for (int64_t done = 0; done < max_cycles;) {
+        const int64_t left = max_cycles - done;
+        const int64_t cycles = left < LOOK_EVERY ? left : LOOK_EVERY;
+        const enum status status = dem_run(dem, cycles, reason);
+        if (status != STATUS_OK) return status;
+        done += cycles;
+        if (dem_unbalanced_ratio(dem) < tolerance) return STATUS_OK;
+    }
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "unbalanced ratio %g is not below %g after %lld cycles",
+                  dem_unbalanced_ratio(dem), tolerance, (long long)max_cycles);
+}

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast the discrete elements go, and against what: particle-steps a second on
+// bonded lattices, beside the arithmetic and the memory of the same core in the same
+// run. Ratios mean something, absolute figures drift with the machine.
+#include "basics/memory.h"
+#include "dem/engine.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+// Counted from pair_kernel.h and grains.c: operations, and the bytes that stream
+// through (the records of grains stay in a cache near by).
+static const double pair_flops = 296, grain_flops = 35, slot_flops = 6;
+static const double pair_bytes = 72 + 2 * 80 + 16 + 1, slot_bytes = 2 * 64;
+static const double grain_bytes = 32 + 16 + 2 * 96 + 4;
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static struct packing cubic_lattice(int nx, int ny, int nz)
+{
+    const int n = nx * ny * nz, count[3] = {nx, ny, nz}, stride[3] = {1, nx, nx * ny};
+    struct packing packing = {.n_particle = n};
+    packing.position = NEW_ARRAY(struct vector, n);
+    packing.radius = NEW_ARRAY(double, n);
+    packing.bond = allocate(3 * (size_t)n, sizeof *packing.bond);
+    for (int i = 0; i < n; i++) {
+        const int at[3] = {i % nx, i / nx % ny, i / (nx * ny)};
+        packing.radius[i] = 250e-9;
+        packing.position[i] = (struct vector){5e-7 * at[0], 5e-7 * at[1], 5e-7 * at[2]};
+        for (int axis = 0; axis < 3; axis++) {
+            if (at[axis] == count[axis] - 1) continue;
+            packing.bond[packing.n_bond][0] = i;
+            packing.bond[packing.n_bond++][1] = i + stride[axis];
+        }
+    }
+    return packing;
+}
+
+static struct dem *build(const struct packing *packing, int threads)
+{
+    const struct dem_setup setup = {.packing = packing,
+                                    .material = {3230, 3e4, 3e4, 0.5, 0.7},
+                                    .bond = {8e14, 8e14, INFINITY, INFINITY, 0.5858},
+                                    .time_step_safety = 0.04,
+                                    .threads = threads};
+    struct dem *dem;
+    struct reason reason;
+    if (dem_create(&dem, &setup, &reason) != STATUS_OK)
+        die(STATUS_INTERNAL, "%s", reason.text);
+    struct vector *force = NEW_ARRAY(struct vector, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        force[i] =
+            (struct vector){1e-10 * sin(i), 1e-10 * sin(1.7 * i), 1e-10 * cos(2.3 * i)};
+    dem_set_force(dem, force);
+    free(force);
+    return dem;
+}
+
+// Particle-steps a second, the best of five.
+static double particle_steps(struct dem *dem)
+{
+    struct reason reason;
+    const int cycles = 1 + 4000000 / dem->n_particle;
+    double best = 0;
+    for (int k = 0; k < 5; k++) {
+        const double start = now();
+        if (dem_run(dem, cycles, &reason) != STATUS_OK)
+            die(STATUS_INTERNAL, "%s", reason.text);
+        best = fmax(best, (double)cycles * dem->n_particle / (now() - start));
+    }
+    return best;
+}
+
+typedef double narrow __attribute__((vector_size(32)));
+typedef double wide __attribute__((vector_size(64)));
+
+// a*x + b on 12 chains that stay in registers: as two operations, as the kernel must,
+// and fused.
+#define EACH(step)                                                                     \
+    step(0) step(1) step(2) step(3) step(4) step(5) step(6) step(7) step(8) step(9)    \
+        step(10) step(11)
+#define BEGIN(k) vector x##k = {(k)};
+#define APART(k)                                                                       \
+    x##k = x##k * a + b;                                                               \
+    __asm__ volatile("" : "+v"(x##k));
+#define FUSED(k)                                                                       \
+    __asm__ volatile("vfmadd132pd %1, %2, %0" : "+v"(x##k) : "v"(a), "v"(b));
+#define PEAK(name, type, step)                                                         \
+    static double name(void)                                                           \
+    {                                                                                  \
+        typedef type vector;                                                           \
+        const vector a = (vector){0} + 0.999999, b = (vector){0} + 1e-9;               \
+        EACH(BEGIN)                                                                    \
+        const int turns = 10000000;                                                    \
+        const double start = now();                                                    \
+        for (int i = 0; i < turns; i++) {                                              \
+            EACH(step)                                                                 \
+        }                                                                              \
+        return 12.0 * 2 * turns * (sizeof(vector) / 8) / (now() - start);              \
+    }
+
+PEAK(peak_narrow, narrow, APART)
+PEAK(peak_narrow_fused, narrow, FUSED)
+#pragma GCC push_options
+#pragma GCC target("avx512f")
+PEAK(peak_wide, wide, APART)
+PEAK(peak_wide_fused, wide, FUSED)
+#pragma GCC pop_options
+
+// Bytes a second of a = b + s c over arrays of BYTES in all.
+static double triad(size_t bytes)
+{
+    const size_t n = bytes / 3 / sizeof(double);
+    double *a = NEW_ARRAY(double, n), *b = NEW_ARRAY(double, n);
+    double *c = NEW_ARRAY(double, n), best = 0;
+    for (size_t k = 0; k < n; k++)
+        b[k] = c[k] = (double)k;
+    const int turns = (int)(1 + (size_t)400000000 / bytes);
+    for (int again = 0; again < 5; again++) {
+        const double start = now();
+        for (int i = 0; i < turns; i++) {
+            for (size_t k = 0; k < n; k++)
+                a[k] = b[k] + 3.0 * c[k];
+            __asm__ volatile("" ::"r"(a) : "memory");
+        }
+        best = fmax(best, (double)turns * (double)n * 24 / (now() - start));
+    }
+    free(a);
+    free(b);
+    free(c);
+    return best;
+}
+
+int main(int argc, char **argv)
+{
+    const int threads = argc > 1 ? atoi(argv[1]) : 1;
+    const bool has_wide = __builtin_cpu_supports("avx512f");
+    printf("triad: %.0f GB/s at 300 kB, %.0f at 1 MB, %.0f at 8 MB, %.0f at 300 MB\n",
+           triad(300000) / 1e9, triad(1000000) / 1e9, triad(8000000) / 1e9,
+           triad(300000000) / 1e9);
+    const double peak[2] = {peak_narrow(), has_wide ? peak_wide() : 0};
+    printf("multiply and add: %.0f Gflop/s 4 wide (fused %.0f)", peak[0] / 1e9,
+           peak_narrow_fused() / 1e9);
+    if (has_wide)
+        printf(", %.0f Gflop/s 8 wide (fused %.0f)", peak[1] / 1e9,
+               peak_wide_fused() / 1e9);
+    printf("\n\n%-10s %8s %8s %5s %10s %9s %9s %9s %9s\n", "lattice", "grains", "pairs",
+           "width", "Mpsteps/s", "flop/step", "B/step", "of flops", "GB/s");
+
+    const int size[3][3] = {{5, 5, 10}, {10, 10, 20}, {40, 40, 80}};
+    for (int s = 0; s < 3; s++) {
+        struct packing packing = cubic_lattice(size[s][0], size[s][1], size[s][2]);
+        for (int w = 0; w < 1 + has_wide; w++) {
+            struct dem *dem = build(&packing, threads);
+            dem->sweep = w ? pair_sweep_wide : pair_sweep_narrow;
+            const double rate = particle_steps(dem);
+            const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
+            const double flops = grain_flops + pairs * (pair_flops + 2 * slot_flops);
+            const double bytes = grain_bytes + pairs * (pair_bytes + 2 * slot_bytes);
+            char name[32];
+            snprintf(name, sizeof name, "%dx%dx%d", size[s][0], size[s][1], size[s][2]);
+            printf("%-10s %8d %8d %5d %10.2f %9.0f %9.0f %8.0f%% %9.1f\n", name,
+                   dem->n_particle, dem->pairs.n_pair, w ? 8 : 4, rate / 1e6, flops,
+                   bytes, 100 * flops * rate / (threads * peak[w]), bytes * rate / 1e9);
+            dem_free(dem);
+        }
+        packing_free(&packing);
+    }
+    return 0;
+}

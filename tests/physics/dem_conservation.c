@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What nothing external can change: momentum and angular momentum to rounding, whatever
+// slips or breaks; energy, without dashpots and friction, to second order in the step.
+#include "dem_scene.h"
+
+static const double speed = 1e-2; // m/s
+
+static struct dem *shaken(const struct dem_setup *setup, uint64_t seed)
+{
+    struct dem *dem = create(setup);
+    const int n = setup->packing->n_particle;
+    struct vector *velocity = random_vectors(n, speed, seed);
+    struct vector *spin = random_vectors(n, speed / RADIUS, seed + 1);
+    dem_set_velocity(dem, velocity, spin);
+    free(velocity);
+    free(spin);
+    return dem;
+}
+
+static void test_momentum(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(4, 4, 4, false);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.bond.normal_strength = setup.bond.shear_strength = 1e3;
+    struct dem *dem = shaken(&setup, 1);
+    const struct dem_momentum before = dem_momentum(dem);
+    run(dem, 5000);
+    int n_crack;
+    dem_cracks(dem, &n_crack);
+    assert_in_range(n_crack, 1, packing.n_bond);
+    const struct dem_momentum after = dem_momentum(dem);
+    const double mass = 64 * 3230 * 4.0 / 3 * M_PI * pow(RADIUS, 3);
+    assert_true(distance(before.linear, after.linear) < 1e-13 * mass * speed);
+    assert_true(distance(before.angular, after.angular) <
+                1e-12 * mass * speed * RADIUS * 4);
+    dem_free(dem);
+    packing_free(&packing);
+}
+
+// The largest change of energy, as a fraction of it, over one fixed time.
+static double energy_error(double safety)
+{
+    struct packing packing = cubic_lattice(3, 3, 3, false);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.material.normal_stiffness = 0; // a contact that opens is no smooth spring
+    setup.material.shear_stiffness = 0;
+    setup.material.damping_ratio = 0;
+    setup.material.friction = 0;
+    setup.time_step_safety = safety;
+    struct dem *dem = shaken(&setup, 7);
+    run(dem, 1);
+    const struct dem_energy first = dem_energy(dem);
+    double worst = 0;
+    for (int k = 0; k < 20; k++) {
+        run(dem, (int64_t)(0.5 / safety + 0.5));
+        const struct dem_energy now = dem_energy(dem);
+        worst = fmax(worst,
+                     fabs(now.kinetic + now.elastic - first.kinetic - first.elastic));
+        assert_true(now.elastic > 0.05 * first.kinetic); // it does go back and forth
+    }
+    dem_free(dem);
+    packing_free(&packing);
+    return worst / (first.kinetic + first.elastic);
+}
+
+static void test_energy_is_second_order(void **state)
+{
+    (void)state;
+    const double coarse = energy_error(0.02), fine = energy_error(0.01);
+    const double finest = energy_error(0.005);
+    assert_true(coarse < 2e-2);
+    const double order = log2(coarse / fine), finer_order = log2(fine / finest);
+    if (!(fabs(order - 2) < 0.25 && fabs(finer_order - 2) < 0.1))
+        fail_msg("errors %g, %g, %g: orders %g, %g", coarse, fine, finest, order,
+                 finer_order);
+}
+
+// With dashpots energy only falls.
+static void test_dashpots_take_energy(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(3, 3, 3, false);
+    struct dem_setup setup = stiff_setup(&packing);
+    struct dem *dem = shaken(&setup, 7);
+    run(dem, 1);
+    struct dem_energy before = dem_energy(dem);
+    for (int k = 0; k < 50; k++) {
+        run(dem, 10);
+        const struct dem_energy now = dem_energy(dem);
+        assert_true(now.kinetic + now.elastic < before.kinetic + before.elastic);
+        before = now;
+    }
+    dem_free(dem);
+    packing_free(&packing);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_momentum),
+        cmocka_unit_test(test_energy_is_second_order),
+        cmocka_unit_test(test_dashpots_take_energy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
