@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "clusters.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// What one search has found, in order; those before NEXT have been looked around from.
+struct search {
+    int *throat;
+    int n, next, capacity;
+    int joined; // the search it was united with first, or itself
+    int active; // of a root: searches united in it that have not run dry
+};
+
+// --- heap
+// --------------------------------------------------------------------------------
+
+static void heap_push(struct rank_heap *heap, int rank)
+{
+    GROW_ARRAY(heap->rank, heap->n, heap->capacity);
+    int place = heap->n++;
+    for (; place > 0 && heap->rank[(place - 1) / 2] > rank; place = (place - 1) / 2)
+        heap->rank[place] = heap->rank[(place - 1) / 2];
+    heap->rank[place] = rank;
+}
+
+static void heap_pop(struct rank_heap *heap)
+{
+    const int rank = heap->rank[--heap->n];
+    int place = 0;
+    for (int child = 1; child < heap->n; child = 2 * place + 1) {
+        if (child + 1 < heap->n && heap->rank[child + 1] < heap->rank[child]) child++;
+        if (heap->rank[child] >= rank) break;
+        heap->rank[place] = heap->rank[child];
+        place = child;
+    }
+    heap->rank[place] = rank;
+}
+
+// --- identities
+// --------------------------------------------------------------------------
+
+static int new_cluster(struct clusters *clusters)
+{
+    clusters->count++;
+    if (clusters->n_unused > 0) return clusters->unused[--clusters->n_unused];
+    int capacity = clusters->capacity;
+    GROW_ARRAY(clusters->size, clusters->n_id, capacity);
+    GROW_ARRAY(clusters->heap, clusters->n_id, clusters->capacity);
+    clusters->size[clusters->n_id] = 0;
+    clusters->heap[clusters->n_id] = (struct rank_heap){0};
+    return clusters->n_id++;
+}
+
+static void end_cluster(struct clusters *clusters, int cluster)
+{
+    clusters->heap[cluster].n = 0;
+    GROW_ARRAY(clusters->unused, clusters->n_unused, clusters->unused_capacity);
+    clusters->unused[clusters->n_unused++] = cluster;
+    clusters->count--;
+}
+
+static void add_meniscus(struct clusters *clusters, int throat)
+{
+    if (clusters->meniscus[throat]) return;
+    clusters->meniscus[throat] = true;
+    heap_push(&clusters->heap[clusters->of_throat[throat]], clusters->rank[throat]);
+}
+
+// --- searches
+// ----------------------------------------------------------------------------
+
+static int root_of(const struct clusters *clusters, int search)
+{
+    while (clusters->search[search].joined != search)
+        search = clusters->search[search].joined;
+    return search;
+}
+
+static void find(struct clusters *clusters, int search, int throat)
+{
+    struct search *finder = &clusters->search[search];
+    clusters->found_by[throat] = search;
+    GROW_ARRAY(finder->throat, finder->n, finder->capacity);
+    finder->throat[finder->n++] = throat;
+}
+
+static void start_search(struct clusters *clusters, int throat)
+{
+    const int old_capacity = clusters->search_capacity;
+    GROW_ARRAY(clusters->search, clusters->n_search, clusters->search_capacity);
+    for (int s = old_capacity; s < clusters->search_capacity; s++)
+        clusters->search[s] = (struct search){0};
+
+    const int search = clusters->n_search++;
+    struct search *new = &clusters->search[search];
+    new->n = new->next = 0;
+    new->joined = search;
+    new->active = 1;
+    find(clusters, search, throat);
+}
+
+// Returns 1 if A and B were apart, 0 if they were one already.
+static int unite(struct clusters *clusters, int a, int b)
+{
+    a = root_of(clusters, a);
+    b = root_of(clusters, b);
+    if (a == b) return 0;
+    const int root = a < b ? a : b, other = a < b ? b : a;
+    clusters->search[other].joined = root;
+    clusters->search[root].active += clusters->search[other].active;
+    return 1;
+}
+
+// Looks around from one more throat. Returns how many searches were united.
+static int advance_search(struct clusters *clusters, int search)
+{
+    const int throat = clusters->search[search].throat[clusters->search[search].next++];
+    int united = 0;
+    for (int end = 0; end < 2; end++) {
+        const int node = clusters->network->throat_nodes[throat][end];
+        if (!clusters->joins[node]) continue;
+        for (int k = clusters->incidence->offset[node];
+             k < clusters->incidence->offset[node + 1]; k++) {
+            const int next = clusters->incidence->throat[k];
+            if (clusters->of_throat[next] < 0) continue;
+            if (clusters->found_by[next] < 0)
+                find(clusters, search, next);
+            else
+                united += unite(clusters, search, clusters->found_by[next]);
+        }
+    }
+    return united;
+}
+
+// What the searches united in ROOT have found becomes a cluster.
+static void found_cluster(struct clusters *clusters, int root, int old)
+{
+    const int cluster = new_cluster(clusters);
+    clusters->size[cluster] = 0;
+    for (int s = 0; s < clusters->n_search; s++) {
+        if (root_of(clusters, s) != root) continue;
+        const struct search *search = &clusters->search[s];
+        for (int k = 0; k < search->n; k++) {
+            const int throat = search->throat[k];
+            clusters->of_throat[throat] = cluster;
+            if (clusters->meniscus[throat])
+                heap_push(&clusters->heap[cluster], clusters->rank[throat]);
+        }
+        clusters->size[cluster] += search->n;
+        clusters->size[old] -= search->n;
+    }
+}
+
+// The searches take turns until at most one piece is left unfinished; it stays OLD.
+static void split(struct clusters *clusters, int old)
+{
+    int unfinished = clusters->n_search;
+    for (int s = 0; unfinished > 1; s = (s + 1) % clusters->n_search) {
+        const struct search *search = &clusters->search[s];
+        if (search->next == search->n) continue;
+        unfinished -= advance_search(clusters, s);
+        search = &clusters->search[s];
+        if (search->next < search->n) continue;
+        const int root = root_of(clusters, s);
+        if (--clusters->search[root].active == 0 && unfinished > 1) {
+            found_cluster(clusters, root, old);
+            unfinished--;
+        }
+    }
+    for (int s = 0; s < clusters->n_search; s++)
+        for (int k = 0; k < clusters->search[s].n; k++)
+            clusters->found_by[clusters->search[s].throat[k]] = -1;
+    clusters->n_search = 0;
+}
+
+// A search from each throat at NODE; from only one where the node still joins them.
+static void start_searches(struct clusters *clusters, int node)
+{
+    for (int k = clusters->incidence->offset[node];
+         k < clusters->incidence->offset[node + 1]; k++) {
+        const int throat = clusters->incidence->throat[k];
+        if (clusters->of_throat[throat] < 0) continue;
+        if (clusters->found_by[throat] < 0) start_search(clusters, throat);
+        if (clusters->joins[node]) return;
+    }
+}
+
+// --- what others call
+// --------------------------------------------------------------------
+
+void clusters_empty_throat(struct clusters *clusters, int throat)
+{
+    const int32_t *node = clusters->network->throat_nodes[throat];
+    const int old = clusters->of_throat[throat];
+    clusters->of_throat[throat] = -1;
+    if (--clusters->size[old] == 0) {
+        end_cluster(clusters, old);
+        return;
+    }
+    // At a node that had gas before, liquid was parted then.
+    bool search_here[2];
+    for (int end = 0; end < 2; end++) {
+        search_here[end] = clusters->joins[node[end]];
+        clusters->joins[node[end]] &= !clusters->gas_parts;
+    }
+    for (int end = 0; end < 2; end++)
+        if (search_here[end]) start_searches(clusters, node[end]);
+    split(clusters, old);
+    for (int end = 0; end < 2; end++)
+        clusters_add_menisci(clusters, node[end]);
+}
+
+void clusters_add_menisci(struct clusters *clusters, int node)
+{
+    for (int k = clusters->incidence->offset[node];
+         k < clusters->incidence->offset[node + 1]; k++)
+        if (clusters->of_throat[clusters->incidence->throat[k]] >= 0)
+            add_meniscus(clusters, clusters->incidence->throat[k]);
+}
+
+int clusters_invasion_throat(struct clusters *clusters, int cluster)
+{
+    struct rank_heap *heap = &clusters->heap[cluster];
+    while (heap->n > 0) {
+        const int throat = clusters->throat_at_rank[heap->rank[0]];
+        if (clusters->of_throat[throat] == cluster) return throat;
+        heap_pop(heap);
+    }
+    return -1;
+}
+
+struct ranked {
+    double radius;
+    int throat;
+};
+
+static int compare_ranked(const void *a, const void *b)
+{
+    const struct ranked *r = a, *s = b;
+    if (r->radius != s->radius) return r->radius > s->radius ? -1 : 1;
+    return (r->throat > s->throat) - (r->throat < s->throat);
+}
+
+static void rank_throats(struct clusters *clusters)
+{
+    const int n = clusters->network->n_throat;
+    struct ranked *ranked = NEW_ARRAY(struct ranked, n);
+    for (int t = 0; t < n; t++)
+        ranked[t] = (struct ranked){clusters->network->throat_radius[t], t};
+    if (n > 0) qsort(ranked, (size_t)n, sizeof *ranked, compare_ranked);
+    for (int k = 0; k < n; k++) {
+        clusters->throat_at_rank[k] = ranked[k].throat;
+        clusters->rank[ranked[k].throat] = k;
+    }
+    free(ranked);
+}
+
+// Every piece of the full network, by a search that nothing interrupts.
+static void find_clusters(struct clusters *clusters)
+{
+    const int none = -1, unassigned = 0;
+    for (int t = 0; t < clusters->network->n_throat; t++) {
+        clusters->found_by[t] = none;
+        clusters->of_throat[t] =
+            clusters->network->throat_kind[t] == THROAT_NETWORK ? unassigned : none;
+    }
+    bool *seen = NEW_ARRAY(bool, clusters->network->n_throat);
+    for (int t = 0; t < clusters->network->n_throat; t++) {
+        if (clusters->of_throat[t] == none || seen[t]) continue;
+        start_search(clusters, t);
+        while (clusters->search[0].next < clusters->search[0].n)
+            advance_search(clusters, 0);
+        const int cluster = new_cluster(clusters);
+        clusters->size[cluster] = clusters->search[0].n;
+        for (int k = 0; k < clusters->search[0].n; k++) {
+            clusters->of_throat[clusters->search[0].throat[k]] = cluster;
+            seen[clusters->search[0].throat[k]] = true;
+        }
+        clusters->n_search = 0;
+    }
+    for (int t = 0; t < clusters->network->n_throat; t++)
+        clusters->found_by[t] = none;
+    free(seen);
+}
+
+struct clusters clusters_make(const struct network *network,
+                              const struct incidence *incidence, bool gas_parts)
+{
+    struct clusters clusters = {.network = network,
+                                .incidence = incidence,
+                                .gas_parts = gas_parts,
+                                .joins = NEW_ARRAY(bool, network->n_node),
+                                .of_throat = NEW_ARRAY(int, network->n_throat),
+                                .meniscus = NEW_ARRAY(bool, network->n_throat),
+                                .rank = NEW_ARRAY(int, network->n_throat),
+                                .throat_at_rank = NEW_ARRAY(int, network->n_throat),
+                                .found_by = NEW_ARRAY(int, network->n_throat)};
+    for (int i = 0; i < network->n_node; i++)
+        clusters.joins[i] = true;
+    rank_throats(&clusters);
+    find_clusters(&clusters);
+    return clusters;
+}
+
+void clusters_free(struct clusters *clusters)
+{
+    for (int c = 0; c < clusters->n_id; c++)
+        free(clusters->heap[c].rank);
+    for (int s = 0; s < clusters->search_capacity; s++)
+        free(clusters->search[s].throat);
+    free(clusters->joins);
+    free(clusters->of_throat);
+    free(clusters->meniscus);
+    free(clusters->size);
+    free(clusters->heap);
+    free(clusters->unused);
+    free(clusters->rank);
+    free(clusters->throat_at_rank);
+    free(clusters->found_by);
+    free(clusters->search);
+    *clusters = (struct clusters){0};
+}

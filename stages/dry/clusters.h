@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The connected pieces of liquid, kept as throats empty, and where gas can enter each.
+//
+// Liquid throats are connected through nodes. When one empties, only its neighbours can
+// be separated: searches start from each of them and take turns; those that meet are
+// united, one that runs dry has found a new cluster, and the last keeps the old
+// identity unsearched. So a split costs as much as its smaller parts.
+#ifndef CRAQUELURE_CLUSTERS_H
+#define CRAQUELURE_CLUSTERS_H
+
+#include "network/network.h"
+
+#include <stdbool.h>
+
+// A binary heap of throat ranks, lowest (widest throat) on top. Throats that have left
+// the cluster stay until they come to the top.
+struct rank_heap {
+    int *rank;
+    int n, capacity;
+};
+
+struct search; // one of the searches that take turns
+
+struct clusters {
+    const struct network *network;
+    const struct incidence *incidence;
+    bool gas_parts;         // whether gas in a node parts the liquid on its sides
+    bool *joins;            // (n_node) liquid is connected through this node
+    int *of_throat;         // (n_throat) its cluster, -1 if it holds no liquid
+    bool *meniscus;         // (n_throat) gas touches one of its ends
+    int count;              // of clusters
+    int n_id;               // cluster identities given out so far, the unused included
+    int *size;              // (n_id) throats
+    struct rank_heap *heap; // (n_id) menisci
+    int *unused;            // identities to give out again
+    int n_unused, capacity, unused_capacity;
+
+    int *rank;           // (n_throat) place by radius, widest first; ties by index
+    int *throat_at_rank; // (n_throat)
+
+    int *found_by; // (n_throat) search that has been there, -1: none
+    struct search *search;
+    int n_search, search_capacity;
+};
+
+// All throats of kind THROAT_NETWORK hold liquid, all nodes join, no menisci yet. Keeps
+// NETWORK and INCIDENCE, which must live as long. O(n log n).
+struct clusters clusters_make(const struct network *network,
+                              const struct incidence *incidence, bool gas_parts);
+
+// Gas has come to NODE from outside: its liquid throats have menisci there, and the
+// liquid is connected through it as before.
+void clusters_add_menisci(struct clusters *clusters, int node);
+
+// THROAT has emptied and gas fills both its nodes.
+void clusters_empty_throat(struct clusters *clusters, int throat);
+
+// The widest meniscus throat of CLUSTER, the lowest index among equals; -1 if no gas
+// touches the cluster.
+int clusters_invasion_throat(struct clusters *clusters, int cluster);
+
+void clusters_free(struct clusters *clusters);
+
+#endif

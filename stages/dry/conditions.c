@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "conditions.h"
+
+#include "compensated.h"
+
+#include <stddef.h>
+
+static enum status check_positive(const struct drying_conditions *conditions,
+                                  struct reason *reason)
+{
+    const struct {
+        const char *name;
+        double value;
+    } positive[] = {{"temperature", conditions->temperature},
+                    {"gas_pressure", conditions->gas_pressure},
+                    {"saturation_pressure", conditions->saturation_pressure},
+                    {"diffusivity", conditions->diffusivity},
+                    {"molar_mass", conditions->molar_mass},
+                    {"liquid_density", conditions->liquid_density},
+                    {"mass_transfer", conditions->mass_transfer}};
+    for (size_t i = 0; i < sizeof positive / sizeof *positive; i++)
+        if (!(positive[i].value > 0) || !isfinite(positive[i].value))
+            return refuse(reason, STATUS_BAD_DATA, "%s: must be above 0, is %g",
+                          positive[i].name, positive[i].value);
+    return STATUS_OK;
+}
+
+enum status check_conditions(const struct drying_conditions *conditions,
+                             struct reason *reason)
+{
+    const enum status status = check_positive(conditions, reason);
+    if (status) return status;
+    if (conditions->saturation_pressure >= conditions->gas_pressure)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "saturation_pressure: must be below gas_pressure (%g Pa), is %g Pa: "
+            "the liquid would boil",
+            conditions->gas_pressure, conditions->saturation_pressure);
+    if (!(conditions->air_vapour_pressure >= 0))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "air_vapour_pressure: must not be below 0, is %g",
+                      conditions->air_vapour_pressure);
+    if (conditions->air_vapour_pressure >= conditions->saturation_pressure)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "air_vapour_pressure: must be below saturation_pressure (%g Pa), is "
+            "%g Pa: nothing would dry",
+            conditions->saturation_pressure, conditions->air_vapour_pressure);
+    if (conditions->layers < 0)
+        return refuse(reason, STATUS_BAD_DATA, "layers: must not be below 0, is %d",
+                      conditions->layers);
+    if (__builtin_popcount(conditions->open_walls) != 1 ||
+        conditions->open_walls >= 1u << WALL_COUNT)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "open walls: must be exactly one, are %d",
+                      __builtin_popcount(conditions->open_walls));
+    if (!(conditions->first_period_rate_fraction > 0 &&
+          conditions->first_period_rate_fraction < 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "first_period_rate_fraction: must be between 0 and 1, is %g",
+                      conditions->first_period_rate_fraction);
+    if (conditions->liquid != LIQUID_INVISCID && conditions->liquid != LIQUID_IMMOBILE)
+        return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
+                      (int)conditions->liquid);
+    return STATUS_OK;
+}
+
+enum status check_throats(const struct network *network, struct reason *reason)
+{
+    int n = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        const double length = network->throat_length[t];
+        const double radius = network->throat_radius[t];
+        n++;
+        if (!(length > 0) || !isfinite(length))
+            return refuse(
+                reason, STATUS_BAD_DATA,
+                "/throats/length: row %d: must be above 0, is %g (merge-nodes "
+                "removes short throats)",
+                t, length);
+        if (!(radius > 0) || !isfinite(radius))
+            return refuse(
+                reason, STATUS_BAD_DATA,
+                "/throats/radius: row %d: must be above 0, is %g (merge-nodes "
+                "removes closed throats)",
+                t, radius);
+        if (network->throat_nodes[t][0] == network->throat_nodes[t][1])
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/throats/nodes: row %d: both ends are node %d", t,
+                          network->throat_nodes[t][0]);
+    }
+    if (n == 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/throats/kind: no throat holds liquid, there is nothing to dry");
+    return STATUS_OK;
+}
+
+static double mean_throat_length(const struct network *network)
+{
+    struct compensated sum = {0};
+    int n = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        compensated_add(&sum, network->throat_length[t]);
+        n++;
+    }
+    return compensated_value(sum) / n;
+}
+
+// ln((p_g - p_inf) / (p_g - p_sat)): the fall of -ln(1 - p_v/p_g) from the wet nodes to
+// the drying air. This form keeps its digits from p_sat just above p_inf to p_sat just
+// below p_g.
+static double potential_fall(const struct drying_conditions *conditions)
+{
+    return log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
+                 (conditions->gas_pressure - conditions->saturation_pressure));
+}
+
+struct drying_scale drying_scale(const struct network *network,
+                                 const struct drying_conditions *conditions)
+{
+    const double length = mean_throat_length(network);
+    const double vapour_density = conditions->gas_pressure * conditions->molar_mass /
+                                  (GAS_CONSTANT * conditions->temperature);
+    struct drying_scale scale = {
+        .length = length,
+        .mass = conditions->liquid_density * (length * length * length),
+        .rate = conditions->diffusivity * vapour_density * potential_fall(conditions) *
+                length, // [K 3.9]
+        .boundary_layer = conditions->diffusivity / conditions->mass_transfer / length};
+    scale.time = scale.mass / scale.rate;
+    return scale;
+}
+
+int open_wall(const struct drying_conditions *conditions)
+{
+    return __builtin_ctz(conditions->open_walls);
+}

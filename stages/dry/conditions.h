@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What can be dried, under which conditions, and the units it is computed in.
+#ifndef CRAQUELURE_CONDITIONS_H
+#define CRAQUELURE_CONDITIONS_H
+
+#include "drying.h"
+
+// Scaled units: the mean throat length is 1, the density of the liquid is 1, and so is
+// the fall of the vapour's potential from saturation to the drying air.
+struct drying_scale {
+    double length;         // m
+    double mass;           // kg
+    double rate;           // kg/s
+    double time;           // s
+    double boundary_layer; // its thickness in mean throat lengths
+};
+
+// STATUS_BAD_DATA with the key, the rule and the value if the conditions are
+// impossible.
+enum status check_conditions(const struct drying_conditions *conditions,
+                             struct reason *reason);
+
+// STATUS_BAD_DATA with the dataset, the row, the rule and the value if a throat that
+// takes part has no length, no radius, or both its ends on one node, or if none takes
+// part.
+enum status check_throats(const struct network *network, struct reason *reason);
+
+// Both arguments must have passed their checks.
+struct drying_scale drying_scale(const struct network *network,
+                                 const struct drying_conditions *conditions);
+
+// Bit and number (0..5) of the one open wall.
+int open_wall(const struct drying_conditions *conditions);
+
+#endif

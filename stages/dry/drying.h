@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pore-network drying [K 3.4, 3.3.5, 5.4]: which throat empties when, as vapour leaves
+// a network of liquid-filled throats through one open wall.
+//
+// Model. Vapour diffuses, quasi-steadily and isothermally, through the throats that are
+// completely empty and through a boundary layer above the open wall [K 3.9]. A node
+// that touches both liquid and gas is wet: its vapour is saturated, and what it
+// evaporates is charged to the liquid throats at the node in proportion to their
+// cross-sections. Left out: liquid films, adsorption, gravity, Kelvin and Knudsen
+// effects, viscosity of the gas, gradients of temperature [K 3.4.2].
+//
+// Everything here is in SI units. Inside, lengths are scaled by the mean throat length
+// and vapour by its driving force, so that the same network at another scale gives the
+// same dimensionless result.
+#ifndef CRAQUELURE_DRYING_H
+#define CRAQUELURE_DRYING_H
+
+#include "basics/status.h"
+#include "network/network.h"
+
+// How the liquid moves between the throats of a cluster.
+enum liquid_limit {
+    // Viscosity negligible: a cluster loses all it evaporates from its widest meniscus
+    // throat, that of lowest capillary pressure [K 3.4.2, steps 1-6].
+    LIQUID_INVISCID = 0,
+    // Viscosity suppresses all flow: each throat loses what it evaporates itself.
+    LIQUID_IMMOBILE = 1
+};
+
+// Molar gas constant, J/(mol K): exact in the SI; [K Table 3.1] rounds it to 8.3145.
+#define GAS_CONSTANT 8.31446261815324
+
+struct drying_conditions {
+    double temperature;         // K
+    double gas_pressure;        // p_g, Pa
+    double saturation_pressure; // of vapour at the temperature, Pa; below p_g
+    double air_vapour_pressure; // in the drying air, Pa; from 0 to below saturation
+    double diffusivity;         // delta of vapour in the gas, m2/s
+    double molar_mass;          // of the liquid, kg/mol
+    double liquid_density;      // kg/m3
+    double mass_transfer;       // beta, m/s; the boundary layer is delta/beta thick
+    int layers;          // of the boundary layer; 0: as thick as a throat is long
+    unsigned open_walls; // bits of enum wall; exactly one now
+    enum liquid_limit liquid;
+    double
+        first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends
+};
+
+// What happened, from the full network to the dry one. Step 0 is the initial state;
+// each later step is the moment at which a throat has just emptied, or several that tie
+// to rounding (as all do that recede at one speed from one node). Between two steps
+// every throat's saturation is linear in time, and the rate is constant.
+struct drying_history {
+    int n_step;
+    double *time;       // (n_step) s, increasing (as far as its digits reach) from 0
+    double *saturation; // (n_step) liquid over initial liquid; from 1 to exactly 0
+    double *rate;       // (n_step) kg/s into the drying air from this step to the next;
+                        // the last is 0
+    int32_t *clusters;  // (n_step) connected pieces of liquid
+
+    int n_event;           // one for each throat of kind THROAT_NETWORK
+    double *event_time;    // (n_event) s
+    int32_t *event_throat; // (n_event) index in the network
+    uint8_t *event_kind;   // (n_event) 0: the throat has emptied completely
+
+    // Throats whose saturation at step k differs from that at step k-1, ascending
+    // within a step: entries change_offset[k] .. change_offset[k+1]-1. None at step 0,
+    // where every throat of kind THROAT_NETWORK has saturation 1 (and the others have
+    // none).
+    int64_t *change_offset;    // (n_step+1)
+    int32_t *change_throat;    // (change_offset[n_step])
+    double *change_saturation; // of the throat, 0 to 1; exactly 0 once empty
+
+    // Saturation of the network when gas first reaches a node on the wall opposite the
+    // open one; 0 if it never does (or only as the last throat empties).
+    double breakthrough_saturation;
+    // Saturation at which the rate first is below first_period_rate_fraction times the
+    // first rate.
+    double first_period_end_saturation;
+
+    double boundary_layer_thickness; // m
+    int boundary_layers;
+    double initial_liquid;  // kg: what the throats lose in all, since all end empty
+    double evaporated;      // kg: integral of the rate into the drying air
+    double vapour_residual; // largest over the run, of the rate
+};
+
+// Told now and then how far the run is, as the fraction of all throats that is empty.
+struct drying_progress {
+    void (*report)(void *context, double fraction); // may be NULL
+    void *context;
+};
+
+// Marks as THROAT_IMPOSED_EMPTY the throats that lie in one of WALLS (bits of enum
+// wall), that is whose two nodes are both on that wall: they hold no liquid, and
+// neither vapour nor gas passes through them [K 5.4]. Returns how many are so marked in
+// all.
+int impose_empty_throats(struct network *network, unsigned walls);
+
+// Dries NETWORK, of which only the throats of kind THROAT_NETWORK take part, to the
+// end. HISTORY is overwritten; the caller frees it with drying_history_free, also after
+// a failure. PROGRESS may be NULL.
+//
+// STATUS_BAD_DATA: conditions under which nothing would dry or that are not positive;
+// not exactly one open wall; a throat of zero length or radius (merge-nodes removes the
+// first); no throat reaches the open wall; liquid without a way to it.
+// STATUS_NOT_CONVERGED: the vapour balance does not close to VAPOUR_TOLERANCE.
+//
+// Cost: one sparse factorisation an event where the gas has changed; all the rest of an
+// event costs as many operations as there are wet throats.
+enum status dry_network(const struct network *network,
+                        const struct drying_conditions *conditions,
+                        const struct drying_progress *progress,
+                        struct drying_history *history, struct reason *reason);
+
+// Frees what the history owns and empties it; safe on an empty one.
+void drying_history_free(struct drying_history *history);
+
+#endif

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "history.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+struct recorder recorder_make(struct drying_history *history)
+{
+    *history = (struct drying_history){.change_offset = NEW_ARRAY(int64_t, 1)};
+    return (struct recorder){.history = history};
+}
+
+void recorder_add_change(struct recorder *recorder, int throat, double saturation)
+{
+    struct drying_history *history = recorder->history;
+    int64_t capacity = recorder->change_capacity;
+    GROW_ARRAY(history->change_throat, recorder->n_change, capacity);
+    GROW_ARRAY(history->change_saturation, recorder->n_change,
+               recorder->change_capacity);
+    history->change_throat[recorder->n_change] = throat;
+    history->change_saturation[recorder->n_change] = saturation;
+    recorder->n_change++;
+}
+
+void recorder_add_event(struct recorder *recorder, double time, int throat)
+{
+    struct drying_history *history = recorder->history;
+    if (history->n_event == recorder->event_capacity) {
+        const int capacity =
+            recorder->event_capacity ? 2 * recorder->event_capacity : 64;
+        const size_t n = (size_t)capacity;
+        history->event_time = reallocate(history->event_time, n, sizeof(double));
+        history->event_throat = reallocate(history->event_throat, n, sizeof(int32_t));
+        history->event_kind = reallocate(history->event_kind, n, sizeof(uint8_t));
+        recorder->event_capacity = capacity;
+    }
+    history->event_time[history->n_event] = time;
+    history->event_throat[history->n_event] = throat;
+    history->event_kind[history->n_event] = 0;
+    history->n_event++;
+}
+
+void recorder_add_step(struct recorder *recorder, double time, double saturation,
+                       double rate, int clusters)
+{
+    struct drying_history *history = recorder->history;
+    if (history->n_step == recorder->step_capacity) {
+        const int capacity = recorder->step_capacity ? 2 * recorder->step_capacity : 64;
+        const size_t n = (size_t)capacity;
+        history->time = reallocate(history->time, n, sizeof(double));
+        history->saturation = reallocate(history->saturation, n, sizeof(double));
+        history->rate = reallocate(history->rate, n, sizeof(double));
+        history->clusters = reallocate(history->clusters, n, sizeof(int32_t));
+        history->change_offset =
+            reallocate(history->change_offset, n + 1, sizeof(int64_t));
+        recorder->step_capacity = capacity;
+    }
+    const int step = history->n_step++;
+    history->time[step] = time;
+    history->saturation[step] = saturation;
+    history->rate[step] = rate;
+    history->clusters[step] = clusters;
+    history->change_offset[step + 1] = recorder->n_change;
+}
+
+void drying_history_free(struct drying_history *history)
+{
+    free(history->time);
+    free(history->saturation);
+    free(history->rate);
+    free(history->clusters);
+    free(history->event_time);
+    free(history->event_throat);
+    free(history->event_kind);
+    free(history->change_offset);
+    free(history->change_throat);
+    free(history->change_saturation);
+    *history = (struct drying_history){0};
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "losses.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+struct losses losses_make(int n_throat)
+{
+    return (struct losses){.loss = NEW_ARRAY(struct loss, n_throat),
+                           .charge = NEW_ARRAY(double, n_throat),
+                           .charged = NEW_ARRAY(int, n_throat),
+                           .cluster_rate = NEW_ARRAY(double, n_throat)};
+}
+
+void losses_free(struct losses *losses)
+{
+    free(losses->loss);
+    free(losses->charge);
+    free(losses->charged);
+    free(losses->cluster_rate);
+    *losses = (struct losses){0};
+}
+
+// Proportional to the cross-section of a throat that holds liquid.
+static double liquid_section(const struct phases *phases, int throat)
+{
+    if (phases->clusters.of_throat[throat] < 0) return 0;
+    return phases->volume[throat] / phases->network->throat_length[throat];
+}
+
+static void charge_throats(struct losses *losses, const struct phases *phases, int node)
+{
+    const double evaporation = vapour_evaporation(&phases->vapour, node);
+    if (!(evaporation > 0)) return; // shut in
+    const int begin = phases->incidence.offset[node];
+    const int end = phases->incidence.offset[node + 1];
+    double section = 0;
+    for (int k = begin; k < end; k++)
+        section += liquid_section(phases, phases->incidence.throat[k]);
+    for (int k = begin; k < end; k++) {
+        const int throat = phases->incidence.throat[k];
+        const double charge = evaporation * (liquid_section(phases, throat) / section);
+        if (!(charge > 0)) continue;
+        if (losses->charge[throat] == 0) losses->charged[losses->n_charged++] = throat;
+        losses->charge[throat] += charge;
+    }
+}
+
+// Viscosity keeps the liquid where it is: each throat loses its own.
+static void lose_immobile(struct losses *losses)
+{
+    for (int k = 0; k < losses->n_charged; k++)
+        losses->loss[losses->n++] =
+            (struct loss){losses->charged[k], losses->charge[losses->charged[k]]};
+}
+
+// Without viscosity, capillarity takes all a cluster evaporates from the throat of its
+// lowest capillary pressure [K 3.4.2, steps 2 to 4].
+static void lose_inviscid(struct losses *losses, struct phases *phases)
+{
+    const int *of_throat = phases->clusters.of_throat;
+    for (int k = 0; k < losses->n_charged; k++)
+        losses->cluster_rate[of_throat[losses->charged[k]]] +=
+            losses->charge[losses->charged[k]];
+    for (int k = 0; k < losses->n_charged; k++) {
+        const int cluster = of_throat[losses->charged[k]];
+        if (losses->cluster_rate[cluster] == 0) continue; // has had its turn
+        losses->loss[losses->n++] =
+            (struct loss){clusters_invasion_throat(&phases->clusters, cluster),
+                          losses->cluster_rate[cluster]};
+        losses->cluster_rate[cluster] = 0;
+    }
+}
+
+static int compare_losses(const void *a, const void *b)
+{
+    const struct loss *l = a, *m = b;
+    return (l->throat > m->throat) - (l->throat < m->throat);
+}
+
+void losses_find(struct losses *losses, struct phases *phases, enum liquid_limit limit)
+{
+    losses->n = 0;
+    losses->n_charged = 0;
+    for (int k = 0; k < phases->n_wet; k++)
+        charge_throats(losses, phases, phases->wet[k]);
+    if (limit == LIQUID_IMMOBILE)
+        lose_immobile(losses);
+    else
+        lose_inviscid(losses, phases);
+    for (int k = 0; k < losses->n_charged; k++)
+        losses->charge[losses->charged[k]] = 0;
+    if (losses->n > 0)
+        qsort(losses->loss, (size_t)losses->n, sizeof *losses->loss, compare_losses);
+}

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What drying must not depend on: how nodes and throats are numbered, the unit of
+// length, and, while the liquid is in one piece, how fast it dries.
+#include "dry/clusters.h"
+#include "support_lattice.h"
+
+#include "basics/memory.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double spacing = 5e-7;
+
+static int *random_permutation(int n, uint64_t *seed)
+{
+    int *to = NEW_ARRAY(int, n);
+    for (int i = 0; i < n; i++)
+        to[i] = i;
+    for (int i = n - 1; i > 0; i--) {
+        const int j = (int)(next_random(seed) * (i + 1));
+        const int swap = to[i];
+        to[i] = to[j];
+        to[j] = swap;
+    }
+    return to;
+}
+
+// A copy in which node i is NODE_TO[i] and throat t is THROAT_TO[t].
+static struct network renumbered(const struct network *old, int n[3],
+                                 const int *node_to, const int *throat_to)
+{
+    struct network new = lattice_network(n[0], n[1], n[2], spacing);
+    for (int i = 0; i < old->n_node; i++) {
+        new.node_position[node_to[i]] = old->node_position[i];
+        new.node_walls[node_to[i]] = old->node_walls[i];
+    }
+    for (int t = 0; t < old->n_throat; t++) {
+        const int a = node_to[old->throat_nodes[t][0]];
+        const int b = node_to[old->throat_nodes[t][1]];
+        new.throat_nodes[throat_to[t]][0] = a < b ? a : b;
+        new.throat_nodes[throat_to[t]][1] = a < b ? b : a;
+        new.throat_radius[throat_to[t]] = old->throat_radius[t];
+        new.throat_kind[throat_to[t]] = old->throat_kind[t];
+    }
+    for (int64_t k = 0; k < old->face_offset[old->n_face]; k++)
+        new.face_nodes[k] = node_to[old->face_nodes[k]];
+    return new;
+}
+
+static void check_renumbered(enum liquid_limit liquid, unsigned empty_walls)
+{
+    int n[3] = {6, 5, 7};
+    uint64_t seed = 99;
+    struct network network = lattice_network(n[0], n[1], n[2], spacing);
+    randomise_radii(&network, spacing, 0.2, 3);
+    impose_empty_throats(&network, empty_walls);
+    int *node_to = random_permutation(network.n_node, &seed);
+    int *throat_to = random_permutation(network.n_throat, &seed);
+    struct network other = renumbered(&network, n, node_to, throat_to);
+
+    const struct drying_conditions conditions = kharaghani_conditions(liquid);
+    struct drying_history a = dry_and_check(&network, &conditions);
+    struct drying_history b = dry_and_check(&other, &conditions);
+    assert_int_equal(a.n_step, b.n_step);
+    for (int k = 0; k < a.n_step; k++) {
+        assert_int_equal(a.clusters[k], b.clusters[k]);
+        assert_true(fabs(a.time[k] - b.time[k]) <= 1e-12 * a.time[k]);
+        assert_true(fabs(a.rate[k] - b.rate[k]) <= 1e-11 * a.rate[k]);
+        assert_true(fabs(a.saturation[k] - b.saturation[k]) < 1e-12);
+    }
+    double *emptied =
+        NEW_ARRAY(double, network.n_throat); // throats that tie have no order
+    for (int k = 0; k < b.n_event; k++)
+        emptied[b.event_throat[k]] = b.event_time[k];
+    for (int k = 0; k < a.n_event; k++) {
+        const double time = emptied[throat_to[a.event_throat[k]]];
+        assert_true(fabs(a.event_time[k] / time - 1) < 1e-12);
+    }
+    free(emptied);
+    drying_history_free(&a);
+    drying_history_free(&b);
+    network_free(&network);
+    network_free(&other);
+    free(node_to);
+    free(throat_to);
+}
+
+static void test_numbering_does_not_matter(void **state)
+{
+    (void)state;
+    check_renumbered(LIQUID_INVISCID, 0);
+    check_renumbered(LIQUID_IMMOBILE, 0);
+    check_renumbered(LIQUID_INVISCID, WALL_X_LOWER | WALL_Y_UPPER | WALL_Z_LOWER);
+}
+
+// 2^30 is about 1e9: from nanometres to metres. Rates go with the length, times with
+// its square; everything else is the same bits.
+static void check_scaled(enum liquid_limit liquid)
+{
+    struct network network = lattice_network(5, 5, 6, spacing);
+    randomise_radii(&network, spacing, 0.2, 17);
+    struct drying_conditions conditions = kharaghani_conditions(liquid);
+    struct drying_history small = dry_and_check(&network, &conditions);
+
+    const double factor = 0x1p30;
+    for (int i = 0; i < network.n_node; i++)
+        network.node_position[i] = scale(factor, network.node_position[i]);
+    for (int g = 0; g < network.packing.n_particle; g++)
+        network.packing.position[g] = scale(factor, network.packing.position[g]);
+    network.packing.upper = scale(factor, network.packing.upper);
+    for (int t = 0; t < network.n_throat; t++) {
+        network.throat_radius[t] *= factor;
+        network.throat_length[t] *= factor;
+    }
+    conditions.mass_transfer /= factor;
+    struct drying_history large = dry_and_check(&network, &conditions);
+
+    assert_int_equal(small.n_step, large.n_step);
+    for (int k = 0; k < small.n_step; k++) {
+        assert_true(large.time[k] == small.time[k] * factor * factor);
+        assert_true(large.rate[k] == small.rate[k] * factor);
+        assert_true(large.saturation[k] == small.saturation[k]);
+        assert_int_equal(large.clusters[k], small.clusters[k]);
+    }
+    for (int k = 0; k < small.n_event; k++)
+        assert_int_equal(large.event_throat[k], small.event_throat[k]);
+    for (int64_t c = 0; c < small.change_offset[small.n_step]; c++)
+        assert_true(large.change_saturation[c] == small.change_saturation[c]);
+    assert_true(large.breakthrough_saturation == small.breakthrough_saturation);
+    drying_history_free(&small);
+    drying_history_free(&large);
+    network_free(&network);
+}
+
+static void test_unit_of_length_does_not_matter(void **state)
+{
+    (void)state;
+    check_scaled(LIQUID_INVISCID);
+    check_scaled(LIQUID_IMMOBILE);
+}
+
+// For each throat, the size of its cluster when it empties and the lowest throat in it.
+struct kin {
+    int size, lowest;
+};
+
+static struct kin *kin_when_emptied(const struct network *network,
+                                    const struct drying_history *history)
+{
+    struct kin *kin = NEW_ARRAY(struct kin, network->n_throat);
+    struct incidence incidence = network_incidence(network);
+    struct clusters clusters = clusters_make(network, &incidence, true);
+    for (int k = 0; k < history->n_event; k++) {
+        const int throat = history->event_throat[k];
+        const int cluster = clusters.of_throat[throat];
+        int lowest = 0;
+        while (clusters.of_throat[lowest] != cluster)
+            lowest++;
+        kin[throat] = (struct kin){clusters.size[cluster], lowest};
+        clusters_empty_throat(&clusters, throat);
+    }
+    clusters_free(&clusters);
+    incidence_free(&incidence);
+    return kin;
+}
+
+// Invasion percolation within a cluster knows radii and neighbours only: the rates
+// decide which cluster is ahead, but each empties in the same order and splits in the
+// same way.
+static void test_order_within_a_cluster_does_not_depend_on_the_rate(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(8, 8, 8, spacing);
+    randomise_radii(&network, spacing, 0.3, 31);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    struct drying_history a = dry_and_check(&network, &conditions);
+    conditions.mass_transfer *= 10;
+    conditions.air_vapour_pressure = 2000;
+    struct drying_history b = dry_and_check(&network, &conditions);
+
+    struct kin *kin_a = kin_when_emptied(&network, &a);
+    struct kin *kin_b = kin_when_emptied(&network, &b);
+    for (int t = 0; t < network.n_throat; t++) {
+        assert_int_equal(kin_a[t].size, kin_b[t].size);
+        assert_int_equal(kin_a[t].lowest, kin_b[t].lowest);
+    }
+    int n_moved = 0;
+    for (int k = 0; k < a.n_event; k++)
+        n_moved += a.event_throat[k] != b.event_throat[k];
+    assert_true(n_moved > a.n_event / 10);
+    free(kin_a);
+    free(kin_b);
+    drying_history_free(&a);
+    drying_history_free(&b);
+    network_free(&network);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbering_does_not_matter),
+        cmocka_unit_test(test_unit_of_length_does_not_matter),
+        cmocka_unit_test(test_order_within_a_cluster_does_not_depend_on_the_rate)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Networks to dry: cubic lattices of nodes with the grains at the centres of the cubes.
+#ifndef CRAQUELURE_SUPPORT_LATTICE_H
+#define CRAQUELURE_SUPPORT_LATTICE_H
+
+#include "dry/drying.h"
+
+// Counts of nodes along x, y, z; all throats of length SPACING and radius 0.2 SPACING.
+// Of the faces only those on the walls, one square a grain. Freed with network_free.
+struct network lattice_network(int nx, int ny, int nz, double spacing);
+
+// Evenly distributed radii within (1 +- SPREAD) of 0.2 SPACING.
+void randomise_radii(struct network *network, double spacing, double spread,
+                     uint64_t seed);
+
+// Node, and throat from it in the direction of AXIS, of a lattice of NX by NY by NZ
+// nodes.
+int lattice_node(int nx, int ny, int i, int j, int k);
+int lattice_throat(const struct network *network, int node, int axis);
+
+// The conditions of [K Table 3.1] and 5.4, z upper open.
+struct drying_conditions kharaghani_conditions(enum liquid_limit liquid);
+
+// Evenly distributed in [0,1); advances STATE (splitmix64).
+double next_random(uint64_t *state);
+
+// Dries NETWORK and checks what holds for every run: balances, bounds, order, the end.
+struct drying_history dry_and_check(const struct network *network,
+                                    const struct drying_conditions *conditions);
+
+#endif
