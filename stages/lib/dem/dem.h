@@ -25,6 +25,11 @@ struct dem_material {
     double shear_stiffness; // N/m of a grain, >= 0
     double friction;        // >= 0
     double damping_ratio;   // zeta of [K 4.28], >= 0
+    // Local damping: each component of the net force and moment on a grain is made
+    // smaller by this share of itself while the grain moves its way, and larger while
+    // it moves against it, so that whatever oscillates comes to rest (dashpots do not
+    // see grains that roll on each other). Not physical: for statics. In [0,1).
+    double local_damping;
 };
 
 // The cylinder of glue between two bonded grains [K 4.2, parallel bond].

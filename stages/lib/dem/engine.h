@@ -102,6 +102,7 @@ struct dem {
     struct units unit;
     struct contact_law law;
     struct contact_law wall_law; // against a rigid flat
+    double local_damping;
     double time_step;
     double time_step_limit;
     int64_t cycle;

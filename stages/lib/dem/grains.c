@@ -30,6 +30,17 @@ struct motion load_on_grain(const struct dem *dem, int particle)
     return load;
 }
 
+// LOAD, each component less by SHARE of itself where MOTION has its sign, more where it
+// has the opposite, unchanged at rest.
+static inline quad damped(quad load, quad motion, double share)
+{
+    const quad power = load * motion;
+    const quad zero = {0};
+    // Comparisons give -1 where they hold.
+    const quad sign = __builtin_convertvector((power < zero) - (power > zero), quad);
+    return load - share * (sign * load);
+}
+
 struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late)
 {
     const double dt = dem->time_step;
@@ -41,8 +52,10 @@ struct pace move_grains(struct dem *dem, int begin, int end, int from_group, boo
         const struct load sum = add_slots(dem, i);
         quad *velocity = (quad *)dem->motion[i].linear;
         quad *spin = (quad *)dem->motion[i].angular;
-        const quad v = *velocity + dt * dem->mobility[i][0] * sum.force;
-        const quad w = *spin + dt * dem->mobility[i][1] * sum.moment;
+        const quad force = damped(sum.force, *velocity, dem->local_damping);
+        const quad moment = damped(sum.moment, *spin, dem->local_damping);
+        const quad v = *velocity + dt * dem->mobility[i][0] * force;
+        const quad w = *spin + dt * dem->mobility[i][1] * moment;
         const quad squares = v * v + turning * (w * w);
         const double square = squares[0] + squares[1] + squares[2];
         if (!(square <= limit)) { // also when it is not a number

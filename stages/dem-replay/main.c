@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// dem-replay: what the capillary forces do to the bonded grains.
+#include "artifacts/artifact.h"
+#include "basics/status.h"
+#include "replay.h"
+#include "write_response.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+struct replay_parameters {
+    struct replay_settings settings;
+    int support;
+    struct number_list snapshots;
+};
+
+#define AT(member) offsetof(struct replay_parameters, member)
+
+static const struct parameter table[] = {
+    {"density", PARAMETER_NUMBER, "kg m-3", "3230", BOUND_ABOVE, 0, 0, NULL,
+     "of the grains [K Table 5.1]", AT(settings.material.density)},
+    {"friction", PARAMETER_NUMBER, "1", "0.5", BOUND_MINIMUM, 0, 0, NULL,
+     "coefficient between grains", AT(settings.material.friction)},
+    {"damping_ratio", PARAMETER_NUMBER, "1", "0.7", BOUND_MINIMUM, 0, 0, NULL,
+     "of the dashpots at contacts, of critical [K 4.28]",
+     AT(settings.material.damping_ratio)},
+    {"local_damping", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.99, NULL,
+     "share of the net force on a grain taken off while it moves its way, added while "
+     "it "
+     "moves against it; for statics",
+     AT(settings.material.local_damping)},
+    {"normal_stiffness", PARAMETER_NUMBER, "N m-1", "3e4", BOUND_MINIMUM, 0, 0, NULL,
+     "of a grain; two in series make a contact [K 4.22]",
+     AT(settings.material.normal_stiffness)},
+    {"shear_stiffness", PARAMETER_NUMBER, "N m-1", "3e4", BOUND_MINIMUM, 0, 0, NULL,
+     "of a grain", AT(settings.material.shear_stiffness)},
+    {"bond.normal_stiffness", PARAMETER_NUMBER, "N m-3", "8e14", BOUND_MINIMUM, 0, 0,
+     NULL, "of parallel bonds, per area", AT(settings.bond.normal_stiffness)},
+    {"bond.shear_stiffness", PARAMETER_NUMBER, "N m-3", "8e14", BOUND_MINIMUM, 0, 0,
+     NULL, "of parallel bonds, per area", AT(settings.bond.shear_stiffness)},
+    {"bond.normal_strength", PARAMETER_NUMBER, "N m-2", "1.6e4", BOUND_MINIMUM, 0, 0,
+     NULL, "tensile stress that breaks a bond [K 4.41]",
+     AT(settings.bond.normal_strength)},
+    {"bond.shear_strength", PARAMETER_NUMBER, "N m-2", "1.6e4", BOUND_MINIMUM, 0, 0,
+     NULL, "shear stress that breaks a bond [K 4.42]",
+     AT(settings.bond.shear_strength)},
+    {"bond.radius_fraction", PARAMETER_NUMBER, "1", "0.5858", BOUND_BETWEEN, 1e-6, 1,
+     NULL, "bond radius, of the smaller grain's", AT(settings.bond.radius_fraction)},
+    {"support", PARAMETER_CHOICE, "1", "\"free\"", BOUND_NONE, 0, 0, "free|fixed|wall",
+     "free: net force and moment are taken off; fixed: grains at the lower z wall are "
+     "held; "
+     "wall: "
+     "a rigid wall beneath",
+     AT(support)},
+    {"time_step_safety", PARAMETER_NUMBER, "1", "0.04", BOUND_ABOVE, 0, 0, NULL,
+     "time step, of the critical one of two grains [K 4.47]",
+     AT(settings.time_step_safety)},
+    {"allow_unstable", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "run past the stability limit of the aggregate", AT(settings.force_time_step)},
+    {"cycles", PARAMETER_INTEGER, "1", "500", BOUND_BETWEEN, 1, 1e12, NULL,
+     "time steps at each step of the forces [K 5.2]", AT(settings.cycles)},
+    {"tolerance", PARAMETER_NUMBER, "1", "null", BOUND_ABOVE, 0, 0, NULL,
+     "then go on until the unbalanced ratio [K 4.20] is below this; null: go on at "
+     "once",
+     AT(settings.tolerance)},
+    {"most_cycles", PARAMETER_INTEGER, "1", "1000000", BOUND_BETWEEN, 1, 1e12, NULL,
+     "more time steps than this at one step of the forces: not converged",
+     AT(settings.most_cycles)},
+    {"snapshots", PARAMETER_LIST, "1", "[1,0.9,0.75,0.6,0.3,0]", BOUND_BETWEEN, 0, 1,
+     NULL,
+     "saturations at which displacements and contact forces are kept, highest first",
+     AT(snapshots)},
+    {0}};
+
+static const struct stage stage = {
+    .name = "dem-replay",
+    .version = STAGE_VERSION,
+    .summary = "dem-replay -- replay capillary forces on the bonded grains [K 4, 5.2]",
+    .reads = "forces",
+    .writes = "response",
+    .most_inputs = 1,
+    .parameters = table};
+
+static void check_snapshots(const struct number_list *snapshots)
+{
+    for (int k = 1; k < snapshots->count; k++)
+        if (snapshots->value[k] >= snapshots->value[k - 1])
+            die(STATUS_BAD_DATA,
+                "dem-replay.snapshots: must fall from one to the next, got "
+                "%g after %g",
+                snapshots->value[k], snapshots->value[k - 1]);
+}
+
+static struct load read_load(const struct artifact *input)
+{
+    struct load load;
+    load.time = artifact_get(input, "/time", &load.n_time);
+    load.saturation = artifact_get(input, "/saturation", NULL);
+    load.force = artifact_get(input, "/force", NULL);
+    return load;
+}
+
+static void free_load(struct load *load)
+{
+    free(load->time);
+    free(load->saturation);
+    free(load->force);
+}
+
+static void show(void *bar, double fraction)
+{
+    progress_update(bar, fraction);
+}
+
+static void run(const struct packing *packing, const struct load *load,
+                const struct replay_settings *settings,
+                const struct invocation *invocation, const char *path,
+                struct response *response)
+{
+    struct progress bar = progress_begin(invocation->progress, invocation->quiet);
+    struct reason reason;
+    const enum status status =
+        replay(packing, load, settings, &(struct replay_progress){show, &bar}, response,
+               &reason);
+    progress_end(&bar);
+    if (status) die(status, "%s: %s", input_name(path), reason.text);
+}
+
+static void write_response(const struct packing *packing, const struct load *load,
+                           const struct replay_settings *settings,
+                           const struct response *response,
+                           const struct invocation *invocation,
+                           const struct artifact *input)
+{
+    static const char *const supports[] = {"free, net force and moment taken off",
+                                           "grains at the lower z wall held",
+                                           "a rigid wall beneath"};
+    char model[700];
+    snprintf(
+        model, sizeof model,
+        "discrete elements: leapfrog, linear contacts, slip, dashpots, parallel bonds "
+        "[K 4]\n"
+        "support: %s\n"
+        "left out: gravity, liquid bridges at contacts, moments of capillary forces\n",
+        supports[settings->support]);
+    struct artifact *artifact = artifact_create("response");
+    put_response(artifact, packing, load, response);
+    artifact_put_number(artifact, "/summary/first_period_end_time",
+                        artifact_get_number(input, "/summary/first_period_end_time"));
+    artifact_finish(artifact, invocation, &input, 1, model);
+}
+
+int main(int argc, char **argv)
+{
+    struct replay_parameters parameters = {0};
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    check_snapshots(&parameters.snapshots);
+    struct replay_settings *settings = &parameters.settings;
+    settings->support = (enum support)parameters.support;
+    settings->n_snapshot = parameters.snapshots.count;
+    settings->snapshot = parameters.snapshots.value;
+    settings->threads = invocation.threads;
+    struct artifact *input = artifact_open(invocation.inputs[0], "forces");
+    struct packing packing = artifact_get_packing(input);
+    struct load load = read_load(input);
+
+    struct response response;
+    run(&packing, &load, settings, &invocation, input->path, &response);
+    write_response(&packing, &load, settings, &response, &invocation, input);
+
+    response_free(&response);
+    free_load(&load);
+    packing_free(&packing);
+    artifact_close(input);
+    invocation_free(&invocation);
+    return STATUS_OK;
+}

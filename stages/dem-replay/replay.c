@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "replay.h"
+
+#include "basics/memory.h"
+#include "net_load.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- supports -----------------------------------------------------------------------
+
+static const double touching = 1e-6; // of the radius
+
+static uint8_t *fixed_grains(const struct packing *packing, enum support support)
+{
+    uint8_t *fixed = NEW_ARRAY(uint8_t, packing->n_particle);
+    for (int i = 0; i < packing->n_particle && support == SUPPORT_FIXED; i++)
+        fixed[i] = packing->position[i].z - packing->lower.z <=
+                   (1 + touching) * packing->radius[i];
+    return fixed;
+}
+
+// ---- one replay ---------------------------------------------------------------------
+
+struct run {
+    const struct packing *packing;
+    const struct load *load;
+    const struct replay_settings *settings;
+    struct response *response;
+    struct dem *dem;
+    struct vector *force; // (n_particle) of this step
+};
+
+static enum status begin(struct run *run, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    const struct packing *packing = run->packing;
+    uint8_t *fixed = fixed_grains(packing, settings->support);
+    const struct dem_wall beneath = {.point = packing->lower, .normal = {0, 0, 1}};
+    const struct dem_setup setup = {.packing = packing,
+                                    .material = settings->material,
+                                    .bond = settings->bond,
+                                    .fixed = fixed,
+                                    .n_wall = settings->support == SUPPORT_WALL,
+                                    .wall = &beneath,
+                                    .time_step_safety = settings->time_step_safety,
+                                    .force_time_step = settings->force_time_step,
+                                    .threads = settings->threads};
+    const enum status status = dem_create(&run->dem, &setup, reason);
+    free(fixed);
+    if (status) return status;
+    run->response->time_step = dem_time_step(run->dem);
+    run->response->time_step_limit = dem_time_step_limit(run->dem);
+    return STATUS_OK;
+}
+
+static void apply_load(struct run *run, int step)
+{
+    const size_t n = (size_t)run->packing->n_particle;
+    memcpy(run->force, run->load->force + (size_t)step * n, n * sizeof *run->force);
+    if (run->settings->support == SUPPORT_FREE)
+        take_off_net_load(run->packing, run->force);
+    dem_set_force(run->dem, run->force);
+}
+
+// [K 4.20] has no denominator once no contact carries a force: then all that is applied
+// is unbalanced.
+static double unbalanced_ratio(const struct dem *dem)
+{
+    const double ratio = dem_unbalanced_ratio(dem);
+    return isinf(ratio) ? 1 : ratio;
+}
+
+static enum status settle(struct run *run, int step, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    const int64_t before = dem_cycle(run->dem);
+    enum status status = dem_run(run->dem, settings->cycles, reason);
+    if (!status && !isnan(settings->tolerance) &&
+        unbalanced_ratio(run->dem) >= settings->tolerance)
+        status =
+            dem_run_until(run->dem, settings->tolerance, settings->most_cycles, reason);
+    run->response->cycles[step] = dem_cycle(run->dem) - before;
+    run->response->unbalanced_ratio[step] = unbalanced_ratio(run->dem);
+    if (!status) return STATUS_OK;
+    struct reason cause = *reason;
+    return refuse(reason, status, "step %d of the load (saturation %.3f): %.400s", step,
+                  run->load->saturation[step], cause.text);
+}
+
+static void note_cracks(struct run *run, int step)
+{
+    struct response *response = run->response;
+    int count;
+    const struct dem_crack *cracks = dem_cracks(run->dem, &count);
+    response->crack =
+        reallocate(response->crack, (size_t)count, sizeof *response->crack);
+    response->crack_step =
+        reallocate(response->crack_step, (size_t)count, sizeof *response->crack_step);
+    for (int k = response->n_crack; k < count; k++) {
+        response->crack[k] = cracks[k];
+        response->crack_step[k] = step;
+    }
+    response->n_crack = response->cracks[step] = count;
+}
+
+static void take_snapshot(struct run *run, int step)
+{
+    const struct packing *packing = run->packing;
+    struct snapshot *snapshot = &run->response->snapshot[run->response->n_snapshot++];
+    *snapshot = (struct snapshot){
+        .time = run->load->time[step],
+        .saturation = run->load->saturation[step],
+        .displacement = NEW_ARRAY(struct vector, packing->n_particle),
+        .force = duplicate(run->force, (size_t)packing->n_particle, sizeof *run->force),
+        .intact = NEW_ARRAY(uint8_t, packing->n_bond)};
+    dem_displacements(run->dem, snapshot->displacement);
+    dem_bonds_intact(run->dem, snapshot->intact);
+    snapshot->contact = dem_contacts(run->dem, &snapshot->n_contact);
+}
+
+static bool snapshot_due(const struct run *run, int step)
+{
+    const int next = run->response->n_snapshot;
+    return next < run->settings->n_snapshot &&
+           run->load->saturation[step] <= run->settings->snapshot[next];
+}
+
+enum status replay(const struct packing *packing, const struct load *load,
+                   const struct replay_settings *settings,
+                   const struct replay_progress *progress, struct response *response,
+                   struct reason *reason)
+{
+    *response =
+        (struct response){.unbalanced_ratio = NEW_ARRAY(double, load->n_time),
+                          .cycles = NEW_ARRAY(int64_t, load->n_time),
+                          .cracks = NEW_ARRAY(int32_t, load->n_time),
+                          .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot)};
+    struct run run = {.packing = packing,
+                      .load = load,
+                      .settings = settings,
+                      .response = response,
+                      .force = NEW_ARRAY(struct vector, packing->n_particle)};
+    enum status status = begin(&run, reason);
+    for (int step = 0; step < load->n_time && !status; step++) {
+        apply_load(&run, step);
+        status = settle(&run, step, reason);
+        note_cracks(&run, step);
+        while (!status && snapshot_due(&run, step))
+            take_snapshot(&run, step);
+        if (progress && progress->report)
+            progress->report(progress->context, (step + 1.0) / load->n_time);
+    }
+    dem_free(run.dem);
+    free(run.force);
+    if (status) response_free(response);
+    return status;
+}
+
+void response_free(struct response *response)
+{
+    for (int k = 0; k < response->n_snapshot; k++) {
+        free(response->snapshot[k].displacement);
+        free(response->snapshot[k].force);
+        free(response->snapshot[k].intact);
+        free(response->snapshot[k].contact);
+    }
+    free(response->snapshot);
+    free(response->crack);
+    free(response->crack_step);
+    free(response->unbalanced_ratio);
+    free(response->cycles);
+    free(response->cracks);
+    *response = (struct response){0};
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Capillary forces replayed on the bonded grains, step after step [K 5.2].
+#ifndef CRAQUELURE_REPLAY_H
+#define CRAQUELURE_REPLAY_H
+
+#include "basics/status.h"
+#include "dem/dem.h"
+
+#include <stdbool.h>
+
+enum support {
+    SUPPORT_FREE,  // nothing holds the aggregate; the net force is taken off, evenly by
+                   // mass
+    SUPPORT_FIXED, // grains that touch the lower z wall neither move nor turn
+    SUPPORT_WALL   // a rigid wall beneath, at the lower z wall
+};
+
+// Forces over time, as forces.h5 holds them.
+struct load {
+    int n_time;
+    double *time, *saturation; // (n_time)
+    struct vector *force;      // (n_time * n_particle) N
+};
+
+struct replay_settings {
+    struct dem_material material;
+    struct dem_bond_material bond;
+    enum support support;
+    double time_step_safety;
+    bool force_time_step;
+    int64_t cycles;      // at every step of the load
+    double tolerance;    // on [K 4.20]: go on until below; NAN: the cycles are enough
+    int64_t most_cycles; // beyond them at one step; then it has failed
+    int n_snapshot;
+    const double *snapshot; // saturations, the highest first; SATURATION <= this
+    int threads;
+};
+
+struct snapshot {
+    double time, saturation;
+    struct vector *displacement; // (n_particle) m
+    struct vector *force;        // (n_particle) N, external
+    uint8_t *intact;             // (n_bond)
+    struct dem_contact *contact; // (n_contact)
+    int n_contact;
+};
+
+struct response {
+    int n_crack;
+    struct dem_crack *crack;
+    int *crack_step;          // (n_crack) row of the load it broke under
+    double *unbalanced_ratio; // (n_time) at the end of each step
+    int64_t *cycles;          // (n_time)
+    int32_t *cracks;          // (n_time) so far
+    int n_snapshot;
+    struct snapshot *snapshot;
+    double time_step, time_step_limit; // s
+};
+
+// Told how far the replay is.
+struct replay_progress {
+    void (*report)(void *context, double fraction); // may be NULL
+    void *context;
+};
+
+// Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the
+// run diverged, or a step did not settle within its cycles. The caller frees *RESPONSE
+// with response_free.
+enum status replay(const struct packing *packing, const struct load *load,
+                   const struct replay_settings *settings,
+                   const struct replay_progress *progress, struct response *response,
+                   struct reason *reason);
+void response_free(struct response *response);
+
+#endif

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "write_response.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void put_cracks(struct artifact *artifact, const struct load *load,
+                       const struct response *response)
+{
+    const int n = response->n_crack;
+    int32_t *bond = NEW_ARRAY(int32_t, n);
+    double *time = NEW_ARRAY(double, n), *saturation = NEW_ARRAY(double, n);
+    uint8_t *mode = NEW_ARRAY(uint8_t, n);
+    struct vector *position = NEW_ARRAY(struct vector, n);
+    for (int k = 0; k < n; k++) {
+        bond[k] = response->crack[k].bond;
+        time[k] = load->time[response->crack_step[k]];
+        saturation[k] = load->saturation[response->crack_step[k]];
+        mode[k] = response->crack[k].mode;
+        position[k] = response->crack[k].position;
+    }
+    artifact_put(artifact, "/cracks/bond", bond, n);
+    artifact_put(artifact, "/cracks/time", time, n);
+    artifact_put(artifact, "/cracks/saturation", saturation, n);
+    artifact_put(artifact, "/cracks/mode", mode, n);
+    artifact_put(artifact, "/cracks/position", position, n);
+    free(bond);
+    free(time);
+    free(saturation);
+    free(mode);
+    free(position);
+}
+
+static void put_history(struct artifact *artifact, const struct load *load,
+                        const struct response *response)
+{
+    artifact_put(artifact, "/history/time", load->time, load->n_time);
+    artifact_put(artifact, "/history/saturation", load->saturation, load->n_time);
+    artifact_put(artifact, "/history/unbalanced_ratio", response->unbalanced_ratio,
+                 load->n_time);
+    artifact_put(artifact, "/history/cycles", response->cycles, load->n_time);
+    artifact_put(artifact, "/history/cracks", response->cracks, load->n_time);
+}
+
+// ---- contacts of all snapshots ------------------------------------------------------
+
+struct contact_list {
+    int32_t (*pair)[2];
+    int count, capacity;
+};
+
+static void append(struct contact_list *list, const int32_t pair[2])
+{
+    GROW_ARRAY(list->pair, list->count, list->capacity);
+    memcpy(list->pair[list->count++], pair, sizeof *list->pair);
+}
+
+static int compare_pairs(const void *a, const void *b)
+{
+    const int32_t *first = a, *second = b;
+    if (first[0] != second[0]) return first[0] < second[0] ? -1 : 1;
+    return (first[1] > second[1]) - (first[1] < second[1]);
+}
+
+// Pairs bonded at the start, or touching at a snapshot, each once; walls left out.
+static struct contact_list all_contacts(const struct packing *packing,
+                                        const struct response *response)
+{
+    struct contact_list list = {0};
+    for (int b = 0; b < packing->n_bond; b++)
+        append(&list, packing->bond[b]);
+    for (int s = 0; s < response->n_snapshot; s++)
+        for (int c = 0; c < response->snapshot[s].n_contact; c++)
+            if (response->snapshot[s].contact[c].particle[1] >= 0)
+                append(&list, response->snapshot[s].contact[c].particle);
+    if (list.count)
+        qsort(list.pair, (size_t)list.count, sizeof *list.pair, compare_pairs);
+    int kept = 0;
+    for (int k = 0; k < list.count; k++)
+        if (!kept || compare_pairs(list.pair[kept - 1], list.pair[k]))
+            memmove(list.pair[kept++], list.pair[k], sizeof *list.pair);
+    list.count = kept;
+    return list;
+}
+
+static void put_contact_forces(struct artifact *artifact,
+                               const struct response *response,
+                               const struct contact_list *list)
+{
+    struct vector *force =
+        NEW_ARRAY(struct vector, (size_t)response->n_snapshot * (size_t)list->count);
+    for (int s = 0; s < response->n_snapshot; s++)
+        for (int c = 0; c < response->snapshot[s].n_contact; c++) {
+            const struct dem_contact *contact = &response->snapshot[s].contact[c];
+            const int32_t(*found)[2] =
+                list->count
+                    ? bsearch(contact->particle, list->pair, (size_t)list->count,
+                              sizeof *list->pair, compare_pairs)
+                    : NULL;
+            if (found)
+                force[(size_t)s * (size_t)list->count + (size_t)(found - list->pair)] =
+                    contact->force;
+        }
+    artifact_put(artifact, "/contacts/particles", list->pair, list->count);
+    artifact_put_table(artifact, "/snapshots/contact_force", force,
+                       response->n_snapshot, list->count);
+    free(force);
+}
+
+// ---- snapshots ----------------------------------------------------------------------
+
+static void put_snapshots(struct artifact *artifact, const struct packing *packing,
+                          const struct response *response)
+{
+    const size_t n = (size_t)packing->n_particle, n_bond = (size_t)packing->n_bond;
+    const size_t count = (size_t)response->n_snapshot;
+    double *time = NEW_ARRAY(double, count), *saturation = NEW_ARRAY(double, count);
+    struct vector *displacement = NEW_ARRAY(struct vector, count * n);
+    struct vector *force = NEW_ARRAY(struct vector, count * n);
+    uint8_t *intact = NEW_ARRAY(uint8_t, count * n_bond);
+    for (size_t s = 0; s < count; s++) {
+        const struct snapshot *snapshot = &response->snapshot[s];
+        time[s] = snapshot->time;
+        saturation[s] = snapshot->saturation;
+        memcpy(displacement + s * n, snapshot->displacement, n * sizeof *displacement);
+        memcpy(force + s * n, snapshot->force, n * sizeof *force);
+        memcpy(intact + s * n_bond, snapshot->intact, n_bond);
+    }
+    artifact_put(artifact, "/snapshots/time", time, (int)count);
+    artifact_put(artifact, "/snapshots/saturation", saturation, (int)count);
+    artifact_put_table(artifact, "/snapshots/displacement", displacement, (int)count,
+                       (int)n);
+    artifact_put_table(artifact, "/snapshots/force", force, (int)count, (int)n);
+    artifact_put_table(artifact, "/snapshots/bond_intact", intact, (int)count,
+                       (int)n_bond);
+    free(time);
+    free(saturation);
+    free(displacement);
+    free(force);
+    free(intact);
+}
+
+static double largest(const double *values, int count)
+{
+    double most = 0;
+    for (int k = 0; k < count; k++)
+        most = fmax(most, values[k]);
+    return most;
+}
+
+void put_response(struct artifact *artifact, const struct packing *packing,
+                  const struct load *load, const struct response *response)
+{
+    artifact_put_packing(artifact, packing);
+    put_cracks(artifact, load, response);
+    put_history(artifact, load, response);
+    struct contact_list contacts = all_contacts(packing, response);
+    put_contact_forces(artifact, response, &contacts);
+    free(contacts.pair);
+    put_snapshots(artifact, packing, response);
+    artifact_put_number(artifact, "/summary/cracks", response->n_crack);
+    artifact_put_number(artifact, "/summary/time_step", response->time_step);
+    artifact_put_number(artifact, "/summary/time_step_limit",
+                        response->time_step_limit);
+    artifact_put_number(artifact, "/summary/largest_unbalanced_ratio",
+                        largest(response->unbalanced_ratio, load->n_time));
+}

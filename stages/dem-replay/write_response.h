@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef CRAQUELURE_WRITE_RESPONSE_H
+#define CRAQUELURE_WRITE_RESPONSE_H
+
+#include "artifacts/artifact.h"
+#include "replay.h"
+
+// Puts cracks, history, contacts and snapshots into a response artifact.
+void put_response(struct artifact *artifact, const struct packing *packing,
+                  const struct load *load, const struct response *response);
+
+#endif
