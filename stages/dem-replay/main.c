@@ -52,7 +52,7 @@ static const struct parameter table[] = {
      "wall: "
      "a rigid wall beneath",
      AT(support)},
-    {"time_step_safety", PARAMETER_NUMBER, "1", "0.04", BOUND_ABOVE, 0, 0, NULL,
+    {"time_step_safety", PARAMETER_NUMBER, "1", "0.045", BOUND_ABOVE, 0, 0, NULL,
      "time step, of the critical one of two grains [K 4.47]",
      AT(settings.time_step_safety)},
     {"allow_unstable", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,

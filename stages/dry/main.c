@@ -118,8 +118,10 @@ static void put_history(struct artifact *artifact, const struct drying_history *
     artifact_put(artifact, "/changes/saturation", history->change_saturation, n_change);
 }
 
-static void put_summary(struct artifact *artifact, const struct drying_history *history)
+static void put_summary(struct artifact *artifact, const struct drying_history *history,
+                        unsigned open_walls)
 {
+    artifact_put_number(artifact, "/summary/open_walls", open_walls);
     artifact_put_number(artifact, "/summary/breakthrough_saturation",
                         history->breakthrough_saturation);
     artifact_put_number(artifact, "/summary/first_period_end_saturation",
@@ -136,7 +138,8 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
 static void write_drying(const struct network *network,
                          const struct drying_history *history,
                          const struct invocation *invocation,
-                         const struct artifact *input, int liquid)
+                         const struct artifact *input,
+                         const struct dry_parameters *parameters)
 {
     char model[900];
     snprintf(model, sizeof model,
@@ -146,13 +149,13 @@ static void write_drying(const struct network *network,
              "left out: viscosity between the two limits, gravity, films, Kelvin and "
              "Knudsen effects, temperature\n",
              history->boundary_layers, history->boundary_layer_thickness,
-             liquid == LIQUID_INVISCID
+             parameters->conditions.liquid == LIQUID_INVISCID
                  ? "negligible viscosity, invasion percolation cluster by cluster"
                  : "immobile, each throat dries by itself");
     struct artifact *artifact = artifact_create("drying");
     artifact_put_network(artifact, network);
     put_history(artifact, history);
-    put_summary(artifact, history);
+    put_summary(artifact, history, parameters->conditions.open_walls);
     artifact_finish(artifact, invocation, &input, 1, model);
 }
 
@@ -172,7 +175,7 @@ int main(int argc, char **argv)
     impose_empty_throats(&network, parameters.imposed_empty);
     struct drying_history history;
     dry(&network, &parameters, &invocation, input->path, &history);
-    write_drying(&network, &history, &invocation, input, parameters.liquid);
+    write_drying(&network, &history, &invocation, input, &parameters);
 
     drying_history_free(&history);
     network_free(&network);

@@ -8,8 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
+
 struct force_parameters {
     double surface_tension, force_scale;
+    int open_surface;
     int64_t steps;
 };
 
@@ -20,6 +23,13 @@ static const struct parameter table[] = {
     {"force_scale", PARAMETER_NUMBER, "1", "1", BOUND_MINIMUM, 0, 0, NULL,
      "factor on the physical force; K's own was chosen and is not given",
      offsetof(struct force_parameters, force_scale)},
+    {"open_surface", PARAMETER_CHOICE, "1", "\"idle\"", BOUND_NONE, 0, 0, "idle|pulls",
+     "throats that lie in the open wall: their liquid has its menisci over the grains "
+     "and "
+     "does not pull them outwards (K 5.4: a full network presses its open top as "
+     "well), or "
+     "it pulls like any other",
+     offsetof(struct force_parameters, open_surface)},
     {"steps", PARAMETER_INTEGER, "1", "550", BOUND_BETWEEN, 2, 1e7, NULL,
      "uniform times from the start to the end of drying, both included [K 5.2]",
      offsetof(struct force_parameters, steps)},
@@ -85,8 +95,8 @@ static double largest_force(const struct protocol *protocol, int n_particle)
 }
 
 static void write_forces(const struct packing *packing, const struct protocol *protocol,
-                         double pressure, double force_scale,
-                         const struct invocation *invocation,
+                         double pressure, const struct force_parameters *parameters,
+                         double largest, const struct invocation *invocation,
                          const struct artifact *input)
 {
     struct artifact *artifact = artifact_create("forces");
@@ -96,18 +106,21 @@ static void write_forces(const struct packing *packing, const struct protocol *p
     artifact_put_table(artifact, "/force", protocol->force, protocol->n_time,
                        packing->n_particle);
     artifact_put_number(artifact, "/summary/capillary_pressure", pressure);
-    artifact_put_number(artifact, "/summary/force_scale", force_scale);
-    artifact_put_number(artifact, "/summary/largest_force",
-                        largest_force(protocol, packing->n_particle));
+    artifact_put_number(artifact, "/summary/force_scale", parameters->force_scale);
+    artifact_put_number(artifact, "/summary/largest_force", largest);
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         artifact_get_number(input, "/summary/first_period_end_time"));
-    artifact_finish(
-        artifact, invocation, &input, 1,
+    char model[600];
+    snprintf(
+        model, sizeof model,
         "capillary force: S p_c R^2 n over the patch facing each throat\n"
+        "throats in the open wall: %s\n"
         "one capillary pressure, that of a throat of mean radius\n"
         "forces linear in time between events: exact\n"
-        "left out: contact-line term (perfect wetting), pressure differences "
-        "between clusters, bridges left at contacts\n");
+        "left out: contact-line term (perfect wetting), pressure differences between "
+        "clusters, bridges left at contacts\n",
+        parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull");
+    artifact_finish(artifact, invocation, &input, 1, model);
 }
 
 int main(int argc, char **argv)
@@ -124,12 +137,22 @@ int main(int argc, char **argv)
     const enum status status = find_patches(&network, &patches, &n_patch, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
+    if (parameters.open_surface == OPEN_SURFACE_IDLE)
+        n_patch = drop_patches_in_walls(
+            &network, (unsigned)artifact_get_number(input, "/summary/open_walls"),
+            patches, n_patch);
     const double pressure =
         capillary_pressure(&network, parameters.surface_tension, input->path);
     struct protocol protocol =
         make_protocol(&network, &record, patches, n_patch,
                       pressure * parameters.force_scale, (int)parameters.steps);
-    write_forces(&network.packing, &protocol, pressure, parameters.force_scale,
+    const double largest = largest_force(&protocol, network.packing.n_particle);
+    if (!(fmax(largest, pressure) <= 1e150))
+        die(STATUS_BAD_DATA,
+            "%s: the forces overflow at a capillary pressure of %g Pa and "
+            "force_scale = %g",
+            input_name(input->path), pressure, parameters.force_scale);
+    write_forces(&network.packing, &protocol, pressure, &parameters, largest,
                  &invocation, input);
 
     protocol_free(&protocol);

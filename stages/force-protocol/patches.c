@@ -3,6 +3,7 @@
 
 #include "basics/memory.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 // theta times the unit normal of the plane through the arc from direction A to
@@ -65,7 +66,8 @@ static int throat_between(const struct network *network,
 
 // The patches one face gives one of its grains, a triangle a throat, written to
 // PATCHES. Turned around when the loop runs clockwise seen from that grain's outside.
-static void fan(const struct network *network, int face, int grain, const int *throats,
+// False when the grain's centre is on the face: there is no direction to it.
+static bool fan(const struct network *network, int face, int grain, const int *throats,
                 struct patch *patches)
 {
     const int32_t *loop = network->face_nodes + network->face_offset[face];
@@ -84,6 +86,7 @@ static void fan(const struct network *network, int face, int grain, const int *t
     const double sign = dot(sum, foot) < 0 ? -1 : 1;
     for (int k = 0; k < count; k++)
         patches[k].normal = scale(sign, patches[k].normal);
+    return isfinite(dot(sum, foot));
 }
 
 static int compare_patches(const void *a, const void *b)
@@ -145,7 +148,10 @@ enum status find_patches(const struct network *network, struct patch **patches,
         for (int side = 0; side < 2 && !status; side++) {
             const int grain = network->face_particles[face][side];
             if (grain < 0) continue;
-            fan(network, face, grain, throats, *patches + *count);
+            if (!fan(network, face, grain, throats, *patches + *count))
+                status = refuse(reason, STATUS_BAD_DATA,
+                                "/faces/nodes: face %d: meets the centre of grain %d",
+                                face, grain);
             *count +=
                 (int)(network->face_offset[face + 1] - network->face_offset[face]);
         }
@@ -156,4 +162,17 @@ enum status find_patches(const struct network *network, struct patch **patches,
     incidence_free(&incidence);
     if (status) free(*patches);
     return status;
+}
+
+int drop_patches_in_walls(const struct network *network, unsigned walls,
+                          struct patch *patches, int count)
+{
+    int kept = 0;
+    for (int k = 0; k < count; k++) {
+        const int32_t *ends = network->throat_nodes[patches[k].throat];
+        const unsigned common =
+            network->node_walls[ends[0]] & network->node_walls[ends[1]];
+        if (!(common & walls)) patches[kept++] = patches[k];
+    }
+    return kept;
 }

@@ -24,4 +24,9 @@ struct patch {
 enum status find_patches(const struct network *network, struct patch **patches,
                          int *count, struct reason *reason);
 
+// Takes out the patches of throats that lie in one of WALLS (bits of enum wall);
+// returns how many are left.
+int drop_patches_in_walls(const struct network *network, unsigned walls,
+                          struct patch *patches, int count);
+
 #endif
