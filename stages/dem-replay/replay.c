@@ -72,12 +72,21 @@ static double unbalanced_ratio(const struct dem *dem)
     return isinf(ratio) ? 1 : ratio;
 }
 
+// Without a load nothing remains to measure what is left by: both terms of [K 4.20]
+// decay.
+static bool is_loaded(const struct run *run)
+{
+    for (int i = 0; i < run->packing->n_particle; i++)
+        if (norm(run->force[i]) > 0) return true;
+    return false;
+}
+
 static enum status settle(struct run *run, int step, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
     const int64_t before = dem_cycle(run->dem);
     enum status status = dem_run(run->dem, settings->cycles, reason);
-    if (!status && !isnan(settings->tolerance) &&
+    if (!status && !isnan(settings->tolerance) && is_loaded(run) &&
         unbalanced_ratio(run->dem) >= settings->tolerance)
         status =
             dem_run_until(run->dem, settings->tolerance, settings->most_cycles, reason);

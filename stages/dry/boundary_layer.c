@@ -191,12 +191,20 @@ static void find_exposed(const struct network *network, int wall, int *index_of,
         }
 }
 
+enum { MOST_LAYERS = 10000 }; // the range of boundary_layer.layers
+
 static enum status choose_layers(double thickness, int layers, int n_node,
                                  struct boundary_layer *layer, struct reason *reason)
 {
     const double wanted = layers > 0 ? layers : fmax(1, round(thickness));
     // Levels and the network's nodes are numbered together, and each site may have many
     // links: leave room in an int.
+    if (wanted > MOST_LAYERS)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "the boundary layer is %g throats thick: give boundary_layer.layers, at "
+            "most %d",
+            wanted, MOST_LAYERS);
     if (wanted * layer->n_exposed + n_node > INT_MAX / 16)
         return refuse(reason, STATUS_BAD_DATA,
                       "layers: %g over %d exposed nodes are too many", wanted,

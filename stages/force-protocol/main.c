@@ -45,7 +45,7 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table};
 
-static struct drying_record read_record(const struct artifact *input)
+static struct drying_record read_record(const struct artifact *input, double steps)
 {
     struct drying_record record;
     record.time = artifact_get(input, "/history/time", &record.n_step);
@@ -56,6 +56,9 @@ static struct drying_record read_record(const struct artifact *input)
     if (record.n_step < 1)
         die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
             input_name(input->path));
+    if (!(record.time[record.n_step - 1] / steps > 0))
+        die(STATUS_BAD_DATA, "%s: /history/time: must end above 0, got %g",
+            input_name(input->path), record.time[record.n_step - 1]);
     return record;
 }
 
@@ -129,7 +132,7 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_network(input);
-    struct drying_record record = read_record(input);
+    struct drying_record record = read_record(input, (double)parameters.steps);
 
     struct patch *patches;
     int n_patch;

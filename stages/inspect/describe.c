@@ -92,21 +92,6 @@ static json_t *describe_dataset(const struct artifact *artifact, const json_t *e
 
 // ---- the artifact -------------------------------------------------------------------
 
-static char *read_text(hid_t file, const char *name)
-{
-    const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
-    if (attribute < 0) return NULL;
-    const hid_t type = H5Aget_type(attribute);
-    char *text = NULL;
-    if (H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type)) {
-        text = allocate(H5Tget_size(type) + 1, 1);
-        if (H5Aread(attribute, type, text) < 0) text[0] = 0;
-    }
-    H5Tclose(type);
-    H5Aclose(attribute);
-    return text;
-}
-
 static json_t *lines_of(char *text)
 {
     json_t *lines = json_array();
@@ -115,20 +100,17 @@ static json_t *lines_of(char *text)
     return lines;
 }
 
-// Provenance as it lies in the file: a foreign program need not have written any.
-static void put_provenance(json_t *description, hid_t file)
+static void put_provenance(json_t *description, const struct artifact *artifact)
 {
-    static const char *const names[] = {"program", "parameters", "inputs", "model",
-                                        NULL};
-    for (int k = 0; names[k]; k++) {
-        char *text = read_text(file, names[k]);
+    for (const char *const *name = provenance_names; *name; name++) {
+        char *text = artifact_get_text(artifact, *name);
         json_t *value = NULL;
-        if (text && !strcmp(names[k], "model"))
+        if (text && !strcmp(*name, "model"))
             value = lines_of(text);
         else if (text)
             value = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
         if (text && !value) value = json_string(text);
-        json_object_set_new(description, names[k], value ? value : json_null());
+        json_object_set_new(description, *name, value ? value : json_null());
         free(text);
     }
 }
@@ -152,7 +134,7 @@ json_t *describe_artifact(const struct artifact *artifact)
     json_t *description =
         json_pack("{s:s,s:s,s:I}", "schema", artifact->schema->id, "sha256",
                   artifact->sha256, "bytes", (json_int_t)artifact->image.size);
-    put_provenance(description, artifact->file);
+    put_provenance(description, artifact);
     json_object_set_new(description, "summary", summary_of(artifact));
     json_t *datasets = json_array();
     size_t k;

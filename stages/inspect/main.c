@@ -42,6 +42,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->err_stream = NULL; // one line, getopt's own, is enough
+        return 0;
     case 'd':
         options->data = argument;
         return 0;
@@ -110,7 +113,7 @@ int main(int argc, char **argv)
         .doc = "inspect -- any artifact as JSON: attributes, summary, "
                "and of every dataset name, shape, units, minimum, "
                "maximum and SHA-256"};
-    argp_parse(&argp, argc, argv, 0, NULL, &options);
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options)) exit(STATUS_USAGE);
 
     struct bytes bytes = read_whole(options.input);
     if (is_json(&bytes)) {

@@ -130,12 +130,16 @@ static void write_packing(const struct packing *packing,
                           const struct invocation *invocation,
                           const struct artifact *origin, double touching_gap)
 {
+    const double porosity = packing_porosity(packing);
+    if (!(porosity > -1e6))
+        die(STATUS_BAD_DATA, "the box is too small for its grains: the porosity is %g",
+            porosity);
     double max_overlap, coordination;
     packing_contacts(packing, touching_gap, &max_overlap, &coordination);
 
     struct artifact *artifact = artifact_create("packing");
     artifact_put_packing(artifact, packing);
-    artifact_put_number(artifact, "/summary/porosity", packing_porosity(packing));
+    artifact_put_number(artifact, "/summary/porosity", porosity);
     artifact_put_number(artifact, "/summary/max_overlap", max_overlap);
     artifact_put_number(artifact, "/summary/coordination", coordination);
     artifact_put_number(artifact, "/summary/unbalanced_ratio", 0);

@@ -24,27 +24,19 @@ static enum status check_packing(const struct packing *packing, struct reason *r
     return STATUS_OK;
 }
 
-static enum status check_all_used(const struct generators *generators,
-                                  const struct triangulation *triangulation, bool power,
-                                  int *hidden, struct reason *reason)
+// Grains inside a larger one, which have no cell in a power diagram.
+static int count_hidden(const struct generators *generators,
+                        const struct triangulation *triangulation)
 {
     bool *used = NEW_ARRAY(bool, generators->n);
     for (int c = 0; c < triangulation->n_cell; c++)
         for (int k = 0; k < 4; k++)
             used[triangulation->vertex[c][k]] = true;
-    int missing = -1;
-    *hidden = 0;
-    for (int i = generators->n_particle - 1; i >= 0; i--)
-        if (!used[i]) {
-            missing = i;
-            ++*hidden;
-        }
+    int hidden = 0;
+    for (int i = 0; i < generators->n_particle; i++)
+        hidden += !used[i];
     free(used);
-    if (missing >= 0 && !power)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "/particles/position: row %d: another grain has the same centre",
-                      missing);
-    return STATUS_OK;
+    return hidden;
 }
 
 // Reflects ever deeper layers until the cells of all grains lie inside the box: then
@@ -110,10 +102,8 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     if (!status)
         status = triangulate_in_box(packing, how->power, &generators, &triangulation,
                                     &nodes, reason);
-    if (!status)
-        status = check_all_used(&generators, &triangulation, how->power,
-                                &report->hidden, reason);
     if (!status) {
+        report->hidden = count_hidden(&generators, &triangulation);
         double *radius = NEW_ARRAY(double, packing->n_particle);
         for (int i = 0; i < packing->n_particle; i++)
             radius[i] = packing->radius[i] / generators.unit;

@@ -44,6 +44,38 @@ static enum status check_inside(const struct generators *generators,
     return STATUS_OK;
 }
 
+static int compare_places(const void *a, const void *b, void *positions)
+{
+    const int32_t i = *(const int32_t *)a, j = *(const int32_t *)b;
+    const struct vector *at = positions;
+    for (int axis = 0; axis < 3; axis++) {
+        const double x = component(at[i], axis), y = component(at[j], axis);
+        if (x != y) return x < y ? -1 : 1;
+    }
+    return (i > j) - (i < j);
+}
+
+// Of two grains in one place only one would get a cell, whichever came first.
+static enum status check_distinct(const struct generators *generators,
+                                  struct reason *reason)
+{
+    const struct vector *at = generators->position;
+    const int n = generators->n_particle;
+    int32_t *order = NEW_ARRAY(int32_t, n);
+    for (int i = 0; i < n; i++)
+        order[i] = i;
+    qsort_r(order, (size_t)n, sizeof *order, compare_places, generators->position);
+    enum status status = STATUS_OK;
+    for (int k = 1; k < n && !status; k++)
+        if (norm(subtract(at[order[k]], at[order[k - 1]])) == 0)
+            status =
+                refuse(reason, STATUS_BAD_DATA,
+                       "/particles/position: row %d: has the same centre as row %d",
+                       order[k], order[k - 1]);
+    free(order);
+    return status;
+}
+
 static void add_image(struct generators *generators, int i, int wall)
 {
     const int axis = wall / 2;
@@ -83,7 +115,8 @@ enum status mirror_grains(const struct packing *packing, double reach, bool powe
         generators->particle[i] = i;
         generators->wall[i] = -1;
     }
-    const enum status status = check_inside(generators, reason);
+    enum status status = check_inside(generators, reason);
+    if (!status) status = check_distinct(generators, reason);
     for (int i = 0; i < n && !status; i++)
         for (int wall = 0; wall < WALL_COUNT; wall++)
             if (depth(generators, i, wall) <= reach) add_image(generators, i, wall);

@@ -41,6 +41,11 @@ void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
 // A number from an attribute, "/summary/porosity".
 double artifact_get_number(const struct artifact *artifact, const char *name);
 
+// A text attribute of the whole artifact, or NULL when there is none: a foreign program
+// need not have written the provenance. The caller frees it.
+char *artifact_get_text(const struct artifact *artifact, const char *name);
+extern const char *const provenance_names[]; // ends with NULL
+
 // Everything a packing or network artifact holds (also drying, forces, response, which
 // carry one along).
 struct packing artifact_get_packing(const struct artifact *artifact);

@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Squares of what is larger would overflow, and so would distances.
+static const double largest_size = 1e150;
+
 enum { MOST_SYMBOLS = 16, MOST_RANK = 3, BLOCK_VALUES = 1 << 16 };
 
 // Extents that symbols stand for: n_particle = 250.
@@ -166,12 +169,14 @@ static enum status check_range(const struct subject *subject, const double *bloc
     static const struct {
         const char *rule, *sign;
     } rules[] = {{"minimum", ">="}, {"maximum", "<="}, {"above", ">"}, {"below", "<"}};
-    for (hsize_t k = 0; k < count; k++)
-        if (!isfinite(block[k]))
-            return refuse(reason, STATUS_BAD_DATA,
-                          "%s: row %llu: must be finite, got %g", subject->name,
-                          (unsigned long long)((first + k) / subject->row_values),
-                          block[k]);
+    for (hsize_t k = 0; k < count; k++) {
+        if (fabs(block[k]) <= largest_size) continue;
+        const bool finite = isfinite(block[k]);
+        return refuse(reason, STATUS_BAD_DATA, "%s: row %llu: must be %s, got %g",
+                      subject->name,
+                      (unsigned long long)((first + k) / subject->row_values),
+                      finite ? "at most 1e150 in size" : "finite", block[k]);
+    }
     for (int r = 0; r < 4; r++) {
         double limit;
         if (!bound(subject->rules, rules[r].rule, symbols, &limit)) continue;

@@ -5,9 +5,16 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 
+#include <errno.h>
 #include <hdf5_hl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+const char *const provenance_names[] = {"program", "parameters", "inputs", "model",
+                                        NULL};
 
 static hid_t open_image(const char *path, const struct bytes *image)
 {
@@ -27,37 +34,86 @@ static hid_t open_image(const char *path, const struct bytes *image)
     return file;
 }
 
-static bool read_text_attribute(hid_t file, const char *name, char text[128])
+char *artifact_get_text(const struct artifact *artifact, const char *name)
 {
-    const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
-    if (attribute < 0) return false;
-    const hid_t type = H5Aget_type(attribute);
-    const hid_t space = H5Aget_space(attribute);
-    const size_t size = H5Tget_size(type);
-    memset(text, 0, 128);
-    const bool read = H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type) &&
-                      H5Sget_simple_extent_npoints(space) == 1 && size < 128 &&
-                      H5Aread(attribute, type, text) >= 0;
+    const hid_t attribute = H5Aopen(artifact->file, name, H5P_DEFAULT);
+    if (attribute < 0) return NULL;
+    const hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    const bool one =
+        H5Tget_class(type) == H5T_STRING && H5Sget_simple_extent_npoints(space) == 1;
+    char *text = NULL;
+    if (one && H5Tis_variable_str(type) > 0) { // as h5py writes
+        char *variable = NULL;
+        if (H5Aread(attribute, type, &variable) >= 0 && variable)
+            text = duplicate(variable, strlen(variable) + 1, 1);
+        H5free_memory(variable);
+    } else if (one && H5Tget_size(type) <= artifact->image.size) {
+        text = allocate(H5Tget_size(type) + 1, 1);
+        if (H5Aread(attribute, type, text) < 0) text[0] = 0;
+    }
     H5Sclose(space);
     H5Tclose(type);
     H5Aclose(attribute);
-    return read;
+    return text;
 }
 
-static struct schema *schema_of(hid_t file, const char *path, const char *name)
+static struct schema *schema_of(const struct artifact *artifact, const char *name)
 {
-    char id[128];
-    if (!read_text_attribute(file, "schema", id))
+    const char *path = input_name(artifact->path);
+    char *id = artifact_get_text(artifact, "schema");
+    if (!id)
         die(STATUS_BAD_DATA, "%s: is not an artifact: it has no schema attribute",
-            input_name(path));
+            path);
     struct schema *schema = schema_find(id);
     if (!schema || strcmp(schema->id, id))
-        die(STATUS_BAD_DATA, "%s: schema %s is unknown%s%s", input_name(path), id,
+        die(STATUS_BAD_DATA, "%s: schema %s is unknown%s%s", path, id,
             schema ? "; this program knows " : "", schema ? schema->id : "");
     if (name && strcmp(schema->name, name))
-        die(STATUS_BAD_DATA, "%s: must be a %s, is a %s", input_name(path), name,
-            schema->name);
+        die(STATUS_BAD_DATA, "%s: must be a %s, is a %s", path, name, schema->name);
+    free(id);
     return schema;
+}
+
+static void open_unchecked(struct artifact *artifact, const char *name)
+{
+    artifact->file = open_image(artifact->path, &artifact->image);
+    artifact->schema = schema_of(artifact, name);
+}
+
+// Reads all that anyone may read later.
+static void check(const struct artifact *artifact)
+{
+    struct reason reason;
+    const enum status status =
+        check_file(artifact->file, artifact->schema, artifact->image.size, &reason);
+    if (status) die(status, "%s: %s", input_name(artifact->path), reason.text);
+    for (int k = 0; provenance_names[k]; k++)
+        free(artifact_get_text(artifact, provenance_names[k]));
+}
+
+// The HDF5 library may crash on a damaged file, so a child looks at it first and dies
+// in our place. What it could read we can: the bytes are the same.
+static void check_apart(struct artifact *artifact, const char *name)
+{
+    const pid_t child = fork();
+    if (child <= 0) {
+        open_unchecked(artifact, name);
+        check(artifact);
+        if (child == 0) _exit(STATUS_OK);
+        H5Fclose(artifact->file); // no child could be had: we looked ourselves
+        schema_free(artifact->schema);
+        return;
+    }
+    int end;
+    while (waitpid(child, &end, 0) < 0 && errno == EINTR)
+        continue;
+    if (WIFEXITED(end) && WEXITSTATUS(end)) exit(WEXITSTATUS(end)); // it said why
+    if (!WIFSIGNALED(end)) return;
+    const int signal = WTERMSIG(end);
+    if (signal != SIGSEGV && signal != SIGBUS && signal != SIGFPE && signal != SIGABRT)
+        raise(signal); // not its fault: interrupted
+    die(STATUS_BAD_DATA, "%s: is a damaged HDF5 file: the HDF5 library fails on it: %s",
+        input_name(artifact->path), strsignal(signal));
 }
 
 struct artifact *artifact_open(const char *path, const char *name)
@@ -71,14 +127,9 @@ struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
     struct artifact *artifact = NEW_ARRAY(struct artifact, 1);
     artifact->path = path;
     artifact->image = bytes;
-    artifact->file = open_image(path, &artifact->image);
-    artifact->schema = schema_of(artifact->file, path, name);
+    check_apart(artifact, name);
+    open_unchecked(artifact, name);
     sha256(artifact->image.data, artifact->image.size, artifact->sha256);
-
-    struct reason reason;
-    const enum status status =
-        check_file(artifact->file, artifact->schema, artifact->image.size, &reason);
-    if (status) die(status, "%s: %s", input_name(path), reason.text);
     return artifact;
 }
 

@@ -2,6 +2,7 @@
 // Artifacts out. Same input, same bytes: no time stamps, and the oldest file layout,
 // set explicitly (HDF5 1.10 writes a wrong checksum into images of newer ones).
 #include "artifacts/artifact.h"
+#include "artifacts/check.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 
@@ -303,6 +304,10 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
     done(H5Fflush(artifact->file, H5F_SCOPE_GLOBAL), "flush");
     const ssize_t size = H5Fget_file_image(artifact->file, NULL, 0);
     done((hid_t)size, "image");
+    struct reason reason;
+    if (check_file(artifact->file, artifact->schema, (size_t)size, &reason))
+        die(STATUS_INTERNAL, "would write a %s that breaks its own schema: %s",
+            artifact->schema->name, reason.text);
     artifact->image = (struct bytes){allocate((size_t)size, 1), (size_t)size};
     done((hid_t)H5Fget_file_image(artifact->file, artifact->image.data, (size_t)size),
          "image");

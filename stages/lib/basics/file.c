@@ -101,6 +101,16 @@ static void write_file(const char *path, const void *data, size_t size)
     free(temporary);
 }
 
+// What a link points to is replaced, not the link: /dev/stdout must stay one.
+static char *follow_link(const char *path)
+{
+    struct stat information;
+    const bool link = !lstat(path, &information) && S_ISLNK(information.st_mode);
+    char *target = link ? realpath(path, NULL) : strdup(path);
+    if (!target) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    return target;
+}
+
 void write_whole(const char *path, const void *data, size_t size)
 {
     if (!strcmp(path, "-")) {
@@ -128,8 +138,21 @@ void write_whole(const char *path, const void *data, size_t size)
     sigaddset(&interrupts, SIGHUP);
     sigprocmask(SIG_BLOCK, &interrupts, &before);
     signal(SIGXFSZ, SIG_IGN); // past the file size limit: an error, as on a full disk
-    write_file(path, data, size);
+    char *target = follow_link(path);
+    write_file(target, data, size);
+    free(target);
     sigprocmask(SIG_SETMASK, &before, NULL);
+}
+
+void check_output(const char *path)
+{
+    if (!strcmp(path, "-")) return;
+    char *copy = strdup(path);
+    char *slash = strrchr(copy, '/');
+    if (slash) slash[slash == copy] = 0; // "/x" lies in "/"
+    if (access(slash ? copy : ".", W_OK | X_OK))
+        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    free(copy);
 }
 
 void sha256(const void *data, size_t size, char digest[65])

@@ -19,6 +19,10 @@ struct bytes read_whole(const char *path);
 // what stood at PATH before is then untouched. Interrupts wait until it is done.
 void write_whole(const char *path, const void *data, size_t size);
 
+// Exits 73 at once, before any work, when the folder of PATH is not there or closed to
+// us.
+void check_output(const char *path);
+
 // SHA-256 as 64 hexadecimal digits, as sha256sum prints it.
 void sha256(const void *data, size_t size, char digest[65]);
 

@@ -12,6 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Squares of what is larger would overflow.
+static const double largest_number = 1e150;
+
 // What a pass over a section knows: where it is, and how many problems it has met.
 struct filling {
     const struct parameter *table;
@@ -133,9 +136,12 @@ static void check_bounds(struct filling *filling, const struct parameter *parame
     const size_t count = json_is_array(value) ? json_array_size(value) : 1;
     for (size_t k = 0; k < count; k++) {
         const json_t *entry = json_is_array(value) ? json_array_get(value, k) : value;
-        if (json_is_number(entry) &&
-            !within_bounds(parameter, json_number_value(entry)))
+        if (!json_is_number(entry)) continue;
+        const double number = json_number_value(entry);
+        if (!within_bounds(parameter, number))
             complain(filling, parameter->key, bound_text(parameter, text), value);
+        else if (fabs(number) > largest_number)
+            complain(filling, parameter->key, "at most 1e150 in size", value);
     }
 }
 

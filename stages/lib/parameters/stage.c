@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameters/stage.h"
 
+#include "basics/file.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 
 #include <argp.h>
-#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,6 +91,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     struct command_line *line = state->input;
     struct invocation *invocation = line->invocation;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->err_stream = NULL; // one line, getopt's own, is enough
+        return 0;
     case 'p':
         line->params = argument;
         return 0;
@@ -152,11 +155,11 @@ static char *help_filter(int key, const char *text, void *input)
 
 static json_t *load_json(const char *path)
 {
-    FILE *file = fopen(path, "r");
-    if (!file) die(STATUS_NO_INPUT, "%s: %s", path, strerror(errno));
+    struct bytes bytes = read_whole(path);
     json_error_t error;
-    json_t *json = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
-    fclose(file);
+    json_t *json = json_loadb((const char *)bytes.data, bytes.size,
+                              JSON_REJECT_DUPLICATES, &error);
+    free(bytes.data);
     if (!json)
         die(STATUS_BAD_DATA, "%s: line %d, column %d: %s", path, error.line,
             error.column, error.text);
@@ -228,7 +231,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               .args_doc = stage->most_inputs ? "[INPUT...]" : "",
                               .doc = stage->summary,
                               .help_filter = help_filter};
-    argp_parse(&argp, argc, argv, 0, NULL, &line);
+    if (argp_parse(&argp, argc, argv, 0, NULL, &line)) exit(STATUS_USAGE);
     fill(&line, parameters);
     free(line.set);
     if (line.print_parameters) {
@@ -239,6 +242,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
     if (!strcmp(invocation.output, "-") && isatty(STDOUT_FILENO))
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");
+    check_output(invocation.output);
     if (stage->reads && !invocation.n_input) add_input(&line, "-");
     return invocation;
 }
