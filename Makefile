@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The one entry point. `make help` lists what it can do.
+
+mode := $(firstword -$(MAKEFLAGS))
+really := $(if $(findstring n,$(mode))$(findstring q,$(mode)),,yes)# not -n, not -q
+MAKEFLAGS += --no-builtin-rules --no-builtin-variables --warn-undefined-variables
+SHELL := /bin/bash
+.SHELLFLAGS := -o pipefail -euc
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.DEFAULT_GOAL := all
+MAKECMDGOALS ?=
+
+# Every core, unless -j on the command line or the make above says otherwise.
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(shell nproc)
+endif
+
+# --- settings -------------------------------------------------------------------------
+# Each may be set on the command line or in the environment.
+
+V ?= 0# V=1 shows the commands
+BUILD ?= build
+PREFIX ?= /usr/local
+DESTDIR ?=
+default = $(if $(filter default undefined,$(origin $1)),$2,$($1))# make has its own CC
+CC := $(call default,CC,gcc)
+CXX := $(call default,CXX,g++)
+AR := $(call default,AR,ar)
+SANITIZE ?=# 1 builds with the address and undefined-behaviour sanitizers
+ARCH ?= $(if $(filter x86_64,$(shell uname -m)),-march=x86-64-v3)
+OPTIMISE ?= $(if $(SANITIZE),-O1 -fno-omit-frame-pointer,-O3)
+EXTRA_CFLAGS ?=
+
+, := ,
+sanitizers := -fsanitize=address$(,)undefined -fno-sanitize-recover=undefined
+# -ffp-contract=off: the same digits whether or not the machine fuses multiply and add.
+both_languages = $(OPTIMISE) $(ARCH) -ffp-contract=off -fopenmp -g -Wall -Wextra -Wshadow \
+	$(if $(SANITIZE),$(sanitizers)) -MMD -MP $(EXTRA_CFLAGS)
+CFLAGS = -std=c17 -D_GNU_SOURCE $(both_languages) \
+	-Wconversion -Wstrict-prototypes -Wmissing-prototypes
+# CGAL's filtered predicates change the rounding mode: -frounding-math is not optional.
+CXXFLAGS = -std=c++17 -frounding-math $(both_languages)
+LDFLAGS = -fopenmp -Wl,--as-needed $(if $(SANITIZE),$(sanitizers))
+
+# Asked for at the first use, not while parsing: `make deps all` starts without pkg-config.
+once = $(eval $1 := $(shell $2))$($1)
+HDF5_CPPFLAGS = $(call once,HDF5_CPPFLAGS,pkg-config --cflags hdf5-serial 2>/dev/null \
+	|| pkg-config --cflags hdf5 2>/dev/null || echo -I/usr/include/hdf5/serial)
+HDF5_LIBS = $(call once,HDF5_LIBS,pkg-config --libs-only-L hdf5-serial 2>/dev/null \
+	|| pkg-config --libs-only-L hdf5 2>/dev/null \
+	|| echo -L/usr/lib/$$($(CC) -print-multiarch)/hdf5/serial)
+CPPFLAGS = -Istages/lib $(HDF5_CPPFLAGS) -I/usr/include/suitesparse
+LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig -lgsl -lgslcblas -ljansson \
+	-lcrypto -lm
+
+PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
+	libjansson-dev libssl-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
+	libcmocka-dev perl python3-h5py python3-vtk9 hdf5-tools
+
+# --- `make deps demo`: first things first ---------------------------------------------
+# What is stale is decided while parsing, with jq and the compiler at hand. So when `deps` or
+# `clean` comes with other goals, they wait for it and go to a make that starts after it.
+
+first_goals := $(filter clean deps,$(MAKECMDGOALS))
+other_goals := $(filter-out $(first_goals),$(MAKECMDGOALS))
+ifneq ($(and $(first_goals),$(other_goals)),)
+
+.PHONY: $(other_goals) others
+$(other_goals): others ;
+others: $(first_goals)
+	@+$(MAKE) --no-print-directory $(other_goals)
+
+else
+
+# --- sources and what becomes of them -------------------------------------------------
+
+STAGES := $(filter-out lib,$(patsubst stages/%/main.c,%,$(wildcard stages/*/main.c)))
+PROGRAMS := $(STAGES:%=$(BUILD)/bin/%)
+export BIN := $(abspath $(BUILD)/bin)# where tests and pictures find the programs
+LIBRARY := $(BUILD)/libcraquelure.a
+CORES := $(BUILD)/libstages.a# all stages without their mains, for the tests
+
+object = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$(basename $1)))
+library_objects := $(call object,$(wildcard stages/lib/*/*.c stages/lib/*/*.S))
+core_sources := $(filter-out %/main.c stages/lib/%,$(wildcard stages/*/*.c))
+
+# A test is a C program; support_*.c beside it is linked into each.
+tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
+support_for = $(call object,$(wildcard tests/$1/support_*.c))
+test_programs = $(patsubst tests/%.c,$(BUILD)/tests/%,$(call tests_in,$1))
+C_TESTS := $(foreach d,unit physics,$(call test_programs,$d))
+BENCHES := $(call test_programs,bench)
+SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t))
+
+quiet = $(if $(filter 0yes,$(V)$(really)),@printf '  %-5s %s\n' '$1' '$2' && ,)
+
+.PHONY: all
+all: $(PROGRAMS) ## build every program (the default)
+
+# --- compile --------------------------------------------------------------------------
+
+version_of = $(strip $(if $(wildcard stages/$1/version),$(file <stages/$1/version),1))
+VERSION := $(file <VERSION)
+
+# Two notes, rewritten only when they differ from what is on disk: other flags recompile
+# everything, an added or removed source relinks.
+flags := $(strip $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(VERSION))
+sources := $(sort $(wildcard stages/*/*.c stages/*/*.cpp stages/lib/*/*.[cS] \
+	tests/*/support_*.c))
+define note
+$(BUILD)/$1: $(if $(findstring |$($1)|,|$(file <$(BUILD)/$1)|),,FORCE)
+	@mkdir -p $$(@D) && printf '%s\n' '$($1)' >$$@
+endef
+$(foreach n,flags sources,$(eval $(call note,$n)))
+
+$(BUILD)/obj/%.o: %.c $(BUILD)/flags
+	$(call quiet,CC,$<)mkdir -p $(@D) && $(CC) $(CPPFLAGS) $(own_flags) $(CFLAGS) -c $< -o $@
+$(BUILD)/obj/%.o: %.cpp $(BUILD)/flags
+	$(call quiet,CXX,$<)mkdir -p $(@D) && $(CXX) $(CPPFLAGS) $(own_flags) $(CXXFLAGS) -c $< -o $@
+$(BUILD)/obj/%.o: %.S $(BUILD)/flags
+	$(call quiet,AS,$<)mkdir -p $(@D) && $(CC) -Wa,-I. $(CPPFLAGS) -MMD -MP -c $< -o $@
+
+own_flags =
+$(BUILD)/obj/stages/lib/%.o: own_flags = -DCRAQUELURE_VERSION='"$(VERSION)"'
+$(BUILD)/obj/tests/%.o: own_flags = -Istages
+$(call object,stages/lib/artifacts/schemas.S): $(wildcard schemas/*.json)
+
+# A stage: its objects, with its version compiled in, and its program.
+define stage_rules
+$1_objects := $(call object,$(wildcard stages/$1/*.c stages/$1/*.cpp))
+$(BUILD)/obj/stages/$1/%.o: own_flags = \
+	-DSTAGE_VERSION=$(call version_of,$1) -DCRAQUELURE_VERSION='"$(VERSION)"'
+$$($1_objects): $(wildcard stages/$1/version)
+$(BUILD)/bin/$1: $$($1_objects) $(LIBRARY) $(BUILD)/sources
+	$$(call quiet,LINK,$1)mkdir -p $$(@D) \
+	&& $(if $(wildcard stages/$1/*.cpp),$(CXX),$(CC)) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) \
+		$(if $(wildcard stages/$1/*.cpp),-lmpfr -lgmp) -o $$@
+endef
+$(foreach stage,$(STAGES),$(eval $(call stage_rules,$(stage))))
+
+# Removed first: `ar` would keep members whose source is gone. `q`: two stages may use the
+# same file name.
+archive = $(call quiet,AR,$@)rm -f $@ && $(AR) qcsD $@ $(filter %.o,$^)
+$(LIBRARY): $(library_objects) $(BUILD)/sources
+	$(archive)
+$(CORES): $(call object,$(core_sources)) $(BUILD)/sources
+	$(archive)
+
+define test_rules
+$(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call support_for,$1) $(CORES) $(LIBRARY) \
+		$(BUILD)/sources
+	$$(call quiet,LINK,tests/$1/$$*)mkdir -p $$(@D) \
+	&& $(CC) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) -lcmocka -o $$@
+endef
+$(foreach d,unit physics bench,$(eval $(call test_rules,$d)))
+
+.SECONDARY:
+include $(wildcard $(BUILD)/obj/*/*/*.d $(BUILD)/obj/*/*/*/*.d)
+
+# --- pipelines: re-run by content -----------------------------------------------------
+# pipelines/memo decides what is stale from what files hold, never from their times. It is
+# asked while parsing, so that `make -n` and `make -q` tell the truth: an artifact is forced
+# when it, or what it is made from, is stale, and every prerequisite is order-only. It is
+# asked again in the recipe, when all inputs are there: if those came out as they were,
+# nothing runs.
+
+RUNS ?= $(BUILD)/runs
+RUN ?=# a launcher for the stages: RUN='srun -n1'
+THREADS ?=# of each stage
+
+artifacts :=
+pipeline_goals := $(RUNS)/%
+
+# $1 is made from the files $3 by command $4, in which program $5 runs. $2: what else its key
+# holds, in the words of pipelines/memo.
+artifact = $(if $(filter $1,$(artifacts)),,$(eval artifacts += $1)$(eval \
+	recipe/$1 := $2 $(3:%=input=%) output=$1)$(eval inputs/$1 := $3)$(eval \
+	command/$1 := $4)$(eval programs/$1 := $(filter $(PROGRAMS),$5)))
+
+# $1 is made by stage $2, program $3, from scene $4 with overrides $5 and the files $6.
+step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),version=$(call \
+	version_of,$2),program='$3') $(5:%=set='%'),$6,$(RUN) $3 -p $4 $(5:%=--set '%') \
+	$(THREADS:%=--threads %) $6 -o $1,$3)
+
+include $(wildcard pipelines/*.mk)
+
+ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
+$(shell mkdir -p $(BUILD))# a file, for there may be more recipes than a command line holds
+$(file >$(BUILD)/recipes,$(foreach a,$(artifacts),$(recipe/$a)))
+stale := $(shell pipelines/memo check $(BUILD)/recipes)
+ifneq ($(.SHELLSTATUS),0)
+$(error pipelines/memo could not tell what is stale)
+endif
+
+define artifact_rule
+$1: $(if $(filter $1,$(stale)),FORCE) | $(inputs/$1) $(programs/$1)
+	$(if $(filter 0,$(V)),@)pipelines/memo run $(recipe/$1) -- $(command/$1)
+endef
+$(foreach a,$(artifacts),$(eval $(call artifact_rule,$a)))
+endif
+
+# --- install --------------------------------------------------------------------------
+
+MAN := $(BUILD)/man/craquelure.1 $(STAGES:%=$(BUILD)/man/craquelure-%.1)
+COMPLETION := $(BUILD)/completion/craquelure
+FRONT := $(BUILD)/front/craquelure
+
+$(BUILD)/front/craquelure: tools/craquelure VERSION
+	@mkdir -p $(@D) && sed 's/@VERSION@/$(VERSION)/' $< >$@ && chmod +x $@
+# The front command finds its stages beside it, as it will when installed.
+$(BUILD)/man/craquelure.1: $(FRONT) tools/man-page $(PROGRAMS)
+	@mkdir -p $(@D) $(BUILD)/libexec && ln -sfn ../bin $(BUILD)/libexec/craquelure \
+		&& tools/man-page '' $(VERSION) $< >$@
+$(BUILD)/man/craquelure-%.1: $(BUILD)/bin/% tools/man-page VERSION
+	$(call quiet,MAN,$*)mkdir -p $(@D) && tools/man-page $* $(VERSION) $< >$@
+$(COMPLETION): tools/completion $(PROGRAMS)
+	@mkdir -p $(@D) && tools/completion $(PROGRAMS) >$@
+
+# Under DESTDIR: the file to put there, where, and with what mode.
+installed := $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
+	$(FRONT):bin/craquelure:755 $(foreach m,$(MAN),$m:share/man/man1/$(notdir $m):644) \
+	$(COMPLETION):share/bash-completion/completions/craquelure:644
+
+.PHONY: install uninstall
+install: all $(FRONT) $(MAN) $(COMPLETION) ## install under PREFIX (and DESTDIR)
+	@for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
+		install -D -m $$mode $$from '$(DESTDIR)$(PREFIX)'/$$to; done
+uninstall: ## remove what install put there
+	@for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
+		rm -f '$(DESTDIR)$(PREFIX)'/$$to; done
+	@if [[ -d '$(DESTDIR)$(PREFIX)'/libexec/craquelure ]]; then \
+		rmdir '$(DESTDIR)$(PREFIX)'/libexec/craquelure; fi
+
+# --- check ----------------------------------------------------------------------------
+
+.PHONY: check hard bench sanitize check-c
+check: all $(C_TESTS) ## run all tests
+	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
+check-c: $(C_TESTS) ## run the tests written in C only
+	@tests/run $(C_TESTS)
+sanitized := BUILD=$(BUILD)/sanitize SANITIZE=1 \
+	LSAN_OPTIONS=suppressions=tests/leaks.supp:print_suppressions=0
+small_scene := $(BUILD)/sanitize/small.json
+sanitize: ## the tests in C and a small run under address and undefined-behaviour sanitizers
+	@+$(MAKE) --no-print-directory $(sanitized) check-c
+	@rm -rf $(BUILD)/sanitize/runs
+	@jq '.pack.counts = [3, 3, 4]' samples/stiff-5x5x10.json \
+		| jq '.["force-protocol"].steps = 20 | .["dem-replay"].cycles = 50' >$(small_scene)
+	@+$(MAKE) --no-print-directory $(sanitized) SCENE=$(small_scene) run
+hard: all ## run the hard cases and print a table
+	@tests/hard/run
+bench: all $(BENCHES) ## measure speeds, as ratios within one run
+	@for bench in $(BENCHES); do $$bench; done
+
+# --- house ----------------------------------------------------------------------------
+
+C_SOURCES := $(wildcard stages/*/*.[ch] stages/*/*.cpp stages/lib/*/*.[ch] tests/*/*.[ch])
+
+.PHONY: format tidy help
+format: ## format the C and C++ sources
+	clang-format -i $(C_SOURCES)
+tidy: ## look for mistakes with clang-tidy
+	clang-tidy --quiet $(filter stages/%.c,$(C_SOURCES)) -- \
+		$(CPPFLAGS) -std=c17 -D_GNU_SOURCE -fopenmp \
+		-DSTAGE_VERSION=1 -DCRAQUELURE_VERSION='"$(VERSION)"'
+print-%: ## show a make variable: make print-CFLAGS
+	@echo '$($*)'
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z%-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+endif
+
+.PHONY: clean
+clean: ## remove everything made
+	rm -rf $(BUILD)
+
+# --- tools and libraries --------------------------------------------------------------
+# Does and prints nothing when nothing is missing.
+
+.PHONY: deps FORCE
+deps: ## install what is missing (Debian; as root or through sudo)
+	@missing=; for package in $(PACKAGES); do \
+		[[ $$(dpkg-query -W -f '$${Status}' $$package 2>/dev/null) == *' installed' ]] \
+			|| missing+=" $$package"; done; \
+	[[ -z $$missing ]] && exit; \
+	as_root=; (( EUID )) && as_root=sudo; \
+	$$as_root apt-get update; \
+	$$as_root env DEBIAN_FRONTEND=noninteractive \
+		apt-get install -y --no-install-recommends $$missing

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# From a scene to its cracks:
+#
+#     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
+#     make demo                        ->  the sample in both drying limits, and its picture
+
+SCENE ?=
+IMPORT ?=# what `pack` reads, for a scene that imports its grains
+
+# Each stage may be replaced: DRY=mydry. It is asked for its --version to know it by.
+PACK ?= $(BUILD)/bin/pack
+TESSELLATE ?= $(BUILD)/bin/tessellate
+MERGE_NODES ?= $(BUILD)/bin/merge-nodes
+DRY ?= $(BUILD)/bin/dry
+FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
+DEM_REPLAY ?= $(BUILD)/bin/dem-replay
+CRACKSTATS ?= $(BUILD)/bin/crackstats
+
+pipeline_goals += demo run
+
+# packing, tessellation and network of scene $2 in folder $1.
+define crack_network
+$(call step,$1/packing.h5,pack,$(PACK),$2,,$(IMPORT))
+$(call step,$1/tessellation.h5,tessellate,$(TESSELLATE),$2,,$1/packing.h5)
+$(call step,$1/network.h5,merge-nodes,$(MERGE_NODES),$2,,$1/tessellation.h5)
+endef
+
+# The rest, in folder $1, from network $3, with the overrides $4 of the drying.
+define crack_history
+$(call step,$1/drying.h5,dry,$(DRY),$2,$4,$3)
+$(call step,$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$2,,$1/drying.h5)
+$(call step,$1/response.h5,dem-replay,$(DEM_REPLAY),$2,,$1/forces.h5)
+$(call step,$1/crackstats.json,crackstats,$(CRACKSTATS),$2,,$1/response.h5)
+endef
+
+# --- one scene ------------------------------------------------------------------------
+
+.PHONY: run
+ifneq ($(SCENE),)
+run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
+$(call crack_network,$(run_folder),$(SCENE))
+$(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
+run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
+else
+run:
+	@echo 'Which scene? make run SCENE=samples/x.json' >&2; exit 64
+endif
+
+# --- the demonstration ----------------------------------------------------------------
+
+demo_scene := samples/stiff-5x5x10.json
+demo_folder := $(RUNS)/stiff-5x5x10
+demo_limits := inviscid immobile
+demo_picture := $(if $(wildcard pipelines/picture),$(demo_folder)/picture.svg)
+
+.PHONY: demo
+demo: ## from the stiff aggregate of the samples to its cracks and a picture, in both limits
+
+ifneq ($(filter demo $(demo_folder)/%,$(MAKECMDGOALS)),)
+$(call crack_network,$(demo_folder),$(demo_scene))
+$(foreach limit,$(demo_limits),$(call \
+	crack_history,$(demo_folder)/$(limit),$(demo_scene),$(demo_folder)/network.h5,liquid=$(limit)))
+
+demo_words := "\($$limit): \(.cracks.total) of \(.bonds) bonds broke," + \
+	" \(.cracks.normal) in tension, \(.cracks.shear) in shear"
+demo_counts := $(demo_limits:%=$(demo_folder)/%/crackstats.json)
+demo_drawn := $(foreach limit,$(demo_limits),$(addprefix \
+	$(demo_folder)/$(limit)/,drying.h5 forces.h5 response.h5 crackstats.json))
+ifneq ($(demo_picture),)
+$(call artifact,$(demo_picture),stage=picture version=1,$(wildcard \
+	pipelines/picture*) $(demo_drawn),pipelines/picture $(demo_folder) $(demo_picture),$(BUILD)/bin/inspect)
+endif
+
+demo: $(demo_counts) $(demo_picture)
+ifdef really
+	@for limit in $(demo_limits); do \
+		jq -r --arg limit $$limit '$(demo_words)' $(demo_folder)/$$limit/crackstats.json; done
+	@echo 'artifacts: $(demo_folder)'
+	$(if $(demo_picture),@echo 'picture:   $(demo_picture)')
+endif
+endif

@@ -1,0 +1,199 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Make re-runs by content, shown with stages that are small scripts: each notes that it ran,
+# and writes what it was given.
+source tests/interface/make_tap.sh
+
+cp -r Makefile VERSION pipelines "$scratch"
+rm -f "$scratch/pipelines/picture"* # the demo's; not this test's
+cd "$scratch" || exit
+mkdir -p build/bin samples
+unset SCENE RUN THREADS PACK TESSELLATE MERGE_NODES DRY FORCE_PROTOCOL DEM_REPLAY CRACKSTATS
+
+cat >stage <<'END'
+#!/bin/bash
+# The key "unseen" of its section does not show in its output.
+name=${0##*/} sets=() input=
+while (( $# )); do
+    case $1 in
+    --version) echo "$name $(<"$(dirname "$0")/$name.version")"; exit ;;
+    -p) scene=$2; shift ;;
+    --set) sets+=("$2"); shift ;;
+    -o) output=$2; shift ;;
+    *) input=$1 ;;
+    esac
+    shift
+done
+echo "$name" >>ran
+[[ -e fail-$name ]] && exit 3
+[[ -e hang-$name ]] && { echo half >"$output"; touch hangs; sleep 60; }
+{
+    echo "$name ${sets[*]}"
+    jq -cS --arg name "$name" '.[$name] // {}
+        | walk(if type == "object" then del(.comment, .unseen) else . end)' "$scene"
+    cat ${input:+"$input"}
+} >"$output"
+END
+chmod +x stage
+all='pack tessellate merge-nodes dry force-protocol dem-replay crackstats'
+for name in $all; do
+    mkdir -p "stages/$name"
+    cp stage "build/bin/$name"
+    echo 1 >"stages/$name/version"
+done
+
+scene=samples/x.json
+x=build/runs/x
+cat >$scene <<'END'
+{
+  "comment": "a scene",
+  "pack": {"counts": [2, 2], "radius": 1e-7},
+  "dry": {"liquid": "inviscid", "layer": {"comment": "deep", "thickness": 5, "nodes": 3}},
+  "dem-replay": {"stiffness": 1}
+}
+END
+
+# edit JQ-FILTER: changes the scene
+edit() { jq "$1" $scene >edited && mv edited $scene; }
+# ran [MAKE-ARGUMENTS...]: runs the pipeline; says which stages ran
+ran()
+{
+    : >ran
+    make run SCENE=$scene "$@" >said 2>&1 || echo "make: status $?"
+    xargs <ran
+}
+planned() { make -n run SCENE=$scene | sed -n 's/.* stage=\([^ ]*\).*/\1/p' | xargs; }
+settled()
+{
+    is "$1: make -q" 0 "$(make -q run SCENE=$scene >/dev/null 2>&1; echo $?)"
+    is "$1: make -n plans nothing" "make: Nothing to be done for 'run'." \
+        "$(make -n run SCENE=$scene 2>&1)"
+    is "$1: nothing runs again" "" "$(ran)"
+}
+
+is 'make -q before: not made' 1 "$(make -q run SCENE=$scene >/dev/null 2>&1; echo $?)"
+is 'make -n before: all stages' "$all" "$(planned)"
+is 'make -n makes nothing' "" "$(ls build/runs 2>/dev/null)"
+is 'the first run runs all stages' "$all" "$(ran)"
+settled 'after the first run'
+
+touch $scene
+settled 'touched scene'
+touch -d '3 days ago' $x/{crackstats.json,drying.h5}
+touch $x/network.h5
+settled 'touched artifacts'
+touch build/bin/dry Makefile pipelines/memo
+echo '# recompiled' >>build/bin/dry
+settled 'recompiled program'
+
+edit '.comment = "another" | .dry.layer.comment = "not so deep" | .pack.comment = "new"'
+settled 'changed comments'
+edit 'to_entries | reverse | from_entries | .dry |= (to_entries | reverse | from_entries)'
+settled 'other order of keys'
+jq -c . $scene >edited && mv edited $scene
+settled 'other spacing'
+
+edit '.["dem-replay"].stiffness = 2'
+is 'a DEM parameter: make -n' 'dem-replay crackstats' "$(planned)"
+is 'a DEM parameter: make -q' 1 "$(make -q run SCENE=$scene >/dev/null 2>&1; echo $?)"
+is 'a DEM parameter: dem-replay and crackstats' 'dem-replay crackstats' "$(ran)"
+settled 'after a DEM parameter'
+
+edit '.["dem-replay"].stiffness = 2.5'
+touch -d tomorrow $x/{response.h5,crackstats.json}
+is 'nor does a clock that runs ahead matter' 'dem-replay crackstats' "$(ran)"
+
+before=$(stat -c %y $x/drying.h5)
+edit '.dry.unseen = 7'
+is 'a result that comes out the same stops there' dry "$(ran)"
+is 'and is left as it was' "$before" "$(stat -c %y $x/drying.h5)"
+settled 'after the same result'
+
+echo 2 >stages/dry/version
+is 'a new stage version' 'dry' "$(ran)"
+settled 'after a new stage version'
+
+rm $x/tessellation.h5
+is 'a removed artifact is made again; the same bytes stop there' tessellate "$(ran)"
+settled 'after a removed artifact'
+echo spoilt >>$x/forces.h5
+is 'a spoilt artifact is made again' force-protocol "$(ran)"
+settled 'after a spoilt artifact'
+rm $x/network.h5.key
+is 'a lost key' merge-nodes "$(ran)"
+settled 'after a lost key'
+rm -r $x
+is 'a removed run' "$all" "$(ran)"
+
+touch fail-dem-replay
+edit '.["dem-replay"].stiffness = 3'
+was=$(sha256sum $x/response.h5)
+is 'a stage that fails stops make' $'make: status 2\ndem-replay' "$(ran)"
+is 'and leaves the earlier output' "$was" "$(sha256sum $x/response.h5)"
+is 'make -q then: not made' 1 "$(make -q run SCENE=$scene >/dev/null 2>&1; echo $?)"
+rm fail-dem-replay
+is 'and runs once it can' 'dem-replay crackstats' "$(ran)"
+settled 'after a failure'
+
+touch hang-dry
+rm -f hangs
+edit '.dry.liquid = "immobile"'
+setsid make run SCENE=$scene >said 2>&1 &
+leader=$!
+disown # its death is not news
+for (( i = 0; i < 300; i++ )); do [[ -e hangs ]] && break; sleep 0.1; done
+kill -9 -- -$leader
+rm hang-dry
+is 'after kill -9 make goes on from where it was' \
+    'dry force-protocol dem-replay crackstats' "$(ran)"
+settled 'after kill -9'
+is 'and nothing is left over' "" "$(find $x -name '.*')"
+
+cp stage mydry
+echo 1 >mydry.version
+is 'a stage swapped for the own program' \
+    'mydry force-protocol dem-replay crackstats' "$(ran DRY=./mydry)"
+is 'is known by its --version' "" "$(ran DRY=./mydry)"
+echo '# changed' >>mydry
+is 'not by its bytes' "" "$(ran DRY=./mydry)"
+echo 2 >mydry.version
+is 'and runs again when that changes' 'mydry' "$(ran DRY=./mydry)"
+is 'and back' 'dry force-protocol dem-replay crackstats' "$(ran)"
+
+cat >launch <<'END'
+#!/bin/bash
+echo launch >>ran
+exec "$@"
+END
+chmod +x launch
+edit '.crackstats.slices = 3'
+is 'RUN= prefixes the stages' 'launch crackstats' "$(ran RUN=./launch)"
+settled 'RUN= is not part of the result'
+
+is 'make run without a scene' 64 \
+    "$(make run SCENE= 2>&1 | grep -o 'Error .*' | cut -d' ' -f2)"
+
+# More recipes than a command line holds.
+cat >pipelines/many.mk <<'END'
+ifeq ($(MAKECMDGOALS),many)
+long := $(shell printf %01000d)
+$(foreach n,$(shell seq 200),$(call step,$(RUNS)/many/$n.h5,pack,$(PACK),$(SCENE),counts=$(long)$n,))
+endif
+pipeline_goals += many
+many: $(artifacts)
+END
+make many SCENE=$scene >said 2>&1
+is 'many artifacts: all made' 200 "$(find build/runs/many -name '*.h5' | wc -l)"
+is 'many artifacts: all current' 0 "$(make -q many SCENE=$scene; echo $?)"
+rm build/runs/many/77.h5
+is 'many artifacts: one is not' "$(printf '  RUN   %s' build/runs/many/77.h5)" \
+    "$(make many SCENE=$scene)"
+
+cp $scene samples/stiff-5x5x10.json
+plan=$(make -n demo)
+is 'make demo: one network' 'merge-nodes pack tessellate' \
+    "$(sed -n 's/.* stage=\([^ ]*\).*/\1/p' <<<"$plan" | sort | uniq -u | xargs)"
+is 'make demo: two limits' 'immobile inviscid' \
+    "$(grep -o -- '--set .liquid=[a-z]*' <<<"$plan" | cut -d= -f2 | sort | xargs)"
+
+finish
