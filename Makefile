@@ -235,8 +235,9 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 .PHONY: check hard bench sanitize check-c
-check: all $(C_TESTS) ## run all tests
+check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
+	@tests/hard/run
 check-c: $(C_TESTS) ## run the tests written in C only
 	@tests/run $(C_TESTS)
 sanitized := BUILD=$(BUILD)/sanitize SANITIZE=1 \

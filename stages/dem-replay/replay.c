@@ -51,7 +51,10 @@ static enum status begin(struct run *run, struct reason *reason)
     free(fixed);
     if (status) return status;
     run->response->time_step = dem_time_step(run->dem);
-    run->response->time_step_limit = dem_time_step_limit(run->dem);
+    // Where nothing can touch no step is too long: then what [K 4.47] says is written.
+    const double limit = dem_time_step_limit(run->dem);
+    run->response->time_step_limit =
+        isinf(limit) ? run->response->time_step / settings->time_step_safety : limit;
     return STATUS_OK;
 }
 

@@ -82,8 +82,8 @@ enum status check_throats(const struct network *network, struct reason *reason)
         if (!(radius > 0) || !isfinite(radius))
             return refuse(
                 reason, STATUS_BAD_DATA,
-                "/throats/radius: row %d: must be above 0, is %g (merge-nodes "
-                "removes closed throats)",
+                "/throats/radius: row %d: must be above 0, is %g (grains that overlap "
+                "close it)",
                 t, radius);
         if (network->throat_nodes[t][0] == network->throat_nodes[t][1])
             return refuse(reason, STATUS_BAD_DATA,

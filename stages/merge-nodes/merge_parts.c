@@ -76,6 +76,34 @@ static void append(struct throat_row *row, int throat)
     row->throat[row->count++] = throat;
 }
 
+void merging_remove(struct merging *merging, int throat)
+{
+    merging->gone[throat] = true;
+    merging->removed++;
+}
+
+static void fuse(struct merging *merging, int kept, int removed)
+{
+    double *radius = merging->network->throat_radius;
+    radius[kept] = fmax(radius[kept], radius[removed]);
+    merging_remove(merging, removed);
+}
+
+// A tessellation unites nodes on walls, and so may bring throats that are parallel.
+static void fuse_parallel(struct merging *merging)
+{
+    for (int t = 0; t < merging->network->n_throat; t++) {
+        const int32_t *ends = merging->network->throat_nodes[t];
+        const struct throat_row *row = &merging->row[ends[0]];
+        for (int k = 0; k < row->count && !merging->gone[t]; k++) {
+            const int other = row->throat[k];
+            if (other > t && !merging->gone[other] &&
+                other_end(merging, other, ends[0]) == ends[1])
+                fuse(merging, t, other);
+        }
+    }
+}
+
 struct merging merging_begin(struct network *network)
 {
     const size_t n_node = (size_t)network->n_node;
@@ -97,13 +125,8 @@ struct merging merging_begin(struct network *network)
         append(&merging.row[network->throat_nodes[t][1]], t);
         push(&merging, (struct queued){network->throat_length[t], t, 0});
     }
+    fuse_parallel(&merging);
     return merging;
-}
-
-void merging_remove(struct merging *merging, int throat)
-{
-    merging->gone[throat] = true;
-    merging->removed++;
 }
 
 static void measure_again(struct merging *merging, int root, int throat)
@@ -132,13 +155,6 @@ static int parallel_to(struct merging *merging, const struct throat_row *row, in
         if (row->throat[k] != throat && other_end(merging, row->throat[k], root) == end)
             return row->throat[k];
     return -1;
-}
-
-static void fuse(struct merging *merging, int kept, int removed)
-{
-    double *radius = merging->network->throat_radius;
-    radius[kept] = fmax(radius[kept], radius[removed]);
-    merging_remove(merging, removed);
 }
 
 void merging_move_throats(struct merging *merging, int root, int other, bool moved)

@@ -65,7 +65,7 @@ enum status import_text(const struct bytes *text, struct packing *packing,
     int capacity = 0, number = 0;
     char *rest = copy;
     for (char *line; !status && (line = strsep(&rest, "\n"));) {
-        double grain[4];
+        double grain[4] = {0};
         const int count = read_numbers(line, grain);
         number++;
         if (count == 0) continue;

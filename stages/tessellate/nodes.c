@@ -11,6 +11,9 @@
 // coincide: a thousand times the grid the generators are rounded to, mean diameters.
 static const double coincide = 1e-9;
 
+// Determinants below this, of the product of the edges, lose digits that matter.
+static const double flat = 1e-3;
+
 // The point of equal power to the four corners: 2 (x_k - x_0).c = |x_k - x_0|^2 - w_k +
 // w_0 for c relative to corner 0, so that no large numbers are subtracted.
 static struct vector power_centre(const struct generators *generators,
@@ -27,6 +30,8 @@ static struct vector power_centre(const struct generators *generators,
     const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
                                      cross(row[0], row[1])};
     const double determinant = dot(row[0], across[0]);
+    if (fabs(determinant) < flat * norm(row[0]) * norm(row[1]) * norm(row[2]))
+        return exact_power_centre(generators->position, generators->weight, corner);
     struct vector centre = {0};
     // The second pass takes off what the first left by rounding.
     for (int pass = 0; pass < 2; pass++) {

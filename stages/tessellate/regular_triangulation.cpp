@@ -3,8 +3,10 @@
 #include "regular_triangulation.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_cell_base_3.h>
+#include <CGAL/Simple_cartesian.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
@@ -54,6 +56,22 @@ extern "C" int triangulate(const struct vector *points, const double *weights, i
             triangulation->neighbour[cell->info()][k] = cell->neighbor(k)->info();
         }
     return 0;
+}
+
+extern "C" struct vector exact_power_centre(const struct vector *points,
+                                            const double *weights,
+                                            const int32_t corner[4])
+{
+    using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+    const auto weighted = [&](int k) {
+        const struct vector &p = points[corner[k]];
+        return Exact::Weighted_point_3(Exact::Point_3(p.x, p.y, p.z),
+                                       weights[corner[k]]);
+    };
+    const Exact::Point_3 centre = Exact().construct_weighted_circumcenter_3_object()(
+        weighted(0), weighted(1), weighted(2), weighted(3));
+    return {CGAL::to_double(centre.x()), CGAL::to_double(centre.y()),
+            CGAL::to_double(centre.z())};
 }
 
 extern "C" void triangulation_free(struct triangulation *triangulation)

@@ -27,6 +27,11 @@ int triangulate(const struct vector *points, const double *weights, int n,
                 struct triangulation *triangulation);
 void triangulation_free(struct triangulation *triangulation);
 
+// The point of equal power to the four points CORNER, in rational arithmetic: for flat
+// tetrahedra, where rounding could put it anywhere.
+struct vector exact_power_centre(const struct vector *points, const double *weights,
+                                 const int32_t corner[4]);
+
 #ifdef __cplusplus
 }
 #endif
