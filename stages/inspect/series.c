@@ -33,6 +33,12 @@ static double *as_doubles(const uint8_t *values, int count)
     return doubles;
 }
 
+// Frames are evenly spaced from full to dry.
+static double frame_saturation(int frame, int n_frame)
+{
+    return 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1);
+}
+
 // Liquid in the throats.
 static void drying_series(const struct artifact *artifact, struct series *series,
                           int n_frame)
@@ -61,11 +67,9 @@ static void drying_series(const struct artifact *artifact, struct series *series
     for (int step = 0, frame = 0; step < n_step; step++) {
         for (int64_t k = offset[step]; k < offset[step + 1]; k++)
             liquid[throat[k]] = changed[k];
-        const double due = 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1);
-        if (saturation[step] > due) continue;
+        if (saturation[step] > frame_saturation(frame, n_frame)) continue;
         add_frame(series, time[step], &grid);
-        while (frame < n_frame &&
-               saturation[step] <= 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1))
+        while (frame < n_frame && saturation[step] <= frame_saturation(frame, n_frame))
             frame++;
         if (frame == n_frame) break;
     }
