@@ -2,6 +2,9 @@
 // How fast the discrete elements go, and against what: particle-steps a second on
 // bonded lattices, beside the arithmetic and the memory of the same core in the same
 // run. Ratios mean something, absolute figures drift with the machine.
+//
+//     bench_dem [THREADS]               the table
+//     bench_dem --lattice NX NY NZ      particle-steps a second of one lattice
 #include "basics/memory.h"
 #include "dem/engine.h"
 
@@ -64,13 +67,13 @@ static struct dem *build(const struct packing *packing, int threads)
     return dem;
 }
 
-// Particle-steps a second, the best of five.
-static double particle_steps(struct dem *dem)
+// Particle-steps a second, the best of so many TURNS.
+static double particle_steps(struct dem *dem, int turns)
 {
     struct reason reason;
     const int cycles = 1 + 4000000 / dem->n_particle;
     double best = 0;
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < turns; k++) {
         const double start = now();
         if (dem_run(dem, cycles, &reason) != STATUS_OK)
             die(STATUS_INTERNAL, "%s", reason.text);
@@ -139,8 +142,30 @@ static double triad(size_t bytes)
     return best;
 }
 
+// With the instructions that dem_create chose, after a tenth of the run to warm up.
+static int one_lattice(int nx, int ny, int nz)
+{
+    struct packing packing = cubic_lattice(nx, ny, nz);
+    struct dem *dem = build(&packing, 1);
+    struct reason reason;
+    if (dem_run(dem, 400000 / dem->n_particle, &reason) != STATUS_OK)
+        die(STATUS_INTERNAL, "%s", reason.text);
+    printf("%.0f\n", particle_steps(dem, 1));
+    int n_contact, n_touching = 0;
+    struct dem_contact *contact = dem_contacts(dem, &n_contact);
+    for (int k = 0; k < n_contact; k++)
+        n_touching += contact[k].overlap > 0;
+    fprintf(stderr, "%d of %d touch\n", n_touching, n_contact);
+    free(contact);
+    dem_free(dem);
+    packing_free(&packing);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
+    if (argc == 5 && strcmp(argv[1], "--lattice") == 0)
+        return one_lattice(atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
     const int threads = argc > 1 ? atoi(argv[1]) : 1;
     const bool has_wide = __builtin_cpu_supports("avx512f");
     printf("triad: %.0f GB/s at 300 kB, %.0f at 1 MB, %.0f at 8 MB, %.0f at 300 MB\n",
@@ -161,7 +186,7 @@ int main(int argc, char **argv)
         for (int w = 0; w < 1 + has_wide; w++) {
             struct dem *dem = build(&packing, threads);
             dem->sweep = w ? pair_sweep_wide : pair_sweep_narrow;
-            const double rate = particle_steps(dem);
+            const double rate = particle_steps(dem, 5);
             const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
             const double flops = grain_flops + pairs * (pair_flops + 2 * slot_flops);
             const double bytes = grain_bytes + pairs * (pair_bytes + 2 * slot_bytes);
