@@ -252,7 +252,7 @@ sanitize: ## the tests in C and a small run under address and undefined-behaviou
 hard: all ## run the hard cases and print a table
 	@tests/hard/run
 bench: all $(BENCHES) ## measure speeds, as ratios within one run
-	@for bench in $(BENCHES); do $$bench; done
+	@tests/bench/run
 
 # --- house ----------------------------------------------------------------------------
 

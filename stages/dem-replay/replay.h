@@ -9,8 +9,7 @@
 #include <stdbool.h>
 
 enum support {
-    SUPPORT_FREE,  // nothing holds the aggregate; the net force is taken off, evenly by
-                   // mass
+    SUPPORT_FREE,  // nothing holds the aggregate; net force and moment are taken off
     SUPPORT_FIXED, // grains that touch the lower z wall neither move nor turn
     SUPPORT_WALL   // a rigid wall beneath, at the lower z wall
 };

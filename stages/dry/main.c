@@ -5,6 +5,7 @@
 #include "drying.h"
 #include "network/throat_radius.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -105,6 +106,10 @@ static double first_period_end_time(const struct drying_history *history)
 static void put_history(struct artifact *artifact, const struct drying_history *history)
 {
     const int n_step = history->n_step, n_event = history->n_event;
+    if (history->change_offset[n_step] > INT_MAX)
+        die(STATUS_BAD_DATA,
+            "/changes/throat: %lld rows are more than an artifact holds",
+            (long long)history->change_offset[n_step]);
     const int n_change = (int)history->change_offset[n_step];
     artifact_put(artifact, "/history/time", history->time, n_step);
     artifact_put(artifact, "/history/saturation", history->saturation, n_step);

@@ -64,6 +64,18 @@ static int throat_between(const struct network *network,
     return -1;
 }
 
+// From GRAIN towards what lies behind the face. Not towards the foot: a grain whose
+// centre another one has engulfed lies beyond its own face.
+static struct vector outwards(const struct network *network, int face, int grain)
+{
+    const struct vector centre = network->packing.position[grain];
+    const int32_t *sides = network->face_particles[face];
+    const int other = sides[sides[0] == grain];
+    return subtract(other < 0 ? foot_of_face(network, face)
+                              : network->packing.position[other],
+                    centre);
+}
+
 // The patches one face gives one of its grains, a triangle a throat, written to
 // PATCHES. Turned around when the loop runs clockwise seen from that grain's outside.
 // False when the grain's centre is on the face: there is no direction to it.
@@ -83,7 +95,7 @@ static bool fan(const struct network *network, int face, int grain, const int *t
         patches[k] = (struct patch){throats[k], grain, triangle_normal(foot, a, b)};
         sum = add(sum, patches[k].normal);
     }
-    const double sign = dot(sum, foot) < 0 ? -1 : 1;
+    const double sign = dot(sum, outwards(network, face, grain)) < 0 ? -1 : 1;
     for (int k = 0; k < count; k++)
         patches[k].normal = scale(sign, patches[k].normal);
     return isfinite(dot(sum, foot));

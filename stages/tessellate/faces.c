@@ -66,9 +66,10 @@ static bool is_face(const struct generators *generators, int32_t p, int32_t q,
     return sides[1] >= 0 || generators->particle[other] == grain;
 }
 
-// The loop runs counter-clockwise seen from the second side: its normal points from the
-// first grain outwards.
-static void orient(const struct assembly *assembly, int32_t grain, struct loop *loop)
+// The loop runs counter-clockwise seen from generator TO: its normal points there from
+// generator FROM, also where FROM lies beyond its own face.
+static void orient(const struct assembly *assembly, int32_t from, int32_t to,
+                   struct loop *loop)
 {
     const struct vector *position = assembly->nodes->position;
     const struct vector origin = position[loop->node[0]];
@@ -76,7 +77,8 @@ static void orient(const struct assembly *assembly, int32_t grain, struct loop *
     for (int k = 1; k + 1 < loop->count; k++)
         area = add(area, cross(subtract(position[loop->node[k]], origin),
                                subtract(position[loop->node[k + 1]], origin)));
-    const struct vector out = subtract(origin, assembly->generators->position[grain]);
+    const struct vector out = subtract(assembly->generators->position[to],
+                                       assembly->generators->position[from]);
     if (dot(area, out) >= 0) return;
     for (int a = 1, b = loop->count - 1; a < b; a++, b--) {
         const int32_t kept = loop->node[a];
@@ -161,7 +163,7 @@ void assemble_faces(const struct assembly *assembly, struct network *network)
             if (!is_face(assembly->generators, p, q, sides)) continue;
             if (!turn_around(assembly, c, p, q, &loop)) continue;
             if (loop.count < 3) continue; // closed up on a wall
-            orient(assembly, sides[0], &loop);
+            orient(assembly, p < q ? p : q, p < q ? q : p, &loop);
             append_face(&faces, sides, &loop);
         }
     store_sorted(&faces, network);

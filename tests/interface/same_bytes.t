@@ -4,6 +4,9 @@
 import os
 import sys
 
+import h5py
+import numpy as np
+
 sys.path.insert(0, "tests")
 from tap import SCENE, done, ok, read, run, scratch
 
@@ -32,6 +35,19 @@ with scratch() as one, scratch() as two:
     for way, made in ways.items():
         for stage, a, b in zip(STAGES, first, made):
             ok(a == b, f"{stage} {way} gives the same bytes")
+    # Threads share the work of dem-replay only where there is enough of it.
+    large = os.path.join(one, "large.h5")
+    run("pack", "--set", "counts=[12,12,14]", "-o", large)
+    with h5py.File(large, "a") as forces:
+        forces.attrs["schema"] = "craquelure/forces/1"
+        forces["time"], forces["saturation"] = [0.0, 1.0, 2.0], [1.0, 0.5, 0.0]
+        forces["force"] = 1e-7 * np.random.default_rng(1).normal(size=(3, 12 * 12 * 14, 3))
+        for name in ("capillary_pressure", "force_scale", "largest_force",
+                     "first_period_end_time"):
+            forces["summary"].attrs[name] = 1.0
+    made = [run("dem-replay", "-p", SCENE, "--threads", n, "--set", "cycles=30", large)
+            for n in (1, 2, 3)]
+    ok(made[0] == made[1] == made[2], "dem-replay of 2016 grains by 1, 2 and 3 threads")
     # A whole scene, or the stage's own section: the same parameters.
     import json
     with open(SCENE) as scene:

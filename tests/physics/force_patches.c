@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The patches of a grain's surface that face its throats, in a cubic cell.
+#include "basics/memory.h"
 #include "force-protocol/patches.h"
 #include "support_lattice.h"
 
@@ -33,8 +34,8 @@ static struct patch *patches_of(const struct network *network, int *count)
     return patches;
 }
 
-// By symmetry a cube's twelve patches are alike; each points at its throat, and the arcs
-// around one add up to arccos(1/sqrt 3).
+// By symmetry a cube's twelve patches are alike; each points at its throat, and the
+// arcs around one add up to arccos(1/sqrt 3).
 static void cube_has_twelve_equal_patches(void **state)
 {
     (void)state;
@@ -56,7 +57,8 @@ static void cube_has_twelve_equal_patches(void **state)
     network_free(&network);
 }
 
-// Nodes moved at random, faces no longer flat: the patches still close around the grain.
+// Nodes moved at random, faces no longer flat: the patches still close around the
+// grain.
 static void patches_close_around_any_cell(void **state)
 {
     (void)state;
@@ -94,6 +96,32 @@ static void patches_do_not_depend_on_scale(void **state)
     network_free(&large);
 }
 
+// A power cell need not hold its own grain: engulfed by a large neighbour, the grain
+// lies beyond the face between them. Its patches still close around it.
+static void patches_close_around_an_engulfed_grain(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(2, 2, 2, 1);
+    struct packing *packing = &network.packing;
+    packing->n_particle = 2;
+    packing->position = reallocate(packing->position, 2, sizeof *packing->position);
+    packing->radius = reallocate(packing->radius, 2, sizeof *packing->radius);
+    packing->position[0] = (struct vector){0.5, 0.5, 1.05}; // just above its cell
+    packing->position[1] = (struct vector){0.5, 0.5, 1.3};
+    packing->radius[0] = 0.1;
+    packing->radius[1] = sqrt(0.01 + 0.25 * 0.25 + 2 * 0.25 * 0.05); // plane at z = 1
+    for (int face = 0; face < network.n_face; face++)
+        if (network.face_particles[face][1] == -6) network.face_particles[face][1] = 1;
+    int count;
+    struct patch *patches = patches_of(&network, &count);
+    struct vector sum = {0};
+    for (int k = 0; k < count; k++)
+        if (patches[k].particle == 0) sum = add(sum, patches[k].normal);
+    assert_true(size(sum) < 1e-14);
+    free(patches);
+    network_free(&network);
+}
+
 static void a_loop_without_its_throat_is_refused(void **state)
 {
     (void)state;
@@ -102,7 +130,8 @@ static void a_loop_without_its_throat_is_refused(void **state)
     struct patch *patches;
     int count;
     struct reason reason;
-    assert_int_equal(find_patches(&network, &patches, &count, &reason), STATUS_BAD_DATA);
+    assert_int_equal(find_patches(&network, &patches, &count, &reason),
+                     STATUS_BAD_DATA);
     assert_non_null(strstr(reason.text, "no throat between nodes"));
     network_free(&network);
 }
@@ -114,6 +143,7 @@ int main(void)
         cmocka_unit_test(cube_has_twelve_equal_patches),
         cmocka_unit_test(patches_close_around_any_cell),
         cmocka_unit_test(patches_do_not_depend_on_scale),
+        cmocka_unit_test(patches_close_around_an_engulfed_grain),
         cmocka_unit_test(a_loop_without_its_throat_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

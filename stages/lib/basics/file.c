@@ -150,7 +150,11 @@ void check_output(const char *path)
     char *copy = strdup(path);
     char *slash = strrchr(copy, '/');
     if (slash) slash[slash == copy] = 0; // "/x" lies in "/"
-    if (access(slash ? copy : ".", W_OK | X_OK))
+    const char *folder = slash ? copy : ".";
+    struct stat information;
+    if (!stat(folder, &information) && !S_ISDIR(information.st_mode))
+        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(ENOTDIR));
+    if (access(folder, W_OK | X_OK))
         die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
     free(copy);
 }

@@ -123,9 +123,11 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason);
 enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,
                           struct reason *reason);
 
-int64_t dem_cycle(const struct dem *dem);          // cycles completed
-double dem_time_step(const struct dem *dem);       // s
-double dem_time_step_limit(const struct dem *dem); // s, stable below; see stability.c
+int64_t dem_cycle(const struct dem *dem);    // cycles completed
+double dem_time_step(const struct dem *dem); // s
+// s, stable below, for the pairs near each other at the start (stability.c). Grains
+// that gather more neighbours later may need less: then only divergence is noticed.
+double dem_time_step_limit(const struct dem *dem);
 
 // Mean |F_i| over the grains that are not fixed, over mean |F_ij| over the contacts
 // [K 4.20]; 0 when nothing pulls, infinite when nothing resists. O(pairs).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What can be asked of a running assembly, in SI. Forces and histories are those of the
-// last force evaluation, at the places before the last displacement; energies and
-// momenta are of that moment too.
+// last force evaluation, at the places before the last displacement, and energies are
+// of that moment too; momenta are of the half step before, like velocities.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
