@@ -151,12 +151,6 @@ static int one_lattice(int nx, int ny, int nz)
     if (dem_run(dem, 400000 / dem->n_particle, &reason) != STATUS_OK)
         die(STATUS_INTERNAL, "%s", reason.text);
     printf("%.0f\n", particle_steps(dem, 1));
-    int n_contact, n_touching = 0;
-    struct dem_contact *contact = dem_contacts(dem, &n_contact);
-    for (int k = 0; k < n_contact; k++)
-        n_touching += contact[k].overlap > 0;
-    fprintf(stderr, "%d of %d touch\n", n_touching, n_contact);
-    free(contact);
     dem_free(dem);
     packing_free(&packing);
     return 0;

@@ -736,7 +736,16 @@ refused_in_shell("an error in the first program of a pipe is the only whole stor
                  "$BIN/pack --set radius=0 | $BIN/tessellate -o out/result",
                  "pack: pack.radius: must be > 0 m, got 0",
                  "tessellate: standard input: is empty")
-if shutil.which("script"):
+def has_terminals():
+    try:
+        for end in os.openpty():
+            os.close(end)
+        return bool(shutil.which("script"))
+    except OSError:
+        return False
+
+
+if has_terminals():
     done = run(["script", "-qec", f"{BIN}/pack", "/dev/null"])
     shown = done.stdout.decode().split("\r\n")
     result("binary output is not written to a terminal",
@@ -744,7 +753,7 @@ if shutil.which("script"):
            ["pack: standard output is a terminal: name a file with -o, or pipe it", ""]
            else [f"status {done.returncode}, shown {shown}"])
 else:
-    result("binary output is not written to a terminal", [], "no program `script`")
+    result("binary output is not written to a terminal", [], "no terminal to be had, or no program `script`")
 
 # ---- signals ----------------------------------------------------------------------------
 
