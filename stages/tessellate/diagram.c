@@ -46,7 +46,8 @@ static enum status triangulate_in_box(const struct packing *packing, bool power,
                                       struct triangulation *triangulation,
                                       struct nodes *nodes, struct reason *reason)
 {
-    for (double reach = first_reach;; reach *= 2) {
+    double reach = first_reach;
+    for (;;) {
         const enum status status =
             mirror_grains(packing, reach, power, generators, reason);
         if (status) return status;
@@ -60,6 +61,7 @@ static enum status triangulate_in_box(const struct packing *packing, bool power,
         nodes_free(nodes);
         triangulation_free(triangulation);
         generators_free(generators);
+        reach *= 2;
     }
 }
 

@@ -216,10 +216,12 @@ static enum status check_order(const struct subject *subject, const double *bloc
                     subject->name, (unsigned long long)((first + k) / 2), block[k],
                     block[k + 1]);
     if (!increasing && !nondecreasing) return STATUS_OK;
-    for (hsize_t k = 0; k < count; previous = block[k++])
+    for (hsize_t k = 0; k < count; k++) {
         if (first + k > 0 && (increasing ? block[k] <= previous : block[k] < previous))
             return breach(subject, first + k, increasing ? ">" : ">=", NULL, previous,
                           block[k], reason);
+        previous = block[k];
+    }
     return STATUS_OK;
 }
 
