@@ -59,6 +59,25 @@ with scratch() as folder:
            == sum(s["total"] for s in stats["profile"]) == len(response["cracks/bond"]),
            f"{limit}: periods and slices add up to all cracks")
 
+    # The counts against our own, over all runs at once.
+    paths = [path for job, path in made.items() if job[0] == "inviscid"]
+    stats = json.loads(run("crackstats", "-p", SCENE, *paths))
+    table = []
+    for path in paths:
+        response = h5py.File(path)
+        mode, time = response["cracks/mode"][:], response["cracks/time"][:]
+        first = time <= response["summary"].attrs["first_period_end_time"]
+        table.append([(first & (mode == 1)).sum(), (first & (mode == 0)).sum(),
+                      (~first & (mode == 1)).sum(), (~first & (mode == 0)).sum()])
+    keys = [(p, m) for p in ("first", "second") for m in ("shear", "normal")]
+    ok(np.allclose([stats["mean"][p][m] for p, m in keys], np.mean(table, axis=0))
+       and np.allclose([stats["sd"][p][m] for p, m in keys], np.std(table, axis=0, ddof=1)),
+       "crackstats: means and standard deviations over four runs, by mode and period")
+    height = [z for path in paths for z in h5py.File(path)["cracks/position"][:, 2]]
+    bins = np.clip(np.ceil(np.array(height) / 500e-9 - 1e-6).astype(int) - 1, 0, 9)
+    ok(np.allclose([s["total"] for s in stats["profile"]], np.bincount(bins, minlength=10) / 4),
+       "crackstats: the profile over ten slices")
+
     ratio = h5py.File(calm.result())["history/unbalanced_ratio"][:]
     ok((ratio[:-1] < 1e-4).all(),
        "where nothing breaks, every step that has a load settles below 1e-4", ratio[:-1].max())

@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Lattices with the bonds their geometry demands, and grains that come from elsewhere.
+import os
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import done, ok, run, scratch
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+
+    def pack(name, *settings, **more):
+        words = [word for s in settings for word in ("--set", s)]
+        run("pack", *words, *more.get("inputs", []), "-o", at(name))
+        return h5py.File(at(name))
+
+    cubic = pack("cubic", "counts=[3,4,5]", "radius=1e-3")
+    ok(len(cubic["bonds/particles"]) == 2 * 4 * 5 + 3 * 3 * 5 + 3 * 4 * 4,
+       "a cubic lattice is bonded along its edges")
+    ok(abs(cubic["summary"].attrs["max_overlap"]) < 1e-14, "its grains touch without overlap")
+    periodic = pack("periodic", "counts=[3,4,5]", "periodic=[true,true,false]")
+    ok(len(periodic["bonds/particles"]) == 2 * 3 * 4 * 5 + 3 * 4 * 4
+       and list(periodic["domain/periodic"]) == [1, 1, 0],
+       "a laterally periodic one is bonded across its sides as well")
+    square = pack("square", "method=square", "counts=[6,1,7]")
+    ok(len(square["bonds/particles"]) == 5 * 7 + 6 * 6
+       and np.ptp(square["particles/position"][:, 1]) == 0, "a square lattice is one layer")
+    ok(len(pack("none", "bonds=none")["bonds/particles"]) == 0, "bonds may be left out")
+
+    with open(at("grains.txt"), "w") as text:
+        print("# x y z r", file=text)
+        for x, r in zip(cubic["particles/position"], cubic["particles/radius"]):
+            print(*(repr(float(v)) for v in (*x, r)), file=text)
+    text = pack("text", "method=import", inputs=[at("grains.txt")])
+    same = lambda other, names: all(np.array_equal(cubic[n], other[n]) for n in names)
+    ok(same(text, ["particles/position", "particles/radius", "bonds/particles"]),
+       "grains imported from text are the same, and so are their bonds")
+    ok(np.allclose(text["domain/upper"][:], cubic["domain/upper"][:], rtol=1e-14, atol=0),
+       "their box is around them")
+    weak = pack("fewer", "bonds=none", "counts=[3,4,5]", "radius=1e-3")
+    kept = pack("kept", "method=import", "bonds=keep", inputs=[at("fewer")])
+    ok(same(kept, ["particles/position"]) and len(kept["bonds/particles"]) == 0,
+       "an imported packing keeps its bonds when asked to")
+
+    # Bonds of random spheres against every pair, one by one.
+    random = np.random.default_rng(7)
+    position, radius = random.uniform(0, 1, (300, 3)), random.uniform(0.02, 0.06, 300)
+    np.savetxt(at("random.txt"), np.column_stack([position, radius]), fmt="%.17g")
+    made = pack("random", "method=import", inputs=[at("random.txt")])
+    apart = np.linalg.norm(position[:, None] - position[None], axis=2)
+    touching = apart <= (radius[:, None] + radius[None]) * (1 + 1e-6)
+    expected = [(i, j) for i in range(300) for j in range(i + 1, 300) if touching[i, j]]
+    ok([tuple(b) for b in made["bonds/particles"]] == expected,
+       "touching neighbours are those that a search of all pairs finds")
+    solid = (4 / 3 * np.pi * radius**3).sum()
+    box = np.prod(made["domain/upper"][:] - made["domain/lower"][:])
+    ok(abs(made["summary"].attrs["porosity"] - (1 - solid / box)) < 1e-12, "porosity")
+done()
