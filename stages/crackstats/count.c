@@ -21,8 +21,7 @@ struct counts count_cracks(const struct cracks *cracks, int n_slice)
         const int period =
             cracks->time[k] <= cracks->first_period_end ? PERIOD_FIRST : PERIOD_SECOND;
         counts.period[period][cracks->mode[k]]++;
-        counts
-            .slice[slice_of(cracks, cracks->position[k].z, n_slice)][cracks->mode[k]]++;
+        counts.slice[slice_of(cracks, cracks->height[k], n_slice)][cracks->mode[k]]++;
     }
     return counts;
 }

@@ -3,8 +3,6 @@
 #ifndef CRAQUELURE_COUNT_H
 #define CRAQUELURE_COUNT_H
 
-#include "geometry/vector.h"
-
 #include <stdint.h>
 
 enum { MODE_NORMAL, MODE_SHEAR, MODE_COUNT };
@@ -15,7 +13,7 @@ struct cracks {
     int count, bonds;
     double *time;            // (count) s
     uint8_t *mode;           // (count) 0 normal, 1 shear
-    struct vector *position; // (count) m
+    double *height;          // (count) m, of the bond where it began
     double first_period_end; // s
     double bottom, top;      // m, z walls
 };

@@ -27,12 +27,27 @@ static const struct stage stage = {
     .most_inputs = 1000000,
     .parameters = table};
 
+// Heights of the cracked bonds where they were before anything moved: a bond between
+// two layers stays on their border however the grains have shifted since.
+static double *bond_heights(const struct artifact *input, const struct packing *packing)
+{
+    int count;
+    int32_t *bond = artifact_get(input, "/cracks/bond", &count);
+    double *height = NEW_ARRAY(double, count);
+    for (int k = 0; k < count; k++) {
+        const int32_t *pair = packing->bond[bond[k]];
+        height[k] = 0.5 * (packing->position[pair[0]].z + packing->position[pair[1]].z);
+    }
+    free(bond);
+    return height;
+}
+
 static struct cracks read_cracks(const struct artifact *input)
 {
     struct packing packing = artifact_get_packing(input);
     struct cracks cracks = {.bonds = packing.n_bond,
                             .mode = artifact_get(input, "/cracks/mode", NULL),
-                            .position = artifact_get(input, "/cracks/position", NULL),
+                            .height = bond_heights(input, &packing),
                             .first_period_end = artifact_get_number(
                                 input, "/summary/first_period_end_time"),
                             .bottom = packing.lower.z,
@@ -46,7 +61,7 @@ static void free_cracks(struct cracks *cracks)
 {
     free(cracks->time);
     free(cracks->mode);
-    free(cracks->position);
+    free(cracks->height);
 }
 
 // Counts one run and keeps of the artifact only what the provenance needs.

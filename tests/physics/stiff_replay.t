@@ -73,8 +73,12 @@ with scratch() as folder:
     ok(np.allclose([stats["mean"][p][m] for p, m in keys], np.mean(table, axis=0))
        and np.allclose([stats["sd"][p][m] for p, m in keys], np.std(table, axis=0, ddof=1)),
        "crackstats: means and standard deviations over four runs, by mode and period")
-    height = [z for path in paths for z in h5py.File(path)["cracks/position"][:, 2]]
-    bins = np.clip(np.ceil(np.array(height) / 500e-9 - 1e-6).astype(int) - 1, 0, 9)
+    layer = []  # a bond between layers of the lattice counts in the lower one
+    for path in paths:
+        response = h5py.File(path)
+        pair = response["bonds/particles"][:][response["cracks/bond"][:]]
+        layer += list((response["particles/position"][:, 2][pair] / 500e-9).min(axis=1) // 1)
+    bins = np.array(layer, int)
     ok(np.allclose([s["total"] for s in stats["profile"]], np.bincount(bins, minlength=10) / 4),
        "crackstats: the profile over ten slices")
 
