@@ -3,6 +3,7 @@
 #
 #     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
 #     make demo                        ->  the sample in both drying limits, and its picture
+#     make demo SCENE=samples/x.json   ->  the same for another scene
 
 SCENE ?=
 IMPORT ?=# what `pack` reads, for a scene that imports its grains
@@ -48,8 +49,8 @@ endif
 
 # --- the demonstration ----------------------------------------------------------------
 
-demo_scene := samples/stiff-5x5x10.json
-demo_folder := $(RUNS)/stiff-5x5x10
+demo_scene := $(or $(SCENE),samples/stiff-5x5x10.json)
+demo_folder := $(RUNS)/$(basename $(notdir $(demo_scene)))
 demo_limits := inviscid immobile
 demo_picture := $(if $(wildcard pipelines/picture),$(demo_folder)/picture.svg)
 

@@ -46,7 +46,7 @@ static const struct parameter table[] = {
      AT(settings.bond.shear_strength)},
     {"bond.radius_fraction", PARAMETER_NUMBER, "1", "0.5858", BOUND_BETWEEN, 1e-6, 1,
      NULL, "bond radius, of the smaller grain's", AT(settings.bond.radius_fraction)},
-    {"support", PARAMETER_CHOICE, "1", "\"free\"", BOUND_NONE, 0, 0, "free|fixed|wall",
+    {"support", PARAMETER_CHOICE, "1", "\"fixed\"", BOUND_NONE, 0, 0, "free|fixed|wall",
      "free: net force and moment are taken off; fixed: grains at the lower z wall are "
      "held; "
      "wall: "
@@ -147,7 +147,22 @@ static void write_response(const struct packing *packing, const struct load *loa
     put_response(artifact, packing, load, response);
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         artifact_get_number(input, "/summary/first_period_end_time"));
-    artifact_finish(artifact, invocation, &input, 1, model);
+    artifact_finish(artifact, invocation, one_input(input), model);
+}
+
+// What cracked may still hang together; what has moved by its own size does not.
+static void warn_if_loose(const struct packing *packing,
+                          const struct response *response)
+{
+    double largest_radius = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        largest_radius = fmax(largest_radius, packing->radius[i]);
+    const double moved = largest_displacement(packing, response);
+    if (moved > largest_radius)
+        report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
+               "%.3g "
+               "of the largest radius",
+               response->n_crack, packing->n_bond, moved / largest_radius);
 }
 
 int main(int argc, char **argv)
@@ -166,6 +181,7 @@ int main(int argc, char **argv)
 
     struct response response;
     run(&packing, &load, settings, &invocation, input->path, &response);
+    if (!invocation.quiet) warn_if_loose(&packing, &response);
     write_response(&packing, &load, settings, &response, &invocation, input);
 
     response_free(&response);

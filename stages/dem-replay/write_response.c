@@ -142,6 +142,26 @@ static void put_snapshots(struct artifact *artifact, const struct packing *packi
     free(intact);
 }
 
+double largest_displacement(const struct packing *packing,
+                            const struct response *response)
+{
+    double most = 0;
+    for (int s = 0; s < response->n_snapshot; s++)
+        for (int i = 0; i < packing->n_particle; i++)
+            most = fmax(most, norm(response->snapshot[s].displacement[i]));
+    return most;
+}
+
+static const double settled = 1e-4; // [K 5.2]
+
+static int steps_unsettled(const struct load *load, const struct response *response)
+{
+    int count = 0;
+    for (int k = 0; k < load->n_time; k++)
+        count += response->unbalanced_ratio[k] >= settled;
+    return count;
+}
+
 static double largest(const double *values, int count)
 {
     double most = 0;
@@ -161,6 +181,10 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
+    artifact_put_number(artifact, "/summary/steps_unsettled",
+                        steps_unsettled(load, response));
+    artifact_put_number(artifact, "/summary/largest_displacement",
+                        largest_displacement(packing, response));
     artifact_put_number(artifact, "/summary/time_step", response->time_step);
     artifact_put_number(artifact, "/summary/time_step_limit",
                         response->time_step_limit);

@@ -9,4 +9,8 @@
 void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct response *response);
 
+// Of any grain at any snapshot, m.
+double largest_displacement(const struct packing *packing,
+                            const struct response *response);
+
 #endif

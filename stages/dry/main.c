@@ -161,7 +161,7 @@ static void write_drying(const struct network *network,
     artifact_put_network(artifact, network);
     put_history(artifact, history);
     put_summary(artifact, history, parameters->conditions.open_walls);
-    artifact_finish(artifact, invocation, &input, 1, model);
+    artifact_finish(artifact, invocation, one_input(input), model);
 }
 
 int main(int argc, char **argv)

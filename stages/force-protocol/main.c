@@ -123,7 +123,7 @@ static void write_forces(const struct packing *packing, const struct protocol *p
         "left out: contact-line term (perfect wetting), pressure differences between "
         "clusters, bridges left at contacts\n",
         parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull");
-    artifact_finish(artifact, invocation, &input, 1, model);
+    artifact_finish(artifact, invocation, one_input(input), model);
 }
 
 int main(int argc, char **argv)

@@ -157,11 +157,13 @@ static json_t *nested(const struct values *values, int axis, size_t *at,
 
 json_t *dataset_json(const struct artifact *artifact, const char *name)
 {
-    const json_t *entry = schema_dataset(artifact->schema, name);
+    char absolute[256]; // with or without the first slash, as h5py
+    snprintf(absolute, sizeof absolute, "%s%s", *name == '/' ? "" : "/", name);
+    const json_t *entry = schema_dataset(artifact->schema, absolute);
     if (!entry)
         die(STATUS_BAD_DATA, "%s: has no dataset %s (a %s has none)",
             input_name(artifact->path), name, artifact->schema->name);
-    struct values values = read_values(artifact->file, name);
+    struct values values = read_values(artifact->file, absolute);
     size_t at = 0;
     json_t *list = nested(&values, 0, &at, entry);
     free(values.value);

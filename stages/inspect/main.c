@@ -110,9 +110,7 @@ int main(int argc, char **argv)
         .options = option_table,
         .parser = parse_option,
         .args_doc = "[ARTIFACT]",
-        .doc = "inspect -- any artifact as JSON: attributes, summary, "
-               "and of every dataset name, shape, units, minimum, "
-               "maximum and SHA-256"};
+        .doc = "inspect -- any artifact as JSON, or as a series for ParaView"};
     if (argp_parse(&argp, argc, argv, 0, NULL, &options)) exit(STATUS_USAGE);
 
     struct bytes bytes = read_whole(options.input);

@@ -90,36 +90,53 @@ static void apply_box(struct packing *packing, const struct pack_parameters *par
     }
 }
 
-// Text is read here; HDF5 goes through the artifact layer, which checks it. *ORIGIN
-// gets the artifact, if it was one, for the provenance.
-static struct packing import(const char *path, const struct pack_parameters *parameters,
-                             struct artifact **origin)
+static struct packing import_lines(const char *path, struct bytes text,
+                                   const struct pack_parameters *parameters,
+                                   json_t *inputs)
 {
     struct packing packing;
-    struct bytes bytes = read_whole(path);
-    const bool hdf5 = is_hdf5(&bytes);
-    if (hdf5) {
-        *origin = artifact_open_bytes(path, bytes, "packing");
-        packing = artifact_get_packing(*origin);
-    } else {
-        struct reason reason;
-        const enum status status = import_text(&bytes, &packing, &reason);
-        if (status) die(status, "%s: %s", input_name(path), reason.text);
-        for (int axis = 0; axis < 3; axis++)
-            packing.periodic[axis] = parameters->periodic[axis];
-        free(bytes.data);
-    }
+    struct reason reason;
+    const enum status status = import_text(&text, &packing, &reason);
+    if (status) die(status, "%s: %s", input_name(path), reason.text);
+    for (int axis = 0; axis < 3; axis++)
+        packing.periodic[axis] = parameters->periodic[axis];
+    char digest[65];
+    sha256(text.data, text.size, digest);
+    json_array_append_new(inputs,
+                          json_pack("{s:s,s:s}", "schema", "text", "sha256", digest));
+    free(text.data);
+    return packing;
+}
+
+static struct packing import_packing(const char *path, struct bytes image,
+                                     json_t *inputs)
+{
+    struct artifact *origin = artifact_open_bytes(path, image, "packing");
+    const struct packing packing = artifact_get_packing(origin);
+    json_array_append_new(inputs, input_digest(origin));
+    artifact_close(origin);
+    return packing;
+}
+
+// Grains from text or from another packing; INPUTS gets what the provenance says of it.
+static struct packing import(const char *path, const struct pack_parameters *parameters,
+                             json_t *inputs)
+{
+    const struct bytes bytes = read_whole(path);
+    struct packing packing = is_hdf5(&bytes)
+                                 ? import_packing(path, bytes, inputs)
+                                 : import_lines(path, bytes, parameters, inputs);
     apply_box(&packing, parameters);
     return packing;
 }
 
 static struct packing make_packing(const struct invocation *invocation,
                                    const struct pack_parameters *parameters,
-                                   struct artifact **origin)
+                                   json_t *inputs)
 {
     if (parameters->method == METHOD_IMPORT)
         return import(invocation->n_input ? invocation->inputs[0] : "-", parameters,
-                      origin);
+                      inputs);
     if (invocation->n_input)
         die(STATUS_USAGE, "%s: only method=import takes an input",
             invocation->inputs[0]);
@@ -127,8 +144,8 @@ static struct packing make_packing(const struct invocation *invocation,
 }
 
 static void write_packing(const struct packing *packing,
-                          const struct invocation *invocation,
-                          const struct artifact *origin, double touching_gap)
+                          const struct invocation *invocation, json_t *inputs,
+                          double touching_gap)
 {
     const double porosity = packing_porosity(packing);
     if (!(porosity > -1e6))
@@ -145,7 +162,7 @@ static void write_packing(const struct packing *packing,
     artifact_put_number(artifact, "/summary/unbalanced_ratio", 0);
     artifact_put_vtk(artifact, "/particles/position", packing->n_particle,
                      (const char *const[]){"/particles/radius", NULL}, NULL, 0, NULL);
-    artifact_finish(artifact, invocation, &origin, origin ? 1 : 0,
+    artifact_finish(artifact, invocation, inputs,
                     "grains are where the method puts them: no dynamics was run\n");
 }
 
@@ -153,15 +170,18 @@ int main(int argc, char **argv)
 {
     struct pack_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    struct artifact *origin = NULL;
+    json_t *inputs = json_array();
 
-    struct packing packing = make_packing(&invocation, &parameters, &origin);
+    struct packing packing = make_packing(&invocation, &parameters, inputs);
     if (parameters.bonds == BONDS_TOUCHING)
         bond_touching(&packing, parameters.touching_gap);
     if (parameters.bonds == BONDS_NONE) packing.n_bond = 0;
-    write_packing(&packing, &invocation, origin, parameters.touching_gap);
+    if (parameters.bonds == BONDS_TOUCHING && !packing.n_bond &&
+        packing.n_particle > 1 && !invocation.quiet)
+        report("no two grains touch within touching_gap = %g: no bonds",
+               parameters.touching_gap);
+    write_packing(&packing, &invocation, inputs, parameters.touching_gap);
 
-    artifact_close(origin);
     packing_free(&packing);
     invocation_free(&invocation);
     return STATUS_OK;

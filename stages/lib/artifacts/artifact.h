@@ -73,15 +73,17 @@ void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point
                       const char *const *point_data, const int32_t (*lines)[2],
                       int n_line, const char *const *cell_data);
 
-// Provenance, from the call, the inputs and MODEL (one line a feature that was modelled
-// or left out); then writes the artifact to the output of the call, whole or not at
-// all. Closes it.
+// Provenance: from the call, the digests of its inputs (a list, taken over), and MODEL
+// (one line a feature that was modelled or left out). Then writes the artifact, which
+// must keep its own schema, to the output of the call, whole or not at all. Closes it.
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
-                     const struct artifact *const *inputs, int n_input,
-                     const char *model);
+                     json_t *inputs, const char *model);
 
 // What provenance says of one input: {"schema":…, "sha256":…}. The caller owns it.
 json_t *input_digest(const struct artifact *input);
+
+// A list of just that one.
+json_t *one_input(const struct artifact *input);
 
 // The same end for a JSON artifact: adds the provenance to DOCUMENT, whose inputs'
 // digests are INPUTS (taken over), writes it, and frees it.

@@ -265,6 +265,11 @@ json_t *input_digest(const struct artifact *input)
     return json_pack("{s:s,s:s}", "schema", input->schema->id, "sha256", input->sha256);
 }
 
+json_t *one_input(const struct artifact *input)
+{
+    return json_pack("[o]", input_digest(input));
+}
+
 // Members every artifact carries. Takes INPUTS over.
 static json_t *provenance(const struct invocation *invocation, json_t *inputs,
                           const char *model)
@@ -293,13 +298,9 @@ static void put_provenance(struct artifact *artifact, json_t *members)
 }
 
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
-                     const struct artifact *const *inputs, int n_input,
-                     const char *model)
+                     json_t *inputs, const char *model)
 {
-    json_t *digests = json_array();
-    for (int k = 0; k < n_input; k++)
-        json_array_append_new(digests, input_digest(inputs[k]));
-    put_provenance(artifact, provenance(invocation, digests, model));
+    put_provenance(artifact, provenance(invocation, inputs, model));
 
     done(H5Fflush(artifact->file, H5F_SCOPE_GLOBAL), "flush");
     const ssize_t size = H5Fget_file_image(artifact->file, NULL, 0);

@@ -18,5 +18,5 @@ void write_network(const struct network *network, const struct invocation *invoc
                      (const char *const[]){"/nodes/kind", NULL},
                      (const int32_t(*)[2])network->throat_nodes, network->n_throat,
                      (const char *const[]){"/throats/radius", "/throats/kind", NULL});
-    artifact_finish(artifact, invocation, &input, 1, model);
+    artifact_finish(artifact, invocation, one_input(input), model);
 }

@@ -279,7 +279,7 @@ static enum status check_time_step(const struct dem *dem, double safety,
     if (dem->time_step <= dem->time_step_limit) return STATUS_OK;
     return refuse(
         reason, STATUS_NOT_CONVERGED,
-        "time step %g s is past the stability limit of %g s: the safety factor "
+        "time step %g s is past the stability limit of %g s: time_step_safety "
         "must be below %.3g, got %g",
         dem_time_step(dem), dem_time_step_limit(dem),
         safety * dem->time_step_limit / dem->time_step, safety);

@@ -359,6 +359,24 @@ void parameters_set(json_t *section, const char *assignment)
 
 // ---- what the table tells the user --------------------------------------------------
 
+enum { HELP_WIDTH = 78 }; // argp wraps at 79, without our indent
+
+// Words of TEXT, wrapped, each line behind INDENT blanks.
+static void print_wrapped(FILE *stream, const char *text, int indent)
+{
+    int column = fprintf(stream, "%*s", indent, "");
+    while (*text) {
+        const int length = (int)strcspn(text, " ");
+        if (column > indent && column + 1 + length > HELP_WIDTH)
+            column = fprintf(stream, "\n%*s", indent, "") - 1;
+        if (column > indent) column += fprintf(stream, " ");
+        column += fprintf(stream, "%.*s", length, text);
+        text += length;
+        text += strspn(text, " ");
+    }
+    fprintf(stream, "\n");
+}
+
 void parameters_print(const struct parameter *table, FILE *stream)
 {
     for (const struct parameter *p = table; p->key; p++) {
@@ -367,7 +385,8 @@ void parameters_print(const struct parameter *table, FILE *stream)
         if (strcmp(p->unit, "1")) fprintf(stream, " %s", p->unit);
         if (p->choices) fprintf(stream, "  [%s]", p->choices);
         if (p->bound) fprintf(stream, "  [%s]", bound_text(p, bound));
-        fprintf(stream, "\n        %s\n", p->text);
+        fprintf(stream, "\n");
+        print_wrapped(stream, p->text, 8);
     }
 }
 

@@ -21,7 +21,8 @@ enum { KEY_THREADS = 256, KEY_PROGRESS, KEY_SCHEMA, KEY_PARAMETERS };
 
 static const struct argp_option options[] = {
     {"params", 'p', "FILE", 0, "Parameters: this stage's section, or a whole scene", 0},
-    {"set", 's', "KEY=VALUE", 0, "Override one parameter; may be repeated", 0},
+    {"set", 's', "KEY=VALUE", 0,
+     "Override one parameter; VALUE is JSON, or a word; may be repeated", 0},
     {"output", 'o', "FILE", 0, "Write there; '-', or nothing: standard output", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to use [1]; results do not depend on it",
      0},
@@ -145,10 +146,11 @@ static char *help_filter(int key, const char *text, void *input)
     if (stage->notes) fprintf(stream, "\n%s\n", stage->notes);
     fprintf(stream, "\nReads: %s\nWrites: %s (schemas/%s.json)\n",
             stage->reads ? stage->reads : "nothing", stage->writes, stage->writes);
-    fprintf(stream,
-            "\nExit status: 0 done; 1 the answer is no; 3 not converged or "
-            "unstable; 64 command line;\n65 bad input or parameters; 66 no such "
-            "input; 70 our fault; 73 cannot create; 74 failed I/O");
+    fprintf(stream, "\nK: Kharaghani's thesis on drying and cracking of aggregates.\n"
+                    "\nExit status:\n"
+                    "  0 done; 1 the answer is no; 3 not converged, or unstable;\n"
+                    "  64 command line; 65 bad input or parameters; 66 no such input;\n"
+                    "  70 our fault; 73 cannot create; 74 failed I/O");
     fclose(stream);
     return help;
 }
@@ -214,8 +216,9 @@ static void fill(const struct command_line *line, void *parameters)
     for (int k = 0; k < line->n_set; k++)
         parameters_set(section, line->set[k]);
     char where[300];
-    snprintf(where, sizeof where, "%s%s%s", line->params ? line->params : "",
-             line->params ? ": " : "", line->stage->name);
+    snprintf(where, sizeof where, "%s%s%s%s", line->params ? line->params : "",
+             line->params && line->n_set ? " with --set" : "", line->params ? ": " : "",
+             line->stage->name);
     line->invocation->parameters =
         parameters_fill(line->stage->parameters, section, where, parameters);
     json_decref(section);
