@@ -6,9 +6,21 @@
 
 #include <stdlib.h>
 
-// Images of grains farther from a wall than this are made only when the cells show that
-// they are needed, mean diameters.
+// Images of grains farther from a wall than this many mean spacings are made only when
+// the cells show that they are needed.
 static const double first_reach = 2;
+
+// The edge of the box's share of a grain, or the diameter where grains overlap that
+// much; mean diameters.
+static double mean_spacing(const struct packing *packing)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    double diameter = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        diameter += 2 * packing->radius[i] / packing->n_particle;
+    const double share = edge.x / diameter * (edge.y / diameter) * (edge.z / diameter);
+    return fmax(1, cbrt(share / packing->n_particle));
+}
 
 static enum status check_packing(const struct packing *packing, struct reason *reason)
 {
@@ -46,7 +58,7 @@ static enum status triangulate_in_box(const struct packing *packing, bool power,
                                       struct triangulation *triangulation,
                                       struct nodes *nodes, struct reason *reason)
 {
-    double reach = first_reach;
+    double reach = first_reach * mean_spacing(packing);
     for (;;) {
         const enum status status =
             mirror_grains(packing, reach, power, generators, reason);
