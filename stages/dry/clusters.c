@@ -13,8 +13,7 @@ struct search {
     int active; // of a root: searches united in it that have not run dry
 };
 
-// --- heap
-// --------------------------------------------------------------------------------
+// --- heap --------------------------------------------------------------------------
 
 static void heap_push(struct rank_heap *heap, int rank)
 {
@@ -38,8 +37,7 @@ static void heap_pop(struct rank_heap *heap)
     heap->rank[place] = rank;
 }
 
-// --- identities
-// --------------------------------------------------------------------------
+// --- identities --------------------------------------------------------------------
 
 static int new_cluster(struct clusters *clusters)
 {
@@ -68,8 +66,7 @@ static void add_meniscus(struct clusters *clusters, int throat)
     heap_push(&clusters->heap[clusters->of_throat[throat]], clusters->rank[throat]);
 }
 
-// --- searches
-// ----------------------------------------------------------------------------
+// --- searches ----------------------------------------------------------------------
 
 static int root_of(const struct clusters *clusters, int search)
 {
@@ -187,8 +184,7 @@ static void start_searches(struct clusters *clusters, int node)
     }
 }
 
-// --- what others call
-// --------------------------------------------------------------------
+// --- what others call --------------------------------------------------------------
 
 void clusters_empty_throat(struct clusters *clusters, int throat)
 {

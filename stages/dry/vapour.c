@@ -20,8 +20,7 @@ struct vapour_solver {
     int *unknown; // (n_site+1) its number, -1 where the deficit is known
 };
 
-// --- the links
-// ---------------------------------------------------------------------------
+// --- the links ---------------------------------------------------------------------
 
 struct link_list {
     struct {
@@ -148,8 +147,7 @@ void vapour_free(struct vapour *vapour)
     *vapour = (struct vapour){0};
 }
 
-// --- the gas changes
-// ---------------------------------------------------------------------
+// --- the gas changes ---------------------------------------------------------------
 
 // The throat's ends were wet until now, so this alone changes no unknown's balance.
 void vapour_open_throat(struct vapour *vapour, int throat)
@@ -188,8 +186,7 @@ double vapour_evaporation(const struct vapour *vapour, int node)
     return -inflow(vapour, node);
 }
 
-// --- the solution
-// ------------------------------------------------------------------------
+// --- the solution ------------------------------------------------------------------
 
 static void number_unknowns(struct vapour *vapour)
 {

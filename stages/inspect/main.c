@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // inspect: any artifact as JSON, or as a series for ParaView.
 #include "artifacts/artifact.h"
+#include "artifacts/check.h"
 #include "basics/status.h"
 #include "describe.h"
 #include "series.h"
@@ -84,9 +85,18 @@ static json_t *json_artifact(const struct options *options, const struct bytes *
     if (!document)
         die(STATUS_BAD_DATA, "%s: line %d: %s", input_name(options->input), error.line,
             error.text);
-    if (!json_is_string(json_object_get(document, "schema")))
+    const char *id = json_string_value(json_object_get(document, "schema"));
+    if (!id)
         die(STATUS_BAD_DATA, "%s: is not an artifact: it has no schema",
             input_name(options->input));
+    struct schema *schema = schema_find(id);
+    if (!schema || strcmp(schema->id, id))
+        die(STATUS_BAD_DATA, "%s: schema %s is unknown", input_name(options->input),
+            id);
+    struct reason reason;
+    if (check_document(document, schema, &reason))
+        die(STATUS_BAD_DATA, "%s: %s", input_name(options->input), reason.text);
+    schema_free(schema);
     if (options->data || options->vtk)
         die(STATUS_USAGE, "%s: is JSON: read it with jq", input_name(options->input));
     return document;

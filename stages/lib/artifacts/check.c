@@ -373,3 +373,42 @@ enum status check_file(hid_t file, const struct schema *schema, size_t image_siz
     }
     return STATUS_OK;
 }
+
+// ---- JSON artifacts ---------------------------------------------------------------
+
+static bool has_json_type(const json_t *value, const char *type)
+{
+    if (json_is_null(value)) return strchr(type, '?') != NULL; // "object?" may be null
+    switch (json_typeof(value)) {
+    case JSON_OBJECT:
+        return !strncmp(type, "object", 6);
+    case JSON_ARRAY:
+        return !strncmp(type, "array", 5);
+    case JSON_INTEGER:
+        return !strncmp(type, "integer", 7);
+    default:
+        return false;
+    }
+}
+
+enum status check_document(const json_t *document, const struct schema *schema,
+                           struct reason *reason)
+{
+    const json_t *members = json_object_get(schema->document, "members");
+    if (!members)
+        return refuse(reason, STATUS_BAD_DATA, "a %s is an HDF5 file, not JSON",
+                      schema->name);
+    size_t k;
+    json_t *entry;
+    json_array_foreach(members, k, entry)
+    {
+        const char *name = json_string_value(json_object_get(entry, "name"));
+        const char *type = json_string_value(json_object_get(entry, "type"));
+        const json_t *value = json_object_get(document, name + 1);
+        if (!value) return refuse(reason, STATUS_BAD_DATA, "%s: is missing", name);
+        if (!has_json_type(value, type))
+            return refuse(reason, STATUS_BAD_DATA, "%s: must be of type %s", name,
+                          type);
+    }
+    return STATUS_OK;
+}

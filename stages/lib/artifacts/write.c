@@ -58,14 +58,6 @@ static void put_text_attribute(hid_t object, const char *name, const char *text)
     H5Tclose(type);
 }
 
-// Creates the groups on the way to NAME and says with which properties links are made.
-static hid_t with_parents(void)
-{
-    const hid_t list = H5Pcreate(H5P_LINK_CREATE);
-    H5Pset_create_intermediate_group(list, 1);
-    return list;
-}
-
 // Groups made on the way by HDF5 itself would carry a time stamp: make them beforehand.
 static void make_groups(hid_t file, const char *name)
 {
@@ -229,14 +221,13 @@ static void put_vtk_cells(hid_t file, const int64_t *connectivity, int n_cell, i
 
 static void link_data(hid_t file, const char *group, const char *const *names)
 {
-    const hid_t creation = with_parents();
     for (int k = 0; names && names[k]; k++) {
         char path[128];
         snprintf(path, sizeof path, "/VTKHDF/%s/%s", group, strrchr(names[k], '/') + 1);
         make_groups(file, path);
-        done(H5Lcreate_hard(file, names[k], file, path, creation, H5P_DEFAULT), path);
+        done(H5Lcreate_hard(file, names[k], file, path, H5P_DEFAULT, H5P_DEFAULT),
+             path);
     }
-    H5Pclose(creation);
 }
 
 void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point,
@@ -322,6 +313,13 @@ void finish_json(json_t *document, const struct invocation *invocation, json_t *
     json_t *members = provenance(invocation, inputs, model);
     json_object_update(document, members);
     json_decref(members);
+    struct schema *schema =
+        schema_find(json_string_value(json_object_get(document, "schema")));
+    struct reason reason;
+    if (check_document(document, schema, &reason))
+        die(STATUS_INTERNAL, "would write a %s that breaks its own schema: %s",
+            schema->name, reason.text);
+    schema_free(schema);
     char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(document);
     char *line = allocate(strlen(text) + 2, 1);
