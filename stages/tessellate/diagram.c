@@ -15,9 +15,7 @@ static const double first_reach = 2;
 static double mean_spacing(const struct packing *packing)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
-    double diameter = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        diameter += 2 * packing->radius[i] / packing->n_particle;
+    const double diameter = mean_diameter(packing);
     const double share = edge.x / diameter * (edge.y / diameter) * (edge.z / diameter);
     return fmax(1, cbrt(share / packing->n_particle));
 }

@@ -12,7 +12,7 @@ static double round_to_grid(double x)
     return grid * nearbyint(x / grid);
 }
 
-static double mean_diameter(const struct packing *packing)
+double mean_diameter(const struct packing *packing)
 {
     double sum = 0;
     for (int i = 0; i < packing->n_particle; i++)

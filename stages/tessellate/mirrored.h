@@ -31,4 +31,7 @@ enum status mirror_grains(const struct packing *packing, double reach, bool powe
                           struct generators *generators, struct reason *reason);
 void generators_free(struct generators *generators);
 
+// The unit of length, m.
+double mean_diameter(const struct packing *packing);
+
 #endif
