@@ -2,6 +2,7 @@
 #include "write_response.h"
 
 #include "basics/memory.h"
+#include "geometry/neighbours.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -55,13 +56,6 @@ static void append(struct contact_list *list, const int32_t pair[2])
 {
     GROW_ARRAY(list->pair, list->count, list->capacity);
     memcpy(list->pair[list->count++], pair, sizeof *list->pair);
-}
-
-static int compare_pairs(const void *a, const void *b)
-{
-    const int32_t *first = a, *second = b;
-    if (first[0] != second[0]) return first[0] < second[0] ? -1 : 1;
-    return (first[1] > second[1]) - (first[1] < second[1]);
 }
 
 // Pairs bonded at the start, or touching at a snapshot, each once; walls left out.

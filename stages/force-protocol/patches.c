@@ -39,9 +39,7 @@ static struct vector foot_of_face(const struct network *network, int face)
               j = network->face_particles[face][1];
     struct vector foot = packing->position[i];
     if (j < 0) {
-        const int wall = -1 - j;
-        const struct vector corner = wall % 2 ? packing->upper : packing->lower;
-        set_component(&foot, wall / 2, component(corner, wall / 2));
+        set_component(&foot, (-1 - j) / 2, wall_position(packing, -1 - j));
         return foot;
     }
     const struct vector apart = subtract(packing->position[j], foot);

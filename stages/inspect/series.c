@@ -3,6 +3,7 @@
 
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "geometry/neighbours.h"
 #include "vtu.h"
 
 #include <stdlib.h>
@@ -120,18 +121,10 @@ struct crack_view {
 
 static int contact_of_bond(const struct crack_view *view, const int32_t bond[2])
 {
-    int low = 0, high = view->n_contact;
-    while (low < high) { // contacts are sorted by first, then second grain
-        const int middle = (low + high) / 2;
-        const int32_t *at = view->contact[middle];
-        if (at[0] < bond[0] || (at[0] == bond[0] && at[1] < bond[1]))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < view->n_contact && !memcmp(view->contact[low], bond, 2 * sizeof *bond)
-               ? low
-               : -1;
+    if (!view->n_contact) return -1;
+    const int32_t(*found)[2] = bsearch(bond, view->contact, (size_t)view->n_contact,
+                                       sizeof *view->contact, compare_pairs);
+    return found ? (int)(found - (const int32_t(*)[2])view->contact) : -1;
 }
 
 static void update_cracks(struct crack_view *view, const struct packing *packing,

@@ -64,10 +64,8 @@ static void place_union(struct merging *merging, int root, int other)
     merging->walls[root] |= merging->walls[other];
     for (int wall = 0; wall < WALL_COUNT; wall++)
         if (merging->walls[root] >> wall & 1)
-            set_component(
-                &merging->position[root], wall / 2,
-                component(wall % 2 ? network->packing.upper : network->packing.lower,
-                          wall / 2));
+            set_component(&merging->position[root], wall / 2,
+                          wall_position(&network->packing, wall));
 }
 
 // Unites the two nodes of throat T. False when it has to stay.

@@ -124,8 +124,6 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
         copy_packing(packing, &network->packing);
         copy_nodes(&nodes, &generators, network);
         report->n_closed = assemble_throats(&assembly, network);
-        report->n_image = generators.n - generators.n_particle;
-        report->mean_diameter = generators.unit;
         assemble_faces(&assembly, network);
         free(radius);
     }

@@ -20,10 +20,8 @@ struct tessellation {
 
 // What the network left out or had to decide.
 struct tessellation_report {
-    int hidden;           // grains without a cell of their own (power diagrams)
-    int n_image;          // reflected grains that were needed
-    int n_closed;         // throats whose clearance is below 0, taken as 0
-    double mean_diameter; // m
+    int hidden;   // grains without a cell of their own (power diagrams)
+    int n_closed; // throats whose clearance is below 0, taken as 0
 };
 
 // The network of PACKING truncated to its box. On success *NETWORK is the caller's; the

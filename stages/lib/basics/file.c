@@ -111,6 +111,23 @@ static char *follow_link(const char *path)
     return target;
 }
 
+// A device or a FIFO: nothing to rename over.
+static bool is_device(const char *path)
+{
+    struct stat information;
+    return !stat(path, &information) && !S_ISREG(information.st_mode) &&
+           !S_ISDIR(information.st_mode);
+}
+
+static void write_device(const char *path, const void *data, size_t size)
+{
+    const int descriptor = open(path, O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    signal(SIGPIPE, SIG_IGN);
+    if (!write_all(descriptor, data, size) || close(descriptor))
+        die(STATUS_IO, "%s: %s", path, strerror(errno));
+}
+
 void write_whole(const char *path, const void *data, size_t size)
 {
     if (!strcmp(path, "-")) {
@@ -119,14 +136,8 @@ void write_whole(const char *path, const void *data, size_t size)
     }
     if (!access(path, F_OK) && access(path, W_OK))
         die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
-    struct stat information;
-    if (!stat(path, &information) && !S_ISREG(information.st_mode) &&
-        !S_ISDIR(information.st_mode)) { // a device or a FIFO: nothing to rename over
-        const int descriptor = open(path, O_WRONLY | O_CLOEXEC);
-        if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
-        signal(SIGPIPE, SIG_IGN);
-        if (!write_all(descriptor, data, size) || close(descriptor))
-            die(STATUS_IO, "%s: %s", path, strerror(errno));
+    if (is_device(path)) {
+        write_device(path, data, size);
         return;
     }
     // With the signals held back, no half file can be left behind: nothing ends the

@@ -117,7 +117,7 @@ static void pair_with_cell(const struct packing *packing, const struct cells *ce
     }
 }
 
-static int compare_pairs(const void *a, const void *b)
+int compare_pairs(const void *a, const void *b)
 {
     const int32_t *first = a, *second = b;
     if (first[0] != second[0]) return first[0] < second[0] ? -1 : 1;

@@ -11,6 +11,9 @@
 // number; the caller frees the array.
 int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2];
 
+// Orders pairs of grains by the first, then the second; for qsort and bsearch.
+int compare_pairs(const void *a, const void *b);
+
 // From grain I to grain J, to its nearest image where the box repeats, m.
 struct vector nearest_image(const struct packing *packing, int i, int j);
 

@@ -3,6 +3,11 @@
 
 #include <stdlib.h>
 
+double wall_position(const struct packing *packing, int wall)
+{
+    return component(wall % 2 ? packing->upper : packing->lower, wall / 2);
+}
+
 void packing_free(struct packing *packing)
 {
     free(packing->position);

@@ -31,6 +31,9 @@ struct packing {
     int32_t (*bond)[2]; // (n_bond) the two bonded grains, lower index first
 };
 
+// Where wall 0..5 of the box stands along its axis, wall / 2; m.
+double wall_position(const struct packing *packing, int wall);
+
 // Frees what the packing owns and empties it; safe on an empty one.
 void packing_free(struct packing *packing);
 
