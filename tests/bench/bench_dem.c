@@ -5,8 +5,13 @@
 //
 //     bench_dem [THREADS]               the table
 //     bench_dem --lattice NX NY NZ      particle-steps a second of one lattice
+//     bench_dem --packing FILE KIND THREADS
+//                                       of grains at rest, read from FILE: lines x y z r
+//                                       and a comment "# box LX LY LZ periodic"; KIND is
+//                                       smooth, grip, hertz or bonded
 #include "basics/memory.h"
 #include "dem/engine.h"
+#include "geometry/neighbours.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -156,10 +161,87 @@ static int one_lattice(int nx, int ny, int nz)
     return 0;
 }
 
+static struct packing read_packing(const char *path)
+{
+    FILE *file = fopen(path, "r");
+    if (!file) die(STATUS_NO_INPUT, "%s: cannot open", path);
+    struct packing packing = {.periodic = {1, 1, 1}};
+    char line[256];
+    int capacity = 0;
+    struct vector upper = {0, 0, 0};
+    while (fgets(line, sizeof line, file)) {
+        struct vector x;
+        double radius;
+        if (sscanf(line, "# box %lf %lf %lf", &upper.x, &upper.y, &upper.z) == 3)
+            packing.upper = upper;
+        if (sscanf(line, "%lf %lf %lf %lf", &x.x, &x.y, &x.z, &radius) != 4) continue;
+        const int room = capacity;
+        GROW_ARRAY(packing.position, packing.n_particle, capacity);
+        if (capacity != room)
+            packing.radius = reallocate(packing.radius, (size_t)capacity, sizeof(double));
+        packing.position[packing.n_particle] = x;
+        packing.radius[packing.n_particle++] = radius;
+    }
+    fclose(file);
+    return packing;
+}
+
+// The pair stiffness 1e4 N/m, density, friction, damping and time step of
+// tests/bench/dem.
+static struct dem_setup at_rest(const struct packing *packing, const char *kind,
+                                int threads)
+{
+    const bool smooth = strcmp(kind, "smooth") == 0;
+    return (struct dem_setup){.packing = packing,
+                              .law = strcmp(kind, "hertz") == 0 ? DEM_HERTZ : DEM_LINEAR,
+                              .material = {.density = 2500,
+                                           .normal_stiffness = 2e4,
+                                           .shear_stiffness = 2e4 * 2 / 7,
+                                           .friction = smooth ? 0 : 0.5,
+                                           .damping_ratio = 0.2,
+                                           .young_modulus = 2.88e8,
+                                           .poisson_ratio = 0.25,
+                                           .restitution = 0.5},
+                              .bond = {.normal_stiffness = 1e9,
+                                       .shear_stiffness = 1e9,
+                                       .normal_strength = INFINITY,
+                                       .shear_strength = INFINITY,
+                                       .radius_fraction = 0.5},
+                              .time_step = 4.85e-6,
+                              .force_time_step = true,
+                              .threads = threads};
+}
+
+// For some seconds after a tenth of that to warm up.
+static int one_packing(const char *path, const char *kind, int threads)
+{
+    struct packing packing = read_packing(path);
+    if (strcmp(kind, "bonded") == 0)
+        packing.bond = neighbour_pairs(&packing, 0, &packing.n_bond);
+    const struct dem_setup setup = at_rest(&packing, kind, threads);
+    struct dem *dem;
+    struct reason reason;
+    if (dem_create(&dem, &setup, &reason) != STATUS_OK)
+        die(STATUS_INTERNAL, "%s", reason.text);
+    const double rough = 12e6 * threads;
+    const int64_t cycles = 1 + (int64_t)(3 * rough / dem->n_particle);
+    if (dem_run(dem, 1 + cycles / 10, &reason) != STATUS_OK)
+        die(STATUS_INTERNAL, "%s", reason.text);
+    const double start = now();
+    if (dem_run(dem, cycles, &reason) != STATUS_OK)
+        die(STATUS_INTERNAL, "%s", reason.text);
+    printf("%.0f\n", (double)cycles * dem->n_particle / (now() - start));
+    dem_free(dem);
+    packing_free(&packing);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 5 && strcmp(argv[1], "--lattice") == 0)
         return one_lattice(atoi(argv[2]), atoi(argv[3]), atoi(argv[4]));
+    if (argc == 5 && strcmp(argv[1], "--packing") == 0)
+        return one_packing(argv[2], argv[3], atoi(argv[4]));
     const int threads = argc > 1 ? atoi(argv[1]) : 1;
     const bool has_wide = __builtin_cpu_supports("avx512f");
     printf("triad: %.0f GB/s at 300 kB, %.0f at 1 MB, %.0f at 8 MB, %.0f at 300 MB\n",
@@ -179,7 +261,7 @@ int main(int argc, char **argv)
         struct packing packing = cubic_lattice(size[s][0], size[s][1], size[s][2]);
         for (int w = 0; w < 1 + has_wide; w++) {
             struct dem *dem = build(&packing, threads);
-            dem->sweep = w ? pair_sweep_wide : pair_sweep_narrow;
+            dem->sweep = (w ? pair_sweeps_wide : pair_sweeps_narrow)[dem->features];
             const double rate = particle_steps(dem, 5);
             const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
             const double flops = grain_flops + pairs * (pair_flops + 2 * slot_flops);

@@ -14,7 +14,7 @@ static struct slide slide_plate(double pushing, bool walls)
 {
     struct packing packing = cubic_lattice(3, 3, 1, false);
     struct dem_setup setup = stiff_setup(&packing);
-    const struct dem_wall floor = {{0, 0, 0}, {0, 0, 2}};
+    const struct dem_wall floor = {.point = {0, 0, 0}, .normal = {0, 0, 2}};
     setup.bond.normal_stiffness = setup.bond.shear_stiffness = 1e17;
     setup.wall = &floor;
     setup.n_wall = walls;
@@ -126,7 +126,7 @@ static void test_plates_slide_at_the_limit(void **state)
             const struct pair_geometry lie = pair_geometry(dem, p, 1);
             if (dem->pairs.bond[p] >= 0 || lie.overlap < 0) continue;
             const struct vector shear =
-                lane_vector(dem->pairs.group[p / 8].shear_force, p % 8);
+                lane_vector(dem->pairs.shear[p / 8].force, p % 8);
             const double limit = 0.5 * dem->law.normal_stiffness * lie.overlap;
             assert_true(norm(shear) <= limit * (1 + 1e-9));
             n_sliding += norm(shear) >= limit * (1 - 1e-9);

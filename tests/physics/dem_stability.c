@@ -140,7 +140,7 @@ static void test_bad_numbers(void **state)
     setup.bond.normal_stiffness = setup.bond.shear_stiffness = 0;
     assert_bad(setup, "stiffness");
     setup = good;
-    const struct dem_wall wall = {{0, 0, 0}, {0, 0, 0}};
+    const struct dem_wall wall = {.point = {0, 0, 0}, .normal = {0, 0, 0}};
     setup.wall = &wall;
     setup.n_wall = 1;
     assert_bad(setup, "wall 0");

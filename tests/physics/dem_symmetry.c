@@ -72,11 +72,11 @@ static void test_width_makes_no_difference(void **state)
     struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
     struct vector *force = random_vectors(N, 5e-10, 12);
     struct dem_setup setup = weak_setup(&packing);
-    pair_sweep *const sweep[2] = {pair_sweep_narrow, pair_sweep_wide};
-    struct dem *dem[2];
+        struct dem *dem[2];
     for (int k = 0; k < 2; k++) {
         dem[k] = loaded(&setup, force);
-        dem[k]->sweep = sweep[k];
+        const unsigned features = dem[k]->features;
+        dem[k]->sweep = k ? pair_sweeps_wide[features] : pair_sweeps_narrow[features];
         run(dem[k], 3000);
     }
     assert_in_range(cracks_of(dem[0]), 1, packing.n_bond);
@@ -229,14 +229,14 @@ static void test_history_turns_with_the_pair(void **state)
     const struct vector both[2] = {{0, spin, 0}, {0, spin, 0}};
     const struct vector velocity[2] = {{0, 0, spin * RADIUS}, {0, 0, -spin * RADIUS}};
     dem_set_velocity(dem, velocity, both);
-    struct pair_group *g = dem->pairs.group;
-    g->bond_shear_force[1][0] = 1e-9; // along the axis: stays
-    g->bond_shear_force[2][0] = 2e-9; // across: from z to x
-    dem->law.bond_shear_stiffness = 0;
-    dem->law.bond_normal_stiffness = 100; // holds them together
+    struct bond_group *g = dem->pairs.bonds;
+    g->shear_force[1][0] = 1e-9; // along the axis: stays
+    g->shear_force[2][0] = 2e-9; // across: from z to x
+    dem->bond_shear_stiffness = 0;
+    dem->bond_normal_stiffness = 100; // holds them together
     run(dem, steps);
-    g = dem->pairs.group; // they moved far enough for a new search
-    const struct vector force = lane_vector(g->bond_shear_force, 0);
+    g = dem->pairs.bonds; // they moved far enough for a new search
+    const struct vector force = lane_vector(g->shear_force, 0);
     assert_close(norm(force), sqrt(5) * 1e-9, 1e-5);
     assert_close(force.y, 1e-9, 1e-2);
     assert_close(fabs(force.x), 2e-9, 2e-2);

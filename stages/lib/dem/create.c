@@ -22,49 +22,177 @@ static bool is_finite_vector(struct vector a)
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
 }
 
+// A number in [LOW, HIGH]; an infinite HIGH itself is not in it unless OR_INFINITE.
 struct quantity {
     const char *name;
-    double value;
-    bool may_be_infinite;
+    double value, low, high;
+    bool above; // > LOW, not >=
+    bool or_infinite;
 };
 
-static enum status check_numbers(const struct dem_setup *setup, struct reason *reason)
+static enum status check_quantity(const struct quantity *q, struct reason *reason)
 {
-    const struct dem_material *m = &setup->material;
-    const struct dem_bond_material *b = &setup->bond;
-    const struct quantity quantity[] = {
-        {"normal stiffness", m->normal_stiffness, false},
-        {"shear stiffness", m->shear_stiffness, false},
-        {"friction", m->friction, false},
-        {"damping ratio", m->damping_ratio, false},
-        {"local damping", m->local_damping, false},
-        {"normal stiffness of bonds", b->normal_stiffness, false},
-        {"shear stiffness of bonds", b->shear_stiffness, false},
-        {"normal strength of bonds", b->normal_strength, true},
-        {"shear strength of bonds", b->shear_strength, true}};
-    for (size_t k = 0; k < sizeof quantity / sizeof *quantity; k++) {
-        const struct quantity q = quantity[k];
-        if (!(q.value >= 0) || (isinf(q.value) && !q.may_be_infinite))
-            return refuse(reason, STATUS_BAD_DATA, "%s must be >= 0, got %g", q.name,
-                          q.value);
+    const bool low = q->above ? q->value > q->low : q->value >= q->low;
+    const bool high = q->value <= q->high && (!isinf(q->value) || q->or_infinite);
+    if (low && high) return STATUS_OK;
+    if (isinf(q->high))
+        return refuse(reason, STATUS_BAD_DATA, "%s must be %s %g, got %g", q->name,
+                      q->above ? ">" : ">=", q->low, q->value);
+    return refuse(reason, STATUS_BAD_DATA, "%s must be in %c%g,%g], got %g", q->name,
+                  q->above ? '(' : '[', q->low, q->high, q->value);
+}
+
+static enum status check_quantities(const struct quantity *q, size_t count,
+                                    struct reason *reason)
+{
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < count && status == STATUS_OK; k++)
+        status = check_quantity(&q[k], reason);
+    return status;
+}
+#define CHECK(list, reason) check_quantities(list, sizeof(list) / sizeof *(list), reason)
+
+static enum status check_material(const struct dem_material *m, enum dem_law law,
+                                  struct reason *reason)
+{
+    const double no_limit = INFINITY;
+    const struct quantity common[] = {
+        {"density", m->density, 0, no_limit, true, false},
+        {"friction", m->friction, 0, no_limit, false, false},
+        {"local damping", m->local_damping, 0, 0x1.fffffffffffffp-1, false, false}};
+    const struct quantity linear[] = {
+        {"normal stiffness", m->normal_stiffness, 0, no_limit, false, false},
+        {"shear stiffness", m->shear_stiffness, 0, no_limit, false, false},
+        {"damping ratio", m->damping_ratio, 0, no_limit, false, false}};
+    const struct quantity timed[] = {
+        {"contact time", m->contact_time, 0, no_limit, true, false},
+        {"restitution", m->restitution, 0, 1, true, false}};
+    const struct quantity hertz[] = {
+        {"Young's modulus", m->young_modulus, 0, no_limit, true, false},
+        {"Poisson's ratio", m->poisson_ratio, 0, 0.5, false, false},
+        {"restitution", m->restitution, 0, 1, true, false}};
+    const enum status status = CHECK(common, reason);
+    if (status != STATUS_OK) return status;
+    return law == DEM_HERTZ   ? CHECK(hertz, reason)
+           : law == DEM_TIMED ? CHECK(timed, reason)
+                              : CHECK(linear, reason);
+}
+
+static const struct dem_material *material(const struct dem_setup *setup, int kind)
+{
+    return kind == 0 ? &setup->material : &setup->other[kind - 1];
+}
+
+static enum status check_materials(const struct dem_setup *setup, struct reason *reason)
+{
+    const int n = 1 + setup->n_other;
+    for (int k = 0; k < n; k++) {
+        const enum status status =
+            check_material(material(setup, k), setup->law, reason);
+        if (status != STATUS_OK) return status;
     }
-    if (m->local_damping >= 1)
-        return refuse(reason, STATUS_BAD_DATA, "local damping must be < 1, got %g",
-                      m->local_damping);
-    if (!(m->density > 0) || isinf(m->density))
-        return refuse(reason, STATUS_BAD_DATA, "density must be > 0 kg/m3, got %g",
-                      m->density);
-    if (!(setup->time_step_safety > 0) || isinf(setup->time_step_safety))
-        return refuse(reason, STATUS_BAD_DATA, "time step safety must be > 0, got %g",
-                      setup->time_step_safety);
-    if (setup->packing->n_bond > 0 &&
+    for (int k = 0; k < n * n; k++) {
+        const double friction = setup->pair_friction ? setup->pair_friction[k] : 0;
+        const double rebound = setup->pair_restitution ? setup->pair_restitution[k] : 1;
+        if (!(friction >= 0) || isinf(friction) || !(rebound > 0 && rebound <= 1))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "materials %d and %d: friction must be >= 0 and restitution "
+                          "in (0,1], got %g and %g",
+                          k / n, k % n, friction, rebound);
+    }
+    for (int i = 0; setup->material_of && i < setup->packing->n_particle; i++)
+        if (setup->material_of[i] >= n)
+            return refuse(reason, STATUS_BAD_DATA, "grain %d: no material %d among %d",
+                          i, setup->material_of[i], n);
+    return STATUS_OK;
+}
+
+static enum status check_bonds(const struct dem_setup *setup, struct reason *reason)
+{
+    const struct dem_bond_material *b = &setup->bond;
+    const double no_limit = INFINITY;
+    const struct quantity quantity[] = {
+        {"normal stiffness of bonds", b->normal_stiffness, 0, no_limit, false, false},
+        {"shear stiffness of bonds", b->shear_stiffness, 0, no_limit, false, false},
+        {"normal strength of bonds", b->normal_strength, 0, no_limit, false, true},
+        {"shear strength of bonds", b->shear_strength, 0, no_limit, false, true}};
+    const enum status status = CHECK(quantity, reason);
+    if (status != STATUS_OK || setup->packing->n_bond == 0) return status;
+    if (b->kind == DEM_PARALLEL_BOND &&
         !(b->radius_fraction > 0 && b->radius_fraction <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "radius fraction of bonds must be in (0,1], got %g",
                       b->radius_fraction);
-    if (setup->threads < 1)
-        return refuse(reason, STATUS_BAD_DATA, "threads must be >= 1, got %d",
-                      setup->threads);
+    if (b->kind == DEM_CONTACT_BOND && setup->law == DEM_HERTZ)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "contact bonds pull with the contact's springs, and a Hertz "
+                      "contact has none in tension [K 4.2]");
+    for (int k = 0; k < setup->packing->n_bond; k++)
+        if ((setup->normal_strength && !(setup->normal_strength[k] >= 0)) ||
+            (setup->shear_strength && !(setup->shear_strength[k] >= 0)))
+            return refuse(reason, STATUS_BAD_DATA, "bond %d: strengths must be >= 0",
+                          k);
+    return STATUS_OK;
+}
+
+static enum status check_numbers(const struct dem_setup *setup, struct reason *reason)
+{
+    enum status status = check_materials(setup, reason);
+    if (status == STATUS_OK) status = check_bonds(setup, reason);
+    if (status != STATUS_OK) return status;
+    const double no_limit = INFINITY;
+    const struct quantity step[] = {
+        {"time step safety", setup->time_step > 0 ? 1 : setup->time_step_safety, 0,
+         no_limit, true, false},
+        {"time step", setup->time_step, 0, no_limit, false, false},
+        {"largest overlap", setup->largest_overlap, 0, 1, false, false},
+        {"threads", setup->threads, 1, no_limit, false, false}};
+    if (!is_finite_vector(setup->gravity))
+        return refuse(reason, STATUS_BAD_DATA, "gravity is not finite");
+    return CHECK(step, reason);
+}
+
+static bool has_direction(enum dem_wall_shape shape)
+{
+    return shape == DEM_PLANE || shape == DEM_CYLINDER || shape == DEM_RING;
+}
+
+static enum status check_wall(const struct dem_setup *setup, int w,
+                              struct reason *reason)
+{
+    const struct dem_wall *wall = &setup->wall[w];
+    const enum dem_wall_shape shape = wall->shape;
+    const struct vector edge = wall->half_edge;
+    const bool round = shape != DEM_PLANE && shape != DEM_BLOCK;
+    if (!is_finite_vector(wall->point) ||
+        (has_direction(shape) &&
+         !(is_finite_vector(wall->normal) && norm(wall->normal) > 0)))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: needs a point and a normal that is not zero", w);
+    if ((round && !(wall->radius > 0 && isfinite(wall->radius))) ||
+        (shape == DEM_RING &&
+         !(wall->inner_radius >= 0 && wall->inner_radius < wall->radius)))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: needs a radius > 0 and an inner one below it, got %g and "
+                      "%g",
+                      w, wall->radius, wall->inner_radius);
+    if (shape == DEM_BLOCK &&
+        !(is_finite_vector(edge) && edge.x > 0 && edge.y > 0 && edge.z > 0))
+        return refuse(reason, STATUS_BAD_DATA, "wall %d: needs half edges > 0", w);
+    if (wall->material < 0 || wall->material > setup->n_other ||
+        (wall->has_friction && !(wall->friction >= 0 && isfinite(wall->friction))))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: no such material (%d) or friction (%g)", w,
+                      wall->material, wall->friction);
+    if (!is_finite_vector(wall->velocity) || !is_finite_vector(wall->spin))
+        return refuse(reason, STATUS_BAD_DATA, "wall %d: its motion is not finite", w);
+    if (wall->servo_force != 0 &&
+        !(wall->servo_force > 0 && isfinite(wall->servo_force) && shape == DEM_PLANE &&
+          wall->servo_largest_speed > 0 && isfinite(wall->servo_largest_speed)))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: a servo moves a plane, by a force and a largest speed "
+                      "> 0, got %g and %g",
+                      w, wall->servo_force, wall->servo_largest_speed);
     return STATUS_OK;
 }
 
@@ -90,19 +218,18 @@ static enum status check_scene(const struct dem_setup *setup, struct reason *rea
             return refuse(reason, STATUS_BAD_DATA, "bond %d: joins grain %d to itself",
                           b, end[0]);
     }
-    for (int w = 0; w < setup->n_wall; w++)
-        if (!is_finite_vector(setup->wall[w].point) ||
-            !is_finite_vector(setup->wall[w].normal) ||
-            !(norm(setup->wall[w].normal) > 0))
-            return refuse(reason, STATUS_BAD_DATA,
-                          "wall %d: needs a point and a normal that is not zero", w);
+    for (int w = 0; w < setup->n_wall; w++) {
+        const enum status status = check_wall(setup, w, reason);
+        if (status != STATUS_OK) return status;
+    }
     return STATUS_OK;
 }
 
 static double grain_mass(const struct dem_setup *setup, int particle)
 {
+    const int kind = setup->material_of ? setup->material_of[particle] : 0;
     const double radius = setup->packing->radius[particle];
-    return setup->material.density * (4.0 / 3 * M_PI) * radius * radius * radius;
+    return material(setup, kind)->density * (4.0 / 3 * M_PI) * radius * radius * radius;
 }
 
 static double bond_radius(const struct dem_setup *setup, int bond)
@@ -112,100 +239,183 @@ static double bond_radius(const struct dem_setup *setup, int bond)
            fmin(setup->packing->radius[end[0]], setup->packing->radius[end[1]]);
 }
 
-// The largest translational stiffness between two grains, or a grain and a wall, N/m.
-static double largest_stiffness(const struct dem_setup *setup)
+// The largest translational stiffness between two grains, or a grain and a wall, N/m,
+// of linear contacts and bonds.
+static double largest_linear_stiffness(const struct dem_setup *setup)
 {
-    const struct dem_material *m = &setup->material;
-    const double grain = fmax(m->normal_stiffness, m->shear_stiffness);
+    double normal_stiffness = 0, shear_stiffness = 0;
+    for (int k = 0; k <= setup->n_other; k++) {
+        const struct dem_material *m = material(setup, k);
+        normal_stiffness = fmax(normal_stiffness, m->normal_stiffness);
+        shear_stiffness = fmax(shear_stiffness, m->shear_stiffness);
+    }
+    const double grain = fmax(normal_stiffness, shear_stiffness);
     double largest = setup->n_wall > 0 ? grain : 0.5 * grain;
+    if (setup->bond.kind == DEM_CONTACT_BOND) return largest;
     for (int b = 0; b < setup->packing->n_bond; b++) {
         const double radius = bond_radius(setup, b), area = M_PI * radius * radius;
         const double normal =
-            0.5 * m->normal_stiffness + setup->bond.normal_stiffness * area;
-        const double shear =
-            0.5 * m->shear_stiffness + setup->bond.shear_stiffness * area;
+            0.5 * normal_stiffness + setup->bond.normal_stiffness * area;
+        const double shear = 0.5 * shear_stiffness + setup->bond.shear_stiffness * area;
         largest = fmax(largest, fmax(normal, shear));
     }
     return largest;
 }
 
+// [G 2] with the heaviest pair, or grain and wall; and the heaviest grain as such.
+static double largest_timed_stiffness(const struct dem_setup *setup, double heaviest)
+{
+    double logarithm = 0;
+    for (int k = 0; k <= setup->n_other; k++)
+        logarithm = fmin(logarithm, log(material(setup, k)->restitution));
+    const int n = 1 + setup->n_other;
+    for (int k = 0; setup->pair_restitution && k < n * n; k++)
+        logarithm = fmin(logarithm, log(setup->pair_restitution[k]));
+    const double t = setup->material.contact_time;
+    const double mass = setup->n_wall > 0 ? heaviest : 0.5 * heaviest;
+    return mass * (M_PI * M_PI + logarithm * logarithm) / (t * t);
+}
+
+// Of the stiffest material at the largest overlap expected: 2 E* sqrt(R* U), against a
+// rigid wall the most.
+static double largest_hertz_stiffness(const struct dem_setup *setup, double mean_radius,
+                                      double largest_radius)
+{
+    double modulus = 0;
+    for (int k = 0; k <= setup->n_other; k++) {
+        const struct dem_material *m = material(setup, k);
+        modulus = fmax(modulus,
+                       m->young_modulus / (1 - m->poisson_ratio * m->poisson_ratio));
+    }
+    const double share = setup->largest_overlap > 0 ? setup->largest_overlap : 0.01;
+    return 2 * modulus * sqrt(share * mean_radius * largest_radius);
+}
+
 static struct units choose_units(const struct dem_setup *setup)
 {
     const int n = setup->packing->n_particle;
-    struct units unit = {.length = 1, .mass = 1, .stiffness = largest_stiffness(setup)};
-    if (n > 0) {
-        double radius = 0, mass = 0;
-        for (int i = 0; i < n; i++) {
-            radius += setup->packing->radius[i];
-            mass += grain_mass(setup, i);
-        }
-        unit.length = radius / n;
-        unit.mass = mass / n;
+    double radius = 0, largest_radius = 0, mass = 0, heaviest = 0;
+    for (int i = 0; i < n; i++) {
+        radius += setup->packing->radius[i];
+        largest_radius = fmax(largest_radius, setup->packing->radius[i]);
+        mass += grain_mass(setup, i);
+        heaviest = fmax(heaviest, grain_mass(setup, i));
     }
+    struct units unit = {.length = n > 0 ? radius / n : 1, .mass = n > 0 ? mass / n : 1};
+    if (n == 0)
+        unit.stiffness = 1;
+    else if (setup->law == DEM_HERTZ)
+        unit.stiffness = largest_hertz_stiffness(setup, unit.length, largest_radius);
+    else if (setup->law == DEM_TIMED)
+        unit.stiffness = largest_timed_stiffness(setup, heaviest);
+    else
+        unit.stiffness = largest_linear_stiffness(setup);
     unit.time = sqrt(unit.mass / unit.stiffness);
     return unit;
 }
 
-// A contact whose stiffness is SERIES of a grain's: a half between two [K 4.22], all of
-// it against a rigid wall.
-static struct contact_law contact_law(const struct dem_setup *setup,
-                                      const struct units *unit, double series)
+static void take_materials(struct dem *dem, const struct dem_setup *setup)
 {
-    const struct dem_material *m = &setup->material;
-    struct contact_law law = {
-        .normal_stiffness = series * m->normal_stiffness / unit->stiffness,
-        .shear_stiffness = series * m->shear_stiffness / unit->stiffness,
-        .friction = m->friction};
-    law.normal_damping = 2 * m->damping_ratio * sqrt(law.normal_stiffness);
-    law.shear_damping = 2 * m->damping_ratio * sqrt(law.shear_stiffness);
-    const double area = unit->length * unit->length;
-    law.bond_normal_stiffness = setup->bond.normal_stiffness * area / unit->stiffness;
-    law.bond_shear_stiffness = setup->bond.shear_stiffness * area / unit->stiffness;
-    return law;
+    const int n = dem->n_material = 1 + setup->n_other;
+    const double stiffness = dem->unit.stiffness, length = dem->unit.length;
+    dem->material = NEW_ARRAY(struct material, n);
+    dem->pair_friction = NEW_ARRAY(double, n * n);
+    dem->pair_restitution = NEW_ARRAY(double, n * n);
+    for (int k = 0; k < n; k++) {
+        const struct dem_material *m = material(setup, k);
+        dem->material[k] = (struct material){
+            .density = m->density / dem->unit.mass * length * length * length,
+            .normal_stiffness = m->normal_stiffness / stiffness,
+            .shear_stiffness = m->shear_stiffness / stiffness,
+            .damping_ratio = m->damping_ratio,
+            .young_modulus = m->young_modulus / stiffness * length,
+            .poisson_ratio = m->poisson_ratio};
+        for (int l = 0; l < n; l++) {
+            const struct dem_material *other = material(setup, l);
+            dem->pair_friction[n * k + l] = setup->pair_friction
+                                                ? setup->pair_friction[n * k + l]
+                                                : fmin(m->friction, other->friction);
+            dem->pair_restitution[n * k + l] =
+                setup->pair_restitution ? setup->pair_restitution[n * k + l]
+                                        : fmin(m->restitution, other->restitution);
+        }
+    }
+    dem->contact_time = setup->material.contact_time / dem->unit.time;
+    dem->local_damping = setup->material.local_damping;
+    const double area = length * length;
+    dem->bond_kind = setup->bond.kind;
+    dem->bond_normal_stiffness = setup->bond.normal_stiffness * area / stiffness;
+    dem->bond_shear_stiffness = setup->bond.shear_stiffness * area / stiffness;
 }
 
-static void take_grains(struct dem *dem, const struct dem_setup *setup)
+static void new_grains(struct dem *dem, int n)
 {
-    const struct packing *packing = setup->packing;
-    const int n = dem->n_particle = packing->n_particle;
     const size_t with_nobody = (size_t)n + 1;
+    dem->n_particle = n;
+    dem->identity = NEW_ARRAY(int32_t, n);
+    dem->number = NEW_ARRAY(int32_t, n);
     dem->start = NEW_ARRAY(struct vector, n);
     dem->place = allocate_aligned(with_nobody, sizeof *dem->place);
     dem->motion = allocate_aligned(with_nobody, sizeof *dem->motion);
     dem->external = allocate_aligned((size_t)n, sizeof *dem->external);
     dem->mobility = allocate((size_t)n, sizeof *dem->mobility);
     dem->mass = NEW_ARRAY(double, n);
+    dem->weight = NEW_ARRAY(double, n);
+    dem->material_of = NEW_ARRAY(uint8_t, n);
     dem->slot_offset = NEW_ARRAY(int, n + 1);
     dem->first_group = NEW_ARRAY(int, n);
     dem->last_group = NEW_ARRAY(int, n);
     dem->place_at_search = NEW_ARRAY(struct vector, n);
+    if (dem->balance_energy)
+        dem->grain_books = allocate((size_t)n, sizeof *dem->grain_books);
+}
+
+static void take_box(struct dem *dem, const struct packing *packing)
+{
     double furthest = 1;
-    for (int i = 0; i < n; i++) {
-        const struct vector x = packing->position[i];
-        const double length = dem->unit.length, radius = packing->radius[i] / length;
-        dem->start[i] = (struct vector){x.x / length, x.y / length, x.z / length};
-        dem->place[i].radius = radius;
-        dem->mass[i] = grain_mass(setup, i) / dem->unit.mass;
-        dem->largest_radius = fmax(dem->largest_radius, radius);
+    for (int i = 0; i < dem->n_particle; i++)
         for (int axis = 0; axis < 3; axis++)
             furthest = fmax(furthest, fabs(component(dem->start[i], axis)));
-        if (setup->fixed && setup->fixed[i]) continue;
-        dem->mobility[i][0] = 1 / dem->mass[i];
-        dem->mobility[i][1] = 1 / (0.4 * dem->mass[i] * radius * radius);
-    }
     dem->coordinate_error = 16 * 0x1p-53 * furthest;
     for (int axis = 0; axis < 3; axis++) {
         dem->box_lower[axis] = component(packing->lower, axis) / dem->unit.length;
+        dem->box_upper[axis] = component(packing->upper, axis) / dem->unit.length;
         if (packing->periodic[axis])
-            dem->period[axis] = component(packing->upper, axis) / dem->unit.length -
-                                dem->box_lower[axis];
+            dem->period[axis] = dem->box_upper[axis] - dem->box_lower[axis];
     }
+}
+
+static void take_grains(struct dem *dem, const struct dem_setup *setup)
+{
+    const struct packing *packing = setup->packing;
+    const double length = dem->unit.length;
+    new_grains(dem, packing->n_particle);
+    for (int i = 0; i < dem->n_particle; i++) {
+        const struct vector x = packing->position[i];
+        dem->identity[i] = dem->number[i] = i;
+        dem->start[i] = (struct vector){x.x / length, x.y / length, x.z / length};
+        dem->place[i].radius = packing->radius[i] / length;
+        if (setup->material_of) dem->material_of[i] = setup->material_of[i];
+    }
+    const double unit = length / (dem->unit.time * dem->unit.time);
+    dem->gravity = (struct vector){setup->gravity.x / unit, setup->gravity.y / unit,
+                                   setup->gravity.z / unit};
+    dem->density_scaling = setup->density_scaling;
+    static const uint8_t none[1];
+    uint8_t *fixed = NEW_ARRAY(uint8_t, dem->n_particle);
+    if (setup->fixed) memcpy(fixed, setup->fixed, (size_t)dem->n_particle);
+    weigh_grains(dem, dem->n_particle > 0 ? fixed : none);
+    free(fixed);
+    set_external(dem);
+    take_box(dem, packing);
 }
 
 static void take_bonds(struct dem *dem, const struct dem_setup *setup)
 {
     const int n = dem->n_bond = setup->packing->n_bond;
-    const double stress = dem->unit.stiffness / dem->unit.length;
+    const bool parallel = setup->bond.kind == DEM_PARALLEL_BOND;
+    const double unit = parallel ? dem->unit.stiffness / dem->unit.length
+                                 : dem->unit.stiffness * dem->unit.length;
     dem->bond_particle = allocate((size_t)n, sizeof *dem->bond_particle);
     dem->bond_radius = NEW_ARRAY(double, n);
     dem->bond_strength[DEM_CRACK_NORMAL] = NEW_ARRAY(double, n);
@@ -214,44 +424,97 @@ static void take_bonds(struct dem *dem, const struct dem_setup *setup)
         const int32_t *end = setup->packing->bond[b];
         dem->bond_particle[b][0] = end[0] < end[1] ? end[0] : end[1];
         dem->bond_particle[b][1] = end[0] < end[1] ? end[1] : end[0];
-        dem->bond_radius[b] = bond_radius(setup, b) / dem->unit.length;
-        dem->bond_strength[DEM_CRACK_NORMAL][b] = setup->bond.normal_strength / stress;
-        dem->bond_strength[DEM_CRACK_SHEAR][b] = setup->bond.shear_strength / stress;
+        dem->bond_radius[b] = parallel ? bond_radius(setup, b) / dem->unit.length : 0;
+        const double normal =
+            setup->normal_strength ? setup->normal_strength[b] : setup->bond.normal_strength;
+        const double shear =
+            setup->shear_strength ? setup->shear_strength[b] : setup->bond.shear_strength;
+        dem->bond_strength[DEM_CRACK_NORMAL][b] = normal / unit;
+        dem->bond_strength[DEM_CRACK_SHEAR][b] = shear / unit;
     }
+}
+
+static struct vector scaled(struct vector a, double unit)
+{
+    return (struct vector){a.x / unit, a.y / unit, a.z / unit};
 }
 
 static void take_walls(struct dem *dem, const struct dem_setup *setup)
 {
+    const double length = dem->unit.length, time = dem->unit.time;
     dem->n_wall = setup->n_wall;
-    dem->wall = NEW_ARRAY(struct dem_wall, setup->n_wall);
+    dem->wall = NEW_ARRAY(struct rigid_wall, setup->n_wall);
     for (int w = 0; w < setup->n_wall; w++) {
-        const struct dem_wall *wall = &setup->wall[w];
-        const double length = dem->unit.length;
-        dem->wall[w] =
-            (struct dem_wall){.point = {wall->point.x / length, wall->point.y / length,
-                                        wall->point.z / length},
-                              .normal = scale(1 / norm(wall->normal), wall->normal)};
+        struct dem_wall wall = setup->wall[w];
+        wall.point = scaled(wall.point, length);
+        if (has_direction(wall.shape))
+            wall.normal = scale(1 / norm(wall.normal), wall.normal);
+        wall.radius /= length;
+        wall.inner_radius /= length;
+        wall.half_edge = scaled(wall.half_edge, length);
+        wall.velocity = scaled(wall.velocity, length / time);
+        wall.spin = scaled(wall.spin, 1 / time);
+        wall.servo_force /= dem->unit.stiffness * length;
+        wall.servo_largest_speed /= length / time;
+        dem->wall[w].is = wall;
     }
 }
 
-static void choose_time_step(struct dem *dem, double safety)
+static bool walls_grip(const struct dem_setup *setup)
 {
-    double lightest = 1;
+    bool grip = false;
+    for (int w = 0; w < setup->n_wall; w++)
+        grip = grip || (setup->wall[w].has_friction && setup->wall[w].friction > 0);
+    return grip;
+}
+
+// Whether every pair has the same numbers.
+static bool pairs_are_alike(const struct dem *dem)
+{
+    bool alike = dem->n_material == 1;
+    for (int i = 1; i < dem->n_particle && alike; i++)
+        alike = dem->mass[i] == dem->mass[0] &&
+                (dem->kind != DEM_HERTZ || dem->place[i].radius == dem->place[0].radius);
+    return alike;
+}
+
+static unsigned choose_features(const struct dem *dem, const struct dem_setup *setup)
+{
+    bool grip = dem->n_bond > 0 || walls_grip(setup);
+    for (int k = 0; k < dem->n_material * dem->n_material; k++)
+        grip = grip || dem->pair_friction[k] > 0;
+    unsigned features = 0;
+    if (grip) features |= FEATURE_TURN;
+    if (dem->kind == DEM_HERTZ) features |= FEATURE_HERTZ;
+    if (!pairs_are_alike(dem)) features |= FEATURE_OWN;
+    if (dem->n_bond > 0)
+        features |= dem->bond_kind == DEM_CONTACT_BOND ? FEATURE_CONTACT_BOND
+                                                       : FEATURE_PARALLEL_BOND;
+    return features;
+}
+
+static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
+{
+    double lightest = INFINITY;
     for (int i = 0; i < dem->n_particle; i++)
         lightest = fmin(lightest, dem->mass[i]);
-    dem->time_step = safety * 2 * sqrt(lightest); // [K 4.47]; the stiffness is 1
+    if (dem->n_particle == 0) lightest = 1;
+    // [K 4.47]; the stiffness is 1.
+    dem->time_step = setup->time_step > 0
+                         ? setup->time_step / dem->unit.time
+                         : setup->time_step_safety * 2 * sqrt(fmin(lightest, 1));
 }
 
 // Each pair must meet in one image only.
 static enum status check_periods(const struct dem *dem, struct reason *reason)
 {
-    const double least = 2 * (2 * dem->largest_radius + SEARCH_SKIN);
+    const double least = 2 * (2 * dem->largest_radius + FIRST_SKIN);
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] != 0 && !(dem->period[axis] >= least))
             return refuse(reason, STATUS_BAD_DATA,
                           "periodic box is %g m along %c, needs at least %g m",
                           dem->period[axis] * dem->unit.length, "xyz"[axis],
-                          least * dem -> unit.length);
+                          least * dem->unit.length);
     return STATUS_OK;
 }
 
@@ -263,9 +526,9 @@ static enum status check_pairs(const struct dem *dem, struct reason *reason)
         const double distance =
             dem->pairs.group[p / PAIRS_IN_GROUP].distance[p % PAIRS_IN_GROUP];
         if (distance <= 1e-9 * (dem->place[end[0]].radius + dem->place[end[1]].radius))
-            return refuse(reason, STATUS_BAD_DATA, "grains %d and %d coincide", end[0],
-                          end[1]);
-        n_bonded += dem->pairs.bond[p] >= 0;
+            return refuse(reason, STATUS_BAD_DATA, "grains %d and %d coincide",
+                          dem->identity[end[0]], dem->identity[end[1]]);
+        n_bonded += bond_of_pair(dem, p) >= 0;
     }
     if (n_bonded != dem->n_bond)
         return refuse(reason, STATUS_BAD_DATA, "%d bonds join only %d pairs of grains",
@@ -273,49 +536,56 @@ static enum status check_pairs(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
-static enum status check_time_step(const struct dem *dem, double safety,
+static enum status check_time_step(const struct dem *dem, const struct dem_setup *setup,
                                    struct reason *reason)
 {
-    if (dem->time_step <= dem->time_step_limit) return STATUS_OK;
+    const double step = dem_time_step(dem), limit = dem_time_step_limit(dem);
+    if (step <= limit) return STATUS_OK;
+    if (setup->time_step > 0)
+        return refuse(reason, STATUS_NOT_CONVERGED,
+                      "time step %g s is past the stability limit of %g s", step,
+                      limit);
     return refuse(
         reason, STATUS_NOT_CONVERGED,
         "time step %g s is past the stability limit of %g s: time_step_safety "
         "must be below %.3g, got %g",
-        dem_time_step(dem), dem_time_step_limit(dem),
-        safety * dem->time_step_limit / dem->time_step, safety);
+        step, limit, setup->time_step_safety * limit / step, setup->time_step_safety);
 }
 
-static pair_sweep *choose_sweep(void)
+static pair_sweep *choose_sweep(unsigned features)
 {
     const bool wide = __builtin_cpu_supports("avx512f") &&
                       __builtin_cpu_supports("avx512dq") &&
                       __builtin_cpu_supports("avx512vl");
-    return wide ? pair_sweep_wide : pair_sweep_narrow;
+    return wide ? pair_sweeps_wide[features] : pair_sweeps_narrow[features];
 }
 
 static enum status build(struct dem *dem, const struct dem_setup *setup,
                          struct reason *reason)
 {
     dem->unit = choose_units(setup);
-    dem->law = contact_law(setup, &dem->unit, 0.5);
-    dem->wall_law = contact_law(setup, &dem->unit, 1);
-    dem->local_damping = setup->material.local_damping;
+    dem->kind = setup->law;
     dem->threads = setup->threads;
-    dem->sweep = choose_sweep();
+    dem->balance_energy = setup->balance_energy;
+    dem->skin = FIRST_SKIN;
+    dem->expected_overlap = setup->largest_overlap > 0 ? setup->largest_overlap : 0.01;
+    take_materials(dem, setup);
     take_grains(dem, setup);
     take_bonds(dem, setup);
     take_walls(dem, setup);
-    choose_time_step(dem, setup->time_step_safety);
+    dem->features = choose_features(dem, setup);
+    dem->slot_stride = dem->features & FEATURE_TURN ? 8 : 4;
+    dem->sweep = choose_sweep(dem->features);
+    choose_time_step(dem, setup);
     enum status status = check_periods(dem, reason);
     if (status != STATUS_OK) return status;
+    renumber_grains(dem);
     find_pairs(dem);
     status = check_pairs(dem, reason);
     if (status != STATUS_OK) return status;
-    // Against the motion, local damping makes springs and dashpots stronger by its
-    // share: springs would allow its square root, dashpots do not.
-    dem->time_step_limit = stability_limit(dem) / (1 + dem->local_damping);
+    dem->time_step_limit = stability_limit(dem, false);
     if (setup->force_time_step) return STATUS_OK;
-    return check_time_step(dem, setup->time_step_safety, reason);
+    return check_time_step(dem, setup, reason);
 }
 
 enum status dem_create(struct dem **result, const struct dem_setup *setup,
@@ -326,7 +596,7 @@ enum status dem_create(struct dem **result, const struct dem_setup *setup,
     if (status != STATUS_OK) return status;
     status = check_scene(setup, reason);
     if (status != STATUS_OK) return status;
-    if (!(largest_stiffness(setup) > 0))
+    if (!(choose_units(setup).stiffness > 0))
         return refuse(reason, STATUS_BAD_DATA,
                       "neither grains nor bonds have a stiffness");
 

@@ -10,50 +10,68 @@
 void dem_free(struct dem *dem)
 {
     if (!dem) return;
-    free(dem->start);
-    free(dem->place);
-    free(dem->motion);
-    free(dem->external);
-    free(dem->mobility);
-    free(dem->mass);
-    free(dem->bond_particle);
-    free(dem->bond_radius);
-    free(dem->bond_strength[0]);
-    free(dem->bond_strength[1]);
-    free(dem->pairs.particle);
-    free(dem->pairs.bond);
-    free(dem->pairs.group);
-    free(dem->wall);
-    free(dem->wall_pair);
-    free(dem->slot_offset);
-    free(dem->first_group);
-    free(dem->last_group);
-    free(dem->slot);
-    free(dem->place_at_search);
-    free(dem->crack);
+    void *const owned[] = {
+        dem->material,      dem->pair_friction,    dem->pair_restitution,
+        dem->identity,      dem->number,           dem->start,
+        dem->place,         dem->motion,           dem->external,
+        dem->applied,       dem->mobility,         dem->mass,
+        dem->weight,        dem->material_of,      dem->bond_particle,
+        dem->bond_radius,   dem->bond_strength[0], dem->bond_strength[1],
+        dem->wall,          dem->wall_pair,        dem->slot_offset,
+        dem->first_group,   dem->last_group,       dem->slot,
+        dem->place_at_search, dem->grain_books,    dem->crack};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    free_pairs(&dem->pairs);
     free(dem);
 }
 
 void dem_set_force(struct dem *dem, const struct vector *force)
 {
     const double unit = dem->unit.stiffness * dem->unit.length;
-    for (int i = 0; i < dem->n_particle; i++)
-        for (int axis = 0; axis < 3; axis++)
-            dem->external[i][axis] = component(force[i], axis) / unit;
+    if (!dem->applied) dem->applied = NEW_ARRAY(struct vector, dem->n_particle);
+    for (int i = 0; i < dem->n_particle; i++) {
+        const struct vector f = force[dem->identity[i]];
+        dem->applied[i] = (struct vector){f.x / unit, f.y / unit, f.z / unit};
+    }
+    set_external(dem);
+}
+
+void dem_set_gravity(struct dem *dem, struct vector gravity)
+{
+    const double unit = dem->unit.length / (dem->unit.time * dem->unit.time);
+    dem->gravity =
+        (struct vector){gravity.x / unit, gravity.y / unit, gravity.z / unit};
+    set_external(dem);
 }
 
 void dem_set_velocity(struct dem *dem, const struct vector *velocity,
                       const struct vector *spin)
 {
     const double unit = dem->unit.length / dem->unit.time;
-    for (int i = 0; i < dem->n_particle; i++)
+    for (int i = 0; i < dem->n_particle; i++) {
+        const int32_t who = dem->identity[i];
         for (int axis = 0; axis < 3 && dem->mobility[i][0] > 0; axis++) {
             if (velocity)
-                dem->motion[i].linear[axis] = component(velocity[i], axis) / unit;
+                dem->motion[i].linear[axis] = component(velocity[who], axis) / unit;
             if (spin)
                 dem->motion[i].angular[axis] =
-                    component(spin[i], axis) * dem->unit.time;
+                    component(spin[who], axis) * dem->unit.time;
         }
+    }
+}
+
+void dem_set_friction(struct dem *dem, double friction)
+{
+    dem->pair_friction[0] = dem->law.friction = friction;
+    for (int p = 0; dem->pairs.own && p < dem->pairs.n_pair; p++)
+        set_pair_law(dem, p);
+    set_wall_laws(dem);
+}
+
+void dem_set_local_damping(struct dem *dem, double share)
+{
+    dem->local_damping = share;
 }
 
 // The first grain that groups before GROUP do not finish.
@@ -85,14 +103,11 @@ static void add_pace(struct outcome *outcome, struct pace pace)
 static struct outcome sweep_share(struct dem *dem, int begin, int end)
 {
     enum { BLOCK = 32 }; // groups, few enough for what they touch to stay cached
-    // Velocities given at the start have displaced nothing yet.
-    const double time_step = dem->cycle > 0 ? dem->time_step : 0;
     struct outcome outcome = {0, {0, true}};
     int grain = begin > 0 ? first_unfinished(dem, begin) : 0;
     for (int block = begin; block < end; block += BLOCK) {
         const int next = block + BLOCK < end ? block + BLOCK : end;
-        outcome.n_broken += dem->sweep(dem->pairs.group, block, next, dem->place,
-                                       dem->motion, dem->slot, &dem->law, time_step);
+        outcome.n_broken += dem->sweep(dem, block, next);
         const int finished = first_unfinished(dem, next);
         add_pace(&outcome, move_grains(dem, grain, finished, begin, false));
         grain = finished;
@@ -145,14 +160,31 @@ static void record_crack(struct dem *dem, int pair, int mode)
         .position = scale(dem->unit.length, pair_geometry(dem, pair, 1).position)};
 }
 
+static int by_bond(const void *a, const void *b)
+{
+    const struct dem_crack *p = a, *q = b;
+    return (p->bond > q->bond) - (p->bond < q->bond);
+}
+
 static void record_cracks(struct dem *dem)
 {
+    const int before = dem->n_crack;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
-        int8_t *crack = &dem->pairs.group[p / PAIRS_IN_GROUP].crack[p % PAIRS_IN_GROUP];
+        int8_t *crack = &dem->pairs.bonds[p / PAIRS_IN_GROUP].crack[p % PAIRS_IN_GROUP];
         if (*crack < 0) continue;
         record_crack(dem, p, *crack);
         *crack = -1;
     }
+    qsort(dem->crack + before, (size_t)(dem->n_crack - before), sizeof *dem->crack,
+          by_bond);
+}
+
+static double fastest_wall(const struct dem *dem)
+{
+    double fastest = 0;
+    for (int w = 0; w < dem->n_wall; w++)
+        fastest = fmax(fastest, norm(dem->wall[w].velocity));
+    return fastest;
 }
 
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
@@ -162,13 +194,15 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
         sweep_walls(dem);
         const struct outcome outcome = sweep(dem);
         if (outcome.n_broken > 0) record_cracks(dem);
-        dem->travelled += dem->time_step * sqrt(outcome.pace.largest);
+        move_walls(dem);
+        const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
+        dem->travelled += dem->time_step * fastest;
         if (!outcome.pace.sound)
             return refuse(
                 reason, STATUS_NOT_CONVERGED,
                 "diverged in cycle %lld: a grain would move more than %g mean "
                 "radii in one time step of %g s (stable below %g s)",
-                (long long)dem->cycle, 0.5 * SEARCH_SKIN, dem_time_step(dem),
+                (long long)dem->cycle, FURTHEST_STEP, dem_time_step(dem),
                 dem_time_step_limit(dem));
         dem->cycle++;
     }

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Discrete elements [K 4]: spherical grains with linear contacts [K 4.11-4.22], Coulomb
-// slip [K 4.25-4.26], contact dashpots [K 4.27-4.30] and breakable parallel bonds
-// [K 4.31-4.44], moved by leapfrog [K 4.1-4.6].
+// Discrete elements [K 4]: spherical grains, in space or in a plane, with linear [K
+// 4.22], timed [G 2] or Hertz-Mindlin [K 4.23] contacts, Coulomb slip [K 4.25-4.26],
+// contact dashpots [K 4.27-4.30], breakable contact and parallel bonds [K 4.31-4.44]
+// and walls that may move, moved by leapfrog [K 4.1-4.6].
 //
 // SI outside. Inside, lengths are counted in mean radii, masses in mean grain masses
 // and stiffnesses in the largest pair stiffness, and every grain is followed by its
 // displacement from where it began, so scenes of equal dimensionless numbers give equal
 // digits and an overlap of 1e-9 radii keeps all of its own. The results are the same
 // bytes for any number of threads, with AVX2 and with AVX-512.
+//
+// Only what the scene needs is computed: without friction and bonds grains neither turn
+// nor keep a history of shear, and with one radius and one material no pair has numbers
+// of its own (kernels.h).
 #ifndef CRAQUELURE_DEM_H
 #define CRAQUELURE_DEM_H
 
@@ -15,51 +20,109 @@
 #include "geometry/packing.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-// The grains, all of one material.
+enum dem_law {
+    DEM_LINEAR, // stiffness and damping ratio [K 4.22, 4.27-4.30]
+    DEM_TIMED,  // linear, by contact time and restitution [G 2], for any two grains
+    DEM_HERTZ   // Hertz-Mindlin [K 4.23], damped to a restitution for any speed
+};
+
+// What grains or walls are made of. Which members count depends on the law.
 struct dem_material {
     double density; // kg/m3, > 0
-    double
-        normal_stiffness; // N/m of a grain, >= 0; two in series make a contact [K 4.22]
-    double shear_stiffness; // N/m of a grain, >= 0
-    double friction;        // >= 0
-    double damping_ratio;   // zeta of [K 4.28], >= 0
+    // Linear: N/m of a grain, >= 0; two in series make a contact [K 4.22].
+    double normal_stiffness;
+    double shear_stiffness;
+    double friction;      // >= 0; the smaller of two counts [K 4.25]
+    double damping_ratio; // linear: zeta of [K 4.28], >= 0
     // Local damping: each component of the net force and moment on a grain is made
     // smaller by this share of itself while the grain moves its way, and larger while
     // it moves against it, so that whatever oscillates comes to rest (dashpots do not
-    // see grains that roll on each other). Not physical: for statics. In [0,1).
+    // see grains that roll on each other). Not physical: for statics. In [0,1). That of
+    // the first material counts for all.
     double local_damping;
+    double contact_time;  // timed: s, > 0; that of the first material counts for all
+    double restitution;   // timed, Hertz: in (0,1]; the smaller of two counts
+    double young_modulus; // Hertz: Pa, > 0
+    double poisson_ratio; // Hertz: in [0,0.5]
 };
 
-// The cylinder of glue between two bonded grains [K 4.2, parallel bond].
+enum dem_bond_kind {
+    DEM_PARALLEL_BOND, // a cylinder of glue: carries moments [K 4.31-4.44]
+    DEM_CONTACT_BOND   // a point of glue: the contact's own springs also in tension, no
+                       // slip, until one strength is reached [K 4.2]; linear laws only
+};
+
 struct dem_bond_material {
-    double normal_stiffness; // N/m3, >= 0
-    double shear_stiffness;  // N/m3, >= 0
-    double normal_strength;  // Pa, >= 0; INFINITY never breaks
-    double shear_strength;   // Pa, >= 0
-    double radius_fraction;  // bond radius over the smaller grain's, in (0,1]
+    double normal_stiffness; // parallel: N/m3, >= 0
+    double shear_stiffness;  // parallel: N/m3, >= 0
+    double normal_strength;  // parallel: Pa, contact: N; >= 0; INFINITY never breaks
+    double shear_strength;   // the same
+    double radius_fraction;  // parallel: bond radius over the smaller grain's, in (0,1]
+    enum dem_bond_kind kind;
 };
 
-// A rigid half space: grains stay on the side NORMAL points to. A grain touches it with
-// its own stiffness (in series with an infinite one) and the friction of the grains.
+enum dem_wall_shape {
+    DEM_PLANE,    // a half space: grains stay on the side NORMAL points to
+    DEM_CYLINDER, // endless, about the axis through POINT along NORMAL
+    DEM_SPHERE,   // about POINT
+    DEM_RING,     // a thin flat ring about POINT, normal to NORMAL; without an inner
+                  // radius a disc
+    DEM_BLOCK     // a solid box about POINT with edges along x, y and z
+};
+
+// A rigid wall. A grain touches it with its own stiffness (in series with an infinite
+// one) and the friction of the grains, unless the wall says otherwise.
 struct dem_wall {
     struct vector point;  // m
-    struct vector normal; // any length but zero
+    struct vector normal; // any length but zero; not for spheres and blocks
+    enum dem_wall_shape shape;
+    bool outside; // cylinder, sphere: grains are outside of it, otherwise inside
+    double radius;
+    double inner_radius;        // ring
+    struct vector half_edge;    // block
+    double friction;            // used if has_friction
+    bool has_friction;          // of its own
+    int material;               // > 0: elastic, of that material, for Hertz; 0: rigid
+    struct vector velocity;     // m/s
+    struct vector spin;         // rad/s about POINT; what would not leave the shape
+                                // where it is does not count
+    double servo_force;         // N; > 0: moves along its normal until the grains push
+                                // it with this much; planes only
+    double servo_largest_speed; // m/s, > 0 with a servo
 };
 
 // What dem_create builds from. Nothing of it is kept: the caller may free it
 // afterwards.
 struct dem_setup {
     const struct packing *packing; // with the bonds listed in it
-    struct dem_material material;
+    enum dem_law law;
+    struct dem_material material; // number 0
+    int n_other;                  // materials 1 to n_other
+    const struct dem_material *other;
+    const uint8_t *material_of; // (n_particle) NULL: 0
+    // (n_other+1)^2, symmetric, for pairs of materials; NULL: the smaller of the two
+    const double *pair_friction, *pair_restitution;
     struct dem_bond_material bond;
+    // (n_bond) NULL: those of `bond`
+    const double *normal_strength, *shear_strength;
     const uint8_t *fixed; // (n_particle) 1: neither moves nor turns; NULL: none
     int n_wall;
     const struct dem_wall *wall; // (n_wall)
-    double time_step_safety;     // time step over the critical one of [K 4.47], > 0
-    bool force_time_step;        // run even past the stability limit
-    int threads;                 // >= 1; used where there is enough to share
+    struct vector gravity;       // m/s2
+    // For statics: every grain is given the inertia of the mean one, so that small ones
+    // do not shorten the time step. Weights stay what they are.
+    bool density_scaling;
+    // Time step over the critical one of [K 4.47], > 0. The stiffness of Hertz contacts
+    // is taken at an overlap of LARGEST_OVERLAP mean radii.
+    double time_step_safety;
+    double time_step;       // s; > 0: this and not the safety decides
+    double largest_overlap; // Hertz: expected, over the mean radius; 0: 0.01
+    bool force_time_step;   // run even past the stability limit
+    bool balance_energy;    // keep the books that dem_energy reports
+    int threads;            // >= 1; used where there is enough to share
 };
 
 enum dem_crack_mode { DEM_CRACK_NORMAL = 0, DEM_CRACK_SHEAR = 1 };
@@ -81,9 +144,14 @@ struct dem_contact {
     struct vector position; // m, the contact point [K 4.9]
 };
 
+// kinetic + elastic + what was lost = what it began with + what was put in.
 struct dem_energy {
     double kinetic; // J, translation and rotation
     double elastic; // J, contacts and bonds
+    // Since the start, J; 0 unless balance_energy.
+    double gained; // work of gravity, of external forces and of walls that move
+    double dashpots, slip, local_damping; // lost
+    double broken;                        // elastic energy of bonds when they broke
 };
 
 struct dem_momentum {
@@ -94,24 +162,38 @@ struct dem_momentum {
 
 struct dem;
 
-// Starts at rest, without external force. Overlaps in the packing push from the start,
-// but those of the rounding of coordinates count as touching; bonds are stress free as
-// they lie. On success *RESULT is the caller's to free
-// with dem_free; otherwise it is NULL.
-// STATUS_BAD_DATA: a physically impossible number, coincident grains, a bond between
-// grains that do not exist or listed twice, or a periodic box too narrow for one image
-// of each pair. STATUS_NOT_CONVERGED: the time step is past the stability limit.
+// Starts at rest. Overlaps in the packing push from the start, but those of the rounding
+// of coordinates count as touching; bonds are stress free as they lie. On success
+// *RESULT is the caller's to free with dem_free; otherwise it is NULL.
+// STATUS_BAD_DATA: a physically impossible number, coincident bonded grains, a bond
+// between grains that do not exist or listed twice, or a periodic box too narrow for one
+// image of each pair. STATUS_NOT_CONVERGED: the time step is past the stability limit.
 enum status dem_create(struct dem **result, const struct dem_setup *setup,
                        struct reason *reason);
 void dem_free(struct dem *dem);
 
-// External force on every grain from the next cycle on, (n_particle) N.
+// External force on every grain from the next cycle on, (n_particle) N; gravity comes on
+// top.
 void dem_set_force(struct dem *dem, const struct vector *force);
 
-// Velocities (n_particle) m/s and angular velocities (n_particle) rad/s; NULL leaves
-// them.
+// Velocities (n_particle) m/s and angular velocities (n_particle) rad/s, of half a step
+// before now; NULL leaves them.
 void dem_set_velocity(struct dem *dem, const struct vector *velocity,
                       const struct vector *spin);
+
+// From the next cycle on.
+void dem_set_gravity(struct dem *dem, struct vector gravity);
+void dem_set_wall_motion(struct dem *dem, int wall, struct vector velocity,
+                         struct vector spin);
+void dem_set_servo(struct dem *dem, int wall, double force); // N; 0 stops it
+// Of material 0 and so of all grains, when pairs have no numbers of their own.
+void dem_set_friction(struct dem *dem, double friction);
+void dem_set_local_damping(struct dem *dem, double share);
+
+// The box with all centres, stretched along x, y and z about its lower corner, and all
+// radii by GROWTH; densities stay. Velocities and shear forces stay as they are. Only
+// without bonds. O(pairs).
+void dem_rescale(struct dem *dem, const double stretch[3], double growth);
 
 // CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would move
 // a tenth of the mean radius in one step, or a number is not finite); what is asked for
@@ -126,8 +208,10 @@ enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,
 int64_t dem_cycle(const struct dem *dem);    // cycles completed
 double dem_time_step(const struct dem *dem); // s
 // s, stable below, for the pairs near each other at the start (stability.c). Grains
-// that gather more neighbours later may need less: then only divergence is noticed.
+// that gather more neighbours later may need less: dem_time_step_limit_now looks at
+// those of the moment, in O(pairs).
 double dem_time_step_limit(const struct dem *dem);
+double dem_time_step_limit_now(const struct dem *dem);
 
 // Mean |F_i| over the grains that are not fixed, over mean |F_ij| over the contacts
 // [K 4.20]; 0 when nothing pulls, infinite when nothing resists. O(pairs).
@@ -135,12 +219,30 @@ double dem_unbalanced_ratio(const struct dem *dem);
 struct dem_energy dem_energy(const struct dem *dem);
 struct dem_momentum dem_momentum(const struct dem *dem);
 
+// How grains touch each other, walls apart, in the last cycle. O(pairs).
+struct dem_census {
+    int contacts;
+    double mean_overlap, largest_overlap; // over the mean radius
+    double stress[3][3];                  // Pa, compression > 0, over the volume of the
+                                          // box; of contacts and bonds
+};
+struct dem_census dem_census(const struct dem *dem);
+
+// What the grains do to a wall: force and moment about its POINT, as of the last cycle;
+// how far its POINT has moved, m.
+struct dem_wall_state {
+    struct vector force, moment, displacement;
+};
+struct dem_wall_state dem_wall_state(const struct dem *dem, int wall);
+
 // The state, written into arrays of n_particle vectors: m, m, m/s, rad/s. Positions are
-// not brought back into a box that repeats.
+// not brought back into a box that repeats. Displacements are from the last rescaling.
 void dem_positions(const struct dem *dem, struct vector *position);
 void dem_displacements(const struct dem *dem, struct vector *displacement);
 void dem_velocities(const struct dem *dem, struct vector *velocity);
 void dem_spins(const struct dem *dem, struct vector *spin);
+void dem_radii(const struct dem *dem, double *radius); // m
+void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper); // m
 
 // The contacts by first, then second grain, then those with walls; a new array of
 // *COUNT that the caller frees.
@@ -149,7 +251,25 @@ struct dem_contact *dem_contacts(const struct dem *dem, int *count);
 // Into an array of n_bond: 1 intact, 0 broken.
 void dem_bonds_intact(const struct dem *dem, uint8_t *intact);
 
-// Every crack so far, by cycle, then by pair. The engine's, until the next dem_run.
+// Every crack so far, by cycle, then by bond. The engine's, until the next dem_run.
 const struct dem_crack *dem_cracks(const struct dem *dem, int *count);
+
+// ---- restart ------------------------------------------------------------------------
+// The whole state as named arrays, so that an engine created from the same setup and
+// given them goes on to the same bytes as one that never stopped [restart.c].
+enum dem_array_type { DEM_FLOAT64, DEM_INT32, DEM_INT64, DEM_UINT8 };
+struct dem_array {
+    char name[32]; // "pair_shear_force"
+    enum dem_array_type type;
+    int64_t count;
+    void *data;
+};
+// A new list of *COUNT arrays, to be freed with dem_free_arrays.
+struct dem_array *dem_save(const struct dem *dem, int *count);
+void dem_free_arrays(struct dem_array *array, int count);
+// STATUS_BAD_DATA: arrays that are not those of such an engine; the engine must then be
+// freed.
+enum status dem_restore(struct dem *dem, const struct dem_array *array, int count,
+                        struct reason *reason);
 
 #endif

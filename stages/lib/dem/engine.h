@@ -10,6 +10,9 @@
 // does so with its share of the groups; grains that another thread's pairs have to do
 // with too wait until all are done. Nothing is summed across threads, so the order of
 // every sum is fixed.
+//
+// Grains of large scenes are numbered along a space-filling curve (order.c), so that
+// the partners of a grain are near it in memory too. `identity` tells their names.
 #ifndef CRAQUELURE_DEM_ENGINE_H
 #define CRAQUELURE_DEM_ENGINE_H
 
@@ -19,8 +22,22 @@
 
 enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
 
-// A grain may move half of this (in mean radii) before the pairs are sought again.
-#define SEARCH_SKIN 0.2
+// A grain may move half of this (in mean radii) before the pairs are sought again; at
+// the start, later tuned to how fast grains move (neighbours.c).
+#define FIRST_SKIN 0.2
+// No grain may move further than this (in mean radii) in one time step.
+#define FURTHEST_STEP 0.1
+
+// What a scene needs; the bits choose a compiled pair sweep.
+enum feature {
+    FEATURE_TURN = 1,  // grains turn and contacts have a history of shear
+    FEATURE_HERTZ = 2, // stiffness grows with the overlap
+    FEATURE_OWN = 4,   // pairs differ in stiffness, damping or friction
+    FEATURE_CONTACT_BOND = 8,
+    FEATURE_PARALLEL_BOND = 16,
+    FEATURE_BOND = FEATURE_CONTACT_BOND | FEATURE_PARALLEL_BOND
+};
+enum { FEATURE_SETS = 32 };
 
 // Where a grain is: its displacement from where it began, and its radius as the fourth.
 struct place {
@@ -41,33 +58,47 @@ struct pair_group {
     int32_t second[PAIRS_IN_GROUP];
     int32_t first_slot[PAIRS_IN_GROUP];
     int32_t second_slot[PAIRS_IN_GROUP];
-
     double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
     double distance[PAIRS_IN_GROUP];      // |separation|
     double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance
-    double root_mass[PAIRS_IN_GROUP];     // sqrt(m_ij) [K 4.30]
-    double shear_force[3][PAIRS_IN_GROUP];
-
-    double bond_radius[PAIRS_IN_GROUP];     // 0 without a bond
-    double normal_strength[PAIRS_IN_GROUP]; // -1 without an intact bond
-    double shear_strength[PAIRS_IN_GROUP];
-    double bond_shear_force[3][PAIRS_IN_GROUP];
-    double bond_bending[3][PAIRS_IN_GROUP]; // M^s
-    double bond_twist[PAIRS_IN_GROUP];      // M^n along n
-
-    int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
-    int32_t idle;                 // no pair touches or is bonded, and all slots hold 0
+    int32_t idle; // no pair touches or is bonded, and all slots hold 0
 };
 
-// What all pairs share.
+// What a group has besides, where the scene needs it.
+struct shear_group {
+    _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
+};
+struct own_group {
+    _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
+    double shear_stiffness[PAIRS_IN_GROUP];
+    double normal_damping[PAIRS_IN_GROUP];
+    double shear_damping[PAIRS_IN_GROUP];
+    double friction[PAIRS_IN_GROUP];
+};
+struct bond_group {
+    _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without a bond
+    double normal_strength[PAIRS_IN_GROUP];             // -1 without an intact bond
+    double shear_strength[PAIRS_IN_GROUP];
+    double shear_force[3][PAIRS_IN_GROUP]; // of parallel bonds, as all below
+    double bending[3][PAIRS_IN_GROUP];     // M^s
+    double twist[PAIRS_IN_GROUP];          // M^n along n
+    int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
+};
+struct loss_group {
+    _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
+    double slip[PAIRS_IN_GROUP];
+    double broken[PAIRS_IN_GROUP];
+};
+
+// The numbers of a contact with overlap U. Linear: normal force = stiffness U, shear
+// stiffness and damping as they are. Hertz: stiffness U^1.5, shear stiffness times
+// U^0.5, both dampings times U^0.25.
 struct contact_law {
     double normal_stiffness; // of a contact, K^n_ij
     double shear_stiffness;
     double friction;
-    double normal_damping; // c_n over sqrt(m_ij) [K 4.28-4.29]
+    double normal_damping; // force per velocity
     double shear_damping;
-    double bond_normal_stiffness; // per area
-    double bond_shear_stiffness;
 };
 
 struct pair_list {
@@ -76,15 +107,37 @@ struct pair_list {
     int32_t *bond;          // (n_pair) the bond of the packing, broken or not; or -1
     int n_group;
     struct pair_group *group; // (n_group)
+    // (n_group) or NULL where not needed
+    struct shear_group *shear;
+    struct own_group *own;
+    struct bond_group *bonds;
+    struct loss_group *loss;
+};
+
+// A material in scaled units.
+struct material {
+    double density;
+    double normal_stiffness, shear_stiffness, damping_ratio; // linear
+    double young_modulus, poisson_ratio;                     // Hertz
 };
 
 // A grain that is near a wall.
 struct wall_pair {
     int32_t particle, wall;
     int32_t slot;
-    double overlap; // where the grain began
-    double root_mass;
+    struct contact_law law;
     struct vector shear_force;
+    struct vector normal; // towards the wall, at the last force
+    double depth;         // overlap at the last force
+};
+
+struct rigid_wall {
+    struct dem_wall is;         // scaled, unit normal; velocity and spin as asked for
+    struct vector displacement; // of its point
+    struct vector displacement_at_search;
+    struct vector velocity, spin; // half a step behind
+    struct vector force, moment;  // what grains did to it in the last cycle
+    double resistance; // of its contacts now: stiffness times dt plus damping, in sum
 };
 
 struct units {
@@ -92,34 +145,49 @@ struct units {
 };
 
 // The sweep over groups BEGIN..END-1; how many bonds broke.
-typedef int pair_sweep(struct pair_group *group, int begin, int end,
-                       const struct place *place, const struct motion *motion,
-                       struct motion *slot, const struct contact_law *law,
-                       double time_step);
-pair_sweep pair_sweep_narrow, pair_sweep_wide;
+typedef int pair_sweep(const struct dem *dem, int begin, int end);
+extern pair_sweep *const pair_sweeps_narrow[FEATURE_SETS];
+extern pair_sweep *const pair_sweeps_wide[FEATURE_SETS];
 
 struct dem {
     struct units unit;
-    struct contact_law law;
-    struct contact_law wall_law; // against a rigid flat
+    enum dem_law kind;
+    unsigned features;
+    int n_material;
+    struct material *material; // (n_material)
+    double *pair_friction;     // (n_material^2)
+    double *pair_restitution;
+    double contact_time;
+    struct contact_law law; // of every pair, unless FEATURE_OWN
+    double bond_normal_stiffness; // per area
+    double bond_shear_stiffness;
+    enum dem_bond_kind bond_kind;
     double local_damping;
     double time_step;
     double time_step_limit;
+    double expected_overlap; // of Hertz contacts
     int64_t cycle;
     int threads;
     pair_sweep *sweep;
 
     int n_particle;
+    int32_t *identity;     // (n_particle) number in the packing
+    int32_t *number;       // (n_particle) the inverse
     struct vector *start;  // (n_particle) where each began
     struct place *place;   // (n_particle+1), the last is the grain that is not there
     struct motion *motion; // (n_particle+1) half a step behind the places
-    double (*external)[4]; // (n_particle) force
+    double (*external)[4]; // (n_particle) force, weight included
+    struct vector *applied; // (n_particle) without weight; NULL: none
+    struct vector gravity;
     double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed
-    double *mass;          // (n_particle)
-    double largest_radius;
+    double *mass;          // (n_particle) inertia
+    double *weight;        // (n_particle) mass that gravity pulls
+    uint8_t *material_of;  // (n_particle)
+    bool density_scaling;
+    double largest_radius, smallest_radius;
     double coordinate_error; // rounding of the positions as given
     double period[3];        // 0 where the box does not repeat
-    double box_lower[3];
+    double box_lower[3], box_upper[3];
 
     int n_bond;
     int32_t (*bond_particle)[2]; // (n_bond)
@@ -128,16 +196,27 @@ struct dem {
 
     struct pair_list pairs;
     int n_wall;
-    struct dem_wall *wall; // unit normals, scaled
+    struct rigid_wall *wall;
     int n_wall_pair;
     struct wall_pair *wall_pair; // by grain, then wall
     int *slot_offset;            // (n_particle+1)
     int *first_group;            // (n_particle) with a pair of the grain
     int *last_group;             // (n_particle) with a pair whose first is <= the grain
-    struct motion *slot;         // (slot_offset[n_particle] + 2)
+    // (slot_offset[n_particle] + 2) slots of slot_stride: force, and moment if grains
+    // turn
+    double *slot;
+    int slot_stride;
 
+    double skin;
     struct vector *place_at_search; // (n_particle) displacement when pairs were sought
     double travelled;               // no grain has moved further since
+    double closed_in;               // of this, by rescaling and by walls that move
+    int64_t search_cycle;           // when that was
+    int searches_in_order;          // since grains were last renumbered
+
+    bool balance_energy;
+    struct dem_energy books;       // the parts that only grow, of pairs that are gone
+    double (*grain_books)[2];      // (n_particle) gained, lost to local damping
 
     int n_crack, crack_capacity;
     struct dem_crack *crack;
@@ -150,8 +229,56 @@ void *allocate_aligned(size_t count, size_t size);
 void find_pairs(struct dem *dem);
 // Seeks them if a grain may have moved further than half the skin.
 void keep_pairs(struct dem *dem);
+// Adds the losses of all pairs to the books and clears them.
+void close_pair_books(struct dem *dem);
+// Empty lists of N_PAIR pairs, with what the scene needs; takes over both arrays.
+void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
+void free_pairs(struct pair_list *pairs);
+// History and image of a pair that was there before, if SWAPPED with its grains in the
+// other order.
+void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
+                int old_pair, bool swapped);
+// From grain I to J where they are now, to the nearest image.
+struct vector separation_now(const struct dem *dem, int i, int j);
+// Sets how the pair in lane LANE of GROUP lies as of where its grains began.
+void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);
+// Sets the numbers of its own of pair PAIR.
+void set_pair_law(struct dem *dem, int pair);
 
+// Numbers the grains along a curve, pairs and bonds too [order.c].
+void renumber_grains(struct dem *dem);
+
+// What two grains, or a grain and a wall (-1: rigid), do to each other [materials.c].
+struct contact_law pair_law(const struct dem *dem, int i, int j);
+struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall);
+// Masses, mobilities and the common law, from radii and materials; FIXED as in the
+// setup, by number, or NULL to keep those that are fixed.
+void weigh_grains(struct dem *dem, const uint8_t *fixed);
+// External forces from what is applied and gravity.
+void set_external(struct dem *dem);
+
+// Walls [walls.c].
+void find_wall_pairs(struct dem *dem);
 void sweep_walls(struct dem *dem);
+void move_walls(struct dem *dem);
+// How far any wall has moved since the pairs were sought: as with grains, not more than
+// half the skin.
+double wall_travel(const struct dem *dem);
+// Gives the wall pairs the numbers of their contacts anew.
+void set_wall_laws(struct dem *dem);
+// Elastic energy as of the last force.
+double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair);
+
+// How grain I lies to wall W when both are at BACK time steps before now
+// [wall_shapes.c]. The nearest point of the wall is radius - overlap from the centre
+// along the normal; a centre that has passed the surface is pushed back out.
+struct wall_geometry {
+    struct vector normal; // unit, from the grain into the wall
+    double overlap;
+    double arm;          // from the centre to the contact point
+    struct vector lever; // from the wall's point to the contact point
+};
+struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back);
 
 // The largest square of a speed, the surface's from turning included; SOUND is false
 // when a grain would have moved too far to be true, which then stays where it was.
@@ -167,8 +294,9 @@ struct pace move_grains(struct dem *dem, int begin, int end, int from_group, boo
 // Force and moment on a grain, from its slots and from outside.
 struct motion load_on_grain(const struct dem *dem, int particle);
 
-// The largest stable time step [stability.c].
-double stability_limit(const struct dem *dem);
+// The largest stable time step [stability.c]: of all pairs in the list, or if NOW only of
+// those that touch, at the overlaps they have.
+double stability_limit(const struct dem *dem, bool now);
 
 static inline struct vector as_vector(const double a[3])
 {
@@ -178,6 +306,32 @@ static inline struct vector as_vector(const double a[3])
 static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int lane)
 {
     return (struct vector){a[0][lane], a[1][lane], a[2][lane]};
+}
+
+static inline struct vector position_now(const struct dem *dem, int particle)
+{
+    return add(dem->start[particle], as_vector(dem->place[particle].displacement));
+}
+
+// How many time steps the places are ahead of the forces.
+static inline double places_ahead(const struct dem *dem)
+{
+    return dem->cycle > 0 ? 1 : 0;
+}
+
+// The numbers of pair PAIR, its own or those of all.
+struct contact_law law_of_pair(const struct dem *dem, int pair);
+
+// The bond of a pair, broken or not, or -1.
+static inline int bond_of_pair(const struct dem *dem, int pair)
+{
+    return dem->pairs.bond ? dem->pairs.bond[pair] : -1;
+}
+
+static inline bool is_held(const struct dem *dem, int pair)
+{
+    return dem->pairs.bonds && dem->pairs.bonds[pair / PAIRS_IN_GROUP]
+                                       .normal_strength[pair % PAIRS_IN_GROUP] >= 0;
 }
 
 // How pair P lies when its grains are at BACK time steps before now.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The grain sweep: forces and moments added up [K 4.18, 4.21], velocities, then places
 // [K 4.1, 4.5, 4.6]. A grain costs 35 operations and 6 a slot, and moves 244 bytes (48
-// constant, 96 read and written, 4 of index) and 64 a slot.
+// constant, 96 read and written, 4 of index) and 64 a slot; half of most of that when
+// grains do not turn.
 #include "dem/engine.h"
+
+#define INLINE static inline __attribute__((always_inline))
 
 typedef double quad __attribute__((vector_size(32)));
 
@@ -10,12 +13,14 @@ struct load {
     quad force, moment;
 };
 
-static inline struct load add_slots(const struct dem *dem, int particle)
+INLINE struct load add_slots(const struct dem *dem, int particle, bool turns)
 {
     struct load sum = {{0}, {0}};
+    const size_t stride = turns ? 8 : 4;
     for (int s = dem->slot_offset[particle]; s < dem->slot_offset[particle + 1]; s++) {
-        sum.force += *(const quad *)dem->slot[s].linear;
-        sum.moment += *(const quad *)dem->slot[s].angular;
+        const double *slot = dem->slot + stride * (size_t)s;
+        sum.force += *(const quad *)slot;
+        if (turns) sum.moment += *(const quad *)(slot + 4);
     }
     sum.force += *(const quad *)dem->external[particle];
     return sum;
@@ -23,7 +28,8 @@ static inline struct load add_slots(const struct dem *dem, int particle)
 
 struct motion load_on_grain(const struct dem *dem, int particle)
 {
-    const struct load sum = add_slots(dem, particle);
+    const struct load sum =
+        add_slots(dem, particle, dem->features & FEATURE_TURN ? true : false);
     struct motion load;
     *(quad *)load.linear = sum.force;
     *(quad *)load.angular = sum.moment;
@@ -32,7 +38,7 @@ struct motion load_on_grain(const struct dem *dem, int particle)
 
 // LOAD, each component less by SHARE of itself where MOTION has its sign, more where it
 // has the opposite, unchanged at rest.
-static inline quad damped(quad load, quad motion, double share)
+INLINE quad damped(quad load, quad motion, double share)
 {
     const quad power = load * motion;
     const quad zero = {0};
@@ -41,31 +47,57 @@ static inline quad damped(quad load, quad motion, double share)
     return load - share * (sign * load);
 }
 
-struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late)
+INLINE double sum_of(quad a)
+{
+    return a[0] + a[1] + a[2];
+}
+
+// What pulled from outside did in this step, and what local damping took.
+static void keep_books(const struct dem *dem, int i, const struct load *sum,
+                       struct load damped_sum, quad velocity, quad spin)
+{
+    const quad external = *(const quad *)dem->external[i];
+    const quad taken = (sum->force - damped_sum.force) * velocity +
+                       (sum->moment - damped_sum.moment) * spin;
+    dem->grain_books[i][0] += dem->time_step * sum_of(external * velocity);
+    dem->grain_books[i][1] += dem->time_step * sum_of(taken);
+}
+
+INLINE struct pace move(struct dem *dem, int begin, int end, int from_group, bool late,
+                        bool turns)
 {
     const double dt = dem->time_step;
-    const double furthest = 0.5 * SEARCH_SKIN / dt, limit = furthest * furthest;
+    const double furthest = FURTHEST_STEP / dt, limit = furthest * furthest;
     const double turning = dem->largest_radius * dem->largest_radius;
+    const quad zero = {0};
     struct pace pace = {.largest = 0, .sound = true};
     for (int i = begin; i < end; i++) {
         if ((dem->first_group[i] < from_group) != late) continue;
-        const struct load sum = add_slots(dem, i);
+        const struct load sum = add_slots(dem, i, turns);
         quad *velocity = (quad *)dem->motion[i].linear;
         quad *spin = (quad *)dem->motion[i].angular;
-        const quad force = damped(sum.force, *velocity, dem->local_damping);
-        const quad moment = damped(sum.moment, *spin, dem->local_damping);
-        const quad v = *velocity + dt * dem->mobility[i][0] * force;
-        const quad w = *spin + dt * dem->mobility[i][1] * moment;
-        const quad squares = v * v + turning * (w * w);
-        const double square = squares[0] + squares[1] + squares[2];
+        struct load net = {damped(sum.force, *velocity, dem->local_damping), zero};
+        if (turns) net.moment = damped(sum.moment, *spin, dem->local_damping);
+        const quad v = *velocity + dt * dem->mobility[i][0] * net.force;
+        const quad w = turns ? *spin + dt * dem->mobility[i][1] * net.moment : zero;
+        const quad squares = turns ? v * v + turning * (w * w) : v * v;
+        const double square = sum_of(squares);
         if (!(square <= limit)) { // also when it is not a number
             pace.sound = false;
             continue;
         }
         if (square > pace.largest) pace.largest = square;
         *velocity = v;
-        *spin = w;
+        if (turns) *spin = w;
         *(quad *)&dem->place[i] += dt * v; // the radius by 0
+        if (dem->balance_energy && dem->mobility[i][0] > 0)
+            keep_books(dem, i, &sum, net, v, w);
     }
     return pace;
+}
+
+struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late)
+{
+    return dem->features & FEATURE_TURN ? move(dem, begin, end, from_group, late, true)
+                                        : move(dem, begin, end, from_group, late, false);
 }

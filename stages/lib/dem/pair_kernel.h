@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The forces between LANES pairs at once; included by the files that define LANES (4 or
-// 8) and PAIR_SWEEP, the name of the function made. The arithmetic is that of each pair
-// alone, in one order, without fused operations, so every width gives the same bytes.
+// 8) and PAIR_SWEEPS, the name of the table of functions made: one for each set of
+// features that a scene may need, all from the one source below, where FEATURES is a
+// constant. The arithmetic is that of each pair alone, in one order, without fused
+// operations, so every width gives the same bytes.
 //
 // The overlap never is the difference of two large numbers. With s0 = x_j - x_i where
 // the grains began, d0 = |s0| and du = u_j - u_i what the displacements add,
@@ -21,10 +23,11 @@
 // pair in tension would ring for ever. While an unbonded contact slides its shear
 // dashpot is off, so that a sliding grain feels friction and nothing more.
 //
-// With its bond a pair costs 296 operations, of which 3 divisions and a square root. It
-// streams 250 bytes of its own (72 constant, 80 of history read and written, 17 of
-// indices) and 128 written to slots, and reads 192 of its two grains, which stay
-// cached.
+// A Hertz contact that unloads forgets shear force as its shear stiffness falls, F^s
+// times sqrt(U / U_old): with the incremental law alone a loop of loading would give
+// energy out of nothing (Elata & Berryman 1996). U_old = U + V^n dt, by leapfrog.
+//
+// Operations and bytes of a pair are counted in tests/bench/bench_dem.c.
 #include "dem/engine.h"
 
 #include <immintrin.h>
@@ -168,14 +171,14 @@ INLINE struct lanes4 gather(const double *p, size_t stride, const int32_t *i)
 }
 
 // The reverse: A, with zero for a fourth, to LANES places.
-INLINE void scatter(double *p, const int32_t *i, struct lanes3 a)
+INLINE void scatter(double *p, size_t stride, const int32_t *i, struct lanes3 a)
 {
     const lanes zero = {0};
     const lanes xy0 = EVEN(a.x, a.y), xy1 = ODD(a.x, a.y);
     const lanes zw0 = EVEN(a.z, zero), zw1 = ODD(a.z, zero);
 #if LANES == 8
 #define PUT(k, xy, zw, n)                                                              \
-    *(quad *)(p + 8 * (size_t)i[k]) = __builtin_shufflevector(                         \
+    *(quad *)(p + stride * (size_t)i[k]) = __builtin_shufflevector(                         \
         xy, zw, 2 * (n), 2 * (n) + 1, 2 * (n) + 8, 2 * (n) + 9)
     PUT(0, xy0, zw0, 0);
     PUT(1, xy1, zw1, 0);
@@ -187,10 +190,10 @@ INLINE void scatter(double *p, const int32_t *i, struct lanes3 a)
     PUT(7, xy1, zw1, 3);
 #undef PUT
 #else
-    *(quad *)(p + 8 * (size_t)i[0]) = LOWER(xy0, zw0);
-    *(quad *)(p + 8 * (size_t)i[1]) = LOWER(xy1, zw1);
-    *(quad *)(p + 8 * (size_t)i[2]) = UPPER(xy0, zw0);
-    *(quad *)(p + 8 * (size_t)i[3]) = UPPER(xy1, zw1);
+    *(quad *)(p + stride * (size_t)i[0]) = LOWER(xy0, zw0);
+    *(quad *)(p + stride * (size_t)i[1]) = LOWER(xy1, zw1);
+    *(quad *)(p + stride * (size_t)i[2]) = UPPER(xy0, zw0);
+    *(quad *)(p + stride * (size_t)i[3]) = UPPER(xy1, zw1);
 #endif
 }
 
@@ -208,7 +211,7 @@ INLINE struct lanes3 turn(struct turning by, struct lanes3 f)
     return add3(scale3(by.shrink, flat), scale3(by.spin, cross3(by.normal, flat)));
 }
 
-// How a group of pairs lies and moves [K 4.7-4.9, 4.15, 4.17].
+// How pairs lie and move [K 4.7-4.9, 4.15, 4.17].
 struct meeting {
     struct turning turning;
     lanes stretch, overlap;
@@ -218,45 +221,99 @@ struct meeting {
     struct lanes3 turning_apart;  // omega_j - omega_i
 };
 
-INLINE struct meeting meet(const struct pair_group *g, int at,
-                           const struct place *place, const struct motion *motion,
-                           lanes time_step)
+// What only grains that turn need.
+INLINE void meet_turning(struct meeting *m, const double *spins, const int32_t *i,
+                         const int32_t *j, struct lanes3 velocity, lanes inverse,
+                         lanes time_step)
+{
+    const struct lanes3 n = m->turning.normal;
+    const struct lanes3 spin_i = gather(spins, 8, i).xyz;
+    const struct lanes3 spin_j = gather(spins, 8, j).xyz;
+    const struct lanes3 rolling =
+        add3(scale3(m->first_arm, spin_i), scale3(m->second_arm, spin_j));
+    const struct lanes3 sideways = subtract3(velocity, scale3(m->normal_velocity, n));
+    m->shear_velocity = subtract3(sideways, cross3(rolling, n));
+    m->turning_apart = subtract3(spin_j, spin_i);
+    m->turning.middle = subtract3(n, scale3(0.5 * time_step * inverse, sideways));
+    m->turning.spin = 0.5 * time_step * dot3(add3(spin_i, spin_j), n);
+    m->turning.shrink = 1.0 - 0.5 * m->turning.spin * m->turning.spin;
+}
+
+INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, int at,
+                           lanes time_step, unsigned features)
 {
     const int32_t *i = g->first + at, *j = g->second + at;
-    const struct lanes4 place_i = gather((const double *)place, 4, i);
-    const struct lanes4 place_j = gather((const double *)place, 4, j);
-    const struct lanes3 velocity_i = gather((const double *)motion, 8, i).xyz;
-    const struct lanes3 velocity_j = gather((const double *)motion, 8, j).xyz;
-    const struct lanes3 spin_i = gather((const double *)motion + 4, 8, i).xyz;
-    const struct lanes3 spin_j = gather((const double *)motion + 4, 8, j).xyz;
+    const double *places = (const double *)dem->place;
+    const double *motions = (const double *)dem->motion;
+    const struct lanes4 place_i = gather(places, 4, i), place_j = gather(places, 4, j);
+    const struct lanes3 velocity =
+        subtract3(gather(motions, 8, j).xyz, gather(motions, 8, i).xyz);
 
     const struct lanes3 apart = subtract3(place_j.xyz, place_i.xyz);
     const struct lanes3 start = load3(g->separation, at);
     const struct lanes3 separation = add3(start, apart);
     const lanes distance = square_root(dot3(separation, separation));
     const lanes inverse = 1.0 / (distance + 1e-300); // n = 0 if they ever coincide
-    const struct lanes3 n = scale3(inverse, separation);
 
     struct meeting m;
+    m.turning.normal = scale3(inverse, separation);
     m.stretch =
         dot3(apart, add3(start, separation)) / (distance + load(g->distance + at));
     m.overlap = load(g->overlap + at) - m.stretch;
     m.first_arm = place_i.w - 0.5 * m.overlap;
     m.second_arm = place_j.w - 0.5 * m.overlap;
-
-    const struct lanes3 v = subtract3(velocity_j, velocity_i);
-    const struct lanes3 rolling =
-        add3(scale3(m.first_arm, spin_i), scale3(m.second_arm, spin_j));
-    m.normal_velocity = dot3(v, n);
-    const struct lanes3 sideways = subtract3(v, scale3(m.normal_velocity, n));
-    m.shear_velocity = subtract3(sideways, cross3(rolling, n));
-    m.turning_apart = subtract3(spin_j, spin_i);
-
-    m.turning.normal = n;
-    m.turning.middle = subtract3(n, scale3(0.5 * time_step * inverse, sideways));
-    m.turning.spin = 0.5 * time_step * dot3(add3(spin_i, spin_j), n);
-    m.turning.shrink = 1.0 - 0.5 * m.turning.spin * m.turning.spin;
+    m.normal_velocity = dot3(velocity, m.turning.normal);
+    if (features & FEATURE_TURN)
+        meet_turning(&m, motions + 4, i, j, velocity, inverse, time_step);
     return m;
+}
+
+// The numbers of a contact as they are at its overlap.
+struct law {
+    lanes spring; // normal force
+    lanes shear_stiffness, normal_damping, shear_damping, friction;
+    // Hertz: what is left of the shear force of the step before, and the shear stiffness
+    // that it had.
+    lanes forget, shear_stiffness_before;
+};
+
+INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meeting *m,
+                         mask touch, lanes time_step, unsigned features)
+{
+    const lanes zero = {0};
+    const struct contact_law *all = &dem->law;
+    const struct own_group *own = dem->pairs.own + k;
+    const bool differ = features & FEATURE_OWN;
+    const lanes stiffness =
+        differ ? load(own->normal_stiffness + at) : zero + all->normal_stiffness;
+    struct law law = {
+        .shear_stiffness =
+            differ ? load(own->shear_stiffness + at) : zero + all->shear_stiffness,
+        .normal_damping =
+            differ ? load(own->normal_damping + at) : zero + all->normal_damping,
+        .shear_damping =
+            differ ? load(own->shear_damping + at) : zero + all->shear_damping,
+        .friction = differ ? load(own->friction + at) : zero + all->friction};
+    if (!(features & FEATURE_HERTZ)) {
+        law.spring = only_where(touch, stiffness * m->overlap);
+        law.shear_stiffness_before = law.shear_stiffness;
+        return law;
+    }
+    const lanes overlap = only_where(touch, m->overlap);
+    const lanes root = square_root(overlap), fourth = square_root(root);
+    const lanes before = m->overlap + time_step * m->normal_velocity;
+    const mask was = before > 0.0;
+    law.spring = stiffness * overlap * root;
+    law.shear_stiffness_before =
+        law.shear_stiffness * square_root(only_where(was, before));
+    law.shear_stiffness *= root;
+    law.normal_damping *= fourth;
+    law.shear_damping *= fourth;
+    const mask unloads = was & (overlap < before);
+    law.forget =
+        choose(unloads, square_root(overlap / choose(was, before, zero + 1.0)),
+               zero + 1.0);
+    return law;
 }
 
 // What a pair feels: along n, in the contact plane, and moments carried by the bond.
@@ -266,76 +323,129 @@ struct pair_load {
     struct lanes3 moment;
 };
 
-// Contact and dashpots [K 4.11-4.16, 4.25-4.30]; TOUCH and HELD (by a bond) are masks.
-INLINE struct pair_load contact_load(struct pair_group *g, int at,
-                                     const struct meeting *m, mask touch, mask held,
-                                     const struct contact_law *law, double time_step)
+INLINE void book(double *account, mask where, lanes amount)
+{
+    store(account, load(account) + only_where(where, amount));
+}
+
+// Energy that the shear spring loses when its force and stiffness go from BEFORE and
+// STIFFNESS_BEFORE to AFTER and STIFFNESS; a stiffness of 0 holds none.
+INLINE lanes spring_loss(struct lanes3 before, lanes stiffness_before,
+                         struct lanes3 after, lanes stiffness)
 {
     const lanes zero = {0};
-    const lanes spring = only_where(touch, law->normal_stiffness * m->overlap);
-    struct lanes3 shear = turn(m->turning, load3(g->shear_force, at));
-    shear = subtract3(
-        shear, scale3(zero + law->shear_stiffness * time_step, m->shear_velocity));
-    shear = only_where3(touch, shear);
+    const lanes had = only_where(stiffness_before > 0.0,
+                                 dot3(before, before) /
+                                     choose(stiffness_before > 0.0, stiffness_before,
+                                            zero + 1.0));
+    const lanes has =
+        only_where(stiffness > 0.0, dot3(after, after) /
+                                        choose(stiffness > 0.0, stiffness, zero + 1.0));
+    return 0.5 * (had - has);
+}
 
-    const lanes limit = law->friction * spring;
-    const lanes square = dot3(shear, shear);
-    const mask slips = square > limit * limit;
-    if (any(slips)) {
-        const lanes factor = limit / square_root(choose(slips, square, zero + 1.0));
-        shear = scale3(choose(slips, factor, zero + 1.0), shear);
+// The shear spring of the contact, slip included [K 4.12-4.16, 4.25-4.26]; SLIPS says
+// where.
+INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
+                                  const struct meeting *m, const struct law *law,
+                                  mask touch, mask held, lanes time_step,
+                                  unsigned features, mask *slips)
+{
+    const lanes zero = {0};
+    double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
+    const mask acts = features & FEATURE_CONTACT_BOND ? touch | held : touch;
+    const struct lanes3 turned = turn(m->turning, load3(history, at));
+    struct lanes3 kept = only_where3(acts, turned);
+    if (features & FEATURE_HERTZ) kept = scale3(law->forget, kept);
+    const struct lanes3 slide =
+        scale3(law->shear_stiffness * time_step, m->shear_velocity);
+    const struct lanes3 trial = only_where3(acts, subtract3(kept, slide));
+
+    const lanes limit = law->friction * law->spring;
+    const lanes square = dot3(trial, trial);
+    struct lanes3 shear = trial;
+    *slips = square > limit * limit;
+    if (features & FEATURE_CONTACT_BOND) *slips &= ~held;
+    if (any(*slips)) {
+        const lanes factor = limit / square_root(choose(*slips, square, zero + 1.0));
+        shear = scale3(choose(*slips, factor, zero + 1.0), trial);
     }
-    store3(g->shear_force, at, shear);
+    store3(history, at, shear);
+    if (dem->pairs.loss) { // what slip took, and what a contact forgot
+        const lanes now = law->shear_stiffness, before = law->shear_stiffness_before;
+        book(dem->pairs.loss[k].slip + at, acts | ~acts,
+             spring_loss(turned, before, kept, now) +
+                 spring_loss(trial, now, shear, now));
+    }
+    return shear;
+}
 
-    const lanes root_mass = load(g->root_mass + at);
-    const lanes normal_dashpot = law->normal_damping * root_mass * m->normal_velocity;
-    const lanes shear_dashpot = law->shear_damping * root_mass;
+// Contact and dashpots [K 4.11-4.16, 4.25-4.30]; TOUCH and HELD (by a bond) are masks.
+INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
+                                     const struct meeting *m, mask touch, mask held,
+                                     const struct law *law, lanes time_step,
+                                     unsigned features)
+{
+    const lanes dashpot = law->normal_damping * m->normal_velocity;
+    struct pair_load load = {.normal =
+                                 law->spring - only_where(touch | held, dashpot)};
+    if (dem->pairs.loss)
+        book(dem->pairs.loss[k].dashpots + at, touch | held,
+             dashpot * m->normal_velocity * time_step);
+    if (!(features & FEATURE_TURN)) return load;
+
+    mask slips;
+    const struct lanes3 shear =
+        shear_spring(dem, k, at, m, law, touch, held, time_step, features, &slips);
     const mask sticks = held | (touch & ~slips);
-    return (struct pair_load){
-        .normal = spring - only_where(touch | held, normal_dashpot),
-        .shear = subtract3(
-            shear, scale3(only_where(sticks, shear_dashpot), m->shear_velocity))};
+    const lanes damping = only_where(sticks, law->shear_damping);
+    load.shear = subtract3(shear, scale3(damping, m->shear_velocity));
+    if (dem->pairs.loss)
+        book(dem->pairs.loss[k].dashpots + at, sticks,
+             damping * dot3(m->shear_velocity, m->shear_velocity) * time_step);
+    return load;
 }
 
 // A bond broke in lane LANE: rare. Of two modes in one step the one that is further
 // past its strength counts.
-static __attribute__((noinline)) void break_bond(struct pair_group *g, int lane,
+static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
                                                  bool by_normal, bool by_shear,
                                                  double normal, double shear)
 {
     const bool normal_leads =
-        normal * g->shear_strength[lane] >= shear * g->normal_strength[lane];
+        normal * b->shear_strength[lane] >= shear * b->normal_strength[lane];
     const bool cracks_in_shear = by_shear && !(by_normal && normal_leads);
-    g->crack[lane] = cracks_in_shear ? DEM_CRACK_SHEAR : DEM_CRACK_NORMAL;
-    g->normal_strength[lane] = -1;
-    g->shear_strength[lane] = -1;
+    b->crack[lane] = cracks_in_shear ? DEM_CRACK_SHEAR : DEM_CRACK_NORMAL;
+    b->normal_strength[lane] = -1;
+    b->shear_strength[lane] = -1;
 }
 
 // Adds the bonds of the lanes HELD, and breaks them [K 4.31-4.44]. Stresses are
 // compared times A R: sigma_max A R = -F^n R + 4 |M^s| as A R^2 = 4 I, and tau_max A R
 // = |F^s| R + 2 |M^n| as A R^2 = 2 J. Squares spare the roots.
-INLINE int add_bond_load(struct pair_load *total, struct pair_group *g, int at,
-                         const struct meeting *m, mask held,
-                         const struct contact_law *law, double time_step)
+INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, int at,
+                         const struct meeting *m, mask held, lanes time_step)
 {
     const lanes zero = {0};
+    struct bond_group *g = dem->pairs.bonds + k;
+    const double normal_stiffness = dem->bond_normal_stiffness;
+    const double shear_stiffness = dem->bond_shear_stiffness;
     const struct lanes3 n = m->turning.normal;
-    const lanes radius = load(g->bond_radius + at);
+    const lanes radius = load(g->radius + at);
     const lanes area = M_PI * radius * radius;                   // A
     const lanes bending_inertia = 0.25 * area * radius * radius; // I, and J = 2 I
 
-    const lanes normal = -law->bond_normal_stiffness * area * m->stretch;
-    struct lanes3 shear = turn(m->turning, load3(g->bond_shear_force, at));
-    shear = subtract3(
-        shear, scale3(law->bond_shear_stiffness * time_step * area, m->shear_velocity));
+    const lanes normal = -normal_stiffness * area * m->stretch;
+    struct lanes3 shear = turn(m->turning, load3(g->shear_force, at));
+    shear =
+        subtract3(shear, scale3(shear_stiffness * time_step * area, m->shear_velocity));
 
     const lanes twisting = dot3(m->turning_apart, n);
-    lanes twist = load(g->bond_twist + at);
-    twist -= law->bond_shear_stiffness * time_step * 2.0 * bending_inertia * twisting;
-    struct lanes3 bending = turn(m->turning, load3(g->bond_bending, at));
-    bending = subtract3(bending,
-                        scale3(law->bond_normal_stiffness * time_step * bending_inertia,
-                               subtract3(m->turning_apart, scale3(twisting, n))));
+    lanes twist = load(g->twist + at);
+    twist -= shear_stiffness * time_step * 2.0 * bending_inertia * twisting;
+    struct lanes3 bending = turn(m->turning, load3(g->bending, at));
+    bending = subtract3(bending, scale3(normal_stiffness * time_step * bending_inertia,
+                                        subtract3(m->turning_apart, scale3(twisting, n))));
 
     const lanes normal_strength = load(g->normal_strength + at) * area * radius;
     const lanes shear_strength = load(g->shear_strength + at) * area * radius;
@@ -353,13 +463,28 @@ INLINE int add_bond_load(struct pair_load *total, struct pair_group *g, int at,
     const mask broken = by_normal | by_shear;
     int count = 0;
     if (any(broken)) {
+        const lanes normal_load = tension + square_root(bending_square);
+        const lanes shear_load = 2.0 * twist_size + square_root(shear_square);
         for (int lane = 0; lane < LANES; lane++) {
             if (!broken[lane]) continue;
-            const lanes normal_load = tension + square_root(bending_square);
-            const lanes shear_load = 2.0 * twist_size + square_root(shear_square);
             break_bond(g, at + lane, by_normal[lane], by_shear[lane], normal_load[lane],
                        shear_load[lane]);
             count++;
+        }
+        if (dem->pairs.loss) {
+            const lanes stretched = normal_stiffness * area;
+            const lanes sheared = shear_stiffness * area;
+            const lanes bent = normal_stiffness * bending_inertia;
+            const lanes twisted = shear_stiffness * 2.0 * bending_inertia;
+            const struct lanes3 nothing = {zero, zero, zero};
+            const lanes energy =
+                spring_loss((struct lanes3){normal, zero, zero}, stretched, nothing,
+                            stretched) +
+                spring_loss(shear, sheared, nothing, sheared) +
+                spring_loss(bending, bent, nothing, bent) +
+                spring_loss((struct lanes3){twist, zero, zero}, twisted, nothing,
+                            twisted);
+            book(dem->pairs.loss[k].broken + at, broken, energy);
         }
         held &= ~broken;
     }
@@ -367,64 +492,143 @@ INLINE int add_bond_load(struct pair_load *total, struct pair_group *g, int at,
     shear = only_where3(held, shear);
     bending = only_where3(held, bending);
     twist = only_where(held, twist);
-    store3(g->bond_shear_force, at, shear);
-    store3(g->bond_bending, at, bending);
-    store(g->bond_twist + at, twist);
+    store3(g->shear_force, at, shear);
+    store3(g->bending, at, bending);
+    store(g->twist + at, twist);
     total->normal += only_where(held, normal);
     total->shear = add3(total->shear, shear);
     total->moment = add3(bending, scale3(zero + twist, n));
     return count;
 }
 
-// Minus F_ij and minus what it turns for the first grain, the opposite force for the
-// second [K 4.18, 4.21, 4.43, 4.44].
-INLINE void put_loads(struct motion *slot, const struct pair_group *g, int at,
-                      const struct meeting *m, const struct pair_load *pair)
-{
-    const struct lanes3 n = m->turning.normal;
-    const struct lanes3 force = add3(scale3(pair->normal, n), pair->shear);
-    const struct lanes3 torque = cross3(n, pair->shear);
-    const struct lanes3 opposite = {-force.x, -force.y, -force.z};
-    const struct lanes3 first = add3(scale3(m->first_arm, torque), pair->moment);
-    const struct lanes3 first_moment = {-first.x, -first.y, -first.z};
-    const struct lanes3 second_moment =
-        subtract3(pair->moment, scale3(m->second_arm, torque));
-    scatter((double *)slot, g->first_slot + at, opposite);
-    scatter((double *)slot + 4, g->first_slot + at, first_moment);
-    scatter((double *)slot, g->second_slot + at, force);
-    scatter((double *)slot + 4, g->second_slot + at, second_moment);
-}
-
-INLINE int sweep_lanes(struct pair_group *g, int at, const struct place *place,
-                       const struct motion *motion, struct motion *slot,
-                       const struct contact_law *law, double time_step, int *busy)
+// Contact bonds pull with the springs of the contact; those past a strength break and
+// leave what friction allows [K 4.2]. HELD loses the lanes that broke.
+INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, int at,
+                               const struct meeting *m, mask touch, mask *held,
+                               lanes time_step, unsigned features)
 {
     const lanes zero = {0};
-    const struct meeting m = meet(g, at, place, motion, zero + time_step);
+    struct bond_group *g = dem->pairs.bonds + k;
+    const lanes stiffness = features & FEATURE_OWN
+                                ? load(dem->pairs.own[k].normal_stiffness + at)
+                                : zero + dem->law.normal_stiffness;
+    const lanes spring = stiffness * m->overlap;
+    struct lanes3 shear = turn(m->turning, load3(dem->pairs.shear[k].force, at));
+    shear =
+        subtract3(shear, scale3(law->shear_stiffness * time_step, m->shear_velocity));
+    const lanes normal_strength = load(g->normal_strength + at);
+    const lanes shear_strength = load(g->shear_strength + at);
+    const lanes square = dot3(shear, shear);
+    const mask by_normal = *held & (-spring >= normal_strength);
+    const mask by_shear = *held & (square >= shear_strength * shear_strength);
+    const mask broken = by_normal | by_shear;
+    int count = 0;
+    if (any(broken)) {
+        const lanes shear_load = square_root(square);
+        for (int lane = 0; lane < LANES; lane++) {
+            if (!broken[lane]) continue;
+            break_bond(g, at + lane, by_normal[lane], by_shear[lane], -spring[lane],
+                       shear_load[lane]);
+            count++;
+        }
+        if (dem->pairs.loss) { // in tension all is lost, otherwise what slips is slip's
+            const lanes energy = 0.5 * spring * m->overlap +
+                                 spring_loss(shear, law->shear_stiffness,
+                                             (struct lanes3){zero, zero, zero},
+                                             law->shear_stiffness);
+            book(dem->pairs.loss[k].broken + at, broken & ~touch, energy);
+        }
+        *held &= ~broken;
+    }
+    law->spring = only_where(touch | *held, spring);
+    return count;
+}
+
+// Minus F_ij and minus what it turns for the first grain, the opposite force for the
+// second [K 4.18, 4.21, 4.43, 4.44].
+INLINE void put_loads(double *slot, const struct pair_group *g, int at,
+                      const struct meeting *m, const struct pair_load *pair,
+                      unsigned features)
+{
+    const struct lanes3 n = m->turning.normal;
+    const int32_t *first = g->first_slot + at, *second = g->second_slot + at;
+    const bool turns = features & FEATURE_TURN;
+    const struct lanes3 along = scale3(pair->normal, n);
+    const struct lanes3 force = turns ? add3(along, pair->shear) : along;
+    const struct lanes3 opposite = {-force.x, -force.y, -force.z};
+    const size_t stride = turns ? 8 : 4;
+    scatter(slot, stride, first, opposite);
+    scatter(slot, stride, second, force);
+    if (!turns) return;
+
+    const struct lanes3 torque = cross3(n, pair->shear);
+    struct lanes3 on_first = scale3(m->first_arm, torque);
+    struct lanes3 on_second = scale3(m->second_arm, torque);
+    on_second = (struct lanes3){-on_second.x, -on_second.y, -on_second.z};
+    if (features & FEATURE_PARALLEL_BOND) {
+        on_first = add3(on_first, pair->moment);
+        on_second = add3(pair->moment, on_second);
+    }
+    on_first = (struct lanes3){-on_first.x, -on_first.y, -on_first.z};
+    scatter(slot + 4, stride, first, on_first);
+    scatter(slot + 4, stride, second, on_second);
+}
+
+INLINE int sweep_lanes(const struct dem *dem, int k, int at, lanes time_step, int *busy,
+                       unsigned features)
+{
+    const lanes zero = {0};
+    const struct pair_group *g = dem->pairs.group + k;
+    const struct meeting m = meet(dem, g, at, time_step, features);
     const mask touch = m.overlap >= 0.0;
-    const mask held = load(g->normal_strength + at) >= 0.0;
+    mask held = (mask)zero;
+    if (features & FEATURE_BOND)
+        held = load(dem->pairs.bonds[k].normal_strength + at) >= 0.0;
     if (!any(touch | held) && g->idle) return 0;
 
-    struct pair_load total = contact_load(g, at, &m, touch, held, law, time_step);
-    total.moment = (struct lanes3){zero, zero, zero};
-    int n_broken = 0;
-    if (any(held)) n_broken = add_bond_load(&total, g, at, &m, held, law, time_step);
-    put_loads(slot, g, at, &m, &total);
     *busy |= any(touch | held);
+    int n_broken = 0;
+    struct law law = law_at(dem, k, at, &m, touch, time_step, features);
+    if (features & FEATURE_CONTACT_BOND)
+        n_broken = break_contact_bonds(&law, dem, k, at, &m, touch, &held, time_step,
+                                       features);
+    struct pair_load total =
+        contact_load(dem, k, at, &m, touch, held, &law, time_step, features);
+    if (features & FEATURE_PARALLEL_BOND) {
+        total.moment = (struct lanes3){zero, zero, zero};
+        if (any(held))
+            n_broken = add_bond_load(&total, dem, k, at, &m, held, time_step);
+    }
+    put_loads(dem->slot, g, at, &m, &total, features);
     return n_broken;
 }
 
-int PAIR_SWEEP(struct pair_group *group, int begin, int end, const struct place *place,
-               const struct motion *motion, struct motion *slot,
-               const struct contact_law *law, double time_step)
+INLINE int sweep_groups(const struct dem *dem, int begin, int end, unsigned features)
 {
+    const lanes zero = {0};
+    // Velocities given at the start have displaced nothing yet.
+    const lanes time_step = zero + (dem->cycle > 0 ? dem->time_step : 0);
     int n_broken = 0;
     for (int k = begin; k < end; k++) {
         int busy = 0;
         for (int at = 0; at < PAIRS_IN_GROUP; at += LANES)
-            n_broken +=
-                sweep_lanes(&group[k], at, place, motion, slot, law, time_step, &busy);
-        group[k].idle = !busy;
+            n_broken += sweep_lanes(dem, k, at, time_step, &busy, features);
+        dem->pairs.group[k].idle = !busy;
     }
     return n_broken;
 }
+
+#define SWEEP(features)                                                                \
+    static int sweep_##features(const struct dem *dem, int begin, int end)             \
+    {                                                                                  \
+        return sweep_groups(dem, begin, end, features);                                \
+    }
+#define ENTRY(features) [features] = sweep_##features,
+
+// The sets of features that can occur: bonds always turn, contact bonds are linear.
+#define EACH_SET(DO)                                                                   \
+    DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)                                    \
+    DO(9) DO(13) DO(17) DO(19) DO(21) DO(23)
+
+EACH_SET(SWEEP)
+pair_sweep *const PAIR_SWEEPS[FEATURE_SETS] = {EACH_SET(ENTRY)};

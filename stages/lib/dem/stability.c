@@ -7,7 +7,8 @@
 // rest. That bounds K and C by 6x6 blocks of single grains, exactly so on a bonded
 // cubic lattice; elsewhere the limit is on the safe side. Every pair in the list counts
 // as touching, as it may soon. [K 4.47] knows neither rotation, nor dashpots, nor that
-// a grain has several contacts.
+// a grain has several contacts. A Hertz contact counts with its stiffness at the
+// overlap it has, or is expected to have.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -88,56 +89,78 @@ struct joint {
     double weight;
 };
 
-static struct joint pair_joint(const struct dem *dem, int pair, int particle)
+// The tangents of LAW at OVERLAP. Nothing shears without friction or a bond.
+static struct contact_law tangents(const struct dem *dem, struct contact_law law,
+                                   double overlap, bool held)
 {
-    const struct contact_law *law = &dem->law;
-    const struct pair_group *g = &dem->pairs.group[pair / PAIRS_IN_GROUP];
-    const int lane = pair % PAIRS_IN_GROUP;
-    const int *const ends = dem->pairs.particle[pair];
+    if (dem->features & FEATURE_HERTZ) {
+        const double root = sqrt(overlap), fourth = sqrt(root);
+        law.normal_stiffness *= 1.5 * root;
+        law.shear_stiffness *= root;
+        law.normal_damping *= fourth;
+        law.shear_damping *= fourth;
+    }
+    const bool bond_grips = held && dem->features & FEATURE_CONTACT_BOND;
+    if (!(law.friction > 0) && !bond_grips) law.shear_stiffness = 0;
+    if (!(law.friction > 0) && !held) law.shear_damping = 0;
+    return law;
+}
+
+// The overlap that a contact is taken to have; negative when it does not count.
+static double overlap_of(const struct dem *dem, double overlap, bool held, bool now)
+{
+    if (now) return held ? fmax(overlap, 0) : overlap;
+    return fmax(overlap, dem->expected_overlap);
+}
+
+static struct joint pair_joint(const struct dem *dem, int pair, int particle, bool now)
+{
+    const int32_t *const ends = dem->pairs.particle[pair];
     const bool is_first = ends[0] == particle;
     const int other = is_first ? ends[1] : ends[0];
     const struct pair_geometry lie = pair_geometry(dem, pair, 0);
+    const bool held = is_held(dem, pair);
+    const double overlap = overlap_of(dem, lie.overlap, held, now);
+    if (overlap < 0) return (struct joint){.weight = 0};
+
+    const struct contact_law law =
+        tangents(dem, law_of_pair(dem, pair), overlap, held);
+    const double radius =
+        held ? dem->pairs.bonds[pair / PAIRS_IN_GROUP].radius[pair % PAIRS_IN_GROUP]
+             : 0;
+    const double area = M_PI * radius * radius, inertia = 0.25 * area * radius * radius;
+    const double normal = dem->bond_normal_stiffness, shear = dem->bond_shear_stiffness;
     const struct vector outward = scale(is_first ? 1 : -1, lie.normal);
     const double arm = dem->place[particle].radius - 0.5 * lie.overlap;
-    const bool held = g->normal_strength[lane] >= 0;
-    const double radius = held ? g->bond_radius[lane] : 0,
-                 area = M_PI * radius * radius;
-    const double inertia = 0.25 * area * radius * radius;
-    const bool grips = law->friction > 0;
-    const double shear = grips ? law->shear_stiffness : 0;
-    const double normal_damping = law->normal_damping * g->root_mass[lane];
-    const double shear_damping =
-        grips || held ? law->shear_damping * g->root_mass[lane] : 0;
-    return (struct joint){
-        .spring = {.normal = outward,
-                   .arm = arm,
-                   .along = law->normal_stiffness + law->bond_normal_stiffness * area,
-                   .across = shear + law->bond_shear_stiffness * area,
-                   .twist = law->bond_shear_stiffness * 2 * inertia,
-                   .bending = law->bond_normal_stiffness * inertia},
-        .dashpot = {.normal = outward,
-                    .arm = arm,
-                    .along = normal_damping,
-                    .across = shear_damping},
-        .weight = dem->mobility[other][0] > 0 ? 2 : 1};
+    return (struct joint){.spring = {.normal = outward,
+                                     .arm = arm,
+                                     .along = law.normal_stiffness + normal * area,
+                                     .across = law.shear_stiffness + shear * area,
+                                     .twist = shear * 2 * inertia,
+                                     .bending = normal * inertia},
+                          .dashpot = {.normal = outward,
+                                      .arm = arm,
+                                      .along = law.normal_damping,
+                                      .across = law.shear_damping},
+                          .weight = dem->mobility[other][0] > 0 ? 2 : 1};
 }
 
-static struct joint wall_joint(const struct dem *dem, const struct wall_pair *pair)
+static struct joint wall_joint(const struct dem *dem, const struct wall_pair *pair,
+                               bool now)
 {
-    const struct contact_law *law = &dem->wall_law;
-    const struct vector outward = scale(-1, dem->wall[pair->wall].normal);
+    const double overlap = overlap_of(dem, pair->depth, false, now);
+    if (overlap < 0) return (struct joint){.weight = 0};
+    const struct contact_law law = tangents(dem, pair->law, overlap, false);
     const double arm = dem->place[pair->particle].radius;
-    const double grip = law->friction > 0;
-    return (struct joint){
-        .spring = {.normal = outward,
-                   .arm = arm,
-                   .along = law->normal_stiffness,
-                   .across = grip * law->shear_stiffness},
-        .dashpot = {.normal = outward,
-                    .arm = arm,
-                    .along = law->normal_damping * pair->root_mass,
-                    .across = grip * law->shear_damping * pair->root_mass},
-        .weight = 1};
+    return (struct joint){.spring = {.normal = pair->normal,
+                                     .arm = arm,
+                                     .along = law.normal_stiffness,
+                                     .across = law.shear_stiffness},
+                          .dashpot = {.normal = pair->normal,
+                                      .arm = arm,
+                                      .along = law.normal_damping,
+                                      .across = law.shear_damping},
+                          .weight = 1};
 }
 
 // Which pair, or -1-k for wall pair k, writes to each slot.
@@ -154,13 +177,15 @@ static int *slot_owners(const struct dem *dem)
     return owner;
 }
 
-static double grain_limit(const struct dem *dem, const int *owner, int particle)
+static double grain_limit(const struct dem *dem, const int *owner, int particle,
+                          bool now)
 {
     struct block stiffness = {{{0}}}, damping = {{{0}}};
     for (int s = dem->slot_offset[particle]; s < dem->slot_offset[particle + 1]; s++) {
         const struct joint joint =
-            owner[s] >= 0 ? pair_joint(dem, owner[s], particle)
-                          : wall_joint(dem, &dem->wall_pair[-1 - owner[s]]);
+            owner[s] >= 0 ? pair_joint(dem, owner[s], particle, now)
+                          : wall_joint(dem, &dem->wall_pair[-1 - owner[s]], now);
+        if (joint.weight <= 0) continue;
         add_resistance(&stiffness, &joint.spring, joint.weight,
                        dem->mobility[particle]);
         add_resistance(&damping, &joint.dashpot, joint.weight, dem->mobility[particle]);
@@ -169,12 +194,24 @@ static double grain_limit(const struct dem *dem, const int *owner, int particle)
     return 4 / (c + sqrt(c * c + 4 * k)); // dt^2 k + 2 dt c = 4; infinite when alone
 }
 
-double stability_limit(const struct dem *dem)
+double stability_limit(const struct dem *dem, bool now)
 {
     int *owner = slot_owners(dem);
     double limit = INFINITY;
     for (int i = 0; i < dem->n_particle; i++)
-        limit = fmin(limit, grain_limit(dem, owner, i));
+        limit = fmin(limit, grain_limit(dem, owner, i, now));
     free(owner);
-    return limit;
+    // Against the motion, local damping makes springs and dashpots stronger by its
+    // share: springs would allow its square root, dashpots do not.
+    return limit / (1 + dem->local_damping);
+}
+
+double dem_time_step_limit(const struct dem *dem)
+{
+    return dem->time_step_limit * dem->unit.time;
+}
+
+double dem_time_step_limit_now(const struct dem *dem)
+{
+    return stability_limit(dem, true) * dem->unit.time;
 }

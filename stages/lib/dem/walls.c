@@ -1,61 +1,332 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts with rigid flats: the law of the pairs, with the grain first, the wall
-// second and at rest, and n_ij against the wall's normal. The plane never turns but
-// spins with the grain's half, as the mean of the two angular velocities asks [K 4.15].
+// Contacts with rigid walls: the law of the pairs, with the grain first and the wall
+// second. Where pairs turn their history by velocities, that of a wall goes from the
+// old normal to the new one, as walls may be curved.
 #include "dem/engine.h"
 
-#include <math.h>
+#include "basics/memory.h"
 
-static struct vector slide(struct vector shear, double limit, bool *slips)
+#include <math.h>
+#include <stdlib.h>
+
+// ---- which grains are near ----------------------------------------------------------
+
+void find_wall_pairs(struct dem *dem)
 {
-    const double size = norm(shear);
-    *slips = size > limit;
-    return *slips ? scale(limit / size, shear) : shear;
+    struct wall_pair *old = dem->wall_pair;
+    const struct wall_pair *last = old, *end = old + dem->n_wall_pair;
+    int capacity = 0;
+    dem->wall_pair = NULL;
+    dem->n_wall_pair = 0;
+    for (int i = 0; i < dem->n_particle; i++)
+        for (int w = 0; w < dem->n_wall; w++) {
+            const struct wall_geometry lie = wall_geometry(dem, i, w, 0);
+            if (!(lie.overlap >= -dem->skin)) continue;
+            struct wall_pair pair = {.particle = i,
+                                     .wall = w,
+                                     .law = wall_law(dem, i, &dem->wall[w].is),
+                                     .normal = lie.normal,
+                                     .depth = lie.overlap};
+            while (last < end &&
+                   (last->particle < i || (last->particle == i && last->wall < w)))
+                last++;
+            if (last < end && last->particle == i && last->wall == w) {
+                pair.shear_force = last->shear_force;
+                pair.normal = last->normal;
+                pair.depth = last->depth;
+            }
+            GROW_ARRAY(dem->wall_pair, dem->n_wall_pair, capacity);
+            dem->wall_pair[dem->n_wall_pair++] = pair;
+        }
+    free(old);
+    for (int w = 0; w < dem->n_wall; w++)
+        dem->wall[w].displacement_at_search = dem->wall[w].displacement;
+}
+
+double wall_travel(const struct dem *dem)
+{
+    double furthest = 0;
+    for (int w = 0; w < dem->n_wall; w++)
+        furthest = fmax(furthest, distance(dem->wall[w].displacement,
+                                           dem->wall[w].displacement_at_search));
+    return furthest;
+}
+
+void set_wall_laws(struct dem *dem)
+{
+    for (int k = 0; k < dem->n_wall_pair; k++) {
+        struct wall_pair *pair = &dem->wall_pair[k];
+        pair->law = wall_law(dem, pair->particle, &dem->wall[pair->wall].is);
+    }
+}
+
+// ---- the contact --------------------------------------------------------------------
+
+// The numbers at OVERLAP > 0, such that the normal force is stiffness times overlap
+// with both laws.
+static struct contact_law law_at(const struct dem *dem, const struct contact_law *law,
+                                 double overlap)
+{
+    struct contact_law now = *law;
+    if (!(dem->features & FEATURE_HERTZ)) return now;
+    const double root = sqrt(overlap), fourth_root = sqrt(root);
+    now.normal_stiffness *= root;
+    now.shear_stiffness *= root;
+    now.normal_damping *= fourth_root;
+    now.shear_damping *= fourth_root;
+    return now;
+}
+
+static double shear_energy(const struct dem *dem, const struct wall_pair *pair)
+{
+    if (!(pair->depth > 0)) return 0;
+    const double stiffness = law_at(dem, &pair->law, pair->depth).shear_stiffness;
+    return stiffness > 0 ? 0.5 * dot(pair->shear_force, pair->shear_force) / stiffness
+                         : 0;
+}
+
+double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair)
+{
+    if (!(pair->depth > 0)) return 0;
+    const double share = dem->features & FEATURE_HERTZ ? 0.4 : 0.5; // of k U^2
+    const double stiffness = law_at(dem, &pair->law, pair->depth).normal_stiffness;
+    return share * stiffness * pair->depth * pair->depth + shear_energy(dem, pair);
+}
+
+// The shear force as of the last time step, brought into the contact plane of now: from
+// normal to normal by the rotation that does no more than that, then by TURN about the
+// new one [K 4.13-4.15]. Onto another face of the wall it does not go along.
+static struct vector turned(const struct wall_pair *pair, struct vector normal,
+                            double turn)
+{
+    const double cosine = dot(pair->normal, normal);
+    if (!(cosine > 0)) return (struct vector){0, 0, 0};
+    const struct vector f = pair->shear_force;
+    const struct vector flat =
+        subtract(f, scale(dot(f, normal) / (1 + cosine), add(pair->normal, normal)));
+    return add(scale(1 - 0.5 * turn * turn, flat), scale(turn, cross(normal, flat)));
+}
+
+// A Hertz contact that opens loses springs, and what these held with them: otherwise
+// the same force would come to hold more energy than was put in.
+static double share_kept(const struct dem *dem, double before, double now)
+{
+    const bool opens = dem->features & FEATURE_HERTZ && now < before;
+    return opens ? sqrt(now / before) : 1;
+}
+
+// Brings the history of PAIR to where it lies now, with SLIDE the shear displacement of
+// the last time step and LIMIT what friction can carry. Returns whether it slips; adds
+// what that takes to *LOST.
+static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
+                          const struct wall_geometry *lie, struct vector slide,
+                          double turn, double limit, double *lost)
+{
+    *lost += shear_energy(dem, pair);
+    const struct vector before = scale(share_kept(dem, pair->depth, lie->overlap),
+                                       turned(pair, lie->normal, turn));
+    pair->shear_force = before;
+    pair->normal = lie->normal;
+    pair->depth = lie->overlap;
+    *lost -= shear_energy(dem, pair); // turning loses nothing, opening and closing do
+
+    const double stiffness = law_at(dem, &pair->law, lie->overlap).shear_stiffness;
+    const struct vector trial = subtract(before, scale(stiffness, slide));
+    const double size = norm(trial);
+    const bool slips = size >= limit;
+    pair->shear_force = size > limit ? scale(limit / size, trial) : trial;
+    // The mean force times the slip, exact however long the step.
+    if (stiffness > 0)
+        *lost +=
+            0.5 *
+            dot(add(before, pair->shear_force), subtract(trial, pair->shear_force)) /
+            stiffness;
+    return slips;
+}
+
+// What the grain of a pair does to the wall, and what is lost on the way.
+struct push {
+    struct vector force;
+    struct vector shear; // the part of it across the normal
+    double dashpots, slip;
+};
+
+static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
+                             const struct wall_geometry *lie)
+{
+    const struct rigid_wall *wall = &dem->wall[pair->wall];
+    const struct motion *grain = &dem->motion[pair->particle];
+    const bool turns = dem->features & FEATURE_TURN;
+    const double dt = dem->cycle > 0 ? dem->time_step : 0; // see dem.c
+    const struct contact_law law = law_at(dem, &pair->law, lie->overlap);
+    const struct vector n = lie->normal, spin = as_vector(grain->angular);
+
+    const struct vector v = subtract(
+        add(wall->velocity, cross(wall->spin, lie->lever)),
+        add(as_vector(grain->linear), scale(lie->arm, cross(spin, n)))); // [K 4.17]
+    const double normal_velocity = dot(v, n);
+    const struct vector sideways = subtract(v, scale(normal_velocity, n));
+    const double spring = law.normal_stiffness * lie->overlap;
+    const double dashpot = -law.normal_damping * normal_velocity;
+
+    struct push push = {.force = scale(spring + dashpot, n)};
+    push.dashpots = -dashpot * normal_velocity * dt;
+    if (!turns) {
+        pair->depth = lie->overlap;
+        return push;
+    }
+    const double turn = 0.5 * dt * dot(add(spin, wall->spin), n);
+    const bool slips = advance_shear(dem, pair, lie, scale(dt, sideways), turn,
+                                     law.friction * spring, &push.slip);
+    push.shear = pair->shear_force;
+    if (!slips) {
+        push.shear = subtract(push.shear, scale(law.shear_damping, sideways));
+        push.dashpots += law.shear_damping * dot(sideways, sideways) * dt;
+    }
+    push.force = add(push.force, push.shear);
+    return push;
+}
+
+// Its slot gets what the grain feels, the opposite.
+static void put_load(const struct dem *dem, int at, struct vector force,
+                     struct vector moment)
+{
+    double *slot = dem->slot + (size_t)dem->slot_stride * (size_t)at;
+    for (int axis = 0; axis < 3; axis++)
+        slot[axis] = -component(force, axis);
+    slot[3] = 0;
+    if (!(dem->features & FEATURE_TURN)) return;
+    for (int axis = 0; axis < 3; axis++)
+        slot[4 + axis] = -component(moment, axis);
+    slot[7] = 0;
+}
+
+// By how much the force on a wall grows in the next step for each unit of its velocity.
+static double resistance(const struct dem *dem, const struct wall_pair *pair)
+{
+    const double tangent = dem->features & FEATURE_HERTZ ? 1.5 : 1;
+    const struct contact_law law = law_at(dem, &pair->law, pair->depth);
+    return tangent * law.normal_stiffness * dem->time_step + law.normal_damping;
 }
 
 static void touch_wall(struct dem *dem, struct wall_pair *pair)
 {
-    const struct contact_law *law = &dem->wall_law;
-    const double dt = dem->cycle > 0 ? dem->time_step : 0; // see dem.c
-    const struct place *place = &dem->place[pair->particle];
-    const struct motion *motion = &dem->motion[pair->particle];
-    const struct vector n = scale(-1, dem->wall[pair->wall].normal);
-    const double overlap = pair->overlap + dot(as_vector(place->displacement), n);
-    struct motion *slot = &dem->slot[pair->slot];
-    *slot = (struct motion){{0}, {0}};
-    if (!(overlap >= 0)) {
-        pair->shear_force = (struct vector){0, 0, 0};
+    const struct vector none = {0, 0, 0};
+    const struct wall_geometry lie = wall_geometry(dem, pair->particle, pair->wall, 0);
+    if (!(lie.overlap >= 0)) {
+        dem->books.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
+        pair->shear_force = none;
+        pair->depth = lie.overlap;
+        put_load(dem, pair->slot, none, none);
         return;
     }
 
-    const double arm = place->radius - 0.5 * overlap;
-    const struct vector spin = as_vector(motion->angular);
-    const struct vector v = scale(
-        -1, add(as_vector(motion->linear), scale(arm, cross(spin, n)))); // [K 4.17]
-    const double normal_velocity = dot(v, n);
-    const struct vector sideways = subtract(v, scale(normal_velocity, n));
+    const struct push push = push_wall(dem, pair, &lie);
+    put_load(dem, pair->slot, push.force,
+             scale(lie.arm, cross(lie.normal, push.shear)));
+    struct rigid_wall *wall = &dem->wall[pair->wall];
+    wall->force = add(wall->force, push.force);
+    wall->moment = add(wall->moment, cross(lie.lever, push.force));
+    wall->resistance += resistance(dem, pair);
+    if (!dem->balance_energy) return;
+    dem->books.dashpots += push.dashpots;
+    dem->books.slip += push.slip;
+}
 
-    const double turn = 0.5 * dt * dot(spin, n);
-    struct vector shear = add(scale(1 - 0.5 * turn * turn, pair->shear_force),
-                              scale(turn, cross(n, pair->shear_force)));
-    shear = subtract(shear, scale(law->shear_stiffness * dt, sideways));
-    const double spring = law->normal_stiffness * overlap;
-    bool slips;
-    shear = slide(shear, law->friction * spring, &slips);
-    pair->shear_force = shear;
+// ---- how walls move -----------------------------------------------------------------
 
-    const double normal =
-        spring - law->normal_damping * pair->root_mass * normal_velocity;
-    if (!slips)
-        shear = subtract(shear, scale(law->shear_damping * pair->root_mass, sideways));
-    const struct vector force = add(scale(normal, n), shear);
-    const struct vector moment = scale(arm, cross(n, shear));
-    *slot = (struct motion){{-force.x, -force.y, -force.z},
-                            {-moment.x, -moment.y, -moment.z}};
+// A servo moves its wall by a quarter of what would bring the force in one step to
+// where it should be if the grains stayed where they are. To them it then is a dashpot,
+// and one that leapfrog bears: the recursion of a wall, a grain or three and a floor
+// has its spectral radius below 1 up to 0.96 of the limit of the time step, and with
+// damping ratios up to 1.5 up to 0.86. Without the damping in the divisor any ratio
+// above 2 omega dt would make it oscillate from step to step.
+static double servo_speed(const struct rigid_wall *wall)
+{
+    const double share = 0.25, fastest = wall->is.servo_largest_speed;
+    const double pressing = -dot(wall->force, wall->is.normal);
+    const double missing = wall->is.servo_force - pressing;
+    if (!(wall->resistance > 0)) return fastest;
+    const double speed = share * missing / wall->resistance;
+    return fmax(-fastest, fmin(speed, fastest));
+}
+
+// The part of what is asked for that leaves the shape where it is.
+static struct vector surface_spin(const struct dem_wall *wall)
+{
+    if (wall->shape == DEM_BLOCK) return (struct vector){0, 0, 0};
+    if (wall->shape == DEM_SPHERE) return wall->spin;
+    return scale(dot(wall->spin, wall->normal), wall->normal);
+}
+
+// Half a step before the first, as velocities of grains are given.
+static void start_walls(struct dem *dem)
+{
+    for (int w = 0; w < dem->n_wall; w++) {
+        dem->wall[w].velocity = dem->wall[w].is.velocity;
+        dem->wall[w].spin = surface_spin(&dem->wall[w].is);
+    }
+}
+
+void move_walls(struct dem *dem)
+{
+    for (int w = 0; w < dem->n_wall; w++) {
+        struct rigid_wall *wall = &dem->wall[w];
+        const struct vector asked = wall->is.velocity, n = wall->is.normal;
+        wall->velocity = asked;
+        if (wall->is.servo_force > 0)
+            wall->velocity = add(asked, scale(servo_speed(wall) - dot(asked, n), n));
+        wall->spin = surface_spin(&wall->is);
+        wall->displacement =
+            add(wall->displacement, scale(dem->time_step, wall->velocity));
+    }
+}
+
+// ---- the sweep ---------------------------------------------------------------------
+
+// What a wall does to grains in unit time, at its last velocity.
+static double power(const struct rigid_wall *wall)
+{
+    return -dot(wall->force, wall->velocity) - dot(wall->moment, wall->spin);
 }
 
 void sweep_walls(struct dem *dem)
 {
+    if (dem->cycle == 0) start_walls(dem);
+    const double half =
+        dem->cycle > 0 && dem->balance_energy ? 0.5 * dem->time_step : 0;
+    // Work over the last time step: the mean of the forces at its two ends.
+    for (int w = 0; w < dem->n_wall; w++) {
+        struct rigid_wall *wall = &dem->wall[w];
+        dem->books.gained += half * power(wall);
+        wall->force = wall->moment = (struct vector){0, 0, 0};
+        wall->resistance = 0;
+    }
     for (int k = 0; k < dem->n_wall_pair; k++)
         touch_wall(dem, &dem->wall_pair[k]);
+    for (int w = 0; w < dem->n_wall; w++)
+        dem->books.gained += half * power(&dem->wall[w]);
+}
+
+// ---- from outside ------------------------------------------------------------------
+
+void dem_set_wall_motion(struct dem *dem, int wall, struct vector velocity,
+                         struct vector spin)
+{
+    dem->wall[wall].is.velocity = scale(dem->unit.time / dem->unit.length, velocity);
+    dem->wall[wall].is.spin = scale(dem->unit.time, spin);
+}
+
+void dem_set_servo(struct dem *dem, int wall, double force)
+{
+    dem->wall[wall].is.servo_force = force / (dem->unit.stiffness * dem->unit.length);
+}
+
+struct dem_wall_state dem_wall_state(const struct dem *dem, int wall)
+{
+    const struct rigid_wall *of = &dem->wall[wall];
+    const double length = dem->unit.length, force = dem->unit.stiffness * length;
+    return (struct dem_wall_state){.force = scale(force, of->force),
+                                   .moment = scale(force * length, of->moment),
+                                   .displacement = scale(length, of->displacement)};
 }

@@ -7,21 +7,264 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_CELLS = 512 }; // along one axis: bounds the memory of sparse scenes
+enum { MOST_LEVELS = 16 };
 
-// The box of all grains in cells at least as wide as the farthest that two neighbours'
-// centres can be apart.
-struct cells {
-    struct vector origin, width;
+struct member {
+    struct vector position;
+    double reach;
+    int32_t index;
+};
+
+// The spheres of one level of sizes, in cells at least as wide as two of the largest
+// reaches among them, so that whoever is no larger meets them in neighbouring cells.
+struct grid {
     int count[3];
-    int *first; // (cells) first grain, or -1
-    int *next;  // (n_particle) next grain of the same cell, or -1
+    double lower[3], cells_per_length[3];
+    bool repeats[3];
+    int *offset;           // (cells+1) into member
+    struct member *member; // by cell
 };
 
 struct pairs {
     int32_t (*pair)[2];
     int count, capacity;
 };
+
+static int cell_along(const struct grid *grid, int axis, double x)
+{
+    double at = (x - grid->lower[axis]) * grid->cells_per_length[axis];
+    if (grid->repeats[axis]) at -= grid->count[axis] * floor(at / grid->count[axis]);
+    return (int)fmin(fmax(at, 0), grid->count[axis] - 1);
+}
+
+static int cell_of(const struct grid *grid, struct vector position)
+{
+    int cell = 0;
+    for (int axis = 0; axis < 3; axis++)
+        cell = cell * grid->count[axis] +
+               cell_along(grid, axis, component(position, axis));
+    return cell;
+}
+
+// The box of the spheres, or of the period, in cells of WIDTH or more; about as many
+// cells as MEMBERS at most.
+static void size_grid(struct grid *grid, const struct spheres *all, double width,
+                      int members)
+{
+    double length[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (int i = 0; i < all->count; i++) {
+            lower = fmin(lower, component(all->position[i], axis));
+            upper = fmax(upper, component(all->position[i], axis));
+        }
+        grid->repeats[axis] = all->period[axis] > 0;
+        if (grid->repeats[axis]) {
+            lower = all->lower[axis];
+            upper = lower + all->period[axis];
+        }
+        grid->lower[axis] = lower;
+        length[axis] = fmax(upper - lower, width);
+        grid->count[axis] = (int)fmin(floor(length[axis] / width), 1 << 20);
+    }
+    while ((double)grid->count[0] * grid->count[1] * grid->count[2] >
+           2.0 * members + 64) {
+        int longest = 0;
+        for (int axis = 1; axis < 3; axis++)
+            if (grid->count[axis] > grid->count[longest]) longest = axis;
+        grid->count[longest] = (grid->count[longest] + 1) / 2;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        grid->cells_per_length[axis] = grid->count[axis] / length[axis];
+}
+
+static struct grid fill_grid(const struct spheres *all, const uint8_t *level, int which,
+                             double width)
+{
+    struct grid grid = {0};
+    int members = 0;
+    for (int i = 0; i < all->count; i++)
+        members += level[i] == which;
+    size_grid(&grid, all, width, members);
+    const int cells = grid.count[0] * grid.count[1] * grid.count[2];
+    grid.offset = NEW_ARRAY(int, cells + 2);
+    grid.member = NEW_ARRAY(struct member, members);
+    int *cell = NEW_ARRAY(int, all->count);
+    for (int i = 0; i < all->count; i++) {
+        if (level[i] != which) continue;
+        cell[i] = cell_of(&grid, all->position[i]);
+        grid.offset[cell[i] + 2]++;
+    }
+    for (int c = 0; c < cells; c++)
+        grid.offset[c + 2] += grid.offset[c + 1];
+    // Filling moves each offset one on, so that cell c ends where c + 1 begins.
+    for (int i = 0; i < all->count; i++)
+        if (level[i] == which)
+            grid.member[grid.offset[cell[i] + 1]++] =
+                (struct member){all->position[i], all->reach[i], i};
+    free(cell);
+    return grid;
+}
+
+// The cells around X along an axis, each once; how many.
+static int cells_around(const struct grid *grid, int axis, double x, int around[3])
+{
+    const int count = grid->count[axis], cell = cell_along(grid, axis, x);
+    int n = 0;
+    for (int step = -1; step <= 1; step++) {
+        if (grid->repeats[axis] && n < count)
+            around[n++] = (cell + step + count) % count;
+        else if (!grid->repeats[axis] && cell + step >= 0 && cell + step < count)
+            around[n++] = cell + step;
+    }
+    return n;
+}
+
+static bool is_near(const struct spheres *all, const struct member *m,
+                    struct vector from, double reach)
+{
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double period = all->period[axis];
+        double apart = component(m->position, axis) - component(from, axis);
+        if (period > 0) apart -= period * rint(apart / period);
+        square += apart * apart;
+    }
+    return square <= (reach + m->reach) * (reach + m->reach);
+}
+
+// Pairs of sphere I with those of GRID; of its own level only the later ones.
+static void meet_grid(const struct spheres *all, const struct grid *grid, int i,
+                      bool own_level, struct pairs *found)
+{
+    const struct vector from = all->position[i];
+    int around[3][3], n[3];
+    for (int axis = 0; axis < 3; axis++)
+        n[axis] = cells_around(grid, axis, component(from, axis), around[axis]);
+    for (int k = 0; k < n[0] * n[1] * n[2]; k++) {
+        const int x = around[0][k / (n[1] * n[2])], y = around[1][k / n[2] % n[1]];
+        const int cell =
+            (x * grid->count[1] + y) * grid->count[2] + around[2][k % n[2]];
+        for (int m = grid->offset[cell]; m < grid->offset[cell + 1]; m++) {
+            const int j = grid->member[m].index;
+            if (own_level && j <= i) continue;
+            if (!is_near(all, &grid->member[m], from, all->reach[i])) continue;
+            GROW_ARRAY(found->pair, found->count, found->capacity);
+            found->pair[found->count][0] = i < j ? i : j;
+            found->pair[found->count++][1] = i < j ? j : i;
+        }
+    }
+}
+
+int compare_pairs(const void *a, const void *b)
+{
+    const int32_t *p = a, *q = b;
+    const int first = (p[0] > q[0]) - (p[0] < q[0]);
+    return first ? first : (p[1] > q[1]) - (p[1] < q[1]);
+}
+
+// The second grains of one first grain: few, and nearly in order.
+static void sort_seconds(int32_t (*pair)[2], int count)
+{
+    for (int k = 1; k < count; k++) {
+        const int32_t second = pair[k][1];
+        int to = k;
+        for (; to > 0 && pair[to - 1][1] > second; to--)
+            pair[to][1] = pair[to - 1][1];
+        pair[to][1] = second;
+    }
+}
+
+// The pairs of all PARTS in order, which end them.
+static int32_t (*merge(struct pairs *part, int parts, int n, int *count))[2]
+{
+    int *offset = NEW_ARRAY(int, n + 2);
+    for (int t = 0; t < parts; t++)
+        for (int k = 0; k < part[t].count; k++)
+            offset[part[t].pair[k][0] + 2]++;
+    for (int i = 0; i < n; i++)
+        offset[i + 2] += offset[i + 1];
+    *count = offset[n + 1];
+    int32_t(*all)[2] = allocate((size_t)*count, sizeof *all);
+    for (int t = 0; t < parts; t++) {
+        for (int k = 0; k < part[t].count; k++)
+            memcpy(all[offset[part[t].pair[k][0] + 1]++], part[t].pair[k], sizeof *all);
+        free(part[t].pair);
+    }
+    enum { FEW = 32 };
+    for (int i = 0; i < n; i++) {
+        const int begin = offset[i], size = offset[i + 1] - begin;
+        if (size <= FEW)
+            sort_seconds(all + begin, size);
+        else
+            qsort(all + begin, (size_t)size, sizeof *all, compare_pairs);
+    }
+    free(offset);
+    return all;
+}
+
+// By how often the largest reach can be halved before it is below one's own.
+static uint8_t *find_levels(const struct spheres *all, int *levels, double *largest)
+{
+    uint8_t *level = NEW_ARRAY(uint8_t, all->count);
+    *largest = 0;
+    for (int i = 0; i < all->count; i++)
+        *largest = fmax(*largest, all->reach[i]);
+    *levels = 1;
+    for (int i = 0; i < all->count; i++) {
+        const int halvings = ilogb(*largest / all->reach[i]);
+        level[i] = (uint8_t)(halvings < MOST_LEVELS ? halvings : MOST_LEVELS - 1);
+        if (level[i] >= *levels) *levels = level[i] + 1;
+    }
+    return level;
+}
+
+int32_t (*near_pairs(const struct spheres *all, int *count))[2]
+{
+    int levels;
+    double largest;
+    uint8_t *level = find_levels(all, &levels, &largest);
+    struct grid grid[MOST_LEVELS];
+    for (int l = 0; l < levels; l++)
+        grid[l] = fill_grid(all, level, l, ldexp(2 * largest, -l));
+
+    enum { SHARE = 4096 };
+    const int parts = (all->count + SHARE - 1) / SHARE;
+    struct pairs *part = NEW_ARRAY(struct pairs, parts);
+#pragma omp parallel for num_threads(all->threads) schedule(dynamic, 1)
+    for (int t = 0; t < parts; t++)
+        for (int i = t * SHARE; i < (t + 1) * SHARE && i < all->count; i++)
+            for (int l = level[i]; l >= 0; l--)
+                meet_grid(all, &grid[l], i, l == level[i], &part[t]);
+
+    for (int l = 0; l < levels; l++) {
+        free(grid[l].offset);
+        free(grid[l].member);
+    }
+    free(level);
+    int32_t(*pair)[2] = merge(part, parts, all->count, count);
+    free(part);
+    return pair;
+}
+
+int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2]
+{
+    double *reach = NEW_ARRAY(double, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        reach[i] = (1 + gap) * packing->radius[i];
+    struct spheres all = {.count = packing->n_particle,
+                          .position = packing->position,
+                          .reach = reach,
+                          .threads = 1};
+    for (int axis = 0; axis < 3; axis++) {
+        all.lower[axis] = component(packing->lower, axis);
+        if (packing->periodic[axis])
+            all.period[axis] = component(packing->upper, axis) - all.lower[axis];
+    }
+    int32_t(*pair)[2] = near_pairs(&all, count);
+    free(reach);
+    return pair;
+}
 
 struct vector nearest_image(const struct packing *packing, int i, int j)
 {
@@ -34,122 +277,4 @@ struct vector nearest_image(const struct packing *packing, int i, int j)
         set_component(&apart, axis, along - edge * round(along / edge));
     }
     return apart;
-}
-
-static void bounds(const struct packing *packing, int axis, double *low, double *high)
-{
-    *low = component(packing->lower, axis);
-    *high = component(packing->upper, axis);
-    if (packing->periodic[axis]) return;
-    for (int i = 0; i < packing->n_particle; i++) {
-        const double at = component(packing->position[i], axis);
-        *low = at < *low ? at : *low;
-        *high = at > *high ? at : *high;
-    }
-}
-
-static int cell_along(const struct cells *cells, const struct packing *packing, int i,
-                      int axis)
-{
-    const double place =
-        (component(packing->position[i], axis) - component(cells->origin, axis)) /
-        component(cells->width, axis);
-    const int n = cells->count[axis];
-    if (packing->periodic[axis]) return (int)((long)floor(place) % n + n) % n;
-    return place < 0 ? 0 : place >= n ? n - 1 : (int)place;
-}
-
-static struct cells fill_cells(const struct packing *packing, double reach)
-{
-    struct cells cells = {0};
-    for (int axis = 0; axis < 3; axis++) {
-        double low, high;
-        bounds(packing, axis, &low, &high);
-        const double wanted = floor((high - low) / reach);
-        cells.count[axis] = wanted < 1            ? 1
-                            : wanted > MOST_CELLS ? MOST_CELLS
-                                                  : (int)wanted;
-        set_component(&cells.origin, axis, low);
-        set_component(&cells.width, axis, (high - low) / cells.count[axis]);
-    }
-    const size_t total =
-        (size_t)cells.count[0] * (size_t)cells.count[1] * (size_t)cells.count[2];
-    cells.first = NEW_ARRAY(int, total);
-    cells.next = NEW_ARRAY(int, packing->n_particle);
-    memset(cells.first, -1, total * sizeof *cells.first);
-    for (int i = packing->n_particle - 1; i >= 0; i--) {
-        const int x = cell_along(&cells, packing, i, 0);
-        const int y = cell_along(&cells, packing, i, 1);
-        const int z = cell_along(&cells, packing, i, 2);
-        int *head = &cells.first[x + cells.count[0] * (y + cells.count[1] * z)];
-        cells.next[i] = *head;
-        *head = i;
-    }
-    return cells;
-}
-
-// The distinct cells at AT-1, AT, AT+1 along an axis; fewer than three in a narrow box.
-static int cells_around(int at, int count, bool periodic, int around[3])
-{
-    int found = 0;
-    for (int step = -1; step <= 1; step++) {
-        int cell = at + step;
-        if (periodic) cell = (cell + count) % count;
-        if (cell < 0 || cell >= count) continue;
-        bool known = false;
-        for (int k = 0; k < found; k++)
-            known = known || around[k] == cell;
-        if (!known) around[found++] = cell;
-    }
-    return found;
-}
-
-static void pair_with_cell(const struct packing *packing, const struct cells *cells,
-                           int cell, int i, double gap, struct pairs *pairs)
-{
-    for (int j = cells->first[cell]; j >= 0; j = cells->next[j]) {
-        if (j <= i) continue;
-        const double reach = (packing->radius[i] + packing->radius[j]) * (1 + gap);
-        if (norm(nearest_image(packing, i, j)) > reach) continue;
-        GROW_ARRAY(pairs->pair, pairs->count, pairs->capacity);
-        pairs->pair[pairs->count][0] = i;
-        pairs->pair[pairs->count++][1] = j;
-    }
-}
-
-int compare_pairs(const void *a, const void *b)
-{
-    const int32_t *first = a, *second = b;
-    if (first[0] != second[0]) return first[0] < second[0] ? -1 : 1;
-    return (first[1] > second[1]) - (first[1] < second[1]);
-}
-
-int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2]
-{
-    double largest = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        largest = packing->radius[i] > largest ? packing->radius[i] : largest;
-    const struct cells cells = fill_cells(packing, 2 * largest * (1 + gap));
-    struct pairs pairs = {0};
-    for (int i = 0; i < packing->n_particle; i++) {
-        int around[3][3], found[3];
-        for (int axis = 0; axis < 3; axis++)
-            found[axis] =
-                cells_around(cell_along(&cells, packing, i, axis), cells.count[axis],
-                             packing->periodic[axis], around[axis]);
-        for (int z = 0; z < found[2]; z++)
-            for (int y = 0; y < found[1]; y++)
-                for (int x = 0; x < found[0]; x++)
-                    pair_with_cell(packing, &cells,
-                                   around[0][x] +
-                                       cells.count[0] * (around[1][y] +
-                                                         cells.count[1] * around[2][z]),
-                                   i, gap, &pairs);
-    }
-    free(cells.first);
-    free(cells.next);
-    if (pairs.count)
-        qsort(pairs.pair, (size_t)pairs.count, sizeof *pairs.pair, compare_pairs);
-    *count = pairs.count;
-    return pairs.pair;
 }

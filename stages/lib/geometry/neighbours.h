@@ -5,10 +5,24 @@
 
 #include "geometry/packing.h"
 
-// All pairs whose surfaces are at most GAP times the sum of their radii apart
-// (overlapping ones too), by the nearest image where the box repeats, each once, lower
-// index first, sorted. Linked cells: O(n) for grains of similar size. *COUNT gets their
-// number; the caller frees the array.
+// Spheres in a box that may repeat: two are near when their centres, by the nearest
+// image, are at most the sum of their reaches apart.
+struct spheres {
+    int count;
+    const struct vector *position; // (count)
+    const double *reach;           // (count) > 0
+    double lower[3];               // of the box, used where it repeats
+    double period[3];              // 0 where it does not
+    int threads;                   // >= 1
+};
+
+// All near pairs, each once, lower index first, sorted. Linked cells, one grid for each
+// halving of the reach, so that it is O(count) for spheres of any sizes. *COUNT gets
+// their number; the caller frees the array. The same for any number of threads.
+int32_t (*near_pairs(const struct spheres *spheres, int *count))[2];
+
+// All pairs of grains whose surfaces are at most GAP times the sum of their radii apart
+// (overlapping ones too); otherwise as above.
 int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2];
 
 // Orders pairs of grains by the first, then the second; for qsort and bsearch.

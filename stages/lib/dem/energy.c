@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energy, its books, and momentum, in SI. Energies are of the moment of the last force
+// evaluation, momenta of the half step before, like velocities.
+#include "dem/engine.h"
+
+#include <math.h>
+
+// The motion at the moment of the forces: half a step back from the last.
+static struct motion motion_with_forces(const struct dem *dem, int particle)
+{
+    struct motion now = dem->motion[particle];
+    const struct motion load = load_on_grain(dem, particle);
+    const double half = 0.5 * places_ahead(dem) * dem->time_step;
+    for (int k = 0; k < 3; k++) {
+        now.linear[k] -= half * dem->mobility[particle][0] * load.linear[k];
+        now.angular[k] -= half * dem->mobility[particle][1] * load.angular[k];
+    }
+    return now;
+}
+
+static double inertia(const struct dem *dem, int particle) // of a ball: Theta [K 4.4]
+{
+    const double radius = dem->place[particle].radius;
+    return 0.4 * dem->mass[particle] * radius * radius;
+}
+
+// SQUARE / (2 STIFFNESS), the energy of a spring from its force squared.
+static double spring_energy(double square, double stiffness)
+{
+    return stiffness > 0 ? 0.5 * square / stiffness : 0;
+}
+
+static double bond_energy(const struct dem *dem, int pair, double stretch)
+{
+    const struct bond_group *g = &dem->pairs.bonds[pair / PAIRS_IN_GROUP];
+    const int lane = pair % PAIRS_IN_GROUP;
+    const double radius = g->radius[lane], area = M_PI * radius * radius;
+    const double bending_inertia = 0.25 * area * radius * radius;
+    const struct vector shear = lane_vector(g->shear_force, lane);
+    const struct vector bending = lane_vector(g->bending, lane);
+    const double twist = g->twist[lane];
+    const double normal = dem->bond_normal_stiffness,
+                 across = dem->bond_shear_stiffness;
+    return 0.5 * normal * area * stretch * stretch +
+           spring_energy(dot(shear, shear), across * area) +
+           spring_energy(dot(bending, bending), normal * bending_inertia) +
+           spring_energy(twist * twist, across * 2 * bending_inertia);
+}
+
+static double pair_energy(const struct dem *dem, int pair)
+{
+    const struct contact_law law = law_of_pair(dem, pair);
+    const struct pair_geometry lie = pair_geometry(dem, pair, places_ahead(dem));
+    const bool held = is_held(dem, pair);
+    const bool pulls = held && dem->features & FEATURE_CONTACT_BOND;
+    const double overlap = pulls ? lie.overlap : fmax(lie.overlap, 0);
+    const bool hertz = dem->features & FEATURE_HERTZ;
+    const double root = hertz ? sqrt(overlap) : 1;
+    double energy =
+        (hertz ? 0.4 : 0.5) * law.normal_stiffness * root * overlap * overlap;
+    if (dem->pairs.shear) {
+        const struct vector shear = lane_vector(
+            dem->pairs.shear[pair / PAIRS_IN_GROUP].force, pair % PAIRS_IN_GROUP);
+        energy += spring_energy(dot(shear, shear), law.shear_stiffness * root);
+    }
+    if (held && !pulls) energy += bond_energy(dem, pair, lie.stretch);
+    return energy;
+}
+
+static struct dem_energy energy_in_books(const struct dem *dem)
+{
+    struct dem_energy books = dem->books;
+    for (int p = 0; dem->pairs.loss && p < dem->pairs.n_pair; p++) {
+        const struct loss_group *loss = &dem->pairs.loss[p / PAIRS_IN_GROUP];
+        books.dashpots += loss->dashpots[p % PAIRS_IN_GROUP];
+        books.slip += loss->slip[p % PAIRS_IN_GROUP];
+        books.broken += loss->broken[p % PAIRS_IN_GROUP];
+    }
+    for (int i = 0; dem->grain_books && i < dem->n_particle; i++) {
+        books.gained += dem->grain_books[i][0];
+        books.local_damping += dem->grain_books[i][1];
+    }
+    return books;
+}
+
+struct dem_energy dem_energy(const struct dem *dem)
+{
+    struct dem_energy energy = energy_in_books(dem);
+    for (int i = 0; i < dem->n_particle; i++) {
+        const struct motion now = motion_with_forces(dem, i);
+        const struct vector v = as_vector(now.linear), w = as_vector(now.angular);
+        energy.kinetic +=
+            0.5 * (dem->mass[i] * dot(v, v) + inertia(dem, i) * dot(w, w));
+    }
+    for (int p = 0; p < dem->pairs.n_pair; p++)
+        energy.elastic += pair_energy(dem, p);
+    for (int k = 0; k < dem->n_wall_pair; k++)
+        energy.elastic += wall_pair_energy(dem, &dem->wall_pair[k]);
+    const double unit = dem->unit.stiffness * dem->unit.length * dem->unit.length;
+    double *const part[] = {&energy.kinetic, &energy.elastic, &energy.gained,
+                            &energy.dashpots, &energy.slip, &energy.local_damping,
+                            &energy.broken};
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++)
+        *part[k] *= unit;
+    return energy;
+}
+
+struct dem_momentum dem_momentum(const struct dem *dem)
+{
+    struct vector linear = {0, 0, 0}, angular = {0, 0, 0};
+    for (int i = 0; i < dem->n_particle; i++) {
+        const struct vector p = scale(dem->mass[i], as_vector(dem->motion[i].linear));
+        const struct vector x =
+            add(dem->start[i], as_vector(dem->place[i].displacement));
+        const struct vector spin = as_vector(dem->motion[i].angular);
+        linear = add(linear, p);
+        angular = add(angular, add(cross(x, p), scale(inertia(dem, i), spin)));
+    }
+    const double unit = dem->unit.mass * dem->unit.length / dem->unit.time;
+    return (struct dem_momentum){.linear = scale(unit, linear),
+                                 .angular = scale(unit * dem->unit.length, angular)};
+}

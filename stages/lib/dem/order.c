@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains numbered along Hilbert's curve, so that those near each other in space are near
+// in memory. Small scenes lie in the cache in any order and keep the one they came in.
+#include "dem/engine.h"
+
+#include "basics/memory.h"
+#include "geometry/neighbours.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEAST_TO_ORDER = 4096, BITS = 10 };
+
+// Place of a cell on the curve through 2^BITS cells along each axis (Skilling 2004).
+static uint32_t hilbert_key(uint32_t x[3])
+{
+    for (uint32_t q = 1u << (BITS - 1); q > 1; q >>= 1)
+        for (int axis = 0; axis < 3; axis++) {
+            const uint32_t low = q - 1;
+            if (x[axis] & q) {
+                x[0] ^= low;
+                continue;
+            }
+            const uint32_t swap = (x[0] ^ x[axis]) & low;
+            x[0] ^= swap;
+            x[axis] ^= swap;
+        }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    uint32_t turn = 0;
+    for (uint32_t q = 1u << (BITS - 1); q > 1; q >>= 1)
+        if (x[2] & q) turn ^= q - 1;
+    uint32_t key = 0;
+    for (int bit = BITS - 1; bit >= 0; bit--)
+        for (int axis = 0; axis < 3; axis++)
+            key = key << 1 | ((x[axis] ^ turn) >> bit & 1);
+    return key;
+}
+
+struct keyed {
+    uint32_t key;
+    int32_t grain;
+};
+
+static int by_key(const void *a, const void *b)
+{
+    const struct keyed *p = a, *q = b;
+    const int order = (p->key > q->key) - (p->key < q->key);
+    return order ? order : (p->grain > q->grain) - (p->grain < q->grain);
+}
+
+// In cubic cells, so that the curve does not prefer an axis.
+static struct keyed *along_curve(const struct dem *dem)
+{
+    const int n = dem->n_particle;
+    double lower[3], edge = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int i = 0; i < n; i++) {
+            const double x = component(position_now(dem, i), axis);
+            least = fmin(least, x);
+            most = fmax(most, x);
+        }
+        lower[axis] = least;
+        edge = fmax(edge, most - least);
+    }
+    struct keyed *order = NEW_ARRAY(struct keyed, n);
+    const double cells = edge > 0 ? ((1 << BITS) - 1) / edge : 0;
+    for (int i = 0; i < n; i++) {
+        uint32_t x[3];
+        for (int axis = 0; axis < 3; axis++)
+            x[axis] =
+                (uint32_t)((component(position_now(dem, i), axis) - lower[axis]) * cells);
+        order[i] = (struct keyed){hilbert_key(x), i};
+    }
+    qsort(order, (size_t)n, sizeof *order, by_key);
+    return order;
+}
+
+// ARRAY[k] becomes what ARRAY[order[k].grain] was.
+static void reorder(void *array, size_t size, const struct keyed *order, int n)
+{
+    if (!array) return;
+    char *old = duplicate(array, (size_t)n, size), *new = array;
+    for (int k = 0; k < n; k++)
+        memcpy(new + (size_t)k * size, old + (size_t)order[k].grain * size, size);
+    free(old);
+}
+#define REORDER(array) reorder(array, sizeof *(array), order, dem->n_particle)
+
+static void reorder_grains(struct dem *dem, const struct keyed *order)
+{
+    REORDER(dem->identity);
+    REORDER(dem->start);
+    REORDER(dem->place);
+    REORDER(dem->motion);
+    REORDER(dem->external);
+    REORDER(dem->applied);
+    REORDER(dem->mobility);
+    REORDER(dem->mass);
+    REORDER(dem->weight);
+    REORDER(dem->material_of);
+    REORDER(dem->place_at_search);
+    REORDER(dem->grain_books);
+    for (int k = 0; k < dem->n_particle; k++)
+        dem->number[dem->identity[k]] = k;
+}
+
+// Sets PAIR to its grains' new numbers, lower first; whether they changed places.
+static bool relabel(int32_t pair[2], const int32_t *new_number)
+{
+    const int32_t a = new_number[pair[0]], b = new_number[pair[1]];
+    pair[0] = a < b ? a : b;
+    pair[1] = a < b ? b : a;
+    return a > b;
+}
+
+struct moved_pair {
+    int32_t particle[2]; // new numbers
+    int32_t from;        // pair in the old list
+    bool swapped;
+};
+
+// The histories of all pairs in their new order. What they point to, slots and laws, is
+// left to the search that follows.
+static void reorder_pairs(struct dem *dem, const int32_t *new_number)
+{
+    const int n = dem->pairs.n_pair;
+    struct moved_pair *moved = NEW_ARRAY(struct moved_pair, n);
+    for (int p = 0; p < n; p++) {
+        memcpy(moved[p].particle, dem->pairs.particle[p], sizeof moved[p].particle);
+        moved[p].swapped = relabel(moved[p].particle, new_number);
+        moved[p].from = p;
+    }
+    qsort(moved, (size_t)n, sizeof *moved, compare_pairs); // by the two grains
+    struct pair_list old = dem->pairs;
+    int32_t(*particle)[2] = allocate((size_t)n, sizeof *particle);
+    int32_t *bond = old.bond ? NEW_ARRAY(int32_t, n) : NULL;
+    for (int p = 0; p < n; p++) {
+        memcpy(particle[p], moved[p].particle, sizeof *particle);
+        if (bond) bond[p] = old.bond[moved[p].from];
+    }
+    new_pairs(dem, n, particle, bond);
+    for (int p = 0; p < n; p++)
+        carry_over(&dem->pairs, p, &old, moved[p].from, moved[p].swapped);
+    free_pairs(&old);
+    free(moved);
+}
+
+static int by_wall(const void *a, const void *b)
+{
+    const struct wall_pair *p = a, *q = b;
+    const int order = (p->particle > q->particle) - (p->particle < q->particle);
+    return order ? order : (p->wall > q->wall) - (p->wall < q->wall);
+}
+
+void renumber_grains(struct dem *dem)
+{
+    dem->searches_in_order = 0;
+    if (dem->n_particle < LEAST_TO_ORDER) return;
+    close_pair_books(dem);
+    struct keyed *order = along_curve(dem);
+    int32_t *new_number = NEW_ARRAY(int32_t, dem->n_particle);
+    for (int k = 0; k < dem->n_particle; k++)
+        new_number[order[k].grain] = k;
+    reorder_grains(dem, order);
+    for (int b = 0; b < dem->n_bond; b++)
+        relabel(dem->bond_particle[b], new_number);
+    for (int k = 0; k < dem->n_wall_pair; k++)
+        dem->wall_pair[k].particle = new_number[dem->wall_pair[k].particle];
+    qsort(dem->wall_pair, (size_t)dem->n_wall_pair, sizeof *dem->wall_pair, by_wall);
+    reorder_pairs(dem, new_number);
+    free(order);
+    free(new_number);
+}

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How grains lie to walls: the nearest point of each shape.
+//
+// As between grains, the overlap with what is flat or round is no difference of large
+// numbers: it is the one where both began plus what the displacements added. Rings and
+// blocks, whose nearest point wanders from faces to edges, go by positions.
+#include "dem/engine.h"
+
+#include <math.h>
+
+// A grain's centre as seen from the point of a wall, in the nearest image.
+struct sight {
+    struct vector start; // where both began
+    struct vector moved; // since
+    struct vector now;   // the sum of the two
+};
+
+static struct sight see(const struct dem *dem, int i, int w, double back)
+{
+    const struct rigid_wall *wall = &dem->wall[w];
+    const struct vector u = as_vector(dem->place[i].displacement);
+    const struct vector v = as_vector(dem->motion[i].linear);
+    struct sight s = {
+        .start = subtract(dem->start[i], wall->is.point),
+        .moved = subtract(subtract(u, wall->displacement),
+                          scale(back * dem->time_step, subtract(v, wall->velocity)))};
+    for (int axis = 0; axis < 3; axis++) {
+        const double period = dem->period[axis];
+        if (period <= 0) continue;
+        const double start = component(s.start, axis);
+        const double now = start + component(s.moved, axis);
+        set_component(&s.start, axis, start - period * rint(now / period));
+    }
+    s.now = add(s.start, s.moved);
+    return s;
+}
+
+// Without what is along the unit vector AXIS.
+static struct vector across(struct vector a, struct vector axis)
+{
+    return subtract(a, scale(dot(a, axis), axis));
+}
+
+// Some unit vector at right angles to the unit vector AXIS.
+static struct vector some_perpendicular(struct vector axis)
+{
+    const struct vector other =
+        fabs(axis.x) < 0.6 ? (struct vector){1, 0, 0} : (struct vector){0, 1, 0};
+    const struct vector found = across(other, axis);
+    return scale(1 / norm(found), found);
+}
+
+// An overlap of the rounding of coordinates counts as none.
+static double given_overlap(const struct dem *dem, double overlap)
+{
+    return fabs(overlap) <= dem->coordinate_error ? 0 : overlap;
+}
+
+// Unit vectors towards the wall.
+
+static struct vector meet_plane(const struct dem *dem, const struct dem_wall *wall,
+                                const struct sight *s, double radius, double *overlap)
+{
+    *overlap = given_overlap(dem, radius - dot(s->start, wall->normal)) -
+               dot(s->moved, wall->normal);
+    return scale(-1, wall->normal);
+}
+
+static struct vector meet_round(const struct dem *dem, const struct dem_wall *wall,
+                                const struct sight *s, double radius, double *overlap)
+{
+    const bool is_cylinder = wall->shape == DEM_CYLINDER;
+    const struct vector axis = is_cylinder ? wall->normal : (struct vector){0, 0, 1};
+    const struct vector start = is_cylinder ? across(s->start, axis) : s->start;
+    const struct vector moved = is_cylinder ? across(s->moved, axis) : s->moved;
+    const struct vector now = add(start, moved);
+    const double before = norm(start), length = norm(now), sum = before + length;
+    // length - before [pair_kernel.h]
+    const double stretch = sum > 0 ? dot(moved, add(start, now)) / sum : 0;
+    const double sign = wall->outside ? -1 : 1;
+    *overlap =
+        given_overlap(dem, radius + sign * (before - wall->radius)) + sign * stretch;
+    return length > 0 ? scale(sign / length, now)
+                      : scale(sign, some_perpendicular(axis));
+}
+
+// APART leads from the centre to the nearest point, or is 0 for a centre that lies in
+// what has no inside.
+static struct vector meet_point(struct vector apart, struct vector otherwise,
+                                double radius, double *overlap)
+{
+    const double length = norm(apart);
+    *overlap = radius - length;
+    return length > 0 ? scale(1 / length, apart) : otherwise;
+}
+
+static struct vector meet_ring(const struct dem_wall *wall, const struct sight *s,
+                               double radius, double *overlap)
+{
+    const double height = dot(s->now, wall->normal);
+    const struct vector flat = across(s->now, wall->normal);
+    const double length = norm(flat);
+    const double nearest = fmin(fmax(length, wall->inner_radius), wall->radius);
+    const struct vector outward =
+        length > 0 ? scale(1 / length, flat) : some_perpendicular(wall->normal);
+    const struct vector apart =
+        subtract(scale(nearest - length, outward), scale(height, wall->normal));
+    return meet_point(apart, scale(-1, wall->normal), radius, overlap);
+}
+
+static struct vector meet_block(const struct dem_wall *wall, const struct sight *s,
+                                double radius, double *overlap)
+{
+    struct vector apart = {0, 0, 0}, inward = {0, 0, 0};
+    double depth = INFINITY; // below the nearest face, inside
+    for (int axis = 0; axis < 3; axis++) {
+        const double x = component(s->now, axis);
+        const double room = component(wall->half_edge, axis) - fabs(x);
+        if (room < 0) set_component(&apart, axis, x > 0 ? room : -room);
+        if (room >= depth) continue;
+        depth = room;
+        inward = (struct vector){0, 0, 0};
+        set_component(&inward, axis, x < 0 ? 1 : -1);
+    }
+    if (depth < 0) return meet_point(apart, inward, radius, overlap);
+    *overlap = radius + depth;
+    return inward;
+}
+
+struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back)
+{
+    const struct dem_wall *wall = &dem->wall[w].is;
+    const double radius = dem->place[i].radius;
+    const struct sight s = see(dem, i, w, back);
+    struct wall_geometry lie;
+    if (wall->shape == DEM_PLANE)
+        lie.normal = meet_plane(dem, wall, &s, radius, &lie.overlap);
+    else if (wall->shape == DEM_RING)
+        lie.normal = meet_ring(wall, &s, radius, &lie.overlap);
+    else if (wall->shape == DEM_BLOCK)
+        lie.normal = meet_block(wall, &s, radius, &lie.overlap);
+    else
+        lie.normal = meet_round(dem, wall, &s, radius, &lie.overlap);
+    lie.arm = radius - 0.5 * lie.overlap;
+    lie.lever = add(s.now, scale(lie.arm, lie.normal));
+    return lie;
+}
