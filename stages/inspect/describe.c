@@ -122,6 +122,7 @@ static json_t *summary_of(const struct artifact *artifact)
     json_t *entry;
     json_array_foreach(artifact->schema->attributes, k, entry)
     {
+        if (!has_entry(artifact->file, entry)) continue;
         const char *name = json_string_value(json_object_get(entry, "name"));
         json_object_set_new(summary, strrchr(name, '/') + 1,
                             number(artifact_get_number(artifact, name), entry));
@@ -140,7 +141,10 @@ json_t *describe_artifact(const struct artifact *artifact)
     size_t k;
     json_t *entry;
     json_array_foreach(artifact->schema->datasets, k, entry)
+    {
+        if (!has_entry(artifact->file, entry)) continue;
         json_array_append_new(datasets, describe_dataset(artifact, entry));
+    }
     json_object_set_new(description, "datasets", datasets);
     return description;
 }
@@ -163,6 +167,9 @@ json_t *dataset_json(const struct artifact *artifact, const char *name)
     if (!entry)
         die(STATUS_BAD_DATA, "%s: has no dataset %s (a %s has none)",
             input_name(artifact->path), name, artifact->schema->name);
+    if (!has_entry(artifact->file, entry))
+        die(STATUS_BAD_DATA, "%s: has no dataset %s: it was left out",
+            input_name(artifact->path), name);
     struct values values = read_values(artifact->file, absolute);
     size_t at = 0;
     json_t *list = nested(&values, 0, &at, entry);

@@ -38,6 +38,16 @@ static enum status check_grain(const double grain[4], int count, int number,
     return STATUS_OK;
 }
 
+enum status copy_text(const struct bytes *text, char **copy, struct reason *reason)
+{
+    if (memchr(text->data, 0, text->size))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "holds null bytes: neither text nor HDF5");
+    *copy = allocate(text->size + 1, 1);
+    memcpy(*copy, text->data, text->size);
+    return STATUS_OK;
+}
+
 static void box_around(struct packing *packing)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -56,12 +66,9 @@ enum status import_text(const struct bytes *text, struct packing *packing,
                         struct reason *reason)
 {
     *packing = (struct packing){0};
-    if (memchr(text->data, 0, text->size))
-        return refuse(reason, STATUS_BAD_DATA,
-                      "holds null bytes: neither text nor HDF5");
-    char *copy = allocate(text->size + 1, 1);
-    memcpy(copy, text->data, text->size);
-    enum status status = STATUS_OK;
+    char *copy = NULL;
+    enum status status = copy_text(text, &copy, reason);
+    if (status) return status;
     int capacity = 0, number = 0;
     char *rest = copy;
     for (char *line; !status && (line = strsep(&rest, "\n"));) {

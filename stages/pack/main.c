@@ -3,48 +3,14 @@
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "methods.h"
 #include "pack.h"
+#include "parameters.h"
+#include "report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum method { METHOD_SQUARE, METHOD_CUBIC, METHOD_IMPORT };
-enum bonds { BONDS_NONE, BONDS_TOUCHING, BONDS_KEEP };
-
-struct pack_parameters {
-    int method, bonds;
-    int64_t counts[3];
-    double radius;
-    bool periodic[3];
-    double lower[3], upper[3];
-    double touching_gap;
-};
-
-#define AT(member) offsetof(struct pack_parameters, member)
-
-static const struct parameter table[] = {
-    {"method", PARAMETER_CHOICE, "1", "\"cubic\"", BOUND_NONE, 0, 0,
-     "square|cubic|import",
-     "lattice of touching grains (square: one layer in x and z), or grains from INPUT",
-     AT(method)},
-    {"counts", PARAMETER_COUNTS, "1", "[5,5,10]", BOUND_BETWEEN, 1, 1e6, NULL,
-     "grains along x, y and z of a lattice", AT(counts)},
-    {"radius", PARAMETER_NUMBER, "m", "250e-9", BOUND_ABOVE, 0, 0, NULL,
-     "grain radius of a lattice", AT(radius)},
-    {"periodic", PARAMETER_FLAGS, "1", "[false,false,false]", BOUND_NONE, 0, 0, NULL,
-     "whether the box repeats along x, y and z (imported packing.h5: as it says)",
-     AT(periodic)},
-    {"lower", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL,
-     "lower corner of the box of imported grains; null: around them", AT(lower)},
-    {"upper", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL,
-     "upper corner of the box of imported grains; null: around them", AT(upper)},
-    {"bonds", PARAMETER_CHOICE, "1", "\"touching\"", BOUND_NONE, 0, 0,
-     "none|touching|keep",
-     "which grains are bonded; keep: as an imported packing.h5 says", AT(bonds)},
-    {"touching_gap", PARAMETER_NUMBER, "1", "1e-6", BOUND_BETWEEN, 0, 1, NULL,
-     "surfaces this close touch, of the sum of the two radii", AT(touching_gap)},
-    {0}};
 
 static const struct stage stage = {
     .name = "pack",
@@ -52,22 +18,12 @@ static const struct stage stage = {
     .summary = "pack -- grains in a box, and the bonds between them",
     .writes = "packing",
     .most_inputs = 1,
-    .parameters = table,
-    .notes = "INPUT, with method=import: text of \"x y z r\" lines (# comments), or a "
-             "packing.h5."};
-
-static struct packing make_lattice(const struct pack_parameters *parameters)
-{
-    const int64_t *counts = parameters->counts;
-    if (parameters->method == METHOD_SQUARE && counts[1] != 1)
-        die(STATUS_BAD_DATA,
-            "pack.counts: a square lattice is one layer: must be 1 along "
-            "y, got %lld",
-            (long long)counts[1]);
-    if ((double)counts[0] * (double)counts[1] * (double)counts[2] > 1e8)
-        die(STATUS_BAD_DATA, "pack.counts: must make at most 1e8 grains");
-    return cubic_lattice(counts, parameters->radius, parameters->periodic);
-}
+    .parameters = pack_table,
+    .notes =
+        "INPUT, with method=import: text of \"x y z r\" lines (# comments), a LAMMPS "
+        "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
+        "packing.h5. With method=explosive_repulsion the same, for grains to part.",
+    .reports = "Write there, as JSON, what is said of the packing"};
 
 static bool is_hdf5(const struct bytes *bytes)
 {
@@ -77,10 +33,10 @@ static bool is_hdf5(const struct bytes *bytes)
 static void apply_box(struct packing *packing, const struct pack_parameters *parameters)
 {
     for (int axis = 0; axis < 3; axis++) {
-        if (!isnan(parameters->lower[axis]))
-            set_component(&packing->lower, axis, parameters->lower[axis]);
-        if (!isnan(parameters->upper[axis]))
-            set_component(&packing->upper, axis, parameters->upper[axis]);
+        if (!isnan(parameters->domain.lower[axis]))
+            set_component(&packing->lower, axis, parameters->domain.lower[axis]);
+        if (!isnan(parameters->domain.upper[axis]))
+            set_component(&packing->upper, axis, parameters->domain.upper[axis]);
         const double low = component(packing->lower, axis);
         const double high = component(packing->upper, axis);
         if (!(low < high))
@@ -96,10 +52,13 @@ static struct packing import_lines(const char *path, struct bytes text,
 {
     struct packing packing;
     struct reason reason;
-    const enum status status = import_text(&text, &packing, &reason);
+    const bool lammps = is_lammps(&text);
+    const enum status status =
+        lammps ? import_lammps(&text, parameters->frame, &packing, &reason)
+               : import_text(&text, &packing, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
-    for (int axis = 0; axis < 3; axis++)
-        packing.periodic[axis] = parameters->periodic[axis];
+    for (int axis = 0; axis < 3 && !lammps; axis++)
+        packing.periodic[axis] = parameters->domain.periodic[axis];
     char digest[65];
     sha256(text.data, text.size, digest);
     json_array_append_new(inputs,
@@ -130,40 +89,133 @@ static struct packing import(const char *path, const struct pack_parameters *par
     return packing;
 }
 
-static struct packing make_packing(const struct invocation *invocation,
-                                   const struct pack_parameters *parameters,
-                                   json_t *inputs)
+// Grains of another maker, and the box they lie in as DOMAIN.
+static struct packing make_import(const struct invocation *invocation,
+                                  const struct pack_parameters *parameters,
+                                  json_t *inputs, struct domain *domain)
 {
-    if (parameters->method == METHOD_IMPORT)
-        return import(invocation->n_input ? invocation->inputs[0] : "-", parameters,
-                      inputs);
-    if (invocation->n_input)
-        die(STATUS_USAGE, "%s: only method=import takes an input",
-            invocation->inputs[0]);
-    return make_lattice(parameters);
+    if (parameters->domain.shape != DOMAIN_BOX || parameters->domain.cut != CUT_NONE)
+        die(STATUS_BAD_DATA,
+            "pack.domain.shape: must be box, and nothing cut out, for import");
+    const struct packing packing =
+        import(invocation->n_input ? invocation->inputs[0] : "-", parameters, inputs);
+    *domain = (struct domain){.dimensions = (int)parameters->dimensions,
+                              .lower = packing.lower,
+                              .upper = packing.upper};
+    for (int axis = 0; axis < 3; axis++)
+        domain->periodic[axis] = packing.periodic[axis];
+    return packing;
 }
 
-static void write_packing(const struct packing *packing,
-                          const struct invocation *invocation, json_t *inputs,
-                          double touching_gap)
+static struct packing make_packing(const struct invocation *invocation,
+                                   const struct pack_parameters *parameters,
+                                   json_t *inputs, struct domain *domain,
+                                   struct reached *reached)
+{
+    const int method = parameters->method;
+    const bool begins_from_input =
+        invocation->n_input && method == METHOD_EXPLOSIVE_REPULSION;
+    struct packing packing = {0};
+    if (method == METHOD_IMPORT || begins_from_input)
+        packing = make_import(invocation, parameters, inputs, domain);
+    if (method == METHOD_IMPORT) return packing;
+    if (invocation->n_input && !begins_from_input)
+        die(STATUS_USAGE,
+            "%s: only method=import and explosive_repulsion take an input",
+            invocation->inputs[0]);
+    struct progress progress = progress_begin(invocation->progress, invocation->quiet);
+    struct reason reason;
+    const enum status status = make_grains(parameters, begins_from_input, &progress,
+                                           domain, &packing, reached, &reason);
+    progress_end(&progress);
+    if (status) die(status, "%s", reason.text);
+    return packing;
+}
+
+// Of the domain, not of the box around it; a box loses no digit.
+static double porosity_in(const struct domain *domain, const struct packing *packing)
 {
     const double porosity = packing_porosity(packing);
+    if (domain->shape == DOMAIN_BOX && domain->cut == CUT_NONE) return porosity;
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    return 1 - (1 - porosity) * (edge.x * edge.y * edge.z / domain_volume(domain));
+}
+
+// What the dynamics came to, for the report; NULL when there was none.
+static json_t *reached_json(const struct pack_parameters *parameters,
+                            const struct reached *reached)
+{
+    static const char *const target[] = {"settled", "porosity", "coordination",
+                                         "pressure"};
+    if (!reached->dynamic) return NULL;
+    const double wanted = parameters->dynamics.value;
+    return json_pack("{s:s,s:o,s:f,s:f,s:I,s:f,s:f,s:f,s:f,s:f,s:f}", "target",
+                     target[parameters->dynamics.target], "wanted",
+                     isnan(wanted) ? json_null() : json_real(wanted), "value",
+                     reached->value, "unbalanced_ratio", reached->unbalanced_ratio,
+                     "cycles", (json_int_t)reached->cycles, "simulated_time",
+                     reached->time, "time_step", reached->time_step, "stiffness",
+                     reached->stiffness, "largest_speed", reached->largest_speed,
+                     "pressure", reached->pressure, "growth", reached->growth);
+}
+
+static const char *model_text(const struct reached *reached,
+                              const struct pack_parameters *parameters)
+{
+    if (!reached->dynamic)
+        return "grains are where the method puts them: no dynamics was run\n";
+    if (parameters->dynamics.friction > 0)
+        return "grains moved by discrete elements: linear contacts [K 4.22], dashpots "
+               "[K 4.27], Coulomb slip [K 4.25]\nno bonds while they moved\n";
+    return "grains moved by discrete elements: linear contacts [K 4.22], dashpots [K "
+           "4.27]\nwithout friction grains do not turn and contacts have no "
+           "history\nno bonds while they moved\n";
+}
+
+static void write_packing(const struct packing *packing, const struct domain *domain,
+                          const struct invocation *invocation, json_t *inputs,
+                          const struct pack_parameters *parameters,
+                          const struct reached *reached)
+{
+    const double porosity = porosity_in(domain, packing);
     if (!(porosity > -1e6))
         die(STATUS_BAD_DATA, "the box is too small for its grains: the porosity is %g",
             porosity);
-    double max_overlap, coordination;
-    packing_contacts(packing, touching_gap, &max_overlap, &coordination);
+    struct packing_report said =
+        report_packing(packing, domain, parameters->touching_gap,
+                       reached->dynamic && parameters->dynamics.friction > 0);
+    report_number(&said, "/summary/porosity", porosity);
+    report_number(&said, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
 
     struct artifact *artifact = artifact_create("packing");
     artifact_put_packing(artifact, packing);
-    artifact_put_number(artifact, "/summary/porosity", porosity);
-    artifact_put_number(artifact, "/summary/max_overlap", max_overlap);
-    artifact_put_number(artifact, "/summary/coordination", coordination);
-    artifact_put_number(artifact, "/summary/unbalanced_ratio", 0);
+    report_put(&said, artifact);
     artifact_put_vtk(artifact, "/particles/position", packing->n_particle,
                      (const char *const[]){"/particles/radius", NULL}, NULL, 0, NULL);
-    artifact_finish(artifact, invocation, inputs,
-                    "grains are where the method puts them: no dynamics was run\n");
+    artifact_finish(artifact, invocation, inputs, model_text(reached, parameters));
+    if (invocation->report)
+        report_write(&said, invocation->report, reached_json(parameters, reached));
+    report_free(&said);
+}
+
+static void make_bonds(struct packing *packing,
+                       const struct pack_parameters *parameters, bool quiet)
+{
+    if (parameters->bonds == BONDS_NONE) packing->n_bond = 0;
+    if (parameters->bonds != BONDS_TOUCHING) return;
+    bond_touching(packing, parameters->touching_gap);
+    if (!packing->n_bond && packing->n_particle > 1 && !quiet)
+        report("no two grains touch within touching_gap = %g: no bonds",
+               parameters->touching_gap);
+}
+
+// The domain grows with the box, so that the porosity counts the layer.
+static void make_layer(struct domain *domain, struct packing *packing)
+{
+    struct reason reason;
+    const enum status status = add_layer(domain, packing, &reason);
+    if (status) die(status, "%s", reason.text);
+    domain->upper = packing->upper;
 }
 
 int main(int argc, char **argv)
@@ -172,15 +224,14 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     json_t *inputs = json_array();
 
-    struct packing packing = make_packing(&invocation, &parameters, inputs);
-    if (parameters.bonds == BONDS_TOUCHING)
-        bond_touching(&packing, parameters.touching_gap);
-    if (parameters.bonds == BONDS_NONE) packing.n_bond = 0;
-    if (parameters.bonds == BONDS_TOUCHING && !packing.n_bond &&
-        packing.n_particle > 1 && !invocation.quiet)
-        report("no two grains touch within touching_gap = %g: no bonds",
-               parameters.touching_gap);
-    write_packing(&packing, &invocation, inputs, parameters.touching_gap);
+    parameters.dynamics.threads = invocation.threads;
+    struct domain domain;
+    struct reached reached = {.dynamic = false};
+    struct packing packing =
+        make_packing(&invocation, &parameters, inputs, &domain, &reached);
+    make_bonds(&packing, &parameters, invocation.quiet);
+    if (parameters.extra_layer) make_layer(&domain, &packing);
+    write_packing(&packing, &domain, &invocation, inputs, &parameters, &reached);
 
     packing_free(&packing);
     invocation_free(&invocation);

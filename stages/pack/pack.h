@@ -3,21 +3,103 @@
 #define CRAQUELURE_PACK_H
 
 #include "basics/file.h"
+#include "basics/progress.h"
 #include "basics/status.h"
+#include "domain.h"
 #include "geometry/packing.h"
+#include "sizes.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
-// Grains of one radius on a simple cubic lattice, touching, filling their box: COUNTS
-// along x, y and z, z fastest. The caller frees the packing.
-struct packing cubic_lattice(const int64_t counts[3], double radius,
-                             const bool periodic[3]);
+// Room for N grains in the box around DOMAIN, all of them still at the origin with no
+// radius, without bonds. The caller frees the packing.
+struct packing packing_in(const struct domain *domain, int n);
+
+// ---- lattices of touching grains ----------------------------------------------------
+
+enum lattice {
+    LATTICE_CUBIC, // also the square lattice, one layer of it
+    LATTICE_BODY_CENTRED,
+    LATTICE_FACE_CENTRED,
+    LATTICE_HEXAGONAL, // hexagonal close packing; cell 1 : sqrt(3) : sqrt(8/3)
+    LATTICE_TRIANGULAR // one layer, in x and z
+};
+
+// Edges of the box that COUNTS unit cells fill, m: whole cells where it repeats, around
+// the grains elsewhere.
+struct vector lattice_extent(enum lattice lattice, const int64_t counts[3],
+                             double radius, const bool periodic[3]);
+
+// The unit cells it takes to cover DOMAIN. STATUS_BAD_DATA when they do not fit a side
+// that repeats.
+enum status lattice_counts(enum lattice lattice, const struct domain *domain,
+                           double radius, int64_t counts[3], struct reason *reason);
+
+// Grains of COUNTS unit cells; -1 when they are more than 1e8.
+int64_t lattice_grains(enum lattice lattice, const int64_t counts[3]);
+
+// Those of them that lie wholly in DOMAIN, x slowest. The caller frees the packing.
+struct packing lattice_packing(enum lattice lattice, const int64_t counts[3],
+                               double radius, const struct domain *domain);
+
+// ---- random places ------------------------------------------------------------------
+
+// COUNT grains at points that know nothing of each other: they may overlap.
+// On success the caller frees *PACKING.
+enum status poisson_points(const struct domain *domain, const struct sizes *sizes,
+                           int count, gsl_rng *random, struct packing *packing,
+                           struct reason *reason);
+
+// Random sequential addition: each grain where a random point first leaves it free of
+// overlap, the largest first. With COUNT = 0 in the order drawn, until MOST_TRIALS in a
+// row fail; otherwise that is STATUS_NOT_CONVERGED. On success the caller frees
+// *PACKING.
+enum status random_sequential(const struct domain *domain, const struct sizes *sizes,
+                              int count, int64_t most_trials, gsl_rng *random,
+                              struct progress *progress, struct packing *packing,
+                              struct reason *reason);
+
+// ---- inward spiral ------------------------------------------------------------------
+
+// [K 3.1.2], in two dimensions: grains along the walls first, then each where it
+// touches two others, spiralling inwards until no place is left, or COUNT (if not 0)
+// are in. With DENSIFY voids then take grains down to LEAST, m, that touch three. On
+// success the caller frees *PACKING.
+enum status inward_spiral(const struct domain *domain, const struct sizes *sizes,
+                          int count, bool densify, double least, gsl_rng *random,
+                          struct packing *packing, struct reason *reason);
+
+// ---- the extra layer ----------------------------------------------------------------
+
+// Lays a regular layer of grains of the mean radius on the highest grain, all across
+// the box and within the walls of DOMAIN, and raises the box to its top [K 3.3.5]. They
+// come last and have no bonds. STATUS_BAD_DATA where there is no top face.
+enum status add_layer(const struct domain *domain, struct packing *packing,
+                      struct reason *reason);
+
+// ---- import -------------------------------------------------------------------------
 
 // Grains from text, one "x y z r" a line in metres; "#" begins a comment. The box is
 // theirs (lowest and highest grain surfaces). STATUS_BAD_DATA with the line in REASON.
 // On success the caller frees *PACKING.
 enum status import_text(const struct bytes *text, struct packing *packing,
                         struct reason *reason);
+
+// A copy that ends with a null, for the caller to free; STATUS_BAD_DATA when there are
+// nulls within.
+enum status copy_text(const struct bytes *text, char **copy, struct reason *reason);
+
+// Whether this is a LAMMPS dump in text.
+bool is_lammps(const struct bytes *text);
+
+// One frame of it, from 0 (-1: the last), in the order of the grains' ids. Positions
+// x|xu|xs|xsu (and so on), radius or diameter; box and periodic sides as it says.
+// STATUS_BAD_DATA with the line in REASON. On success the caller frees *PACKING.
+enum status import_lammps(const struct bytes *text, int64_t frame,
+                          struct packing *packing, struct reason *reason);
+
+// ---- contacts -----------------------------------------------------------------------
 
 // Bonds every two grains whose surfaces are at most GAP radius sums apart.
 void bond_touching(struct packing *packing, double gap);

@@ -98,7 +98,11 @@ static void print_test_4(void)
                atan(0.092 * rebound_of_surface(&is, &got)) / degree,
                atan(0.092 * partial) / degree);
     }
-    // Kharaz, Gorham & Salman (2001), measured.
+}
+
+// Kharaz, Gorham & Salman (2001), measured.
+static void print_measured(void)
+{
     const double restitution[][2] = {{4.22, 0.746},  {9.84, 0.675},  {20.22, 0.599},
                                      {30.36, 0.690}, {39.54, 0.774}, {49.60, 0.848},
                                      {71.07, 0.937}, {79.23, 0.970}};
@@ -218,6 +222,7 @@ int main(void)
     print_tests_1_and_2();
     print_test_3();
     print_test_4();
+    print_measured();
     print_test_5();
     print_test_6();
     print_tests_7_and_8();

@@ -500,6 +500,55 @@ refused("an import of a network is refused", BAD_DATA,
         ["pack", "--set", "method=import", "network"],
         "network: must be a packing, is a network")
 
+# ---- imported dumps ---------------------------------------------------------------------
+
+
+def dump(*rows, columns="id x y z radius", box="BOX BOUNDS pp ff ff", bounds=("0 9",) * 3,
+         count=2):
+    lines = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ATOMS", count, f"ITEM: {box}", *bounds,
+             f"ITEM: ATOMS {columns}", *rows, ""]
+    return "\n".join(map(str, lines))
+
+
+good = dump("1 1 1 1 1", "2 4 4 4 1")
+imported("a dump without radii is refused", dump("1 1 1 1", "2 4 4 4", columns="id x y z"),
+         "line 9: must be ITEM: ATOMS with a column radius or diameter")
+imported("a dump without places is refused",
+         dump("1 1 1", "2 4 4", columns="id x radius"),
+         r"line 9: must be ITEM: ATOMS with columns x, y and z \(or xu, xs, xsu\)")
+imported("a dump with places scaled in part is refused",
+         dump("1 1 1 1 1", "2 4 4 4 1", columns="id xs y z radius"),
+         "line 9: must be ITEM: ATOMS with all places scaled, or none")
+imported("a dump of a tilted box is refused",
+         dump("1 1 1 1 1", box="BOX BOUNDS xy xz yz pp pp pp", bounds=("0 9 1",) * 3),
+         "line 5: must be a straight box, .*")
+imported("a dump with a box upside down is refused", dump(bounds=("0 9", "9 0", "0 9")),
+         "line 7: must be the box, a lower and an upper bound")
+imported("a dump that ends too early is refused", dump("1 1 1 1 1"),
+         "line 11: must be a grain: fewer than ITEM: NUMBER OF ATOMS says")
+imported("a dump that ends before its grains is refused", "ITEM: TIMESTEP\n0\n",
+         "ends before the grains of the frame")
+imported("a dump without a frame is refused", "ITEM: UNITS\nsi\n",
+         'no "ITEM: TIMESTEP" line')
+imported("a row of a dump that is too short is refused", dump("1 1 1 1 1", "2 4 4"),
+         "line 11: must be a value for each column")
+imported("a word for a number in a dump is refused", dump("1 1 1 1 1", "2 4 four 4 1"),
+         "line 11: must be finite numbers")
+imported("a radius of zero in a dump is refused", dump("1 1 1 1 1", "2 4 4 4 0"),
+         "line 11: the radius must be > 0 m, got 0")
+imported("an id twice in a dump is refused", dump("7 1 1 1 1", "7 4 4 4 1"),
+         "two grains have the same id")
+imported("a count of atoms that is none is refused", dump(count="many"),
+         "line 4: must be the number of atoms, from 1 to 1e8")
+imported("a count of atoms that lies is refused", dump("1 1 1 1 1", count=99999999),
+         "line 11: must be a grain: fewer than .*")
+for settings, line in [
+        (["frame=1"], "grains: pack.frame: must be below 1, the frames there are, got 1"),
+        (["frame=-2"], r"pack.frame: must be from -1 to 1e\+12, got -2"),
+        (["domain.cut.shape=box"],
+         "pack.domain.shape: must be box, and nothing cut out, for import")]:
+    imported(f"a dump with {settings[0]} is refused", good, line, "--set", *settings)
+
 # ---- parameters -------------------------------------------------------------------------
 
 
@@ -611,6 +660,113 @@ setting("a square lattice is one layer", BAD_DATA, "method=square",
         "pack.counts: a square lattice is one layer: must be 1 along y, got 5")
 setting("too many grains are refused", BAD_DATA, "counts=[1000000,1000000,1000000]",
         "pack.counts: must make at most 1e8 grains")
+
+
+def scene(title, words, *lines, status=BAD_DATA):
+    """pack with WORDS, assignments between blanks."""
+    refused(title, status, ["pack", *(w for word in words.split() for w in ("--set", word))],
+            *lines)
+
+
+drawn, ring = "method=random_sequential", "method=poisson count=9 domain.shape=ring"
+scene("a lattice of unequal grains is refused", "sizes.distribution=normal",
+      "pack.sizes.distribution: must be one for a lattice")
+scene("a lattice in space has no plane", "method=bcc dimensions=2",
+      r"pack.dimensions: must be 3 for this lattice \(two dimensions: square, hexagonal\)")
+scene("a triangular lattice of several layers is refused", "method=hexagonal dimensions=2",
+      "pack.counts: a triangular lattice is one layer: must be 1 along y, got 5")
+scene("a lattice that does not fit its periodic box is refused",
+      "method=fcc radius=1 upper=[9,9,9] periodic=[true,false,false]",
+      r"pack.upper: must leave a whole number of lattice cells of \S+ m along x, which "
+      r"repeats, leaves 3.18\d+")
+scene("a lattice of too many grains for its box is refused", "upper=[1,1,1]",
+      "pack.radius: must make at most 1e8 grains")
+scene("a lattice that is all cut away is refused",
+      "radius=1 counts=[2,2,2] domain.cut.shape=sphere domain.cut.radius=2",
+      "pack.domain.shape: must leave room for at least one grain of the lattice")
+scene("a box must be given to fill", drawn, "pack.upper: must be given: the box to fill")
+scene("a box upside down cannot be filled", f"{drawn} upper=[1,-1,1]",
+      "pack.upper: must be above pack.lower = 0 m along y, got -1")
+scene("a box too narrow for a grain is refused", f"{drawn} radius=1 upper=[9,1.9,9]",
+      "pack.upper: must leave room for a grain of radius 1 m, is 1.9 m wide along y")
+scene("a box too narrow for its largest grain is refused",
+      f"{drawn} upper=[1,1,1] sizes.distribution=uniform sizes.smallest=0.1 "
+      "sizes.largest=0.6",
+      "pack.upper: must leave room for a grain of radius 0.6 m, is 1 m wide along x")
+scene("more grains than the box has room for are refused at once",
+      f"{drawn} radius=1 upper=[9,9,9] count=1000",
+      "pack.count: must be fewer: 1000 grains would fill 5.75 of the domain, at most 1 can be")
+scene("grains that find no place are counted",
+      f"{drawn} radius=1 upper=[9,9,9] count=150 most_trials=100",
+      r"only \d+ of 150 grains fit, a solid share of 0\.\d+: 100 trials in a row found no "
+      r"place \(pack.most_trials\)", status=UNSTABLE)
+scene("random points need their count", "method=poisson upper=[1,1,1]",
+      "pack.count: must be given for poisson")
+scene("a ring without a radius is refused", ring,
+      "pack.domain.radius: must be given, for this shape")
+scene("a ring without a height is refused", f"{ring} domain.radius=1",
+      "pack.domain.height: must be given, for this shape")
+scene("a ring inside out is refused",
+      f"{ring} domain.radius=1 domain.height=1 domain.inner_radius=1",
+      "pack.domain.inner_radius: must be given and below pack.domain.radius = 1 m, for a ring")
+scene("a ring too narrow for a grain is refused",
+      f"{ring} domain.radius=1 domain.height=1 domain.inner_radius=0.5 radius=0.3",
+      "pack.domain.inner_radius: must leave room for a grain of radius 0.3 m, leaves 0.5 m")
+scene("a cylinder too low for a grain is refused",
+      "method=fcc radius=1 domain.shape=cylinder domain.radius=9 domain.height=1",
+      "pack.domain.height: must leave room for a grain of radius 1 m, is 1 m wide along z")
+scene("a cylinder in the plane is refused",
+      f"{drawn} dimensions=2 domain.shape=cylinder",
+      r"pack.domain.shape: must be box or sphere \(a disc\) in two dimensions")
+scene("a round wall does not repeat",
+      f"{drawn} domain.shape=sphere domain.radius=1 periodic=[false,false,true]",
+      "pack.periodic: must be false where the wall is round")
+scene("a cut that sticks out is refused",
+      f"{drawn} upper=[1,1,1] domain.cut.shape=sphere domain.cut.radius=0.51",
+      r"pack.domain.cut.shape: must lie wholly inside the domain \(a cylinder may go from "
+      r"bottom to top\)")
+scene("a cut without a radius is refused", f"{drawn} upper=[1,1,1] domain.cut.shape=cylinder",
+      "pack.domain.cut.radius: must be given, for this cut")
+scene("a box cut out needs its corners", f"{drawn} upper=[1,1,1] domain.cut.shape=box",
+      "pack.domain.cut.upper: must be given and above pack.domain.cut.lower along x")
+scene("a cylinder is not cut out of a plane",
+      f"{drawn} upper=[1,1,1] dimensions=2 domain.cut.shape=cylinder domain.cut.radius=0.1",
+      r"pack.domain.cut.shape: must be none, box or sphere \(a disc\) in two dimensions")
+scene("a cut that leaves no room is refused",
+      "method=poisson count=9 upper=[1,1,1] radius=0.4 domain.cut.shape=sphere "
+      "domain.cut.radius=0.5",
+      "pack.domain.cut.shape: must leave room for the grains")
+scene("a spiral starts at walls",
+      "method=inward_spiral upper=[1,1,1] periodic=[true,false,false]",
+      "pack.periodic: must be false for inward_spiral: it starts at the walls")
+scene("a spiral has no hole",
+      "method=inward_spiral upper=[1,1,1] radius=0.1 domain.cut.shape=sphere "
+      "domain.cut.radius=0.1",
+      "pack.domain.cut.shape: must be none for inward_spiral")
+scene("an extra layer needs a top", "extra_layer=true periodic=[false,false,true]",
+      "pack.extra_layer: must be false where there is no top face")
+for words, line in [
+        ("uniform", "smallest: must be given, for this distribution"),
+        ("power sizes.smallest=0.1", "largest: must be given, for this distribution"),
+        ("uniform sizes.smallest=0.1 sizes.largest=0.1",
+         "largest: must be above the smallest radius, 0.1 m, got 0.1"),
+        ("normal sizes.smallest=1",
+         "largest: must be above the smallest radius, 1 m, got 3.75e-07"),
+        ("lognormal sizes.smallest=1 sizes.largest=2",
+         "smallest: must leave something of the distribution"),
+        ("two_mode", "second_radius: must be given, for two_mode"),
+        ("sieve", "sieve.passing: must be as many shares as pack.sizes.sieve.radii, two or "
+         "more, got 0 of 0"),
+        ("sieve sizes.sieve.radii=[2,1] sizes.sieve.passing=[0,1]",
+         "sieve.radii: must rise from one to the next, got 1 after 2"),
+        ("sieve sizes.sieve.radii=[1,2,3] sizes.sieve.passing=[0,1,0.5]",
+         "sieve.passing: must not fall from one to the next, got 0.5 after 1"),
+        ("sieve sizes.sieve.radii=[1,2] sizes.sieve.passing=[0,0.9]",
+         "sieve.passing: must go from 0 to 1, got 0 to 0.9"),
+        ("sieve sizes.sieve.radii=[0,2] sizes.sieve.passing=[0,1]",
+         r"sieve.radii: must be > 0 m, got \[0,2\]")]:
+    scene(f"sizes: {words} is refused", f"{drawn} upper=[9,9,9] sizes.distribution={words}",
+          f"pack.sizes.{line}")
 
 # ---- scenes that cannot be --------------------------------------------------------------
 

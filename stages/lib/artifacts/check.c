@@ -316,12 +316,19 @@ static enum status check_less_than(hid_t file, const struct subject *subject,
 
 // ---- the file -----------------------------------------------------------------------
 
+// Not an error, where the schema says so.
+static bool is_left_out(hid_t file, const json_t *rules)
+{
+    return json_is_true(json_object_get(rules, "optional")) && !has_entry(file, rules);
+}
+
 static enum status check_dataset(hid_t file, const json_t *rules,
                                  struct symbols *symbols, size_t image_size,
                                  struct reason *reason)
 {
     struct subject subject = {
         .rules = rules, .name = json_string_value(json_object_get(rules, "name"))};
+    if (is_left_out(file, rules)) return STATUS_OK;
     subject.dataset = H5Dopen2(file, subject.name, H5P_DEFAULT);
     if (subject.dataset < 0)
         return refuse(reason, STATUS_BAD_DATA, "%s: is missing", subject.name);
@@ -341,6 +348,7 @@ static enum status check_attribute(hid_t file, const json_t *rules,
     char group[128];
     snprintf(group, sizeof group, "%.*s", (int)(strrchr(name, '/') - name), name);
     double value;
+    if (is_left_out(file, rules)) return STATUS_OK;
     const hid_t attribute =
         H5Aopen_by_name(file, group, strrchr(name, '/') + 1, H5P_DEFAULT, H5P_DEFAULT);
     if (attribute < 0) return refuse(reason, STATUS_BAD_DATA, "%s: is missing", name);

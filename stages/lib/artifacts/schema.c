@@ -97,6 +97,15 @@ const json_t *schema_attribute(const struct schema *schema, const char *name)
     return find_entry(schema->attributes, name);
 }
 
+bool has_entry(hid_t file, const json_t *entry)
+{
+    const char *name = json_string_value(json_object_get(entry, "name"));
+    if (json_object_get(entry, "shape")) return H5Lexists(file, name, H5P_DEFAULT) > 0;
+    char group[128];
+    snprintf(group, sizeof group, "%.*s", (int)(strrchr(name, '/') - name), name);
+    return H5Aexists_by_name(file, group, strrchr(name, '/') + 1, H5P_DEFAULT) > 0;
+}
+
 static int type_index(const json_t *entry)
 {
     static const char *const names[] = {"float64", "int32", "int64", "uint8"};

@@ -5,6 +5,7 @@
 
 #include <hdf5.h>
 #include <jansson.h>
+#include <stdbool.h>
 
 struct schema {
     const char *name;   // "packing"
@@ -22,6 +23,9 @@ void schema_free(struct schema *schema);
 // The entry of dataset or attribute NAME, or NULL.
 const json_t *schema_dataset(const struct schema *schema, const char *name);
 const json_t *schema_attribute(const struct schema *schema, const char *name);
+
+// Whether FILE has that dataset or attribute: an "optional" one may be left out.
+bool has_entry(hid_t file, const json_t *entry);
 
 // The HDF5 types of an entry: as it lies in files (little endian), and in memory.
 hid_t entry_file_type(const json_t *entry);

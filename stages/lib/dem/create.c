@@ -50,7 +50,8 @@ static enum status check_quantities(const struct quantity *q, size_t count,
         status = check_quantity(&q[k], reason);
     return status;
 }
-#define CHECK(list, reason) check_quantities(list, sizeof(list) / sizeof *(list), reason)
+#define CHECK(list, reason)                                                            \
+    check_quantities(list, sizeof(list) / sizeof *(list), reason)
 
 static enum status check_material(const struct dem_material *m, enum dem_law law,
                                   struct reason *reason)
@@ -172,10 +173,11 @@ static enum status check_wall(const struct dem_setup *setup, int w,
     if ((round && !(wall->radius > 0 && isfinite(wall->radius))) ||
         (shape == DEM_RING &&
          !(wall->inner_radius >= 0 && wall->inner_radius < wall->radius)))
-        return refuse(reason, STATUS_BAD_DATA,
-                      "wall %d: needs a radius > 0 and an inner one below it, got %g and "
-                      "%g",
-                      w, wall->radius, wall->inner_radius);
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "wall %d: needs a radius > 0 and an inner one below it, got %g and "
+            "%g",
+            w, wall->radius, wall->inner_radius);
     if (shape == DEM_BLOCK &&
         !(is_finite_vector(edge) && edge.x > 0 && edge.y > 0 && edge.z > 0))
         return refuse(reason, STATUS_BAD_DATA, "wall %d: needs half edges > 0", w);
@@ -284,8 +286,8 @@ static double largest_hertz_stiffness(const struct dem_setup *setup, double mean
     double modulus = 0;
     for (int k = 0; k <= setup->n_other; k++) {
         const struct dem_material *m = material(setup, k);
-        modulus = fmax(modulus,
-                       m->young_modulus / (1 - m->poisson_ratio * m->poisson_ratio));
+        modulus =
+            fmax(modulus, m->young_modulus / (1 - m->poisson_ratio * m->poisson_ratio));
     }
     const double share = setup->largest_overlap > 0 ? setup->largest_overlap : 0.01;
     return 2 * modulus * sqrt(share * mean_radius * largest_radius);
@@ -301,7 +303,8 @@ static struct units choose_units(const struct dem_setup *setup)
         mass += grain_mass(setup, i);
         heaviest = fmax(heaviest, grain_mass(setup, i));
     }
-    struct units unit = {.length = n > 0 ? radius / n : 1, .mass = n > 0 ? mass / n : 1};
+    struct units unit = {.length = n > 0 ? radius / n : 1,
+                         .mass = n > 0 ? mass / n : 1};
     if (n == 0)
         unit.stiffness = 1;
     else if (setup->law == DEM_HERTZ)
@@ -319,8 +322,8 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
     const int n = dem->n_material = 1 + setup->n_other;
     const double stiffness = dem->unit.stiffness, length = dem->unit.length;
     dem->material = NEW_ARRAY(struct material, n);
-    dem->pair_friction = NEW_ARRAY(double, n * n);
-    dem->pair_restitution = NEW_ARRAY(double, n * n);
+    dem->pair_friction = NEW_ARRAY(double, n *n);
+    dem->pair_restitution = NEW_ARRAY(double, n *n);
     for (int k = 0; k < n; k++) {
         const struct dem_material *m = material(setup, k);
         dem->material[k] = (struct material){
@@ -362,7 +365,8 @@ static void new_grains(struct dem *dem, int n)
     dem->mass = NEW_ARRAY(double, n);
     dem->weight = NEW_ARRAY(double, n);
     dem->material_of = NEW_ARRAY(uint8_t, n);
-    dem->slot_offset = NEW_ARRAY(int, n + 1);
+    dem->wall_offset = NEW_ARRAY(int, n + 1);
+    dem->pair_offset = NEW_ARRAY(int, n + 1);
     dem->first_group = NEW_ARRAY(int, n);
     dem->last_group = NEW_ARRAY(int, n);
     dem->place_at_search = NEW_ARRAY(struct vector, n);
@@ -425,10 +429,10 @@ static void take_bonds(struct dem *dem, const struct dem_setup *setup)
         dem->bond_particle[b][0] = end[0] < end[1] ? end[0] : end[1];
         dem->bond_particle[b][1] = end[0] < end[1] ? end[1] : end[0];
         dem->bond_radius[b] = parallel ? bond_radius(setup, b) / dem->unit.length : 0;
-        const double normal =
-            setup->normal_strength ? setup->normal_strength[b] : setup->bond.normal_strength;
-        const double shear =
-            setup->shear_strength ? setup->shear_strength[b] : setup->bond.shear_strength;
+        const double normal = setup->normal_strength ? setup->normal_strength[b]
+                                                     : setup->bond.normal_strength;
+        const double shear = setup->shear_strength ? setup->shear_strength[b]
+                                                   : setup->bond.shear_strength;
         dem->bond_strength[DEM_CRACK_NORMAL][b] = normal / unit;
         dem->bond_strength[DEM_CRACK_SHEAR][b] = shear / unit;
     }
@@ -468,13 +472,13 @@ static bool walls_grip(const struct dem_setup *setup)
     return grip;
 }
 
-// Whether every pair has the same numbers.
+// Whether every pair has the same numbers and every grain the same radius.
 static bool pairs_are_alike(const struct dem *dem)
 {
     bool alike = dem->n_material == 1;
     for (int i = 1; i < dem->n_particle && alike; i++)
         alike = dem->mass[i] == dem->mass[0] &&
-                (dem->kind != DEM_HERTZ || dem->place[i].radius == dem->place[0].radius);
+                dem->place[i].radius == dem->place[0].radius;
     return alike;
 }
 
@@ -514,7 +518,7 @@ static enum status check_periods(const struct dem *dem, struct reason *reason)
             return refuse(reason, STATUS_BAD_DATA,
                           "periodic box is %g m along %c, needs at least %g m",
                           dem->period[axis] * dem->unit.length, "xyz"[axis],
-                          least * dem->unit.length);
+                          least * dem -> unit.length);
     return STATUS_OK;
 }
 
@@ -574,7 +578,6 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     take_bonds(dem, setup);
     take_walls(dem, setup);
     dem->features = choose_features(dem, setup);
-    dem->slot_stride = dem->features & FEATURE_TURN ? 8 : 4;
     dem->sweep = choose_sweep(dem->features);
     choose_time_step(dem, setup);
     enum status status = check_periods(dem, reason);

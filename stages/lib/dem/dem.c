@@ -10,16 +10,35 @@
 void dem_free(struct dem *dem)
 {
     if (!dem) return;
-    void *const owned[] = {
-        dem->material,      dem->pair_friction,    dem->pair_restitution,
-        dem->identity,      dem->number,           dem->start,
-        dem->place,         dem->motion,           dem->external,
-        dem->applied,       dem->mobility,         dem->mass,
-        dem->weight,        dem->material_of,      dem->bond_particle,
-        dem->bond_radius,   dem->bond_strength[0], dem->bond_strength[1],
-        dem->wall,          dem->wall_pair,        dem->slot_offset,
-        dem->first_group,   dem->last_group,       dem->slot,
-        dem->place_at_search, dem->grain_books,    dem->crack};
+    void *const owned[] = {dem->material,
+                           dem->pair_friction,
+                           dem->pair_restitution,
+                           dem->identity,
+                           dem->number,
+                           dem->start,
+                           dem->place,
+                           dem->motion,
+                           dem->external,
+                           dem->applied,
+                           dem->mobility,
+                           dem->mass,
+                           dem->weight,
+                           dem->material_of,
+                           dem->bond_particle,
+                           dem->bond_radius,
+                           dem->bond_strength[0],
+                           dem->bond_strength[1],
+                           dem->wall,
+                           dem->wall_pair,
+                           dem->wall_offset,
+                           dem->pair_offset,
+                           dem->pair_of,
+                           dem->first_group,
+                           dem->last_group,
+                           dem->sum,
+                           dem->place_at_search,
+                           dem->grain_books,
+                           dem->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free_pairs(&dem->pairs);
@@ -118,7 +137,7 @@ static struct outcome sweep_share(struct dem *dem, int begin, int end)
 // Shares of equal size; then the grains that two of them have to do with.
 static struct outcome sweep_shares(struct dem *dem, int threads)
 {
-    const int n = dem->pairs.n_group, share = (n + threads - 1) / threads;
+    const int n = dem->pairs.n_group, share = groups_in_share(dem);
     struct outcome *part = NEW_ARRAY(struct outcome, threads);
 #pragma omp parallel for num_threads(threads) schedule(static, 1)
     for (int t = 0; t < threads; t++) {
@@ -142,9 +161,7 @@ static struct outcome sweep(struct dem *dem)
     const int n = dem->pairs.n_group;
     if (n == 0)
         return (struct outcome){0, move_grains(dem, 0, dem->n_particle, 0, false)};
-    const bool is_large = n > 5000 / PAIRS_IN_GROUP;
-    return is_large && dem->threads > 1 ? sweep_shares(dem, dem->threads)
-                                        : sweep_share(dem, 0, n);
+    return dem->n_share > 1 ? sweep_shares(dem, dem->n_share) : sweep_share(dem, 0, n);
 }
 
 static void record_crack(struct dem *dem, int pair, int mode)
@@ -191,6 +208,7 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
 {
     for (int64_t k = 0; k < cycles; k++) {
         keep_pairs(dem);
+        dem->keeps_loads = k == cycles - 1; // for who looks at them after it
         sweep_walls(dem);
         const struct outcome outcome = sweep(dem);
         if (outcome.n_broken > 0) record_cracks(dem);

@@ -162,18 +162,19 @@ struct dem_momentum {
 
 struct dem;
 
-// Starts at rest. Overlaps in the packing push from the start, but those of the rounding
-// of coordinates count as touching; bonds are stress free as they lie. On success
-// *RESULT is the caller's to free with dem_free; otherwise it is NULL.
+// Starts at rest. Overlaps in the packing push from the start, but those of the
+// rounding of coordinates count as touching; bonds are stress free as they lie. On
+// success *RESULT is the caller's to free with dem_free; otherwise it is NULL.
 // STATUS_BAD_DATA: a physically impossible number, coincident bonded grains, a bond
-// between grains that do not exist or listed twice, or a periodic box too narrow for one
-// image of each pair. STATUS_NOT_CONVERGED: the time step is past the stability limit.
+// between grains that do not exist or listed twice, or a periodic box too narrow for
+// one image of each pair. STATUS_NOT_CONVERGED: the time step is past the stability
+// limit.
 enum status dem_create(struct dem **result, const struct dem_setup *setup,
                        struct reason *reason);
 void dem_free(struct dem *dem);
 
-// External force on every grain from the next cycle on, (n_particle) N; gravity comes on
-// top.
+// External force on every grain from the next cycle on, (n_particle) N; gravity comes
+// on top.
 void dem_set_force(struct dem *dem, const struct vector *force);
 
 // Velocities (n_particle) m/s and angular velocities (n_particle) rad/s, of half a step
@@ -241,7 +242,7 @@ void dem_positions(const struct dem *dem, struct vector *position);
 void dem_displacements(const struct dem *dem, struct vector *displacement);
 void dem_velocities(const struct dem *dem, struct vector *velocity);
 void dem_spins(const struct dem *dem, struct vector *spin);
-void dem_radii(const struct dem *dem, double *radius); // m
+void dem_radii(const struct dem *dem, double *radius);                           // m
 void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper); // m
 
 // The contacts by first, then second grain, then those with walls; a new array of

@@ -77,7 +77,13 @@ static struct dem_energy energy_in_books(const struct dem *dem)
         books.broken += loss->broken[p % PAIRS_IN_GROUP];
     }
     for (int i = 0; dem->grain_books && i < dem->n_particle; i++) {
-        books.gained += dem->grain_books[i][0];
+        // The places are a step ahead of the other energies.
+        const double ahead =
+            dem->mobility[i][0] > 0
+                ? places_ahead(dem) * dem->time_step *
+                      dot(as_vector(dem->external[i]), as_vector(dem->motion[i].linear))
+                : 0;
+        books.gained += dem->grain_books[i][0] - ahead;
         books.local_damping += dem->grain_books[i][1];
     }
     return books;
@@ -97,8 +103,8 @@ struct dem_energy dem_energy(const struct dem *dem)
     for (int k = 0; k < dem->n_wall_pair; k++)
         energy.elastic += wall_pair_energy(dem, &dem->wall_pair[k]);
     const double unit = dem->unit.stiffness * dem->unit.length * dem->unit.length;
-    double *const part[] = {&energy.kinetic, &energy.elastic, &energy.gained,
-                            &energy.dashpots, &energy.slip, &energy.local_damping,
+    double *const part[] = {&energy.kinetic,  &energy.elastic, &energy.gained,
+                            &energy.dashpots, &energy.slip,    &energy.local_damping,
                             &energy.broken};
     for (size_t k = 0; k < sizeof part / sizeof *part; k++)
         *part[k] *= unit;

@@ -2,14 +2,16 @@
 // What is inside struct dem; for the files of this folder only. All in scaled units.
 //
 // A cycle sweeps pairs and grains together. The pair sweep (pair_kernel.h) reads the
-// records of both grains, advances the history of the pair and writes what each of the
-// two feels into that grain's own slot. As pairs are sorted by their first grain, no
-// pair after those of grain g has to do with g any more: the grain sweep (grains.c)
-// follows close behind, adds up the slots of each grain, which lie side by side in the
-// order of its pairs, and moves it while everything is still in the cache. Each thread
-// does so with its share of the groups; grains that another thread's pairs have to do
-// with too wait until all are done. Nothing is summed across threads, so the order of
-// every sum is fixed.
+// records of both grains, advances the history of the pair and adds what each of the
+// two feels to the sum of that grain, pair after pair in the order of the list. As
+// pairs are sorted by their first grain, no pair after those of grain g has to do with
+// g any more: the grain sweep (grains.c) follows close behind, moves each grain by its
+// sum and clears that, while everything is still in the cache.
+//
+// Each thread does so with its share of the groups. Grains that another thread's pairs
+// have to do with too are late: the loads of their pairs are kept (struct load_group),
+// and when all threads are done their sums are made of those, in the same order. So the
+// order of every sum is fixed, whoever makes it.
 //
 // Grains of large scenes are numbered along a space-filling curve (order.c), so that
 // the partners of a grain are near it in memory too. `identity` tells their names.
@@ -27,6 +29,8 @@ enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
 #define FIRST_SKIN 0.2
 // No grain may move further than this (in mean radii) in one time step.
 #define FURTHEST_STEP 0.1
+// Fewer pairs are left to one thread: starting others would cost more.
+enum { LEAST_TO_SHARE = 5000 };
 
 // What a scene needs; the bits choose a compiled pair sweep.
 enum feature {
@@ -56,12 +60,27 @@ struct motion {
 struct pair_group {
     _Alignas(CACHE_LINE) int32_t first[PAIRS_IN_GROUP];
     int32_t second[PAIRS_IN_GROUP];
-    int32_t first_slot[PAIRS_IN_GROUP];
-    int32_t second_slot[PAIRS_IN_GROUP];
     double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
     double distance[PAIRS_IN_GROUP];      // |separation|
     double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance
-    int32_t idle; // no pair touches or is bonded, and all slots hold 0
+    int32_t idle; // no pair touches or is bonded, and all loads kept are 0
+};
+
+// Where the loads on the two grains of each pair are added up: rows of dem->sum.
+struct sum_group {
+    _Alignas(CACHE_LINE) int32_t first[PAIRS_IN_GROUP];
+    int32_t second[PAIRS_IN_GROUP];
+};
+
+// What the pairs of a group did in the last cycle, if that is kept. Force on the second
+// grain, the first feels the opposite; of the moments, less that on the first and that
+// on the second.
+struct load_group {
+    _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
+};
+struct moment_group {
+    _Alignas(CACHE_LINE) double first[3][PAIRS_IN_GROUP];
+    double second[3][PAIRS_IN_GROUP];
 };
 
 // What a group has besides, where the scene needs it.
@@ -107,7 +126,11 @@ struct pair_list {
     int32_t *bond;          // (n_pair) the bond of the packing, broken or not; or -1
     int n_group;
     struct pair_group *group; // (n_group)
+    struct sum_group *sum;    // (n_group)
+    struct load_group *load;  // (n_group)
+    uint8_t *kept; // (n_group) with a late grain: loads are kept in every cycle
     // (n_group) or NULL where not needed
+    struct moment_group *moment;
     struct shear_group *shear;
     struct own_group *own;
     struct bond_group *bonds;
@@ -124,11 +147,11 @@ struct material {
 // A grain that is near a wall.
 struct wall_pair {
     int32_t particle, wall;
-    int32_t slot;
     struct contact_law law;
     struct vector shear_force;
-    struct vector normal; // towards the wall, at the last force
-    double depth;         // overlap at the last force
+    struct vector normal;       // towards the wall, at the last force
+    double depth;               // overlap at the last force
+    struct vector load, moment; // on the grain, at the last force
 };
 
 struct rigid_wall {
@@ -158,7 +181,7 @@ struct dem {
     double *pair_friction;     // (n_material^2)
     double *pair_restitution;
     double contact_time;
-    struct contact_law law; // of every pair, unless FEATURE_OWN
+    struct contact_law law;       // of every pair, unless FEATURE_OWN
     double bond_normal_stiffness; // per area
     double bond_shear_stiffness;
     enum dem_bond_kind bond_kind;
@@ -171,12 +194,12 @@ struct dem {
     pair_sweep *sweep;
 
     int n_particle;
-    int32_t *identity;     // (n_particle) number in the packing
-    int32_t *number;       // (n_particle) the inverse
-    struct vector *start;  // (n_particle) where each began
-    struct place *place;   // (n_particle+1), the last is the grain that is not there
-    struct motion *motion; // (n_particle+1) half a step behind the places
-    double (*external)[4]; // (n_particle) force, weight included
+    int32_t *identity;      // (n_particle) number in the packing
+    int32_t *number;        // (n_particle) the inverse
+    struct vector *start;   // (n_particle) where each began
+    struct place *place;    // (n_particle+1), the last is the grain that is not there
+    struct motion *motion;  // (n_particle+1) half a step behind the places
+    double (*external)[4];  // (n_particle) force, weight included
     struct vector *applied; // (n_particle) without weight; NULL: none
     struct vector gravity;
     double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed
@@ -199,13 +222,16 @@ struct dem {
     struct rigid_wall *wall;
     int n_wall_pair;
     struct wall_pair *wall_pair; // by grain, then wall
-    int *slot_offset;            // (n_particle+1)
+    int *wall_offset;            // (n_particle+1) into wall_pair
+    int *pair_offset;            // (n_particle+1) into pair_of
+    int32_t *pair_of;            // (2 n_pair) the pairs of each grain, in their order
     int *first_group;            // (n_particle) with a pair of the grain
     int *last_group;             // (n_particle) with a pair whose first is <= the grain
-    // (slot_offset[n_particle] + 2) slots of slot_stride: force, and moment if grains
-    // turn
-    double *slot;
-    int slot_stride;
+    int n_share;                 // of the groups, for as many threads
+    // (n_particle + n_share) rows of 4 or, if grains turn, 8: force and moment; 0
+    // between cycles. The last n_share take what is of no use, one for each share.
+    double *sum;
+    bool keeps_loads; // of all pairs, in this cycle
 
     double skin;
     struct vector *place_at_search; // (n_particle) displacement when pairs were sought
@@ -215,8 +241,8 @@ struct dem {
     int searches_in_order;          // since grains were last renumbered
 
     bool balance_energy;
-    struct dem_energy books;       // the parts that only grow, of pairs that are gone
-    double (*grain_books)[2];      // (n_particle) gained, lost to local damping
+    struct dem_energy books;  // the parts that only grow, of pairs that are gone
+    double (*grain_books)[2]; // (n_particle) gained, lost to local damping
 
     int n_crack, crack_capacity;
     struct dem_crack *crack;
@@ -291,12 +317,18 @@ struct pace {
 // LATE, the others if not [grains.c].
 struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late);
 
-// Force and moment on a grain, from its slots and from outside.
+// Force and moment on a grain in the last cycle, from outside too; of grains that are
+// not late only if loads were kept.
 struct motion load_on_grain(const struct dem *dem, int particle);
 
-// The largest stable time step [stability.c]: of all pairs in the list, or if NOW only of
-// those that touch, at the overlaps they have.
+// The largest stable time step [stability.c]: of all pairs in the list, or if NOW only
+// of those that touch, at the overlaps they have.
 double stability_limit(const struct dem *dem, bool now);
+
+static inline int groups_in_share(const struct dem *dem)
+{
+    return (dem->pairs.n_group + dem->n_share - 1) / dem->n_share;
+}
 
 static inline struct vector as_vector(const double a[3])
 {

@@ -13,23 +13,55 @@ struct load {
     quad force, moment;
 };
 
-INLINE struct load add_slots(const struct dem *dem, int particle, bool turns)
+INLINE quad as_quad(struct vector a)
 {
-    struct load sum = {{0}, {0}};
-    const size_t stride = turns ? 8 : 4;
-    for (int s = dem->slot_offset[particle]; s < dem->slot_offset[particle + 1]; s++) {
-        const double *slot = dem->slot + stride * (size_t)s;
-        sum.force += *(const quad *)slot;
-        if (turns) sum.moment += *(const quad *)(slot + 4);
+    return (quad){a.x, a.y, a.z, 0};
+}
+
+// Walls come after pairs, what acts from outside last.
+INLINE struct load with_walls(const struct dem *dem, int particle, struct load sum,
+                              bool turns)
+{
+    for (int k = dem->wall_offset[particle]; k < dem->wall_offset[particle + 1]; k++) {
+        sum.force += as_quad(dem->wall_pair[k].load);
+        if (turns) sum.moment += as_quad(dem->wall_pair[k].moment);
     }
     sum.force += *(const quad *)dem->external[particle];
     return sum;
 }
 
+// From the loads that were kept.
+static struct load add_up(const struct dem *dem, int particle, bool turns)
+{
+    struct load sum = {{0}, {0}};
+    for (int s = dem->pair_offset[particle]; s < dem->pair_offset[particle + 1]; s++) {
+        const int p = dem->pair_of[s], group = p / PAIRS_IN_GROUP;
+        const int lane = p % PAIRS_IN_GROUP;
+        const bool is_first = dem->pairs.particle[p][0] == particle;
+        const quad force = as_quad(lane_vector(dem->pairs.load[group].force, lane));
+        sum.force += is_first ? -force : force;
+        if (!turns) continue;
+        const struct moment_group *moment = &dem->pairs.moment[group];
+        sum.moment += is_first ? -as_quad(lane_vector(moment->first, lane))
+                               : as_quad(lane_vector(moment->second, lane));
+    }
+    return with_walls(dem, particle, sum, turns);
+}
+
+// What the pair sweep added up, which is cleared for the next.
+INLINE struct load take_sum(struct dem *dem, int particle, bool turns)
+{
+    const quad zero = {0};
+    quad *row = (quad *)(dem->sum + (turns ? 8 : 4) * (size_t)particle);
+    const struct load sum = {row[0], turns ? row[1] : zero};
+    row[0] = zero;
+    if (turns) row[1] = zero;
+    return with_walls(dem, particle, sum, turns);
+}
+
 struct motion load_on_grain(const struct dem *dem, int particle)
 {
-    const struct load sum =
-        add_slots(dem, particle, dem->features & FEATURE_TURN ? true : false);
+    const struct load sum = add_up(dem, particle, dem->features & FEATURE_TURN);
     struct motion load;
     *(quad *)load.linear = sum.force;
     *(quad *)load.angular = sum.moment;
@@ -73,7 +105,7 @@ INLINE struct pace move(struct dem *dem, int begin, int end, int from_group, boo
     struct pace pace = {.largest = 0, .sound = true};
     for (int i = begin; i < end; i++) {
         if ((dem->first_group[i] < from_group) != late) continue;
-        const struct load sum = add_slots(dem, i, turns);
+        const struct load sum = late ? add_up(dem, i, turns) : take_sum(dem, i, turns);
         quad *velocity = (quad *)dem->motion[i].linear;
         quad *spin = (quad *)dem->motion[i].angular;
         struct load net = {damped(sum.force, *velocity, dem->local_damping), zero};
@@ -98,6 +130,7 @@ INLINE struct pace move(struct dem *dem, int begin, int end, int from_group, boo
 
 struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late)
 {
-    return dem->features & FEATURE_TURN ? move(dem, begin, end, from_group, late, true)
-                                        : move(dem, begin, end, from_group, late, false);
+    return dem->features & FEATURE_TURN
+               ? move(dem, begin, end, from_group, late, true)
+               : move(dem, begin, end, from_group, late, false);
 }

@@ -15,7 +15,8 @@ static int pair_of(const struct dem *dem, const struct encounter *e)
     return e->first * dem->n_material + (e->second < 0 ? e->first : e->second);
 }
 
-// Springs in series, exactly half of two equal ones; a rigid wall leaves the grain's own.
+// Springs in series, exactly half of two equal ones; a rigid wall leaves the grain's
+// own.
 static double in_series(double a, double b, bool rigid)
 {
     if (rigid) return a;
@@ -38,7 +39,8 @@ static struct contact_law linear_law(const struct dem *dem, const struct encount
                                 .shear_damping = 2 * ratio * sqrt(shear) * root};
 }
 
-// [G 2]: k_n = m (pi^2 + ln^2 e) / t_c^2, c_n = -2 m ln e / t_c, and 2/7 of each across.
+// [G 2]: k_n = m (pi^2 + ln^2 e) / t_c^2, c_n = -2 m ln e / t_c, and 2/7 of each
+// across.
 static struct contact_law timed_law(const struct dem *dem, const struct encounter *e)
 {
     const double logarithm = log(dem->pair_restitution[pair_of(dem, e)]);
@@ -63,8 +65,8 @@ static double shear_compliance(const struct material *m)
     return (2 - m->poisson_ratio) * (1 + m->poisson_ratio) / m->young_modulus;
 }
 
-// k = 4/3 E* sqrt(R*), shear stiffness 8 G* sqrt(R* U), and damping to a restitution that
-// no speed changes (Tsuji 1992; the factor sqrt(5/6) of Antypov & Elliott 2011).
+// k = 4/3 E* sqrt(R*), shear stiffness 8 G* sqrt(R* U), and damping to a restitution
+// that no speed changes (Tsuji 1992; the factor sqrt(5/6) of Antypov & Elliott 2011).
 static struct contact_law hertz_law(const struct dem *dem, const struct encounter *e)
 {
     const bool rigid = e->second < 0;

@@ -63,8 +63,8 @@ static struct bonded *sorted_bonds(const struct dem *dem)
 {
     struct bonded *bonded = NEW_ARRAY(struct bonded, dem->n_bond);
     for (int b = 0; b < dem->n_bond; b++)
-        bonded[b] = (struct bonded){
-            {dem->bond_particle[b][0], dem->bond_particle[b][1]}, b};
+        bonded[b] =
+            (struct bonded){{dem->bond_particle[b][0], dem->bond_particle[b][1]}, b};
     qsort(bonded, (size_t)dem->n_bond, sizeof *bonded, by_particles);
     return bonded;
 }
@@ -84,9 +84,10 @@ static struct candidates seek(const struct dem *dem)
     found.particle = allocate(most, sizeof *found.particle);
     found.bond = NEW_ARRAY(int32_t, most);
     for (int p = 0, b = 0; p < n_near || b < dem->n_bond; found.count++) {
-        const int order = p == n_near          ? 1
-                          : b == dem->n_bond ? -1
-                                             : compare_pairs(near[p], bonded[b].particle);
+        const int order = p == n_near ? 1
+                          : b == dem->n_bond
+                              ? -1
+                              : compare_pairs(near[p], bonded[b].particle);
         found.bond[found.count] = order < 0 ? -1 : bonded[b].bond;
         memcpy(found.particle[found.count], order < 0 ? near[p] : bonded[b].particle,
                sizeof *found.particle);
@@ -232,34 +233,63 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
         set_nobody(dem, p);
 }
 
-// Every grain's slots side by side: pairs in their order, then walls.
-static void assign_slots(struct dem *dem)
+// The pairs of each grain. As they are sorted, those of which it is the second come
+// first.
+static void list_pairs_of_grains(struct dem *dem)
 {
-    const int n = dem->n_particle;
-    memset(dem->slot_offset, 0, ((size_t)n + 1) * sizeof *dem->slot_offset);
-    for (int p = 0; p < dem->pairs.n_pair; p++)
+    const int n = dem->n_particle, n_pair = dem->pairs.n_pair;
+    memset(dem->pair_offset, 0, ((size_t)n + 1) * sizeof *dem->pair_offset);
+    for (int p = 0; p < n_pair; p++)
         for (int end = 0; end < 2; end++)
-            dem->slot_offset[dem->pairs.particle[p][end] + 1]++;
-    for (int k = 0; k < dem->n_wall_pair; k++)
-        dem->slot_offset[dem->wall_pair[k].particle + 1]++;
+            dem->pair_offset[dem->pairs.particle[p][end] + 1]++;
     for (int i = 0; i < n; i++)
-        dem->slot_offset[i + 1] += dem->slot_offset[i];
+        dem->pair_offset[i + 1] += dem->pair_offset[i];
 
-    int *next = duplicate(dem->slot_offset, (size_t)n + 1, sizeof *next);
-    for (int p = 0; p < PAIRS_IN_GROUP * dem->pairs.n_group; p++) {
-        const struct lane to = lane_of(p);
-        struct pair_group *group = &dem->pairs.group[to.group];
-        const bool real = p < dem->pairs.n_pair;
-        group->first_slot[to.at] = real ? next[group->first[to.at]]++ : next[n];
-        group->second_slot[to.at] = real ? next[group->second[to.at]]++ : next[n] + 1;
-    }
-    for (int k = 0; k < dem->n_wall_pair; k++)
-        dem->wall_pair[k].slot = next[dem->wall_pair[k].particle]++;
-    free(dem->slot);
-    dem->slot = allocate_aligned(((size_t)dem->slot_offset[n] + 2) *
-                                     (size_t)dem->slot_stride,
-                                 sizeof *dem->slot);
+    free(dem->pair_of);
+    dem->pair_of = allocate(2 * (size_t)n_pair, sizeof *dem->pair_of);
+    int *next = duplicate(dem->pair_offset, (size_t)n + 1, sizeof *next);
+    for (int p = 0; p < n_pair; p++)
+        for (int end = 0; end < 2; end++)
+            dem->pair_of[next[dem->pairs.particle[p][end]]++] = p;
     free(next);
+}
+
+// Whether groups of another share than the one that finishes a grain have to do with
+// it.
+static bool is_late(const struct dem *dem, int particle)
+{
+    const int share = groups_in_share(dem);
+    return dem->last_group[particle] >= 0 &&
+           dem->first_group[particle] / share < dem->last_group[particle] / share;
+}
+
+// Each grain has the row of its number, those that are late or not there the spare row
+// of the share.
+static int32_t sum_of(const struct dem *dem, int particle, int group)
+{
+    const bool late = particle < dem->n_particle && is_late(dem, particle);
+    if (late) dem->pairs.kept[group] = true;
+    return late || particle == dem->n_particle
+               ? dem->n_particle + group / groups_in_share(dem)
+               : particle;
+}
+
+static void assign_sums(struct dem *dem)
+{
+    const bool is_large = dem->pairs.n_pair > LEAST_TO_SHARE;
+    dem->n_share = is_large ? dem->threads : 1;
+    for (int k = 0; k < dem->pairs.n_group; k++) {
+        const struct pair_group *group = &dem->pairs.group[k];
+        struct sum_group *sum = &dem->pairs.sum[k];
+        for (int at = 0; at < PAIRS_IN_GROUP; at++) {
+            sum->first[at] = sum_of(dem, group->first[at], k);
+            sum->second[at] = sum_of(dem, group->second[at], k);
+        }
+    }
+    free(dem->sum);
+    const size_t rows = (size_t)dem->n_particle + (size_t)dem->n_share;
+    dem->sum = allocate_aligned(rows * (dem->features & FEATURE_TURN ? 8 : 4),
+                                sizeof *dem->sum);
 }
 
 // When each grain may move; see engine.h.
@@ -289,9 +319,14 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
                                 .particle = particle,
                                 .bond = bond,
                                 .n_group = n_group,
-                                .group = allocate_aligned(n, sizeof *pairs->group)};
-    if (dem->features & FEATURE_TURN)
+                                .group = allocate_aligned(n, sizeof *pairs->group),
+                                .sum = allocate_aligned(n, sizeof *pairs->sum),
+                                .load = allocate_aligned(n, sizeof *pairs->load),
+                                .kept = NEW_ARRAY(uint8_t, n)};
+    if (dem->features & FEATURE_TURN) {
+        pairs->moment = allocate_aligned(n, sizeof *pairs->moment);
         pairs->shear = allocate_aligned(n, sizeof *pairs->shear);
+    }
     if (dem->features & FEATURE_OWN)
         pairs->own = allocate_aligned(n, sizeof *pairs->own);
     if (dem->features & FEATURE_BOND)
@@ -304,6 +339,10 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->particle);
     free(pairs->bond);
     free(pairs->group);
+    free(pairs->sum);
+    free(pairs->load);
+    free(pairs->kept);
+    free(pairs->moment);
     free(pairs->shear);
     free(pairs->own);
     free(pairs->bonds);
@@ -352,8 +391,9 @@ void find_pairs(struct dem *dem)
     fill_pairs(dem, &old);
     free_pairs(&old);
     find_wall_pairs(dem);
-    assign_slots(dem);
+    list_pairs_of_grains(dem);
     assign_groups(dem);
+    assign_sums(dem);
     for (int i = 0; i < dem->n_particle; i++)
         dem->place_at_search[i] = as_vector(dem->place[i].displacement);
     dem->travelled = dem->closed_in = 0;

@@ -22,8 +22,9 @@ double dem_time_step(const struct dem *dem)
 void dem_positions(const struct dem *dem, struct vector *position)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        position[dem->identity[i]] = scale(dem->unit.length,
-                            add(dem->start[i], as_vector(dem->place[i].displacement)));
+        position[dem->identity[i]] =
+            scale(dem->unit.length,
+                  add(dem->start[i], as_vector(dem->place[i].displacement)));
 }
 
 void dem_displacements(const struct dem *dem, struct vector *displacement)
@@ -43,7 +44,8 @@ void dem_velocities(const struct dem *dem, struct vector *velocity)
 void dem_spins(const struct dem *dem, struct vector *spin)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        spin[dem->identity[i]] = scale(1 / dem->unit.time, as_vector(dem->motion[i].angular));
+        spin[dem->identity[i]] =
+            scale(1 / dem->unit.time, as_vector(dem->motion[i].angular));
 }
 
 void dem_radii(const struct dem *dem, double *radius)
@@ -92,14 +94,8 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
 
 static struct vector pair_force(const struct dem *dem, int pair)
 {
-    const struct pair_group *g = &dem->pairs.group[pair / PAIRS_IN_GROUP];
-    const int32_t slot = g->second_slot[pair % PAIRS_IN_GROUP];
-    return as_vector(dem->slot + (size_t)dem->slot_stride * (size_t)slot);
-}
-
-static struct vector wall_force(const struct dem *dem, const struct wall_pair *pair)
-{
-    return as_vector(dem->slot + (size_t)dem->slot_stride * (size_t)pair->slot);
+    return lane_vector(dem->pairs.load[pair / PAIRS_IN_GROUP].force,
+                       pair % PAIRS_IN_GROUP);
 }
 
 static struct dem_contact pair_contact(const struct dem *dem, int pair,
@@ -108,12 +104,12 @@ static struct dem_contact pair_contact(const struct dem *dem, int pair,
     const int32_t a = dem->identity[dem->pairs.particle[pair][0]];
     const int32_t b = dem->identity[dem->pairs.particle[pair][1]];
     const double unit = dem->unit.stiffness * dem->unit.length;
-    return (struct dem_contact){
-        .particle = {a < b ? a : b, a < b ? b : a},
-        .bond = is_held(dem, pair) ? dem->pairs.bond[pair] : -1,
-        .overlap = lie->overlap * dem->unit.length,
-        .force = scale(a < b ? unit : -unit, pair_force(dem, pair)),
-        .position = scale(dem->unit.length, lie->position)};
+    return (struct dem_contact){.particle = {a < b ? a : b, a < b ? b : a},
+                                .bond = is_held(dem, pair) ? dem->pairs.bond[pair] : -1,
+                                .overlap = lie->overlap * dem->unit.length,
+                                .force =
+                                    scale(a < b ? unit : -unit, pair_force(dem, pair)),
+                                .position = scale(dem->unit.length, lie->position)};
 }
 
 static struct dem_contact wall_contact(const struct dem *dem,
@@ -128,7 +124,7 @@ static struct dem_contact wall_contact(const struct dem *dem,
         .particle = {dem->identity[i], -1 - pair->wall},
         .bond = -1,
         .overlap = lie->overlap * dem->unit.length,
-        .force = scale(-dem->unit.stiffness * dem->unit.length, wall_force(dem, pair)),
+        .force = scale(-dem->unit.stiffness * dem->unit.length, pair->load),
         .position = scale(dem->unit.length, add(centre, scale(lie->arm, lie->normal)))};
 }
 
@@ -184,8 +180,8 @@ struct dem_census dem_census(const struct dem *dem)
             dem->place[end[0]].radius + dem->place[end[1]].radius - lie.overlap;
         const struct vector force = pair_force(dem, p);
         for (int k = 0; k < 9; k++)
-            census.stress[k / 3][k % 3] += unit * branch * component(lie.normal, k / 3) *
-                                           component(force, k % 3);
+            census.stress[k / 3][k % 3] +=
+                unit * branch * component(lie.normal, k / 3) * component(force, k % 3);
     }
     if (census.contacts > 0) census.mean_overlap /= census.contacts;
     return census;
@@ -211,11 +207,10 @@ double dem_unbalanced_ratio(const struct dem *dem)
         n_contact += size > 0 || is_held(dem, p);
     }
     for (int k = 0; k < dem->n_wall_pair; k++) {
-        const double size = norm(wall_force(dem, &dem->wall_pair[k]));
+        const double size = norm(dem->wall_pair[k].load);
         force += size;
         n_contact += size > 0;
     }
     if (unbalanced <= 0) return 0;
     return mean(unbalanced, n_free) / mean(force, n_contact);
 }
-

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains numbered along Hilbert's curve, so that those near each other in space are near
-// in memory. Small scenes lie in the cache in any order and keep the one they came in.
+// Grains numbered along Hilbert's curve, so that those near each other in space are
+// near in memory. Small scenes lie in the cache in any order and keep the one they came
+// in.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -70,8 +71,8 @@ static struct keyed *along_curve(const struct dem *dem)
     for (int i = 0; i < n; i++) {
         uint32_t x[3];
         for (int axis = 0; axis < 3; axis++)
-            x[axis] =
-                (uint32_t)((component(position_now(dem, i), axis) - lower[axis]) * cells);
+            x[axis] = (uint32_t)((component(position_now(dem, i), axis) - lower[axis]) *
+                                 cells);
         order[i] = (struct keyed){hilbert_key(x), i};
     }
     qsort(order, (size_t)n, sizeof *order, by_key);
@@ -84,7 +85,7 @@ static void reorder(void *array, size_t size, const struct keyed *order, int n)
     if (!array) return;
     char *old = duplicate(array, (size_t)n, size), *new = array;
     for (int k = 0; k < n; k++)
-        memcpy(new + (size_t)k * size, old + (size_t)order[k].grain * size, size);
+        memcpy(new + (size_t)k *size, old + (size_t)order[k].grain * size, size);
     free(old);
 }
 #define REORDER(array) reorder(array, sizeof *(array), order, dem->n_particle)

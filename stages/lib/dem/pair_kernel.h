@@ -144,6 +144,8 @@ INLINE quad load_quad(const double *base, size_t stride, int32_t index)
 #define ODD(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
 #define LOWER(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
 #define UPPER(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15)
+#define LOWER_TWO(a, b) __builtin_shufflevector(a, b, 0, 1, 8, 9, 2, 3, 10, 11)
+#define UPPER_TWO(a, b) __builtin_shufflevector(a, b, 4, 5, 12, 13, 6, 7, 14, 15)
 #define ROW(k) PAIR_UP(load_quad(p, stride, i[k]), load_quad(p, stride, i[(k) + 2]))
 #define ROWS                                                                           \
     {                                                                                  \
@@ -154,6 +156,8 @@ INLINE quad load_quad(const double *base, size_t stride, int32_t index)
 #define ODD(a, b) __builtin_shufflevector(a, b, 1, 5, 3, 7)
 #define LOWER(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5)
 #define UPPER(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7)
+#define LOWER_TWO LOWER
+#define UPPER_TWO UPPER
 #define ROW(k) load_quad(p, stride, i[k])
 #define ROWS                                                                           \
     {                                                                                  \
@@ -161,41 +165,64 @@ INLINE quad load_quad(const double *base, size_t stride, int32_t index)
     }
 #endif
 
-INLINE struct lanes4 gather(const double *p, size_t stride, const int32_t *i)
+// As fetched: two records of four in each (LANES = 8), or one.
+struct rows {
+    lanes row[4];
+};
+
+INLINE struct rows fetch(const double *p, size_t stride, const int32_t *i)
 {
-    const lanes row[4] = ROWS;
-    const lanes xz0 = EVEN(row[0], row[1]), xz1 = EVEN(row[2], row[3]);
-    const lanes yw0 = ODD(row[0], row[1]), yw1 = ODD(row[2], row[3]);
+    return (struct rows){ROWS};
+}
+
+INLINE struct rows subtract_rows(struct rows a, struct rows b)
+{
+    for (int k = 0; k < 4; k++)
+        a.row[k] -= b.row[k];
+    return a;
+}
+
+INLINE struct lanes4 transpose(struct rows a)
+{
+    const lanes xz0 = EVEN(a.row[0], a.row[1]), xz1 = EVEN(a.row[2], a.row[3]);
+    const lanes yw0 = ODD(a.row[0], a.row[1]), yw1 = ODD(a.row[2], a.row[3]);
     return (struct lanes4){{LOWER(xz0, xz1), LOWER(yw0, yw1), UPPER(xz0, xz1)},
                            UPPER(yw0, yw1)};
 }
 
-// The reverse: A, with zero for a fourth, to LANES places.
-INLINE void scatter(double *p, size_t stride, const int32_t *i, struct lanes3 a)
+// The reverse: row k of four is A, with zero for a fourth, of one lane (LANES = 4) or
+// of two, in the order of ROWS.
+INLINE struct rows rows_of(struct lanes3 a)
 {
     const lanes zero = {0};
     const lanes xy0 = EVEN(a.x, a.y), xy1 = ODD(a.x, a.y);
     const lanes zw0 = EVEN(a.z, zero), zw1 = ODD(a.z, zero);
+    return (struct rows){{LOWER_TWO(xy0, zw0), LOWER_TWO(xy1, zw1), UPPER_TWO(xy0, zw0),
+                          UPPER_TWO(xy1, zw1)}};
+}
+
+// Lane K of ROWS.
+INLINE quad quad_of(struct rows rows, int k)
+{
 #if LANES == 8
-#define PUT(k, xy, zw, n)                                                              \
-    *(quad *)(p + stride * (size_t)i[k]) = __builtin_shufflevector(                         \
-        xy, zw, 2 * (n), 2 * (n) + 1, 2 * (n) + 8, 2 * (n) + 9)
-    PUT(0, xy0, zw0, 0);
-    PUT(1, xy1, zw1, 0);
-    PUT(2, xy0, zw0, 1);
-    PUT(3, xy1, zw1, 1);
-    PUT(4, xy0, zw0, 2);
-    PUT(5, xy1, zw1, 2);
-    PUT(6, xy0, zw0, 3);
-    PUT(7, xy1, zw1, 3);
-#undef PUT
+    const lanes row = rows.row[(k & 1) + (k & 4) / 2];
+    return k & 2 ? __builtin_shufflevector(row, row, 4, 5, 6, 7)
+                 : __builtin_shufflevector(row, row, 0, 1, 2, 3);
 #else
-    *(quad *)(p + stride * (size_t)i[0]) = LOWER(xy0, zw0);
-    *(quad *)(p + stride * (size_t)i[1]) = LOWER(xy1, zw1);
-    *(quad *)(p + stride * (size_t)i[2]) = UPPER(xy0, zw0);
-    *(quad *)(p + stride * (size_t)i[3]) = UPPER(xy1, zw1);
+    return rows.row[k];
 #endif
 }
+
+#if LANES == 8
+// Lane K of A and of B.
+INLINE lanes both_of(struct rows a, struct rows b, int k)
+{
+    const int r = (k & 1) + (k & 4) / 2;
+    return k & 2
+               ? __builtin_shufflevector(a.row[r], b.row[r], 4, 5, 6, 7, 12, 13, 14, 15)
+               : __builtin_shufflevector(a.row[r], b.row[r], 0, 1, 2, 3, 8, 9, 10, 11);
+}
+#endif
 
 // How the contact plane has turned in the last time step.
 struct turning {
@@ -227,8 +254,8 @@ INLINE void meet_turning(struct meeting *m, const double *spins, const int32_t *
                          lanes time_step)
 {
     const struct lanes3 n = m->turning.normal;
-    const struct lanes3 spin_i = gather(spins, 8, i).xyz;
-    const struct lanes3 spin_j = gather(spins, 8, j).xyz;
+    const struct lanes3 spin_i = transpose(fetch(spins, 8, i)).xyz;
+    const struct lanes3 spin_j = transpose(fetch(spins, 8, j)).xyz;
     const struct lanes3 rolling =
         add3(scale3(m->first_arm, spin_i), scale3(m->second_arm, spin_j));
     const struct lanes3 sideways = subtract3(velocity, scale3(m->normal_velocity, n));
@@ -245,11 +272,10 @@ INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, in
     const int32_t *i = g->first + at, *j = g->second + at;
     const double *places = (const double *)dem->place;
     const double *motions = (const double *)dem->motion;
-    const struct lanes4 place_i = gather(places, 4, i), place_j = gather(places, 4, j);
+    const struct rows place_i = fetch(places, 4, i), place_j = fetch(places, 4, j);
+    const struct lanes3 apart = transpose(subtract_rows(place_j, place_i)).xyz;
     const struct lanes3 velocity =
-        subtract3(gather(motions, 8, j).xyz, gather(motions, 8, i).xyz);
-
-    const struct lanes3 apart = subtract3(place_j.xyz, place_i.xyz);
+        transpose(subtract_rows(fetch(motions, 8, j), fetch(motions, 8, i))).xyz;
     const struct lanes3 start = load3(g->separation, at);
     const struct lanes3 separation = add3(start, apart);
     const lanes distance = square_root(dot3(separation, separation));
@@ -260,8 +286,11 @@ INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, in
     m.stretch =
         dot3(apart, add3(start, separation)) / (distance + load(g->distance + at));
     m.overlap = load(g->overlap + at) - m.stretch;
-    m.first_arm = place_i.w - 0.5 * m.overlap;
-    m.second_arm = place_j.w - 0.5 * m.overlap;
+    const lanes radius =
+        (lanes){0} + dem->place[0].radius; // of all, unless they differ
+    const bool differ = features & FEATURE_OWN;
+    m.first_arm = (differ ? transpose(place_i).w : radius) - 0.5 * m.overlap;
+    m.second_arm = (differ ? transpose(place_j).w : radius) - 0.5 * m.overlap;
     m.normal_velocity = dot3(velocity, m.turning.normal);
     if (features & FEATURE_TURN)
         meet_turning(&m, motions + 4, i, j, velocity, inverse, time_step);
@@ -272,8 +301,8 @@ INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, in
 struct law {
     lanes spring; // normal force
     lanes shear_stiffness, normal_damping, shear_damping, friction;
-    // Hertz: what is left of the shear force of the step before, and the shear stiffness
-    // that it had.
+    // Hertz: what is left of the shear force of the step before, and the shear
+    // stiffness that it had.
     lanes forget, shear_stiffness_before;
 };
 
@@ -286,14 +315,14 @@ INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meet
     const bool differ = features & FEATURE_OWN;
     const lanes stiffness =
         differ ? load(own->normal_stiffness + at) : zero + all->normal_stiffness;
-    struct law law = {
-        .shear_stiffness =
-            differ ? load(own->shear_stiffness + at) : zero + all->shear_stiffness,
-        .normal_damping =
-            differ ? load(own->normal_damping + at) : zero + all->normal_damping,
-        .shear_damping =
-            differ ? load(own->shear_damping + at) : zero + all->shear_damping,
-        .friction = differ ? load(own->friction + at) : zero + all->friction};
+    struct law law = {.shear_stiffness = differ ? load(own->shear_stiffness + at)
+                                                : zero + all->shear_stiffness,
+                      .normal_damping = differ ? load(own->normal_damping + at)
+                                               : zero + all->normal_damping,
+                      .shear_damping = differ ? load(own->shear_damping + at)
+                                              : zero + all->shear_damping,
+                      .friction =
+                          differ ? load(own->friction + at) : zero + all->friction};
     if (!(features & FEATURE_HERTZ)) {
         law.spring = only_where(touch, stiffness * m->overlap);
         law.shear_stiffness_before = law.shear_stiffness;
@@ -310,9 +339,8 @@ INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meet
     law.normal_damping *= fourth;
     law.shear_damping *= fourth;
     const mask unloads = was & (overlap < before);
-    law.forget =
-        choose(unloads, square_root(overlap / choose(was, before, zero + 1.0)),
-               zero + 1.0);
+    law.forget = choose(unloads, square_root(overlap / choose(was, before, zero + 1.0)),
+                        zero + 1.0);
     return law;
 }
 
@@ -334,13 +362,13 @@ INLINE lanes spring_loss(struct lanes3 before, lanes stiffness_before,
                          struct lanes3 after, lanes stiffness)
 {
     const lanes zero = {0};
-    const lanes had = only_where(stiffness_before > 0.0,
-                                 dot3(before, before) /
-                                     choose(stiffness_before > 0.0, stiffness_before,
-                                            zero + 1.0));
+    const lanes had =
+        only_where(stiffness_before > 0.0,
+                   dot3(before, before) /
+                       choose(stiffness_before > 0.0, stiffness_before, zero + 1.0));
     const lanes has =
-        only_where(stiffness > 0.0, dot3(after, after) /
-                                        choose(stiffness > 0.0, stiffness, zero + 1.0));
+        only_where(stiffness > 0.0,
+                   dot3(after, after) / choose(stiffness > 0.0, stiffness, zero + 1.0));
     return 0.5 * (had - has);
 }
 
@@ -371,11 +399,14 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
         shear = scale3(choose(*slips, factor, zero + 1.0), trial);
     }
     store3(history, at, shear);
-    if (dem->pairs.loss) { // what slip took, and what a contact forgot
+    if (dem->pairs.loss) { // what a contact forgot, and what slip took: the mean force
+                           // times the slip
         const lanes now = law->shear_stiffness, before = law->shear_stiffness_before;
+        const lanes slip = dot3(add3(kept, shear), subtract3(trial, shear));
+        const lanes taken =
+            only_where(now > 0.0, 0.5 * slip / choose(now > 0.0, now, zero + 1.0));
         book(dem->pairs.loss[k].slip + at, acts | ~acts,
-             spring_loss(turned, before, kept, now) +
-                 spring_loss(trial, now, shear, now));
+             spring_loss(turned, before, kept, now) + taken);
     }
     return shear;
 }
@@ -387,8 +418,7 @@ INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
                                      unsigned features)
 {
     const lanes dashpot = law->normal_damping * m->normal_velocity;
-    struct pair_load load = {.normal =
-                                 law->spring - only_where(touch | held, dashpot)};
+    struct pair_load load = {.normal = law->spring - only_where(touch | held, dashpot)};
     if (dem->pairs.loss)
         book(dem->pairs.loss[k].dashpots + at, touch | held,
              dashpot * m->normal_velocity * time_step);
@@ -444,8 +474,9 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
     lanes twist = load(g->twist + at);
     twist -= shear_stiffness * time_step * 2.0 * bending_inertia * twisting;
     struct lanes3 bending = turn(m->turning, load3(g->bending, at));
-    bending = subtract3(bending, scale3(normal_stiffness * time_step * bending_inertia,
-                                        subtract3(m->turning_apart, scale3(twisting, n))));
+    bending =
+        subtract3(bending, scale3(normal_stiffness * time_step * bending_inertia,
+                                  subtract3(m->turning_apart, scale3(twisting, n))));
 
     const lanes normal_strength = load(g->normal_strength + at) * area * radius;
     const lanes shear_strength = load(g->shear_strength + at) * area * radius;
@@ -477,13 +508,12 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
             const lanes bent = normal_stiffness * bending_inertia;
             const lanes twisted = shear_stiffness * 2.0 * bending_inertia;
             const struct lanes3 nothing = {zero, zero, zero};
-            const lanes energy =
-                spring_loss((struct lanes3){normal, zero, zero}, stretched, nothing,
-                            stretched) +
-                spring_loss(shear, sheared, nothing, sheared) +
-                spring_loss(bending, bent, nothing, bent) +
-                spring_loss((struct lanes3){twist, zero, zero}, twisted, nothing,
-                            twisted);
+            const lanes energy = spring_loss((struct lanes3){normal, zero, zero},
+                                             stretched, nothing, stretched) +
+                                 spring_loss(shear, sheared, nothing, sheared) +
+                                 spring_loss(bending, bent, nothing, bent) +
+                                 spring_loss((struct lanes3){twist, zero, zero},
+                                             twisted, nothing, twisted);
             book(dem->pairs.loss[k].broken + at, broken, energy);
         }
         held &= ~broken;
@@ -532,10 +562,10 @@ INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, in
             count++;
         }
         if (dem->pairs.loss) { // in tension all is lost, otherwise what slips is slip's
-            const lanes energy = 0.5 * spring * m->overlap +
-                                 spring_loss(shear, law->shear_stiffness,
-                                             (struct lanes3){zero, zero, zero},
-                                             law->shear_stiffness);
+            const lanes energy =
+                0.5 * spring * m->overlap +
+                spring_loss(shear, law->shear_stiffness,
+                            (struct lanes3){zero, zero, zero}, law->shear_stiffness);
             book(dem->pairs.loss[k].broken + at, broken & ~touch, energy);
         }
         *held &= ~broken;
@@ -544,34 +574,68 @@ INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, in
     return count;
 }
 
+// Takes ON_FIRST from the sums of the first grains and adds ON_SECOND to those of the
+// second. One pair after the other, as they may have grains in common.
+INLINE void add_four(double *sum, const int32_t *first, const int32_t *second,
+                     struct rows on_first, struct rows on_second)
+{
+#pragma GCC unroll 8
+    for (int k = 0; k < LANES; k++) {
+        *(quad *)(sum + 4 * (size_t)first[k]) -= quad_of(on_first, k);
+        *(quad *)(sum + 4 * (size_t)second[k]) += quad_of(on_second, k);
+    }
+}
+
+// The same with forces, opposite ones, and moments. A sum is one cache line: with 8
+// lanes it is one vector.
+INLINE void add_eight(double *sum, const int32_t *first, const int32_t *second,
+                      struct rows force, struct rows on_first, struct rows on_second)
+{
+#pragma GCC unroll 8
+    for (int k = 0; k < LANES; k++) {
+        double *of_first = sum + 8 * (size_t)first[k];
+        double *of_second = sum + 8 * (size_t)second[k];
+#if LANES == 8
+        *(lanes *)of_first -= both_of(force, on_first, k);
+        *(lanes *)of_second += both_of(force, on_second, k);
+#else
+        *(quad *)of_first -= force.row[k];
+        *(quad *)(of_first + 4) -= on_first.row[k];
+        *(quad *)of_second += force.row[k];
+        *(quad *)(of_second + 4) += on_second.row[k];
+#endif
+    }
+}
+
 // Minus F_ij and minus what it turns for the first grain, the opposite force for the
 // second [K 4.18, 4.21, 4.43, 4.44].
-INLINE void put_loads(double *slot, const struct pair_group *g, int at,
-                      const struct meeting *m, const struct pair_load *pair,
-                      unsigned features)
+INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting *m,
+                      const struct pair_load *pair, bool keep, unsigned features)
 {
     const struct lanes3 n = m->turning.normal;
-    const int32_t *first = g->first_slot + at, *second = g->second_slot + at;
+    const int32_t *first = dem->pairs.sum[k].first + at;
+    const int32_t *second = dem->pairs.sum[k].second + at;
     const bool turns = features & FEATURE_TURN;
     const struct lanes3 along = scale3(pair->normal, n);
     const struct lanes3 force = turns ? add3(along, pair->shear) : along;
-    const struct lanes3 opposite = {-force.x, -force.y, -force.z};
-    const size_t stride = turns ? 8 : 4;
-    scatter(slot, stride, first, opposite);
-    scatter(slot, stride, second, force);
-    if (!turns) return;
+    if (keep) store3(dem->pairs.load[k].force, at, force);
+    if (!turns) {
+        add_four(dem->sum, first, second, rows_of(force), rows_of(force));
+        return;
+    }
 
     const struct lanes3 torque = cross3(n, pair->shear);
     struct lanes3 on_first = scale3(m->first_arm, torque);
-    struct lanes3 on_second = scale3(m->second_arm, torque);
-    on_second = (struct lanes3){-on_second.x, -on_second.y, -on_second.z};
+    struct lanes3 on_second = scale3(-m->second_arm, torque);
     if (features & FEATURE_PARALLEL_BOND) {
         on_first = add3(on_first, pair->moment);
         on_second = add3(pair->moment, on_second);
     }
-    on_first = (struct lanes3){-on_first.x, -on_first.y, -on_first.z};
-    scatter(slot + 4, stride, first, on_first);
-    scatter(slot + 4, stride, second, on_second);
+    add_eight(dem->sum, first, second, rows_of(force), rows_of(on_first),
+              rows_of(on_second));
+    if (!keep) return;
+    store3(dem->pairs.moment[k].first, at, on_first);
+    store3(dem->pairs.moment[k].second, at, on_second);
 }
 
 INLINE int sweep_lanes(const struct dem *dem, int k, int at, lanes time_step, int *busy,
@@ -584,7 +648,8 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, lanes time_step, in
     mask held = (mask)zero;
     if (features & FEATURE_BOND)
         held = load(dem->pairs.bonds[k].normal_strength + at) >= 0.0;
-    if (!any(touch | held) && g->idle) return 0;
+    const bool keep = dem->keeps_loads || dem->pairs.kept[k];
+    if (!any(touch | held) && g->idle && !keep) return 0;
 
     *busy |= any(touch | held);
     int n_broken = 0;
@@ -599,7 +664,7 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, lanes time_step, in
         if (any(held))
             n_broken = add_bond_load(&total, dem, k, at, &m, held, time_step);
     }
-    put_loads(dem->slot, g, at, &m, &total, features);
+    put_loads(dem, k, at, &m, &total, keep, features);
     return n_broken;
 }
 
@@ -627,8 +692,8 @@ INLINE int sweep_groups(const struct dem *dem, int begin, int end, unsigned feat
 
 // The sets of features that can occur: bonds always turn, contact bonds are linear.
 #define EACH_SET(DO)                                                                   \
-    DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7)                                    \
-    DO(9) DO(13) DO(17) DO(19) DO(21) DO(23)
+    DO(0)                                                                              \
+    DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(9) DO(13) DO(17) DO(19) DO(21) DO(23)
 
 EACH_SET(SWEEP)
 pair_sweep *const PAIR_SWEEPS[FEATURE_SETS] = {EACH_SET(ENTRY)};

@@ -53,8 +53,8 @@ void dem_rescale(struct dem *dem, const double stretch[3], double growth)
     // How much nearer two grains that do not touch may have come, half of it each.
     const double least = fmin(stretch[0], fmin(stretch[1], stretch[2]));
     const double reach = 2 * dem->largest_radius + dem->skin;
-    const double nearer = fmax(0, 1 - least) * reach +
-                          fmax(0, 1 - 1 / growth) * 2 * dem->largest_radius;
+    const double nearer =
+        fmax(0, 1 - least) * reach + fmax(0, 1 - 1 / growth) * 2 * dem->largest_radius;
     dem->closed_in += 0.5 * nearer;
     dem->travelled += 0.5 * nearer;
 }

@@ -123,8 +123,7 @@ static struct joint pair_joint(const struct dem *dem, int pair, int particle, bo
     const double overlap = overlap_of(dem, lie.overlap, held, now);
     if (overlap < 0) return (struct joint){.weight = 0};
 
-    const struct contact_law law =
-        tangents(dem, law_of_pair(dem, pair), overlap, held);
+    const struct contact_law law = tangents(dem, law_of_pair(dem, pair), overlap, held);
     const double radius =
         held ? dem->pairs.bonds[pair / PAIRS_IN_GROUP].radius[pair % PAIRS_IN_GROUP]
              : 0;
@@ -163,28 +162,17 @@ static struct joint wall_joint(const struct dem *dem, const struct wall_pair *pa
                           .weight = 1};
 }
 
-// Which pair, or -1-k for wall pair k, writes to each slot.
-static int *slot_owners(const struct dem *dem)
-{
-    int *owner = NEW_ARRAY(int, dem->slot_offset[dem->n_particle]);
-    for (int p = 0; p < dem->pairs.n_pair; p++) {
-        const struct pair_group *g = &dem->pairs.group[p / PAIRS_IN_GROUP];
-        owner[g->first_slot[p % PAIRS_IN_GROUP]] = p;
-        owner[g->second_slot[p % PAIRS_IN_GROUP]] = p;
-    }
-    for (int k = 0; k < dem->n_wall_pair; k++)
-        owner[dem->wall_pair[k].slot] = -1 - k;
-    return owner;
-}
-
-static double grain_limit(const struct dem *dem, const int *owner, int particle,
-                          bool now)
+static double grain_limit(const struct dem *dem, int particle, bool now)
 {
     struct block stiffness = {{{0}}}, damping = {{{0}}};
-    for (int s = dem->slot_offset[particle]; s < dem->slot_offset[particle + 1]; s++) {
+    const int *offset = dem->pair_offset + particle;
+    const int n_pair = offset[1] - offset[0];
+    const struct wall_pair *walls = dem->wall_pair + dem->wall_offset[particle];
+    const int n_wall = dem->wall_offset[particle + 1] - dem->wall_offset[particle];
+    for (int k = 0; k < n_pair + n_wall; k++) {
         const struct joint joint =
-            owner[s] >= 0 ? pair_joint(dem, owner[s], particle, now)
-                          : wall_joint(dem, &dem->wall_pair[-1 - owner[s]], now);
+            k < n_pair ? pair_joint(dem, dem->pair_of[offset[0] + k], particle, now)
+                       : wall_joint(dem, &walls[k - n_pair], now);
         if (joint.weight <= 0) continue;
         add_resistance(&stiffness, &joint.spring, joint.weight,
                        dem->mobility[particle]);
@@ -196,11 +184,9 @@ static double grain_limit(const struct dem *dem, const int *owner, int particle,
 
 double stability_limit(const struct dem *dem, bool now)
 {
-    int *owner = slot_owners(dem);
     double limit = INFINITY;
     for (int i = 0; i < dem->n_particle; i++)
-        limit = fmin(limit, grain_limit(dem, owner, i, now));
-    free(owner);
+        limit = fmin(limit, grain_limit(dem, i, now));
     // Against the motion, local damping makes springs and dashpots stronger by its
     // share: springs would allow its square root, dashpots do not.
     return limit / (1 + dem->local_damping);

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // ---- which grains are near ----------------------------------------------------------
 
@@ -39,6 +40,12 @@ void find_wall_pairs(struct dem *dem)
             dem->wall_pair[dem->n_wall_pair++] = pair;
         }
     free(old);
+    memset(dem->wall_offset, 0,
+           ((size_t)dem->n_particle + 1) * sizeof *dem->wall_offset);
+    for (int k = 0; k < dem->n_wall_pair; k++)
+        dem->wall_offset[dem->wall_pair[k].particle + 1] = k + 1;
+    for (int i = 0; i < dem->n_particle; i++)
+        if (dem->wall_offset[i + 1] == 0) dem->wall_offset[i + 1] = dem->wall_offset[i];
     for (int w = 0; w < dem->n_wall; w++)
         dem->wall[w].displacement_at_search = dem->wall[w].displacement;
 }
@@ -187,20 +194,6 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
     return push;
 }
 
-// Its slot gets what the grain feels, the opposite.
-static void put_load(const struct dem *dem, int at, struct vector force,
-                     struct vector moment)
-{
-    double *slot = dem->slot + (size_t)dem->slot_stride * (size_t)at;
-    for (int axis = 0; axis < 3; axis++)
-        slot[axis] = -component(force, axis);
-    slot[3] = 0;
-    if (!(dem->features & FEATURE_TURN)) return;
-    for (int axis = 0; axis < 3; axis++)
-        slot[4 + axis] = -component(moment, axis);
-    slot[7] = 0;
-}
-
 // By how much the force on a wall grows in the next step for each unit of its velocity.
 static double resistance(const struct dem *dem, const struct wall_pair *pair)
 {
@@ -217,13 +210,14 @@ static void touch_wall(struct dem *dem, struct wall_pair *pair)
         dem->books.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
         pair->shear_force = none;
         pair->depth = lie.overlap;
-        put_load(dem, pair->slot, none, none);
+        pair->load = pair->moment = none;
         return;
     }
 
     const struct push push = push_wall(dem, pair, &lie);
-    put_load(dem, pair->slot, push.force,
-             scale(lie.arm, cross(lie.normal, push.shear)));
+    // The grain feels the opposite.
+    pair->load = scale(-1, push.force);
+    pair->moment = scale(-lie.arm, cross(lie.normal, push.shear));
     struct rigid_wall *wall = &dem->wall[pair->wall];
     wall->force = add(wall->force, push.force);
     wall->moment = add(wall->moment, cross(lie.lever, push.force));

@@ -6,6 +6,7 @@
 #include "basics/status.h"
 
 #include <argp.h>
+#include <assert.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +18,8 @@ static const char *const sections[] = {"pack",       "tessellate",     "merge-no
                                        "crackstats", "bridge",         "dem-shear",
                                        "shearstats", "flow",           NULL};
 
-enum { KEY_THREADS = 256, KEY_PROGRESS, KEY_SCHEMA, KEY_PARAMETERS };
+enum { KEY_THREADS = 256, KEY_PROGRESS, KEY_SCHEMA, KEY_PARAMETERS, KEY_REPORT };
+enum { MOST_OPTIONS = 16 };
 
 static const struct argp_option options[] = {
     {"params", 'p', "FILE", 0, "Parameters: this stage's section, or a whole scene", 0},
@@ -112,6 +114,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         printf("%s (craquelure %s) stage version %d\n", line->stage->name,
                CRAQUELURE_VERSION, line->stage->version);
         exit(STATUS_OK);
+    case KEY_REPORT:
+        invocation->report = argument;
+        return 0;
     case KEY_THREADS:
         invocation->threads = parse_threads(argument);
         return 0;
@@ -224,12 +229,37 @@ static void fill(const struct command_line *line, void *parameters)
     json_decref(section);
 }
 
+// The options of every stage, and its own.
+static void list_options(const struct stage *stage, struct argp_option *list)
+{
+    static_assert(sizeof options < MOST_OPTIONS * sizeof *options, "room for one more");
+    memcpy(list, options, sizeof options);
+    if (!stage->reports) return;
+    struct argp_option *end = list;
+    while (end->name)
+        end++;
+    end[1] = *end;
+    *end = (struct argp_option){"report", KEY_REPORT, "FILE", 0, stage->reports, 0};
+}
+
+// Two outputs need two places.
+static void check_report(const struct invocation *invocation)
+{
+    if (!invocation->report) return;
+    if (!strcmp(invocation->report, invocation->output))
+        die(STATUS_USAGE, "--report %s: is where the output goes: name another file",
+            invocation->report);
+    check_output(invocation->report);
+}
+
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
     struct invocation invocation = {.stage = stage, .output = "-", .threads = 1};
     struct command_line line = {.stage = stage, .invocation = &invocation};
-    const struct argp argp = {.options = options,
+    struct argp_option all[MOST_OPTIONS];
+    list_options(stage, all);
+    const struct argp argp = {.options = all,
                               .parser = parse_option,
                               .args_doc = stage->most_inputs ? "[INPUT...]" : "",
                               .doc = stage->summary,
@@ -246,6 +276,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");
     check_output(invocation.output);
+    check_report(&invocation);
     if (stage->reads && !invocation.n_input) add_input(&line, "-");
     return invocation;
 }

@@ -18,7 +18,8 @@ struct stage {
     const char *writes;  // schema name of its output
     int most_inputs;
     const struct parameter *parameters;
-    const char *notes; // more for --help; may be NULL
+    const char *notes;   // more for --help; may be NULL
+    const char *reports; // what --report FILE writes; NULL: there is no such option
 };
 
 // What the user asked for on this call.
@@ -27,6 +28,7 @@ struct invocation {
     const char **inputs; // "-" is standard input; one "-" when none was named
     int n_input;
     const char *output; // "-" is standard output
+    const char *report; // of --report; NULL: not asked for; not "-" when OUTPUT is
     int threads;
     bool quiet;
     enum progress_mode progress;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the grains of a packing hold one another.
+#ifndef CRAQUELURE_FABRIC_H
+#define CRAQUELURE_FABRIC_H
+
+#include "geometry/porosity.h"
+
+// Walls of the box that each grain touches, a surface at most GAP radii off: not where
+// the box repeats, nor along y when the packing is flat. (n_particle); the caller frees
+// it.
+int *wall_contacts(const struct packing *packing, double gap);
+
+// Contacts of each grain with other grains. (n_particle); the caller frees it.
+int *grain_contacts(const struct packing *packing, const struct contacts *contacts);
+
+// How many contacts can hold a grain in place: two if it RUBS, without friction 4 (3
+// when the packing is flat).
+int least_contacts(const struct packing *packing, bool rubs);
+
+// 1 for each rattler: a grain with fewer than LEAST contacts, those on WALLS included,
+// those with rattlers not. (n_particle); the caller frees it.
+uint8_t *find_rattlers(const struct packing *packing, const struct contacts *contacts,
+                       const int *walls, int least);
+
+// Mean of n n over the contacts, n the unit vector between the two centres, row by row.
+// False when there is no contact; coincident grains have no direction and are left out.
+bool fabric_tensor(const struct packing *packing, const struct contacts *contacts,
+                   double fabric[9]);
+
+// How far it is from isotropic: 0 to 1, 1 when all contacts point one way.
+double fabric_deviator(const double fabric[9], bool flat);
+
+// How many contacts are inclined to z by so much, in COUNT equal parts of 0 to pi/2,
+// relative to an isotropic packing: 1 everywhere is isotropic.
+void contact_inclination(const struct packing *packing, const struct contacts *contacts,
+                         int count, double *density);
+
+#endif

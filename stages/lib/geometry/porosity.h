@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How much of a packing is solid, and where. What two grains share counts once, pair by
+// pair: exact as long as no three grains share anything.
+#ifndef CRAQUELURE_POROSITY_H
+#define CRAQUELURE_POROSITY_H
+
+#include "geometry/packing.h"
+
+#include <stdbool.h>
+
+// The touching grains, as neighbour_pairs gives them.
+struct contacts {
+    int count;
+    const int32_t (*pair)[2]; // (count)
+};
+
+// A part of the box of a packing.
+struct window {
+    struct vector lower, upper; // m
+};
+
+// Whether the grains are one layer: all centres in one plane y, and the box, which has
+// walls there, no thicker than the largest grain.
+bool packing_is_flat(const struct packing *packing);
+
+// Mean radius, m; 0 when there is no grain.
+double mean_radius(const struct packing *packing);
+
+// The box without one mean diameter along every wall: not where it repeats, nor along y
+// when the packing is flat. False when nothing is left.
+bool inner_window(const struct packing *packing, struct window *window);
+
+// Volume of all grains, wherever they are, m^3.
+double solid_volume(const struct packing *packing, const struct contacts *contacts);
+
+// Void share of COUNT slices of equal thickness along z, in a window; 1 slice: of the
+// window. Where the box repeats the window must span it. POROSITY has COUNT values.
+void slice_porosity(const struct packing *packing, const struct contacts *contacts,
+                    const struct window *window, int count, double *porosity);
+
+#endif

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Radius expansion and domain contraction [K 3.1.1]: from loose points to a dense
+// packing, by grains that grow or by a box that closes in, ever more slowly.
+//
+// Strain is the relative change of lengths, of all radii or of the box. It is applied
+// in small steps between some cycles of dynamics; each change of direction halves the
+// largest step, so that the end is approached quasi-statically from either side.
+#include "dynamics.h"
+#include "pack.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// As loose as random points find room for.
+static double loose_fraction(const struct domain *domain)
+{
+    return domain->dimensions == 2 ? 0.4 : 0.28;
+}
+
+struct densification {
+    const struct making *making;
+    struct dem *dem;
+    bool grow;
+    double most;                   // largest strain of a step
+    bool jammed;                   // once grains have found their places
+    double pair_stiffness, radius; // N/m, mean radius m: the scale of pressure
+    int n_wall;
+};
+
+// ---- straining ----------------------------------------------------------------------
+
+static double solid_now(const struct densification *d)
+{
+    take_grains(d->making, d->dem);
+    struct domain *domain = d->making->domain;
+    return solid_fraction(domain, d->making->packing);
+}
+
+// Lengths that the growth leaves, or the box that closed in.
+static void strain(struct densification *d, double by)
+{
+    struct domain *domain = d->making->domain;
+    const double one[3] = {1, 1, 1};
+    if (d->grow) {
+        dem_rescale(d->dem, one, 1 + by);
+        d->making->reached->growth *= 1 + by;
+        return;
+    }
+    const bool flat = domain->dimensions == 2;
+    const double closer = 1 - by;
+    const double stretch[3] = {closer, flat ? 1 : closer, closer};
+    dem_rescale(d->dem, stretch, 1);
+    dem_box(d->dem, &domain->lower, &domain->upper);
+    domain->centre = scale(0.5, add(domain->lower, domain->upper));
+    d->making->packing->lower = domain->lower;
+    d->making->packing->upper = domain->upper;
+}
+
+// The strain left to the solid fraction wanted.
+static double strain_to(const struct densification *d, double solid)
+{
+    const int dimensions = d->making->domain->dimensions;
+    return pow(solid / solid_now(d), 1.0 / dimensions) - 1;
+}
+
+// Stress over its scale: about the mean overlap over the diameter.
+static double scaled_stress(const struct densification *d)
+{
+    return mean_stress(d->making, d->dem) * 2 * d->radius / d->pair_stiffness;
+}
+
+// ---- to a pressure ------------------------------------------------------------------
+
+// What brings the stress from NOW to TARGET, with a little less than all of it: a
+// jammed packing stiffens at once by about a third of its contacts' stiffness for each
+// of three dimensions of strain.
+static double strain_for(double now, double target)
+{
+    return (target - now) / 1.2;
+}
+
+// As fast as inertia allows at the stress TARGET: in CYCLES time steps of a tenth of a
+// contact's period grains would otherwise be thrown, not pushed (inertial number ~
+// 1e-3).
+static double quasi_static_strain(double target)
+{
+    return 4e-3 * sqrt(target);
+}
+
+// One step towards TARGET. While grains still find their places the stress is that of
+// collisions and says nothing of how far it is: the box goes on as fast as it may, or
+// waits.
+static void servo(struct densification *d, double now, double target)
+{
+    const double flowing = 0.05;
+    if (now > 0.5 * target && dem_unbalanced_ratio(d->dem) < flowing) d->jammed = true;
+    if (now > target) d->most = fmax(0.5 * d->most, quasi_static_strain(target));
+    double by = d->jammed ? strain_for(now, target) : now < target ? d->most : 0;
+    by = fmin(fmax(by, -d->most), d->most);
+    if (by != 0) strain(d, by);
+}
+
+static enum status give_up(const struct densification *d, const char *what, double got,
+                           double wanted, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "%s %.4g is not the target %.4g after %lld cycles: unbalanced ratio "
+                  "%.3g (pack.dynamics.most_cycles, .tolerance)",
+                  what, got, wanted, (long long)dem_cycle(d->dem),
+                  dem_unbalanced_ratio(d->dem));
+}
+
+// Rattlers fly from wall to wall of their cages and knock the others for ever: local
+// damping takes nothing from a grain that touches no one.
+static void stop_rattlers(const struct densification *d)
+{
+    const int n = d->making->packing->n_particle;
+    struct vector *velocity = NEW_ARRAY(struct vector, n);
+    bool *touches = NEW_ARRAY(bool, n);
+    int count;
+    struct dem_contact *contact = dem_contacts(d->dem, &count);
+    for (int k = 0; k < count; k++)
+        for (int end = 0; end < 2; end++)
+            if (contact[k].particle[end] >= 0) touches[contact[k].particle[end]] = true;
+    dem_velocities(d->dem, velocity);
+    for (int i = 0; i < n; i++)
+        if (!touches[i]) velocity[i] = (struct vector){0, 0, 0};
+    dem_set_velocity(d->dem, velocity, NULL);
+    free(contact);
+    free(touches);
+    free(velocity);
+}
+
+// At rest under the scaled stress TARGET.
+static enum status press(struct densification *d, double target, double tolerance,
+                         struct reason *reason)
+{
+    enum { CYCLES = 20, OFTEN = 1000 };
+    const struct dynamics_parameters *how = d->making->how;
+    const double near = 0.01;
+    while (dem_cycle(d->dem) < how->most_cycles) {
+        const enum status status = dem_run(d->dem, CYCLES, reason);
+        if (status != STATUS_OK) return status;
+        const double now = scaled_stress(d);
+        const bool there = fabs(now / target - 1) < near;
+        if (there && dem_unbalanced_ratio(d->dem) < tolerance) return STATUS_OK;
+        servo(d, now, target);
+        if (d->jammed && dem_cycle(d->dem) % OFTEN == 0) stop_rattlers(d);
+        progress_update(d->making->progress,
+                        0.9 * (double)dem_cycle(d->dem) / (double)how->most_cycles);
+    }
+    return give_up(d, "stress over its scale", scaled_stress(d), target, reason);
+}
+
+// Without friction a packing keeps no memory of having been pressed harder, and finds
+// its rest sooner from above, where its soft modes are stiffer.
+static enum status press_from_above(struct densification *d, double target,
+                                    struct reason *reason)
+{
+    const struct dynamics_parameters *how = d->making->how;
+    enum status status = STATUS_OK;
+    const double rough = 0.01;
+    if (how->friction <= 0)
+        for (double above = 1e-3; status == STATUS_OK && above > 2 * target; above /= 3)
+            status = press(d, above, rough, reason);
+    return status == STATUS_OK ? press(d, target, how->tolerance, reason) : status;
+}
+
+// ---- to a porosity ------------------------------------------------------------------
+
+// Rests at the porosity wanted: where grains touch by K 4.20, where they do not when
+// they have stopped.
+static enum status rest(struct densification *d, struct reason *reason)
+{
+    enum { CYCLES = 100 };
+    const struct dynamics_parameters *how = d->making->how;
+    const double still =
+        how->tolerance * d->radius / dem_time_step(d->dem); // a radius in 1e4 steps
+    while (dem_cycle(d->dem) < how->most_cycles) {
+        const enum status status = dem_run(d->dem, CYCLES, reason);
+        if (status != STATUS_OK) return status;
+        const double ratio = dem_unbalanced_ratio(d->dem);
+        if (ratio < how->tolerance && largest_speed(d->making, d->dem) < still)
+            return STATUS_OK;
+    }
+    return give_up(d, "unbalanced ratio", dem_unbalanced_ratio(d->dem), how->tolerance,
+                   reason);
+}
+
+static enum status strain_to_porosity(struct densification *d, double porosity,
+                                      struct reason *reason)
+{
+    enum { CYCLES = 20 };
+    const double total = strain_to(d, 1 - porosity);
+    for (double left = total; left > 1e-12;) {
+        strain(d, fmin(left, d->most));
+        const enum status status = dem_run(d->dem, CYCLES, reason);
+        if (status != STATUS_OK) return status;
+        left = strain_to(d, 1 - porosity);
+        progress_update(d->making->progress, 1 - left / total);
+        if (dem_cycle(d->dem) > d->making->how->most_cycles)
+            return give_up(d, "porosity", 1 - solid_now(d), porosity, reason);
+    }
+    return rest(d, reason);
+}
+
+// ---- to a coordination --------------------------------------------------------------
+
+// Pressed harder and harder, at rest each time.
+static enum status press_to_contacts(struct densification *d, double wanted,
+                                     struct reason *reason)
+{
+    for (double target = 1e-5; target < 0.1; target *= 1.25) {
+        const enum status status = press(d, target, d->making->how->tolerance, reason);
+        if (status != STATUS_OK) return status;
+        take_grains(d->making, d->dem);
+        if (backbone_coordination(d->making, d->dem) >= wanted) return STATUS_OK;
+        d->most = fmax(d->most, 0.1 * target);
+    }
+    return give_up(d, "coordination", backbone_coordination(d->making, d->dem), wanted,
+                   reason);
+}
+
+// ---- the whole ----------------------------------------------------------------------
+
+static enum status reach_target(struct densification *d, struct reason *reason)
+{
+    const struct dynamics_parameters *how = d->making->how;
+    switch ((enum target)how->target) {
+    case TARGET_POROSITY:
+        return strain_to_porosity(d, how->value, reason);
+    case TARGET_COORDINATION:
+        return press_to_contacts(d, how->value, reason);
+    case TARGET_PRESSURE:
+        return press_from_above(d, how->value * 2 * d->radius / d->pair_stiffness,
+                                reason);
+    default: // jammed, at the overlap asked for
+        return press_from_above(d, how->overlap, reason);
+    }
+}
+
+// N/m of a grain. Only a pressure in Pa has anything to compare it with.
+static double stiffness_for(const struct dynamics_parameters *how, double radius)
+{
+    if (!isnan(how->stiffness)) return how->stiffness;
+    if (how->target == TARGET_PRESSURE)
+        return 2 * how->value * 2 * radius / how->overlap;
+    // So that the critical time step is of the order of a microsecond and one.
+    return how->density * radius * radius * radius * 1e12;
+}
+
+// Loose points of grains as large as their room allows: shrunk, or in a larger box.
+static enum status make_loose(const struct making *making, int count, bool grow,
+                              double *shrunk, struct reason *reason)
+{
+    struct domain *domain = making->domain;
+    gsl_rng *same = gsl_rng_clone(making->random);
+    struct packing drawn = packing_in(domain, count);
+    for (int i = 0; i < count; i++)
+        drawn.radius[i] = sizes_draw(making->sizes, same);
+    gsl_rng_free(same);
+    const double solid = solid_fraction(domain, &drawn);
+    packing_free(&drawn);
+    *shrunk = pow(fmin(1, loose_fraction(domain) / solid), 1.0 / domain->dimensions);
+    struct sizes sizes = *making->sizes;
+    if (grow)
+        sizes_scale(&sizes, *shrunk);
+    else
+        domain_stretch(domain, 1 / *shrunk);
+    const int64_t most_trials = 100000;
+    return random_sequential(domain, &sizes, count, most_trials, making->random,
+                             making->progress, making->packing, reason);
+}
+
+static double mean_radius(const struct packing *packing)
+{
+    double sum = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        sum += packing->radius[i];
+    return packing->n_particle > 0 ? sum / packing->n_particle : 1;
+}
+
+static enum status check_contraction(const struct domain *domain, struct reason *reason)
+{
+    bool closed = domain->shape != DOMAIN_BOX || domain->cut != CUT_NONE;
+    for (int axis = 0; axis < 3; axis++)
+        closed = closed ||
+                 !(domain->periodic[axis] || (domain->dimensions == 2 && axis == 1));
+    if (!closed) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "pack.method: domain_contraction closes in a box that repeats along "
+                  "all axes (pack.periodic); between walls use radius_expansion");
+}
+
+enum status densify(const struct making *making, int count, bool grow,
+                    struct reason *reason)
+{
+    enum status status = grow ? STATUS_OK : check_contraction(making->domain, reason);
+    double shrunk;
+    if (status == STATUS_OK) status = make_loose(making, count, grow, &shrunk, reason);
+    if (status != STATUS_OK) return status;
+
+    const double first_step = 1e-3;
+    struct dem_wall wall[MOST_WALLS];
+    struct densification d = {
+        .making = making,
+        .grow = grow,
+        .most = first_step,
+        .radius = mean_radius(making->packing) / (grow ? shrunk : 1),
+        .n_wall = domain_walls(making->domain, making->how, false, wall)};
+    const double stiffness = stiffness_for(making->how, d.radius);
+    d.pair_stiffness = 0.5 * stiffness;
+    making->reached->growth = grow ? shrunk : 1;
+    const struct vector none = {0, 0, 0};
+    status = start_dynamics(making, stiffness, making->how->safety, none, wall,
+                            d.n_wall, &d.dem, reason);
+    if (status == STATUS_OK) status = reach_target(&d, reason);
+    if (status == STATUS_OK) {
+        take_grains(making, d.dem);
+        note_end(making, d.dem);
+    }
+    dem_free(d.dem);
+    if (status != STATUS_OK) packing_free(making->packing);
+    return status;
+}

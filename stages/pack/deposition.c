@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gravitational deposition [K 3.1.1, Fig. 3.1].
+#include "dynamics.h"
+#include "pack.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// The domain drawn out upwards until COUNT grains make a cloud as thin as this.
+static struct domain cloud_domain(const struct domain *domain, double volume)
+{
+    const double cloud = domain->dimensions == 2 ? 0.4 : 0.28;
+    struct domain tall = *domain;
+    const double height = domain->upper.z - domain->lower.z;
+    // The part drawn on is as wide as the whole is on average.
+    const double room = domain_volume(domain);
+    if (domain->shape != DOMAIN_SPHERE && volume / room > cloud)
+        tall.upper.z = domain->lower.z + height * (volume / room) / cloud;
+    return tall;
+}
+
+// Volume of the grains; in two dimensions area.
+static double sum_of_sizes(const struct domain *domain, const struct packing *packing)
+{
+    return solid_fraction(domain, packing) * domain_volume(domain);
+}
+
+static enum status make_cloud(const struct making *making, int count,
+                              struct domain *tall, struct reason *reason)
+{
+    // As many draws as the cloud will take, to know how large it must be.
+    gsl_rng *same = gsl_rng_clone(making->random);
+    struct packing drawn = packing_in(making->domain, count);
+    for (int i = 0; i < count; i++)
+        drawn.radius[i] = sizes_draw(making->sizes, same);
+    gsl_rng_free(same);
+    *tall = cloud_domain(making->domain, sum_of_sizes(making->domain, &drawn));
+    packing_free(&drawn);
+    const int64_t most_trials = 100000;
+    return random_sequential(tall, making->sizes, count, most_trials, making->random,
+                             making->progress, making->packing, reason);
+}
+
+// Such that the floor's contacts, which carry all the weight above, overlap by a few
+// times `overlap`: k = 2 F / (overlap R), F = rho g h (1 - porosity) (2R)^2.
+static double stiffness_for(const struct making *making)
+{
+    const struct dynamics_parameters *how = making->how;
+    if (!isnan(how->stiffness)) return how->stiffness;
+    const struct packing *packing = making->packing;
+    double radius = 0, volume = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double r = packing->radius[i];
+        radius += r / packing->n_particle;
+        volume += 4.0 / 3 * M_PI * r * r * r;
+    }
+    const struct vector edge = subtract(making->domain->upper, making->domain->lower);
+    const double area =
+        making->domain->dimensions == 2 ? edge.x * 2 * radius : edge.x * edge.y;
+    const double weight =
+        how->density * how->gravity * volume / area; // Pa on the floor
+    const double force = weight * 4 * radius * radius;
+    return 2 * force / (how->overlap * radius);
+}
+
+// The highest point of a grain becomes the top of the box.
+static void close_box(const struct making *making)
+{
+    struct packing *packing = making->packing;
+    double top = -INFINITY;
+    for (int i = 0; i < packing->n_particle; i++)
+        top = fmax(top, packing->position[i].z + packing->radius[i]);
+    struct domain *domain = making->domain;
+    if (domain->shape == DOMAIN_SPHERE) return;
+    domain->upper.z = top;
+    domain->centre.z = 0.5 * (domain->lower.z + domain->upper.z);
+    packing->lower = domain->lower;
+    packing->upper = domain->upper;
+}
+
+// At rest: K 4.20 is met, and nothing still falls, which a mean over many does not see.
+static bool is_settled(const struct making *making, const struct dem *dem,
+                       double typical_speed)
+{
+    return dem_unbalanced_ratio(dem) < making->how->tolerance &&
+           largest_speed(making, dem) < 0.1 * typical_speed;
+}
+
+static enum status settle(const struct making *making, struct dem *dem,
+                          struct reason *reason)
+{
+    enum { LOOK_EVERY = 500 };
+    const struct packing *packing = making->packing;
+    double radius = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        radius += packing->radius[i] / packing->n_particle;
+    const double typical_speed = sqrt(2 * making->how->gravity * radius);
+    double first = 0;
+    while (dem_cycle(dem) < making->how->most_cycles) {
+        const enum status status = dem_run(dem, LOOK_EVERY, reason);
+        if (status != STATUS_OK) return status;
+        if (is_settled(making, dem, typical_speed)) return STATUS_OK;
+        const double ratio = dem_unbalanced_ratio(dem);
+        if (isfinite(ratio) && ratio > 0) { // from 1 to the tolerance, by digits
+            const double done = log(fmin(ratio, 1)) / log(making->how->tolerance);
+            first = fmax(first, done);
+            progress_update(making->progress, first);
+        }
+    }
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "not settled after %lld cycles: unbalanced ratio %.3g, largest speed "
+                  "%.3g m/s (pack.dynamics.most_cycles, .tolerance)",
+                  (long long)dem_cycle(dem), dem_unbalanced_ratio(dem),
+                  largest_speed(making, dem));
+}
+
+enum status deposit(const struct making *making, int count, struct reason *reason)
+{
+    struct domain tall;
+    enum status status = make_cloud(making, count, &tall, reason);
+    if (status != STATUS_OK) return status;
+    struct dem_wall wall[MOST_WALLS];
+    const bool open = making->domain->shape != DOMAIN_SPHERE;
+    const int n_wall = domain_walls(&tall, making->how, open, wall);
+    const struct vector down = {0, 0, -making->how->gravity};
+    struct dem *dem = NULL;
+    status = start_dynamics(making, stiffness_for(making), making->how->safety, down,
+                            wall, n_wall, &dem, reason);
+    if (status == STATUS_OK) status = settle(making, dem, reason);
+    if (status == STATUS_OK) {
+        making->reached->growth = 1;
+        take_grains(making, dem);
+        close_box(making);
+        note_end(making, dem);
+    }
+    dem_free(dem);
+    if (status != STATUS_OK) packing_free(making->packing);
+    return status;
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dynamics.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static struct dem_wall plane(struct vector point, int axis, double direction)
+{
+    struct dem_wall wall = {.point = point};
+    set_component(&wall.normal, axis, direction);
+    return wall;
+}
+
+static int box_walls(const struct domain *domain, bool open, struct dem_wall *wall)
+{
+    const bool round = domain->shape != DOMAIN_BOX;
+    int n = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const bool flat = domain->dimensions == 2 && axis == 1;
+        if (domain->periodic[axis] || flat || (round && axis != 2)) continue;
+        wall[n++] = plane(domain->lower, axis, 1);
+        if (!(open && axis == 2)) wall[n++] = plane(domain->upper, axis, -1);
+    }
+    return n;
+}
+
+static struct dem_wall round_wall(enum dem_wall_shape shape, struct vector centre,
+                                  double radius, bool outside)
+{
+    return (struct dem_wall){.point = centre,
+                             .normal = {0, 0, 1},
+                             .shape = shape,
+                             .outside = outside,
+                             .radius = radius};
+}
+
+static int cut_walls(const struct domain *domain, struct dem_wall *wall)
+{
+    const struct vector edge = subtract(domain->cut_upper, domain->cut_lower);
+    if (domain->cut == CUT_NONE) return 0;
+    if (domain->cut == CUT_BOX)
+        *wall = (struct dem_wall){.point = domain->cut_centre,
+                                  .shape = DEM_BLOCK,
+                                  .half_edge = scale(0.5, edge)};
+    if (domain->cut == CUT_CYLINDER)
+        *wall = round_wall(DEM_CYLINDER, domain->cut_centre, domain->cut_radius, true);
+    if (domain->cut == CUT_SPHERE)
+        *wall = round_wall(DEM_SPHERE, domain->cut_centre, domain->cut_radius, true);
+    return 1;
+}
+
+int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,
+                 bool open, struct dem_wall wall[MOST_WALLS])
+{
+    int n = 0;
+    const struct vector centre = domain->centre;
+    if (domain->shape == DOMAIN_SPHERE)
+        wall[n++] = round_wall(DEM_SPHERE, centre, domain->radius, false);
+    else
+        n += box_walls(domain, open, wall);
+    if (domain->shape == DOMAIN_CYLINDER || domain->shape == DOMAIN_RING)
+        wall[n++] = round_wall(DEM_CYLINDER, centre, domain->radius, false);
+    if (domain->shape == DOMAIN_RING)
+        wall[n++] = round_wall(DEM_CYLINDER, centre, domain->inner_radius, true);
+    n += cut_walls(domain, wall + n);
+    for (int w = 0; w < n; w++) {
+        wall[w].has_friction = !isnan(how->wall_friction);
+        wall[w].friction = wall[w].has_friction ? how->wall_friction : 0;
+    }
+    return n;
+}
+
+double solid_fraction(const struct domain *domain, const struct packing *packing)
+{
+    const double room = domain_volume(domain);
+    const double thick = domain->upper.y - domain->lower.y;
+    double share = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double radius = packing->radius[i];
+        share += M_PI * radius * radius / room *
+                 (domain->dimensions == 2 ? thick : 4 * radius / 3);
+    }
+    return share;
+}
+
+enum status start_dynamics(const struct making *making, double stiffness, double safety,
+                           struct vector gravity, const struct dem_wall *wall,
+                           int n_wall, struct dem **dem, struct reason *reason)
+{
+    const struct dynamics_parameters *how = making->how;
+    const bool statics = norm(gravity) <= 0;
+    const struct dem_setup setup = {
+        .packing = making->packing,
+        .material = {.density = how->density,
+                     .normal_stiffness = stiffness,
+                     .shear_stiffness = how->shear_ratio * stiffness,
+                     .friction = how->friction,
+                     .damping_ratio = how->damping,
+                     .local_damping = how->local_damping},
+        .n_wall = n_wall,
+        .wall = wall,
+        .gravity = gravity,
+        .density_scaling = statics,
+        .time_step_safety = safety,
+        .threads = how->threads};
+    const enum status status = dem_create(dem, &setup, reason);
+    if (status == STATUS_OK) making->reached->stiffness = stiffness;
+    return status;
+}
+
+void take_grains(const struct making *making, const struct dem *dem)
+{
+    struct packing *packing = making->packing;
+    dem_positions(dem, packing->position);
+    dem_radii(dem, packing->radius);
+    for (int i = 0; i < packing->n_particle; i++)
+        packing->position[i] = domain_wrap(making->domain, packing->position[i]);
+}
+
+double largest_speed(const struct making *making, const struct dem *dem)
+{
+    const int n = making->packing->n_particle;
+    struct vector *velocity = NEW_ARRAY(struct vector, n);
+    dem_velocities(dem, velocity);
+    double largest = 0;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, norm(velocity[i]));
+    free(velocity);
+    return largest;
+}
+
+// The engine divides by the box around the domain; in two dimensions the layer is as
+// thick as the box.
+double mean_stress(const struct making *making, const struct dem *dem)
+{
+    const struct dem_census census = dem_census(dem);
+    const struct domain *domain = making->domain;
+    const double sum = census.stress[0][0] + census.stress[1][1] + census.stress[2][2];
+    struct vector lower, upper;
+    dem_box(dem, &lower, &upper);
+    const struct vector edge = subtract(upper, lower);
+    const bool box = domain->shape == DOMAIN_BOX && domain->cut == CUT_NONE;
+    const double room =
+        box ? 1
+        : domain->dimensions == 2
+            ? domain_volume(domain) * edge.y / (edge.x * edge.y * edge.z)
+            : domain_volume(domain) / (edge.x * edge.y * edge.z);
+    return sum / making->domain->dimensions / room;
+}
+
+double backbone_coordination(const struct making *making, const struct dem *dem)
+{
+    const int n = making->packing->n_particle;
+    const bool rubs = making->how->friction > 0;
+    const int least = rubs ? 2 : making->domain->dimensions + 1;
+    int *contacts = NEW_ARRAY(int, n), count;
+    struct dem_contact *contact = dem_contacts(dem, &count);
+    for (int k = 0; k < count; k++)
+        for (int end = 0; end < 2; end++)
+            if (contact[k].particle[end] >= 0) contacts[contact[k].particle[end]]++;
+    double sum = 0;
+    int backbone = 0;
+    for (int i = 0; i < n; i++)
+        if (contacts[i] >= least) {
+            sum += contacts[i];
+            backbone++;
+        }
+    free(contact);
+    free(contacts);
+    return backbone > 0 ? sum / backbone : 0;
+}
+
+void note_end(const struct making *making, const struct dem *dem)
+{
+    struct reached *reached = making->reached;
+    reached->dynamic = true;
+    reached->unbalanced_ratio = dem_unbalanced_ratio(dem);
+    reached->cycles += dem_cycle(dem);
+    reached->time_step = dem_time_step(dem);
+    reached->time += (double)dem_cycle(dem) * dem_time_step(dem);
+    reached->largest_speed = largest_speed(making, dem);
+    reached->pressure = mean_stress(making, dem);
+    const double porosity = 1 - solid_fraction(making->domain, making->packing);
+    switch ((enum target)making->how->target) {
+    case TARGET_SETTLED:
+        reached->value = reached->unbalanced_ratio;
+        break;
+    case TARGET_POROSITY:
+        reached->value = porosity;
+        break;
+    case TARGET_COORDINATION:
+        reached->value = backbone_coordination(making, dem);
+        break;
+    case TARGET_PRESSURE:
+        reached->value = reached->pressure;
+        break;
+    }
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Packings by moving the grains [K 3.1.1]: what the methods share.
+#ifndef CRAQUELURE_PACK_DYNAMICS_H
+#define CRAQUELURE_PACK_DYNAMICS_H
+
+#include "basics/progress.h"
+#include "dem/dem.h"
+#include "domain.h"
+#include "geometry/packing.h"
+#include "sizes.h"
+
+#include <gsl/gsl_rng.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum target {
+    TARGET_SETTLED,      // at rest
+    TARGET_POROSITY,     // of the domain
+    TARGET_COORDINATION, // mean number of contacts of a grain that is no rattler
+    TARGET_PRESSURE      // mean stress, Pa
+};
+
+// What the user says of grains and of the end; NAN where nothing was said.
+struct dynamics_parameters {
+    double density;       // kg/m3
+    double friction;      // between grains
+    double wall_friction; // null: the same
+    double stiffness;     // N/m of a grain; null: so that `overlap` comes out
+    double overlap;       // typical of the end, over the radius
+    double shear_ratio;   // shear over normal stiffness
+    double damping;       // ratio [K 4.28]
+    double local_damping;
+    double gravity; // m/s2, downwards
+    double safety;  // of the time step [K 4.47]
+    int target;     // enum target
+    double value;   // of it
+    double tolerance;
+    int64_t most_cycles;
+    int threads;
+};
+
+// How it ended.
+struct reached {
+    bool dynamic;            // whether any dynamics was run
+    double value;            // of the target
+    double unbalanced_ratio; // [K 4.20]
+    int64_t cycles;
+    double time;          // simulated, s
+    double largest_speed; // at the end, m/s
+    double pressure;      // mean stress of the grains on each other, Pa
+    double growth;        // final radii over those drawn
+    double time_step;     // s
+    double stiffness;     // that was used, N/m
+};
+
+// All that a method works on.
+struct making {
+    const struct dynamics_parameters *how;
+    const struct sizes *sizes;
+    gsl_rng *random;
+    struct progress *progress;
+    struct domain *domain;
+    struct packing *packing;
+    struct reached *reached;
+};
+
+// The methods. Each makes packing, domain and reached; DOMAIN comes as the user wants
+// it, and the box may come out smaller, or with its top on the highest grain.
+// STATUS_NOT_CONVERGED: not reached in most_cycles, with what was. On success the
+// caller frees *PACKING.
+
+// COUNT grains dropped into the domain from a loose cloud above it [K Fig. 3.1].
+enum status deposit(const struct making *making, int count, struct reason *reason);
+
+// From loose points, by radii that grow (GROW) or by sides that close in.
+enum status densify(const struct making *making, int count, bool grow,
+                    struct reason *reason);
+
+// Grains at random, overlapping, that push each other away; PACKING has grains already
+// if COUNT is 0.
+enum status repel(const struct making *making, int count, struct reason *reason);
+
+// ---- shared by them -----------------------------------------------------------------
+
+enum { MOST_WALLS = 16 };
+
+// The walls of a domain; without those that close it at the top if OPEN.
+int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,
+                 bool open, struct dem_wall wall[MOST_WALLS]);
+
+// Solid volume over the domain's (areas in two dimensions), overlaps counted twice.
+double solid_fraction(const struct domain *domain, const struct packing *packing);
+
+// An engine on the packing, between WALLS; STIFFNESS in N/m.
+enum status start_dynamics(const struct making *making, double stiffness, double safety,
+                           struct vector gravity, const struct dem_wall *wall,
+                           int n_wall, struct dem **dem, struct reason *reason);
+
+// Places and radii as they are now; back into a box that repeats.
+void take_grains(const struct making *making, const struct dem *dem);
+
+// The largest speed of a grain, m/s.
+double largest_speed(const struct making *making, const struct dem *dem);
+
+// Mean stress, Pa, over the volume of the domain.
+double mean_stress(const struct making *making, const struct dem *dem);
+
+// Mean contacts of the grains with enough to be held: two with friction, four without
+// (two dimensions: three).
+double backbone_coordination(const struct making *making, const struct dem *dem);
+
+// What is true of every end.
+void note_end(const struct making *making, const struct dem *dem);
+
+#endif

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains placed so far, found by place: one grid of cells for each halving of the
+// radius, so that asking costs the same at any ratio of radii.
+#ifndef CRAQUELURE_PACK_GRIDS_H
+#define CRAQUELURE_PACK_GRIDS_H
+
+#include "domain.h"
+
+struct grids;
+
+// For grains with radii from SMALLEST to LARGEST, m, about EXPECTED of them, in DOMAIN,
+// which must outlive it. Freed with grids_free.
+struct grids *grids_create(const struct domain *domain, double smallest, double largest,
+                           double expected);
+void grids_free(struct grids *grids);
+
+// Adds the next grain: the first is 0.
+void grids_add(struct grids *grids, struct vector centre, double radius);
+
+int grids_count(const struct grids *grids);
+struct vector grids_centre(const struct grids *grids, int grain);
+double grids_radius(const struct grids *grids, int grain);
+
+// The grains whose surface is less than GAP (m, may be negative) from the surface of a
+// sphere at CENTRE, by the nearest image; at most MOST of them go to FOUND. Returns how
+// many. In an order that depends only on what was added.
+int grids_near(const struct grids *grids, struct vector centre, double radius,
+               double gap, int *found, int most);
+
+#endif

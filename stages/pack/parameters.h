@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the user may say to pack.
+#ifndef CRAQUELURE_PACK_PARAMETERS_H
+#define CRAQUELURE_PACK_PARAMETERS_H
+
+#include "domain.h"
+#include "dynamics.h"
+#include "parameters/parameters.h"
+#include "sizes.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum method {
+    METHOD_SQUARE,
+    METHOD_CUBIC,
+    METHOD_BODY_CENTRED,
+    METHOD_FACE_CENTRED,
+    METHOD_HEXAGONAL,
+    METHOD_POISSON,
+    METHOD_RANDOM_SEQUENTIAL,
+    METHOD_INWARD_SPIRAL,
+    METHOD_DEPOSITION,
+    METHOD_RADIUS_EXPANSION,
+    METHOD_DOMAIN_CONTRACTION,
+    METHOD_EXPLOSIVE_REPULSION,
+    METHOD_IMPORT
+};
+enum bonds { BONDS_NONE, BONDS_TOUCHING, BONDS_KEEP };
+
+struct pack_parameters {
+    int method, bonds; // enum method, enum bonds
+    int64_t dimensions;
+    int64_t counts[3]; // of a lattice: unit cells
+    int64_t count;     // of grains; 0: until no more fit
+    struct size_parameters sizes;
+    struct domain_parameters domain;
+    int64_t seed, most_trials, frame;
+    bool densify, extra_layer;
+    struct dynamics_parameters dynamics;
+    double touching_gap; // of the sum of two radii
+};
+
+extern const struct parameter pack_table[];
+
+#endif

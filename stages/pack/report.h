@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is said of a packing: the numbers and curves of /summary and /structure, and the
+// same as JSON.
+#ifndef CRAQUELURE_PACK_REPORT_H
+#define CRAQUELURE_PACK_REPORT_H
+
+#include "artifacts/artifact.h"
+#include "domain.h"
+
+enum { MOST_SAID = 32 };
+
+// A number, or a curve, under its name in the schema of packings.
+struct said {
+    const char *name;
+    int count; // values; 0: a number
+    double number;
+    double *value; // (count), owned
+};
+
+struct packing_report {
+    int count;
+    struct said said[MOST_SAID];
+};
+
+// Measures PACKING in DOMAIN, contacts being surfaces at most GAP radius sums apart,
+// with friction if it RUBS (two of them then hold a grain that would rattle otherwise):
+// everything but porosity and unbalanced ratio. What makes no sense for this packing is
+// left out, such as the bulk porosity where walls are everywhere near. Bulk, slices and
+// g(r) are taken in a box: for a cylinder or sphere the largest that lies within, for a
+// ring, or where something is cut out, not at all. Freed with report_free.
+struct packing_report report_packing(const struct packing *packing,
+                                     const struct domain *domain, double gap,
+                                     bool rubs);
+
+// Adds a number; NAME must last. One that is not finite is left out.
+void report_number(struct packing_report *report, const char *name, double number);
+
+// Writes all of it into the artifact.
+void report_put(const struct packing_report *report, struct artifact *artifact);
+
+// Writes it as JSON to PATH ("-": standard output): {"summary": {...}, "structure":
+// {...}, "reached": REACHED}; REACHED (taken over) is what the method says of its own
+// end, or NULL.
+void report_write(const struct packing_report *report, const char *path,
+                  json_t *reached);
+
+void report_free(struct packing_report *report);
+
+#endif

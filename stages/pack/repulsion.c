@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Explosive repulsion [K 3.1.1]: grains of their final size come at random, wherever
+// others are, and a few steps after each batch push apart those that overlap. K adds
+// one at a time; a hundredth of all is as gentle, and costs O(n) for each of the
+// batches.
+#include "dynamics.h"
+#include "pack.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { BATCHES = 100, CYCLES_A_BATCH = 200 };
+
+// Two centres in one place have no direction to part: each grain is moved by up to a
+// thousandth of its radius.
+static void part_coincident(struct packing *packing, gsl_rng *random)
+{
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double by = 1e-3 * packing->radius[i];
+        const bool flat = packing->upper.y - packing->lower.y <= 2 * packing->radius[i];
+        packing->position[i].x += by * (2 * gsl_rng_uniform(random) - 1);
+        if (!flat) packing->position[i].y += by * (2 * gsl_rng_uniform(random) - 1);
+        packing->position[i].z += by * (2 * gsl_rng_uniform(random) - 1);
+    }
+}
+
+// A time step so short that even a grain on top of another leaves it in steps of a few
+// hundredths of a radius.
+static enum status push_apart(const struct making *making, double stiffness,
+                              const struct dem_wall *wall, int n_wall,
+                              struct reason *reason)
+{
+    struct dem *dem = NULL;
+    const struct vector none = {0, 0, 0};
+    enum status status = start_dynamics(making, stiffness, 0.1 * making->how->safety,
+                                        none, wall, n_wall, &dem, reason);
+    if (status == STATUS_OK) status = dem_run(dem, CYCLES_A_BATCH, reason);
+    if (status == STATUS_OK) {
+        take_grains(making, dem);
+        making->reached->cycles += dem_cycle(dem);
+        making->reached->time += (double)dem_cycle(dem) * dem_time_step(dem);
+    }
+    dem_free(dem);
+    return status;
+}
+
+static enum status come_to_rest(const struct making *making, double stiffness,
+                                const struct dem_wall *wall, int n_wall,
+                                struct reason *reason)
+{
+    const struct dynamics_parameters *how = making->how;
+    struct dem *dem = NULL;
+    const struct vector none = {0, 0, 0};
+    enum status status = start_dynamics(making, stiffness, how->safety, none, wall,
+                                        n_wall, &dem, reason);
+    if (status == STATUS_OK)
+        status = dem_run_until(dem, how->tolerance, how->most_cycles, reason);
+    if (status == STATUS_OK) {
+        take_grains(making, dem);
+        note_end(making, dem);
+    }
+    dem_free(dem);
+    return status;
+}
+
+// The next BATCH of grains, at random.
+static enum status add_batch(const struct making *making, const double *radius,
+                             int upto, struct reason *reason)
+{
+    struct packing *packing = making->packing;
+    for (int i = packing->n_particle; i < upto; i++) {
+        packing->radius[i] = radius[i];
+        if (!domain_random_point(making->domain, radius[i], making->random,
+                                 &packing->position[i]))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "pack.domain.cut.shape: must leave room for the grains");
+    }
+    packing->n_particle = upto;
+    return STATUS_OK;
+}
+
+static enum status fill(const struct making *making, int count, double stiffness,
+                        const struct dem_wall *wall, int n_wall, struct reason *reason)
+{
+    double *radius = sizes_draw_many(making->sizes, count, making->random);
+    *making->packing = packing_in(making->domain, count);
+    making->packing->n_particle = 0;
+    enum status status = STATUS_OK;
+    const int batch = count / BATCHES > 0 ? count / BATCHES : 1;
+    for (int n = batch; status == STATUS_OK; n += batch) {
+        status = add_batch(making, radius, n < count ? n : count, reason);
+        if (status == STATUS_OK) part_coincident(making->packing, making->random);
+        if (status == STATUS_OK)
+            status = push_apart(making, stiffness, wall, n_wall, reason);
+        progress_update(making->progress, 0.9 * n / count);
+        if (n >= count) break;
+    }
+    free(radius);
+    return status;
+}
+
+enum status repel(const struct making *making, int count, struct reason *reason)
+{
+    struct dem_wall wall[MOST_WALLS];
+    const int n_wall = domain_walls(making->domain, making->how, false, wall);
+    const double radius = making->sizes->largest;
+    const double stiffness =
+        isnan(making->how->stiffness)
+            ? making->how->density * radius * radius * radius * 1e12
+            : making->how->stiffness;
+    making->reached->growth = 1;
+    enum status status;
+    if (count > 0)
+        status = fill(making, count, stiffness, wall, n_wall, reason);
+    else {
+        part_coincident(making->packing, making->random);
+        status = push_apart(making, stiffness, wall, n_wall, reason);
+    }
+    if (status == STATUS_OK)
+        status = come_to_rest(making, stiffness, wall, n_wall, reason);
+    if (status != STATUS_OK) packing_free(making->packing);
+    return status;
+}

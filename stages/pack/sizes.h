@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Size distributions of grains, drawn one radius at a time.
+#ifndef CRAQUELURE_PACK_SIZES_H
+#define CRAQUELURE_PACK_SIZES_H
+
+#include "basics/status.h"
+#include "parameters/parameters.h"
+
+#include <gsl/gsl_rng.h>
+#include <stdbool.h>
+
+enum size_distribution {
+    SIZES_ONE,
+    SIZES_UNIFORM,
+    SIZES_NORMAL,
+    SIZES_LOGNORMAL,
+    SIZES_POWER,
+    SIZES_TWO_MODE,
+    SIZES_SIEVE
+};
+
+enum size_share { SHARE_OF_NUMBER, SHARE_OF_MASS };
+
+// What the user says. NAN where nothing was said.
+struct size_parameters {
+    int distribution; // enum size_distribution
+    int by;           // enum size_share: what the distribution shares out
+    double radius; // the one, the mean (normal, lognormal) or the first (two_mode), m
+    double smallest, largest;           // m
+    double spread;                      // standard deviation over mean, 1
+    double exponent;                    // density ~ r^-exponent
+    double second_radius, second_share; // m, 1
+    struct number_list sieve_radii;     // m, rising
+    struct number_list sieve_passing;   // cumulative share, from 0 to 1
+};
+
+enum { SIZE_PIECES = LIST_MOST };
+
+// The same, ready to draw from. Shares of mass become shares of number: grains of one
+// density, so the number density is the mass density over r^3.
+struct sizes {
+    int distribution;
+    double smallest, largest; // every radius lies from here to there, m
+    double radius,
+        second_radius;      // of one and two_mode; RADIUS also scales lognormal, m
+    double second_share;    // by number
+    double mean, deviation; // normal: of r, m; lognormal: of ln(r / radius)
+    double exponent;        // number density ~ r^-exponent within a piece
+    bool thinned;           // normal by mass: exact by rejection within a piece
+    int n_piece;
+    double edge[SIZE_PIECES + 1];   // m
+    double cumulative[SIZE_PIECES]; // weight of this piece and those before
+};
+
+// STATUS_BAD_DATA, naming the key, when they make no distribution.
+enum status sizes_prepare(const struct size_parameters *parameters, struct sizes *sizes,
+                          struct reason *reason);
+
+// The same distribution, FACTOR times as large.
+void sizes_scale(struct sizes *sizes, double factor);
+
+// One radius, m.
+double sizes_draw(const struct sizes *sizes, gsl_rng *random);
+
+// N radii, m, in the order drawn; the caller frees them.
+double *sizes_draw_many(const struct sizes *sizes, int n, gsl_rng *random);
+
+#endif

@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# pack says of a packing what another program finds in it, in the artifact, as JSON and as a
+# picture.
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, run, scratch
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+
+    def pack(name, *settings, inputs=()):
+        words = [word for s in settings for word in ("--set", s)]
+        run("pack", *words, *inputs, "-o", at(name), "--report", at(name + ".json"))
+        with open(at(name + ".json")) as file:
+            return json.load(file), h5py.File(at(name))
+
+    # Unequal grains here and there that overlap a little, between walls.
+    edge = 7.6
+    random = np.random.default_rng(3)
+    position, radius = random.uniform(1, 6.6, (260, 3)), random.uniform(0.4, 0.8, 260)
+    for step in range(200):
+        apart = position[:, None] - position[None]
+        distance = np.linalg.norm(apart, axis=2) + np.eye(260)
+        overlap = np.maximum(radius[:, None] + radius[None] - distance, 0) * (1 - np.eye(260))
+        position += 0.2 * (apart / distance[..., None] * overlap[..., None]).sum(axis=1)
+        position = np.clip(position, radius[:, None], edge - radius[:, None])
+    np.savetxt(at("grains.txt"), np.column_stack([position, radius]), fmt="%.17g")
+    box = ["method=import", "lower=[0,0,0]", f"upper=[{edge},{edge},{edge}]", "touching_gap=0.05"]
+    said, file = pack("grains", *box, inputs=[at("grains.txt")])
+    summary, attributes = said["summary"], file["summary"].attrs
+    ok(all(summary[k] == attributes[k] for k in attributes) and len(summary) == len(attributes),
+       "the report has the summary of the artifact")
+
+    curves = []
+    file["structure"].visititems(lambda name, item: curves.append(name)
+                                 if isinstance(item, h5py.Dataset) else None)
+    walk = lambda name: [part := said["structure"]] and \
+        [part := part[key] for key in name.split("/")][-1]
+    ok(len(curves) == 10 and all(np.array_equal(walk(c), file["structure"][c]) for c in curves),
+       "and its curves", curves)
+    ok(said["reached"] is None, "a method without an aim reaches nothing")
+
+    distance = np.linalg.norm(position[:, None] - position[None], axis=2)
+    sums = radius[:, None] + radius[None]
+    touch = (distance <= sums * 1.05) & ~np.eye(260, dtype=bool)
+    contacts = touch.sum(axis=1)
+    ok(np.array_equal(np.bincount(contacts), file["structure/coordination"])
+       and summary["contacts"] == touch.sum() // 2, "contacts of every grain")
+    walls = sum((position[:, k] <= radius * 1.05).astype(int)
+                + (edge - position[:, k] <= radius * 1.05) for k in range(3))
+    ok(summary["wall_contacts"] == walls.sum(), "and with walls")
+    firm = np.ones(260, bool)
+    while True:
+        still = firm & ((touch & firm).sum(axis=1) + walls >= 4)
+        if still.sum() == firm.sum():
+            break
+        firm = still
+    ok(summary["rattlers"] == 260 - firm.sum() > 0, "rattlers", summary["rattlers"])
+    ok(np.isclose(summary["coordination_without_rattlers"],
+                  touch[firm][:, firm].sum() / firm.sum(), rtol=1e-14),
+       "coordination without them")
+    i, j = np.nonzero(np.triu(touch))
+    n = (position[j] - position[i]) / distance[i, j][:, None]
+    fabric = n.T @ n / len(n)
+    ok(np.allclose(fabric, file["structure/fabric"], atol=1e-14), "fabric")
+    overlap = np.maximum(sums - distance, 0)[i, j] / np.minimum(radius[i], radius[j])
+    ok(np.isclose(overlap.mean(), summary["mean_overlap"], rtol=1e-10)
+       and np.isclose(overlap.max(), summary["max_overlap"], rtol=1e-10), "overlaps")
+    ok(np.isclose(radius.mean(), summary["mean_radius"], rtol=1e-14)
+       and file["structure/radius/count"][:].sum() == 260, "sizes")
+
+    # Porosity by points on a fine grid; they see what three grains share only once.
+    margin = 2 * radius.mean()
+    points = np.linspace(margin, edge - margin, 71)
+    points = (points[1:] + points[:-1]) / 2
+    x, y, z = np.meshgrid(points, points, points, indexing="ij")
+    solid = np.zeros(x.shape, bool)
+    for p, r in zip(position, radius):
+        solid |= (x - p[0]) ** 2 + (y - p[1]) ** 2 + (z - p[2]) ** 2 <= r * r
+    ok(abs(1 - solid.mean() - summary["bulk_porosity"]) < 1e-3, "bulk porosity",
+       (1 - solid.mean(), summary["bulk_porosity"]))
+    layers = 1 - file["structure/slice/porosity"][:]
+    ok(np.isclose(layers.mean() * edge**3, summary["solid_volume"], rtol=1e-10),
+       "slices hold the solid volume, walls cutting nothing")
+
+    # Nanometres and kilometres.
+    for name, factor in ("nano", 1e-9), ("kilo", 1e3):
+        np.savetxt(at(name + ".txt"), factor * np.column_stack([position, radius]), fmt="%.17g")
+        side = edge * factor
+        other, _ = pack(name, "method=import", "lower=[0,0,0]", f"upper=[{side},{side},{side}]",
+                        "touching_gap=0.05", inputs=[at(name + ".txt")])
+        pure = [k for k in summary if not k.endswith(("radius", "volume"))]
+        same = all(np.isclose(summary[k], other["summary"][k], rtol=1e-9, atol=1e-15)
+                   for k in pure)
+        g = [d["structure"]["radial_distribution"]["value"] for d in (said, other)]
+        ok(same and np.allclose(*g, rtol=1e-9), f"the same at a scale of {factor:g}",
+           [(k, summary[k], other["summary"][k]) for k in pure])
+
+    # Where the report may go.
+    to = lambda *words: subprocess.run([f"{BIN}/pack", *words], capture_output=True)
+    shown = to("-o", at("x"), "--report", "-")
+    ok(shown.returncode == 0 and not shown.stderr
+       and json.loads(shown.stdout)["summary"]["coordination"] > 0,
+       "the report may go to standard output when the packing does not")
+    ok(to("--report", "-").returncode == 64
+       and to("-o", at("y"), "--report", at("y")).returncode == 64 and not os.path.exists(at("y")),
+       "two outputs in one place are refused")
+
+    # What makes no sense is left out, and may be missing.
+    one, file = pack("one", "counts=[1,1,1]")
+    ok("bulk_porosity" not in one["summary"] and "fabric" not in one["structure"]
+       and one["summary"]["rattlers"] == 0, "a single grain, held by six walls")
+    shown = json.loads(run("inspect", at("one")))
+    ok(shown["summary"] == one["summary"], "inspect shows just what is there")
+    left_out = subprocess.run([f"{BIN}/inspect", "--data", "/structure/fabric", at("one")],
+                              capture_output=True)
+    ok(left_out.returncode == 65 and b"left out" in left_out.stderr,
+       "and says what was left out")
+
+    for name in "grains", "one":
+        drawn = subprocess.run(["pipelines/packing-figure", at(name), at("figure.svg")],
+                               capture_output=True)
+        ok(drawn.returncode == 0 and not drawn.stderr and open(at("figure.svg")).read()
+           .rstrip().endswith("</svg>"), f"a figure of {name}", drawn.stderr.decode())
+done()
