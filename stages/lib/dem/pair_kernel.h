@@ -561,12 +561,16 @@ INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, in
                        shear_load[lane]);
             count++;
         }
-        if (dem->pairs.loss) { // in tension all is lost, otherwise what slips is slip's
-            const lanes energy =
-                0.5 * spring * m->overlap +
-                spring_loss(shear, law->shear_stiffness,
-                            (struct lanes3){zero, zero, zero}, law->shear_stiffness);
-            book(dem->pairs.loss[k].broken + at, broken & ~touch, energy);
+        // In tension all is lost; otherwise what slips from now on is slip's.
+        const mask apart = broken & ~touch;
+        double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
+        const struct lanes3 was = load3(history, at);
+        store3(history, at, only_where3(~apart, was));
+        if (dem->pairs.loss) {
+            const struct lanes3 nothing = {zero, zero, zero};
+            const lanes across = law->shear_stiffness;
+            book(dem->pairs.loss[k].broken + at, apart,
+                 0.5 * spring * m->overlap + spring_loss(was, across, nothing, across));
         }
         *held &= ~broken;
     }

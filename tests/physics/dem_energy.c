@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The books of energy: what was put in is there, or is accounted for as lost, and the
+// closer so the shorter the time step.
+#include "dem_scene.h"
+
+enum { SIDE = 4, N = SIDE * SIDE * SIDE };
+
+// Loose grains of different sizes, thrown about in a closed box.
+static struct packing loose_grains(void)
+{
+    struct packing packing = new_packing(N, 0);
+    uint64_t seed = 31;
+    for (int i = 0; i < N; i++) {
+        const int at[3] = {i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)};
+        packing.radius[i] = RADIUS * (1 + 0.1 * next_random(&seed));
+        packing.position[i] =
+            (struct vector){(2.3 * at[0] + 1.2) * RADIUS, (2.3 * at[1] + 1.2) * RADIUS,
+                            (2.3 * at[2] + 1.2) * RADIUS};
+    }
+    packing.upper =
+        (struct vector){2.3 * SIDE * RADIUS, 2.3 * SIDE * RADIUS, 2.3 * SIDE * RADIUS};
+    return packing;
+}
+
+static void box_of(const struct packing *packing, struct dem_wall wall[6])
+{
+    for (int w = 0; w < 6; w++) {
+        wall[w] = (struct dem_wall){.point = w % 2 ? packing->upper : packing->lower};
+        set_component(&wall[w].normal, w / 2, w % 2 ? -1 : 1);
+    }
+}
+
+// What is missing after the run, over all that went through the books.
+static double imbalance(struct dem *dem, double began)
+{
+    const struct dem_energy now = dem_energy(dem);
+    const double lost = now.dashpots + now.slip + now.local_damping + now.broken;
+    const double there = now.kinetic + now.elastic + lost;
+    return fabs(there - began - now.gained) / (began + fabs(now.gained));
+}
+
+// After the same time with time steps of SAFETY.
+static double shaken_box(struct dem_setup setup, double safety, struct dem_energy *end)
+{
+    struct packing packing = loose_grains();
+    struct dem_wall wall[6];
+    box_of(&packing, wall);
+    setup.packing = &packing;
+    setup.wall = wall;
+    setup.n_wall = 6;
+    setup.balance_energy = true;
+    setup.time_step_safety = safety;
+    struct dem *dem = create(&setup);
+    struct vector *velocity = random_vectors(N, 0.5, 32);
+    struct vector *spin = random_vectors(N, 0.5 / RADIUS, 33);
+    dem_set_velocity(dem, velocity, spin);
+    free(velocity);
+    free(spin);
+    const double began = dem_energy(dem).kinetic;
+    run(dem, (int64_t)(40 / safety));
+    const double missing = imbalance(dem, began);
+    *end = dem_energy(dem);
+    dem_free(dem);
+    packing_free(&packing);
+    return missing;
+}
+
+static void assert_books_close(struct dem_setup setup, double tolerance)
+{
+    struct dem_energy end;
+    const double coarse = shaken_box(setup, 0.02, &end);
+    const double fine = shaken_box(setup, 0.005, &end);
+    if (!(fine < tolerance)) fail_msg("missing: %g of all", fine);
+    if (!(fine < 0.5 * coarse))
+        fail_msg("missing: %g, and %g in longer steps", fine, coarse);
+    assert_true(end.slip > 0.01 * end.kinetic && end.dashpots > 0.01 * end.kinetic);
+}
+
+static struct dem_setup rubbing_setup(enum dem_law law)
+{
+    return (struct dem_setup){.law = law,
+                              .material = {.density = 2500,
+                                           .normal_stiffness = 100,
+                                           .shear_stiffness = 100 * 2.0 / 7,
+                                           .friction = 0.3,
+                                           .damping_ratio = 0.1,
+                                           .contact_time = 1e-7,
+                                           .restitution = 0.8,
+                                           .young_modulus = 1e9,
+                                           .poisson_ratio = 0.2},
+                              .gravity = {0, 0, -1e5},
+                              .threads = 1};
+}
+
+static void test_books_of_each_law(void **state)
+{
+    (void)state;
+    assert_books_close(rubbing_setup(DEM_LINEAR), 2e-3);
+    assert_books_close(rubbing_setup(DEM_TIMED), 2e-3);
+    assert_books_close(rubbing_setup(DEM_HERTZ), 2e-3);
+}
+
+static void test_books_of_local_damping(void **state)
+{
+    (void)state;
+    struct dem_setup setup = rubbing_setup(DEM_LINEAR);
+    setup.material.local_damping = 0.3;
+    struct dem_energy end;
+    const double missing = shaken_box(setup, 0.005, &end);
+    if (!(missing < 2e-3)) fail_msg("missing: %g", missing);
+    assert_true(end.local_damping > 0.02 * end.kinetic);
+}
+
+// A lattice torn apart by forces on its two ends: what the bonds held when they broke
+// is in the books.
+static double torn_apart(enum dem_bond_kind kind, double safety)
+{
+    struct packing packing = cubic_lattice(3, 3, 4, false);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.material.damping_ratio = 0.2;
+    setup.balance_energy = true;
+    setup.time_step_safety = safety;
+    setup.bond.kind = kind;
+    setup.bond.normal_strength = kind == DEM_CONTACT_BOND ? 1e-7 : 2e6;
+    setup.bond.shear_strength = setup.bond.normal_strength;
+    struct dem *dem = create(&setup);
+    struct vector force[36] = {{0, 0, 0}};
+    for (int i = 0; i < 36; i++)
+        if (i < 9 || i >= 27)
+            force[i] = (struct vector){(i % 3 - 1) * 1e-8, 0, i < 9 ? -2e-7 : 2e-7};
+    dem_set_force(dem, force);
+    int cracks = 0;
+    for (int k = 0; k < 1000 && cracks < 9; k++) {
+        run(dem, 100);
+        dem_cracks(dem, &cracks);
+    }
+    assert_true(cracks >= 9);
+    const struct dem_energy end = dem_energy(dem);
+    assert_true(end.broken > 0.1 * end.gained);
+    const double missing = imbalance(dem, 0);
+    dem_free(dem);
+    packing_free(&packing);
+    return missing;
+}
+
+static void test_books_of_broken_bonds(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 2; kind++) {
+        const double coarse = torn_apart(kind, 0.004), fine = torn_apart(kind, 0.001);
+        if (!(fine < 1e-3 && fine < 0.5 * coarse))
+            fail_msg("kind %d missing: %g, and %g in longer steps", kind, fine, coarse);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_books_of_each_law),
+        cmocka_unit_test(test_books_of_local_damping),
+        cmocka_unit_test(test_books_of_broken_bonds),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
