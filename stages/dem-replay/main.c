@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // dem-replay: what the capillary forces do to the bonded grains.
 #include "artifacts/artifact.h"
+#include "artifacts/checkpoint.h"
 #include "basics/status.h"
 #include "replay.h"
 #include "write_response.h"
@@ -79,7 +80,8 @@ static const struct stage stage = {
     .reads = "forces",
     .writes = "response",
     .most_inputs = 1,
-    .parameters = table};
+    .parameters = table,
+    .checkpoints = true};
 
 static void check_snapshots(const struct number_list *snapshots)
 {
@@ -115,14 +117,16 @@ static void show(void *bar, double fraction)
 static void run(const struct packing *packing, const struct load *load,
                 const struct replay_settings *settings,
                 const struct invocation *invocation, const char *path,
-                struct response *response)
+                const struct keeper *keeper, struct response *response)
 {
     struct progress bar = progress_begin(invocation->progress, invocation->quiet);
     struct reason reason;
     const enum status status =
-        replay(packing, load, settings, &(struct replay_progress){show, &bar}, response,
-               &reason);
+        replay(packing, load, settings, &(struct replay_progress){show, &bar}, keeper,
+               response, &reason);
     progress_end(&bar);
+    // Only a state that was kept can be at fault for bad data here.
+    if (status == STATUS_BAD_DATA && keeper->begin) path = invocation->checkpoint;
     if (status) die(status, "%s: %s", input_name(path), reason.text);
 }
 
@@ -179,11 +183,17 @@ int main(int argc, char **argv)
     struct packing packing = artifact_get_packing(input);
     struct load load = read_load(input);
 
+    json_t *digest = one_input(input);
+    struct checkpoint checkpoint;
+    checkpoint_begin(&checkpoint, &invocation, digest);
     struct response response;
-    run(&packing, &load, settings, &invocation, input->path, &response);
+    run(&packing, &load, settings, &invocation, input->path, &checkpoint.keeper,
+        &response);
     if (!invocation.quiet) warn_if_loose(&packing, &response);
     write_response(&packing, &load, settings, &response, &invocation, input);
 
+    checkpoint_end(&checkpoint);
+    json_decref(digest);
     response_free(&response);
     free_load(&load);
     packing_free(&packing);

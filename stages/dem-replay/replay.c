@@ -3,6 +3,7 @@
 
 #include "basics/memory.h"
 #include "net_load.h"
+#include "resume.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,8 +29,10 @@ struct run {
     const struct load *load;
     const struct replay_settings *settings;
     struct response *response;
+    const struct keeper *keeper;
     struct dem *dem;
     struct vector *force; // (n_particle) of this step
+    struct replay_place place;
 };
 
 static enum status begin(struct run *run, struct reason *reason)
@@ -84,16 +87,54 @@ static bool is_loaded(const struct run *run)
     return false;
 }
 
+// CYCLES more, cut where the state may be kept.
+static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
+{
+    const int64_t end = dem_cycle(run->dem) + cycles;
+    const int64_t most = cycles_between_questions(run->packing->n_particle);
+    while (dem_cycle(run->dem) < end) {
+        const int64_t left = end - dem_cycle(run->dem);
+        const enum status status = dem_run(run->dem, left < most ? left : most, reason);
+        if (status) return status;
+        if (is_due(run->keeper))
+            keep_state(run->keeper, run->dem,
+                       save_response(run->response, run->packing, run->load->n_time,
+                                     run->place));
+    }
+    return STATUS_OK;
+}
+
+// Until a step is as settled as wanted, which is looked at every 16 cycles from where
+// those of every step end.
+static enum status run_on(struct run *run, struct reason *reason)
+{
+    enum { LOOK_EVERY = 16 };
+    const struct replay_settings *settings = run->settings;
+    if (isnan(settings->tolerance) || !is_loaded(run)) return STATUS_OK;
+    const int64_t first = run->place.began + settings->cycles;
+    for (;;) {
+        const int64_t done = dem_cycle(run->dem) - first;
+        const int64_t left = settings->most_cycles - done;
+        const int64_t to_look = LOOK_EVERY - done % LOOK_EVERY;
+        const bool looks = to_look == LOOK_EVERY || left <= 0;
+        if (looks && unbalanced_ratio(run->dem) < settings->tolerance) return STATUS_OK;
+        if (left <= 0)
+            return refuse(reason, STATUS_NOT_CONVERGED,
+                          "unbalanced ratio %g is not below %g after %lld cycles",
+                          dem_unbalanced_ratio(run->dem), settings->tolerance,
+                          (long long)settings->most_cycles);
+        const enum status status =
+            run_cycles(run, left < to_look ? left : to_look, reason);
+        if (status) return status;
+    }
+}
+
 static enum status settle(struct run *run, int step, struct reason *reason)
 {
-    const struct replay_settings *settings = run->settings;
-    const int64_t before = dem_cycle(run->dem);
-    enum status status = dem_run(run->dem, settings->cycles, reason);
-    if (!status && !isnan(settings->tolerance) && is_loaded(run) &&
-        unbalanced_ratio(run->dem) >= settings->tolerance)
-        status =
-            dem_run_until(run->dem, settings->tolerance, settings->most_cycles, reason);
-    run->response->cycles[step] = dem_cycle(run->dem) - before;
+    const int64_t end = run->place.began + run->settings->cycles;
+    enum status status = run_cycles(run, end - dem_cycle(run->dem), reason);
+    if (!status) status = run_on(run, reason);
+    run->response->cycles[step] = dem_cycle(run->dem) - run->place.began;
     run->response->unbalanced_ratio[step] = unbalanced_ratio(run->dem);
     if (!status) return STATUS_OK;
     struct reason cause = *reason;
@@ -122,6 +163,7 @@ static void take_snapshot(struct run *run, int step)
     const struct packing *packing = run->packing;
     struct snapshot *snapshot = &run->response->snapshot[run->response->n_snapshot++];
     *snapshot = (struct snapshot){
+        .step = step,
         .time = run->load->time[step],
         .saturation = run->load->saturation[step],
         .displacement = NEW_ARRAY(struct vector, packing->n_particle),
@@ -139,10 +181,33 @@ static bool snapshot_due(const struct run *run, int step)
            run->load->saturation[step] <= run->settings->snapshot[next];
 }
 
+static enum status go_on(struct run *run, struct reason *reason)
+{
+    const struct kept_state *state = run->keeper->begin;
+    const enum status status =
+        dem_restore(run->dem, state->engine.array, state->engine.count, reason);
+    if (status) return status;
+    return restore_response(run->response, run->packing, run->load,
+                            run->settings->n_snapshot, run->dem, &state->stage,
+                            &run->place, reason);
+}
+
+static enum status do_step(struct run *run, struct reason *reason)
+{
+    const int step = run->place.step;
+    apply_load(run, step);
+    const enum status status = settle(run, step, reason);
+    note_cracks(run, step);
+    while (!status && snapshot_due(run, step))
+        take_snapshot(run, step);
+    run->place = (struct replay_place){step + 1, dem_cycle(run->dem)};
+    return status;
+}
+
 enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
-                   const struct replay_progress *progress, struct response *response,
-                   struct reason *reason)
+                   const struct replay_progress *progress, const struct keeper *keeper,
+                   struct response *response, struct reason *reason)
 {
     *response =
         (struct response){.unbalanced_ratio = NEW_ARRAY(double, load->n_time),
@@ -153,16 +218,14 @@ enum status replay(const struct packing *packing, const struct load *load,
                       .load = load,
                       .settings = settings,
                       .response = response,
+                      .keeper = keeper,
                       .force = NEW_ARRAY(struct vector, packing->n_particle)};
     enum status status = begin(&run, reason);
-    for (int step = 0; step < load->n_time && !status; step++) {
-        apply_load(&run, step);
-        status = settle(&run, step, reason);
-        note_cracks(&run, step);
-        while (!status && snapshot_due(&run, step))
-            take_snapshot(&run, step);
+    if (!status && keeper && keeper->begin) status = go_on(&run, reason);
+    while (!status && run.place.step < load->n_time) {
+        status = do_step(&run, reason);
         if (progress && progress->report)
-            progress->report(progress->context, (step + 1.0) / load->n_time);
+            progress->report(progress->context, (double)run.place.step / load->n_time);
     }
     dem_free(run.dem);
     free(run.force);

@@ -5,6 +5,7 @@
 
 #include "basics/status.h"
 #include "dem/dem.h"
+#include "dem/keeper.h"
 
 #include <stdbool.h>
 
@@ -36,6 +37,7 @@ struct replay_settings {
 };
 
 struct snapshot {
+    int step; // row of the load
     double time, saturation;
     struct vector *displacement; // (n_particle) m
     struct vector *force;        // (n_particle) N, external
@@ -63,12 +65,13 @@ struct replay_progress {
 };
 
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the
-// run diverged, or a step did not settle within its cycles. The caller frees *RESPONSE
-// with response_free.
+// run diverged, or a step did not settle within its cycles; STATUS_BAD_DATA: KEEPER,
+// which may be NULL, begins with a state that is not one of such a replay. The caller
+// frees *RESPONSE with response_free.
 enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
-                   const struct replay_progress *progress, struct response *response,
-                   struct reason *reason);
+                   const struct replay_progress *progress, const struct keeper *keeper,
+                   struct response *response, struct reason *reason);
 void response_free(struct response *response);
 
 #endif

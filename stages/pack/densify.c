@@ -25,9 +25,68 @@ struct densification {
     bool grow;
     double most;                   // largest strain of a step
     bool jammed;                   // once grains have found their places
-    double pair_stiffness, radius; // N/m, mean radius m: the scale of pressure
+    double done;                   // share of the way, for the progress bar
+    double pair_stiffness, radius; // N/m, m by volume: the scale of pressure
     int n_wall;
+    double target;     // of the pressing under way, 0 when there is none
+    double gone_on_at; // of a run that was stopped: the target it was at; 0 once met
 };
+
+// ---- stopping and going on ----------------------------------------------------------
+
+// What there is to remember, the engine apart: numbers, as they are kept.
+struct protocol {
+    double most, jammed, target, growth;
+    struct vector lower, upper, centre, cut_lower, cut_upper;
+};
+enum { PROTOCOL_NUMBERS = sizeof(struct protocol) / sizeof(double) };
+
+static struct protocol protocol_now(const struct densification *d)
+{
+    const struct domain *domain = d->making->domain;
+    return (struct protocol){.most = d->most,
+                             .jammed = d->jammed,
+                             .target = d->target,
+                             .growth = d->making->reached->growth,
+                             .lower = domain->lower,
+                             .upper = domain->upper,
+                             .centre = domain->centre,
+                             .cut_lower = domain->cut_lower,
+                             .cut_upper = domain->cut_upper};
+}
+
+static void keep_protocol(const struct densification *d)
+{
+    const struct protocol protocol = protocol_now(d);
+    may_keep(d->making, d->dem, (const double *)&protocol, PROTOCOL_NUMBERS);
+}
+
+static enum status take_up_protocol(struct densification *d, struct reason *reason)
+{
+    struct protocol protocol = protocol_now(d);
+    const enum status status =
+        go_on(d->making, d->dem, (double *)&protocol, PROTOCOL_NUMBERS, reason);
+    if (status != STATUS_OK) return status;
+    d->most = protocol.most;
+    d->jammed = protocol.jammed > 0;
+    d->target = d->gone_on_at = protocol.target;
+    d->making->reached->growth = protocol.growth;
+    struct domain *domain = d->making->domain;
+    d->making->packing->lower = domain->lower = protocol.lower;
+    d->making->packing->upper = domain->upper = protocol.upper;
+    domain->centre = protocol.centre;
+    domain->cut_lower = protocol.cut_lower;
+    domain->cut_upper = protocol.cut_upper;
+    return STATUS_OK;
+}
+
+// Whether the run was past this TARGET when it was stopped.
+static bool was_done(struct densification *d, double target)
+{
+    const bool done = d->gone_on_at > 0 && target != d->gone_on_at;
+    if (!done) d->gone_on_at = 0;
+    return done;
+}
 
 // ---- straining ----------------------------------------------------------------------
 
@@ -38,6 +97,18 @@ static double solid_now(const struct densification *d)
     return solid_fraction(domain, d->making->packing);
 }
 
+// In two dimensions the layer stays as thick as its largest grain.
+static void thicken_layer(const struct making *making)
+{
+    struct domain *domain = making->domain;
+    if (domain->dimensions != 2) return;
+    const double half = making->sizes->largest * making->reached->growth;
+    domain->cut_lower.y = domain->lower.y = domain->centre.y - half;
+    domain->cut_upper.y = domain->upper.y = domain->centre.y + half;
+    making->packing->lower = domain->lower;
+    making->packing->upper = domain->upper;
+}
+
 // Lengths that the growth leaves, or the box that closed in.
 static void strain(struct densification *d, double by)
 {
@@ -46,6 +117,7 @@ static void strain(struct densification *d, double by)
     if (d->grow) {
         dem_rescale(d->dem, one, 1 + by);
         d->making->reached->growth *= 1 + by;
+        thicken_layer(d->making);
         return;
     }
     const bool flat = domain->dimensions == 2;
@@ -133,6 +205,19 @@ static void stop_rattlers(const struct densification *d)
     free(velocity);
 }
 
+// Half of the way is to where grains jam, and half to rest, by digits.
+static void say_progress(struct densification *d)
+{
+    const bool flat = d->making->domain->dimensions == 2;
+    const double loose = loose_fraction(d->making->domain), jam = flat ? 0.84 : 0.64;
+    const double rest =
+        log(dem_unbalanced_ratio(d->dem)) / log(d->making->how->tolerance);
+    const double done = d->jammed ? 0.5 + 0.5 * fmax(rest, 0)
+                                  : 0.5 * (solid_now(d) - loose) / (jam - loose);
+    if (isfinite(done)) d->done = fmax(d->done, fmin(done, 0.99));
+    progress_update(d->making->progress, d->done);
+}
+
 // At rest under the scaled stress TARGET.
 static enum status press(struct densification *d, double target, double tolerance,
                          struct reason *reason)
@@ -140,6 +225,7 @@ static enum status press(struct densification *d, double target, double toleranc
     enum { CYCLES = 20, OFTEN = 1000 };
     const struct dynamics_parameters *how = d->making->how;
     const double near = 0.01;
+    d->target = target;
     while (dem_cycle(d->dem) < how->most_cycles) {
         const enum status status = dem_run(d->dem, CYCLES, reason);
         if (status != STATUS_OK) return status;
@@ -148,8 +234,8 @@ static enum status press(struct densification *d, double target, double toleranc
         if (there && dem_unbalanced_ratio(d->dem) < tolerance) return STATUS_OK;
         servo(d, now, target);
         if (d->jammed && dem_cycle(d->dem) % OFTEN == 0) stop_rattlers(d);
-        progress_update(d->making->progress,
-                        0.9 * (double)dem_cycle(d->dem) / (double)how->most_cycles);
+        keep_protocol(d);
+        say_progress(d);
     }
     return give_up(d, "stress over its scale", scaled_stress(d), target, reason);
 }
@@ -164,7 +250,7 @@ static enum status press_from_above(struct densification *d, double target,
     const double rough = 0.01;
     if (how->friction <= 0)
         for (double above = 1e-3; status == STATUS_OK && above > 2 * target; above /= 3)
-            status = press(d, above, rough, reason);
+            if (!was_done(d, above)) status = press(d, above, rough, reason);
     return status == STATUS_OK ? press(d, target, how->tolerance, reason) : status;
 }
 
@@ -184,6 +270,7 @@ static enum status rest(struct densification *d, struct reason *reason)
         const double ratio = dem_unbalanced_ratio(d->dem);
         if (ratio < how->tolerance && largest_speed(d->making, d->dem) < still)
             return STATUS_OK;
+        keep_protocol(d);
     }
     return give_up(d, "unbalanced ratio", dem_unbalanced_ratio(d->dem), how->tolerance,
                    reason);
@@ -202,6 +289,7 @@ static enum status strain_to_porosity(struct densification *d, double porosity,
         progress_update(d->making->progress, 1 - left / total);
         if (dem_cycle(d->dem) > d->making->how->most_cycles)
             return give_up(d, "porosity", 1 - solid_now(d), porosity, reason);
+        keep_protocol(d);
     }
     return rest(d, reason);
 }
@@ -213,6 +301,7 @@ static enum status press_to_contacts(struct densification *d, double wanted,
                                      struct reason *reason)
 {
     for (double target = 1e-5; target < 0.1; target *= 1.25) {
+        if (was_done(d, target)) continue;
         const enum status status = press(d, target, d->making->how->tolerance, reason);
         if (status != STATUS_OK) return status;
         take_grains(d->making, d->dem);
@@ -260,26 +349,44 @@ static enum status make_loose(const struct making *making, int count, bool grow,
     struct packing drawn = packing_in(domain, count);
     for (int i = 0; i < count; i++)
         drawn.radius[i] = sizes_draw(making->sizes, same);
-    gsl_rng_free(same);
     const double solid = solid_fraction(domain, &drawn);
     packing_free(&drawn);
-    *shrunk = pow(fmin(1, loose_fraction(domain) / solid), 1.0 / domain->dimensions);
-    struct sizes sizes = *making->sizes;
-    if (grow)
-        sizes_scale(&sizes, *shrunk);
-    else
-        domain_stretch(domain, 1 / *shrunk);
+
+    // Less fits where walls are near: looser, until all have a place.
+    gsl_rng_memcpy(same, making->random);
     const int64_t most_trials = 100000;
-    return random_sequential(domain, &sizes, count, most_trials, making->random,
-                             making->progress, making->packing, reason);
+    double loose = loose_fraction(domain), stretched = 1;
+    enum status status;
+    do {
+        gsl_rng_memcpy(making->random, same);
+        *shrunk = pow(fmin(1, loose / solid), 1.0 / domain->dimensions);
+        struct sizes sizes = *making->sizes;
+        if (grow)
+            sizes_scale(&sizes, *shrunk);
+        else
+            domain_stretch(domain, 1 / (*shrunk * stretched));
+        stretched = 1 / *shrunk;
+        status = random_sequential(domain, &sizes, count, most_trials, making->random,
+                                   making->progress, making->packing, reason);
+        loose *= 0.8;
+    } while (status == STATUS_NOT_CONVERGED && loose > 0.01);
+    gsl_rng_free(same);
+    return status;
 }
 
-static double mean_radius(const struct packing *packing)
+// By volume: of the grains that carry the stress. By number it would be that of the
+// fines, and the same stress would press large grains into each other.
+static double typical_radius(const struct packing *packing)
 {
-    double sum = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        sum += packing->radius[i];
-    return packing->n_particle > 0 ? sum / packing->n_particle : 1;
+    const double first = packing->n_particle > 0 ? packing->radius[0] : 1;
+    double volume = 0, moment = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double ratio = packing->radius[i] / first;
+        const double cube = ratio * ratio * ratio;
+        volume += cube;
+        moment += cube * ratio;
+    }
+    return volume > 0 ? first * (moment / volume) : first;
 }
 
 static enum status check_contraction(const struct domain *domain, struct reason *reason)
@@ -308,14 +415,16 @@ enum status densify(const struct making *making, int count, bool grow,
         .making = making,
         .grow = grow,
         .most = first_step,
-        .radius = mean_radius(making->packing) / (grow ? shrunk : 1),
+        .radius = typical_radius(making->packing) / (grow ? shrunk : 1),
         .n_wall = domain_walls(making->domain, making->how, false, wall)};
     const double stiffness = stiffness_for(making->how, d.radius);
     d.pair_stiffness = 0.5 * stiffness;
     making->reached->growth = grow ? shrunk : 1;
+    thicken_layer(making);
     const struct vector none = {0, 0, 0};
     status = start_dynamics(making, stiffness, making->how->safety, none, wall,
                             d.n_wall, &d.dem, reason);
+    if (status == STATUS_OK) status = take_up_protocol(&d, reason);
     if (status == STATUS_OK) status = reach_target(&d, reason);
     if (status == STATUS_OK) {
         take_grains(making, d.dem);

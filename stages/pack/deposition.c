@@ -8,10 +8,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The domain drawn out upwards until COUNT grains make a cloud as thin as this.
-static struct domain cloud_domain(const struct domain *domain, double volume)
+// The domain drawn out upwards until grains of VOLUME make a cloud as thin as CLOUD.
+static struct domain cloud_domain(const struct domain *domain, double volume,
+                                  double cloud)
 {
-    const double cloud = domain->dimensions == 2 ? 0.4 : 0.28;
     struct domain tall = *domain;
     const double height = domain->upper.z - domain->lower.z;
     // The part drawn on is as wide as the whole is on average.
@@ -35,12 +35,25 @@ static enum status make_cloud(const struct making *making, int count,
     struct packing drawn = packing_in(making->domain, count);
     for (int i = 0; i < count; i++)
         drawn.radius[i] = sizes_draw(making->sizes, same);
-    gsl_rng_free(same);
-    *tall = cloud_domain(making->domain, sum_of_sizes(making->domain, &drawn));
+    const double volume = sum_of_sizes(making->domain, &drawn);
     packing_free(&drawn);
+
+    // Less fits where walls are near: thinner, until all have a place.
+    gsl_rng_memcpy(same, making->random);
+    double cloud = making->domain->dimensions == 2 ? 0.4 : 0.28;
+    const double thinnest = making->domain->shape == DOMAIN_SPHERE ? cloud : 0.01;
     const int64_t most_trials = 100000;
-    return random_sequential(tall, making->sizes, count, most_trials, making->random,
-                             making->progress, making->packing, reason);
+    enum status status;
+    do {
+        gsl_rng_memcpy(making->random, same);
+        *tall = cloud_domain(making->domain, volume, cloud);
+        status =
+            random_sequential(tall, making->sizes, count, most_trials, making->random,
+                              making->progress, making->packing, reason);
+        cloud *= 0.8;
+    } while (status == STATUS_NOT_CONVERGED && cloud > thinnest);
+    gsl_rng_free(same);
+    return status;
 }
 
 // Such that the floor's contacts, which carry all the weight above, overlap by a few
@@ -98,8 +111,10 @@ static enum status settle(const struct making *making, struct dem *dem,
         radius += packing->radius[i] / packing->n_particle;
     const double typical_speed = sqrt(2 * making->how->gravity * radius);
     double first = 0;
+    enum status status = go_on(making, dem, &first, 1, reason);
+    if (status != STATUS_OK) return status;
     while (dem_cycle(dem) < making->how->most_cycles) {
-        const enum status status = dem_run(dem, LOOK_EVERY, reason);
+        status = dem_run(dem, LOOK_EVERY, reason);
         if (status != STATUS_OK) return status;
         if (is_settled(making, dem, typical_speed)) return STATUS_OK;
         const double ratio = dem_unbalanced_ratio(dem);
@@ -108,12 +123,27 @@ static enum status settle(const struct making *making, struct dem *dem,
             first = fmax(first, done);
             progress_update(making->progress, first);
         }
+        may_keep(making, dem, &first, 1);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "not settled after %lld cycles: unbalanced ratio %.3g, largest speed "
                   "%.3g m/s (pack.dynamics.most_cycles, .tolerance)",
                   (long long)dem_cycle(dem), dem_unbalanced_ratio(dem),
                   largest_speed(making, dem));
+}
+
+// Refuses what could not even fall in the cycles allowed.
+static enum status check_fall(const struct making *making, const struct domain *tall,
+                              const struct dem *dem, struct reason *reason)
+{
+    const double height = tall->upper.z - tall->lower.z;
+    const double cycles = sqrt(2 * height / making->how->gravity) / dem_time_step(dem);
+    if (cycles < (double)making->how->most_cycles) return STATUS_OK;
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "falling %g m takes %.3g cycles of %g s, and pack.dynamics.most_cycles "
+        "= %lld (.stiffness, .overlap, .gravity)",
+        height, cycles, dem_time_step(dem), (long long)making->how->most_cycles);
 }
 
 enum status deposit(const struct making *making, int count, struct reason *reason)
@@ -128,6 +158,7 @@ enum status deposit(const struct making *making, int count, struct reason *reaso
     struct dem *dem = NULL;
     status = start_dynamics(making, stiffness_for(making), making->how->safety, down,
                             wall, n_wall, &dem, reason);
+    if (status == STATUS_OK) status = check_fall(making, &tall, dem, reason);
     if (status == STATUS_OK) status = settle(making, dem, reason);
     if (status == STATUS_OK) {
         making->reached->growth = 1;

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static struct dem_wall plane(struct vector point, int axis, double direction)
 {
@@ -110,6 +111,32 @@ enum status start_dynamics(const struct making *making, double stiffness, double
     return status;
 }
 
+enum status go_on(const struct making *making, struct dem *dem, double *protocol,
+                  int count, struct reason *reason)
+{
+    const struct keeper *keeper = making->how->keeper;
+    if (!keeper || !keeper->begin) return STATUS_OK;
+    const struct kept_state *state = keeper->begin;
+    const enum status status =
+        dem_restore(dem, state->engine.array, state->engine.count, reason);
+    if (status != STATUS_OK) return status;
+    struct array_reader reader = {.list = &state->stage, .reason = reason};
+    const double *kept =
+        read_array(&reader, "protocol", DEM_FLOAT64, count, -1e150, 1e150);
+    if (reader.failed) return STATUS_BAD_DATA;
+    memcpy(protocol, kept, (size_t)count * sizeof *kept);
+    return STATUS_OK;
+}
+
+void may_keep(const struct making *making, const struct dem *dem,
+              const double *protocol, int count)
+{
+    struct array_list list = {NULL, 0};
+    if (!is_due(making->how->keeper)) return;
+    add_array(&list, "protocol", DEM_FLOAT64, count, protocol);
+    keep_state(making->how->keeper, dem, list);
+}
+
 void take_grains(const struct making *making, const struct dem *dem)
 {
     struct packing *packing = making->packing;
@@ -131,22 +158,15 @@ double largest_speed(const struct making *making, const struct dem *dem)
     return largest;
 }
 
-// The engine divides by the box around the domain; in two dimensions the layer is as
-// thick as the box.
+// The engine divides by the box it began with.
 double mean_stress(const struct making *making, const struct dem *dem)
 {
     const struct dem_census census = dem_census(dem);
-    const struct domain *domain = making->domain;
     const double sum = census.stress[0][0] + census.stress[1][1] + census.stress[2][2];
     struct vector lower, upper;
     dem_box(dem, &lower, &upper);
     const struct vector edge = subtract(upper, lower);
-    const bool box = domain->shape == DOMAIN_BOX && domain->cut == CUT_NONE;
-    const double room =
-        box ? 1
-        : domain->dimensions == 2
-            ? domain_volume(domain) * edge.y / (edge.x * edge.y * edge.z)
-            : domain_volume(domain) / (edge.x * edge.y * edge.z);
+    const double room = domain_volume(making->domain) / (edge.x * edge.y * edge.z);
     return sum / making->domain->dimensions / room;
 }
 

@@ -5,6 +5,7 @@
 
 #include "basics/progress.h"
 #include "dem/dem.h"
+#include "dem/keeper.h"
 #include "domain.h"
 #include "geometry/packing.h"
 #include "sizes.h"
@@ -37,6 +38,7 @@ struct dynamics_parameters {
     double tolerance;
     int64_t most_cycles;
     int threads;
+    const struct keeper *keeper; // of deposition and densification; may be NULL
 };
 
 // How it ended.
@@ -95,6 +97,16 @@ double solid_fraction(const struct domain *domain, const struct packing *packing
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
+
+// Goes on from the state kept of a run like this one, if there is one: that of the
+// engine into DEM, numbers called "protocol" into COUNT doubles of PROTOCOL.
+// STATUS_BAD_DATA: it is not of such a run.
+enum status go_on(const struct making *making, struct dem *dem, double *protocol,
+                  int count, struct reason *reason);
+
+// Keeps it if it is time.
+void may_keep(const struct making *making, const struct dem *dem,
+              const double *protocol, int count);
 
 // Places and radii as they are now; back into a box that repeats.
 void take_grains(const struct making *making, const struct dem *dem);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // pack: grains in a box, and the bonds between them.
 #include "artifacts/artifact.h"
+#include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "methods.h"
@@ -23,7 +24,8 @@ static const struct stage stage = {
         "INPUT, with method=import: text of \"x y z r\" lines (# comments), a LAMMPS "
         "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
         "packing.h5. With method=explosive_repulsion the same, for grains to part.",
-    .reports = "Write there, as JSON, what is said of the packing"};
+    .reports = "Write there, as JSON, what is said of the packing",
+    .checkpoints = true};
 
 static bool is_hdf5(const struct bytes *bytes)
 {
@@ -128,6 +130,9 @@ static struct packing make_packing(const struct invocation *invocation,
     const enum status status = make_grains(parameters, begins_from_input, &progress,
                                            domain, &packing, reached, &reason);
     progress_end(&progress);
+    const struct keeper *keeper = parameters->dynamics.keeper;
+    if (status == STATUS_BAD_DATA && keeper->begin) // only what was kept can be
+        die(status, "%s: %s", invocation->checkpoint, reason.text);
     if (status) die(status, "%s", reason.text);
     return packing;
 }
@@ -218,13 +223,35 @@ static void make_layer(struct domain *domain, struct packing *packing)
     domain->upper = packing->upper;
 }
 
+// The others are done in one go.
+static bool keeps_state(int method)
+{
+    return method == METHOD_DEPOSITION || method == METHOD_RADIUS_EXPANSION ||
+           method == METHOD_DOMAIN_CONTRACTION;
+}
+
+// The caller ends it with checkpoint_end.
+static void begin_checkpoint(struct checkpoint *checkpoint,
+                             struct invocation *invocation, json_t *inputs, int method)
+{
+    if (invocation->checkpoint && !keeps_state(method)) {
+        if (!invocation->quiet)
+            report("--checkpoint: this method is done in one go, none is kept");
+        invocation->checkpoint = NULL;
+    }
+    checkpoint_begin(checkpoint, invocation, inputs);
+}
+
 int main(int argc, char **argv)
 {
     struct pack_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     json_t *inputs = json_array();
 
+    struct checkpoint checkpoint;
+    begin_checkpoint(&checkpoint, &invocation, inputs, parameters.method);
     parameters.dynamics.threads = invocation.threads;
+    parameters.dynamics.keeper = &checkpoint.keeper;
     struct domain domain;
     struct reached reached = {.dynamic = false};
     struct packing packing =
@@ -233,6 +260,7 @@ int main(int argc, char **argv)
     if (parameters.extra_layer) make_layer(&domain, &packing);
     write_packing(&packing, &domain, &invocation, inputs, &parameters, &reached);
 
+    checkpoint_end(&checkpoint);
     packing_free(&packing);
     invocation_free(&invocation);
     return STATUS_OK;

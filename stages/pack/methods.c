@@ -157,6 +157,10 @@ static double expected_porosity(const struct pack_parameters *parameters)
 {
     const struct dynamics_parameters *how = &parameters->dynamics;
     if (how->target == TARGET_POROSITY) return how->value;
+    // falls from random points within the sphere itself
+    if (parameters->method == METHOD_DEPOSITION &&
+        parameters->domain.shape == DOMAIN_SPHERE)
+        return parameters->dimensions == 2 ? 0.6 : 0.72;
     if (parameters->method == METHOD_DEPOSITION)
         return parameters->dimensions == 2 ? 0.2 : 0.42;
     return parameters->dimensions == 2 ? 0.17 : 0.37;
@@ -286,6 +290,11 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
         if (!status)
             status = count_grains(parameters, domain, &sizes, random, &count, reason);
     }
+    if (!status && domain->dimensions == 2) { // a plane does not repeat across itself
+        domain->periodic[1] = false;
+        packing->periodic[1] = false;
+    }
+    if (!status) status = check_moved(parameters, domain, &sizes, reason);
     if (!status) status = move_grains_there(&making, parameters, count, reason);
     gsl_rng_free(random);
     return status;

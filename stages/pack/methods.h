@@ -16,4 +16,10 @@ enum status make_grains(const struct pack_parameters *parameters, bool given,
                         struct packing *packing, struct reached *reached,
                         struct reason *reason);
 
+// Refuses what moving grains cannot come to [check_moved.c]: STATUS_BAD_DATA, naming
+// the key.
+enum status check_moved(const struct pack_parameters *parameters,
+                        const struct domain *domain, const struct sizes *sizes,
+                        struct reason *reason);
+
 #endif

@@ -15,11 +15,13 @@ enum { BATCHES = 100, CYCLES_A_BATCH = 200 };
 
 // Two centres in one place have no direction to part: each grain is moved by up to a
 // thousandth of its radius.
-static void part_coincident(struct packing *packing, gsl_rng *random)
+static void part_coincident(const struct making *making)
 {
+    struct packing *packing = making->packing;
+    gsl_rng *random = making->random;
+    const bool flat = making->domain->dimensions == 2;
     for (int i = 0; i < packing->n_particle; i++) {
         const double by = 1e-3 * packing->radius[i];
-        const bool flat = packing->upper.y - packing->lower.y <= 2 * packing->radius[i];
         packing->position[i].x += by * (2 * gsl_rng_uniform(random) - 1);
         if (!flat) packing->position[i].y += by * (2 * gsl_rng_uniform(random) - 1);
         packing->position[i].z += by * (2 * gsl_rng_uniform(random) - 1);
@@ -87,11 +89,11 @@ static enum status fill(const struct making *making, int count, double stiffness
     double *radius = sizes_draw_many(making->sizes, count, making->random);
     *making->packing = packing_in(making->domain, count);
     making->packing->n_particle = 0;
-    enum status status = STATUS_OK;
+    enum status status = domain_check_filling(making->domain, radius, count, 1, reason);
     const int batch = count / BATCHES > 0 ? count / BATCHES : 1;
     for (int n = batch; status == STATUS_OK; n += batch) {
         status = add_batch(making, radius, n < count ? n : count, reason);
-        if (status == STATUS_OK) part_coincident(making->packing, making->random);
+        if (status == STATUS_OK) part_coincident(making);
         if (status == STATUS_OK)
             status = push_apart(making, stiffness, wall, n_wall, reason);
         progress_update(making->progress, 0.9 * n / count);
@@ -115,8 +117,12 @@ enum status repel(const struct making *making, int count, struct reason *reason)
     if (count > 0)
         status = fill(making, count, stiffness, wall, n_wall, reason);
     else {
-        part_coincident(making->packing, making->random);
-        status = push_apart(making, stiffness, wall, n_wall, reason);
+        const struct packing *packing = making->packing;
+        status = domain_check_filling(making->domain, packing->radius,
+                                      packing->n_particle, 1, reason);
+        if (status == STATUS_OK) part_coincident(making);
+        if (status == STATUS_OK)
+            status = push_apart(making, stiffness, wall, n_wall, reason);
     }
     if (status == STATUS_OK)
         status = come_to_rest(making, stiffness, wall, n_wall, reason);

@@ -6,9 +6,9 @@
 //     bench_dem [THREADS]               the table
 //     bench_dem --lattice NX NY NZ      particle-steps a second of one lattice
 //     bench_dem --packing FILE KIND THREADS
-//                                       of grains at rest, read from FILE: lines x y z r
-//                                       and a comment "# box LX LY LZ periodic"; KIND is
-//                                       smooth, grip, hertz or bonded
+//                                       of grains at rest, read from FILE: lines x y z
+//                                       r and a comment "# box LX LY LZ periodic"; KIND
+//                                       is smooth, grip, hertz or bonded
 #include "basics/memory.h"
 #include "dem/engine.h"
 #include "geometry/neighbours.h"
@@ -19,11 +19,35 @@
 #include <string.h>
 #include <time.h>
 
-// Counted from pair_kernel.h and grains.c: operations, and the bytes that stream
-// through (the records of grains stay in a cache near by).
-static const double pair_flops = 296, grain_flops = 35, slot_flops = 6;
-static const double pair_bytes = 72 + 2 * 80 + 16 + 1, slot_bytes = 2 * 64;
-static const double grain_bytes = 32 + 16 + 2 * 96 + 4;
+// Counted from pair_kernel.h and grains.c: operations, a fused one as two, and the
+// bytes that stream through, written ones twice. What a pair reads of its grains and
+// adds to their sums (2 x 224 bytes) stays in a cache near by and is not among them.
+// Every pair takes a root and a quotient (parallel bonds: two quotients; Hertz: four
+// roots and a quotient more), counted as one operation each. Half of the instructions
+// of the pair sweep are not arithmetic but fetch records and bring them from rows into
+// lanes and back, so no kind can come near the peak.
+struct cost {
+    double flops, bytes;
+};
+static const struct cost bonded_pair = {296 + 12, 56 + 8 + 24 + 2 * 80};
+static const struct cost gripping_pair = {165, 56 + 8 + 2 * 24};
+static const struct cost hertz_pair = {165 + 14, 56 + 8 + 2 * 24};
+static const struct cost smooth_pair = {51, 56 + 8};
+static const struct cost turning_grain = {35, 32 + 16 + 5 + 2 * 160};
+static const struct cost smooth_grain = {18, 32 + 16 + 5 + 2 * 96};
+
+static struct cost cost_of_step(const struct dem *dem)
+{
+    const unsigned features = dem->features;
+    const struct cost pair = features & FEATURE_PARALLEL_BOND ? bonded_pair
+                             : !(features & FEATURE_TURN)     ? smooth_pair
+                             : features & FEATURE_HERTZ       ? hertz_pair
+                                                              : gripping_pair;
+    const struct cost grain = features & FEATURE_TURN ? turning_grain : smooth_grain;
+    const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
+    return (struct cost){grain.flops + pairs * pair.flops,
+                         grain.bytes + pairs * pair.bytes};
+}
 
 static double now(void)
 {
@@ -178,7 +202,8 @@ static struct packing read_packing(const char *path)
         const int room = capacity;
         GROW_ARRAY(packing.position, packing.n_particle, capacity);
         if (capacity != room)
-            packing.radius = reallocate(packing.radius, (size_t)capacity, sizeof(double));
+            packing.radius =
+                reallocate(packing.radius, (size_t)capacity, sizeof(double));
         packing.position[packing.n_particle] = x;
         packing.radius[packing.n_particle++] = radius;
     }
@@ -193,7 +218,8 @@ static struct dem_setup at_rest(const struct packing *packing, const char *kind,
 {
     const bool smooth = strcmp(kind, "smooth") == 0;
     return (struct dem_setup){.packing = packing,
-                              .law = strcmp(kind, "hertz") == 0 ? DEM_HERTZ : DEM_LINEAR,
+                              .law =
+                                  strcmp(kind, "hertz") == 0 ? DEM_HERTZ : DEM_LINEAR,
                               .material = {.density = 2500,
                                            .normal_stiffness = 2e4,
                                            .shear_stiffness = 2e4 * 2 / 7,
@@ -230,7 +256,11 @@ static int one_packing(const char *path, const char *kind, int threads)
     const double start = now();
     if (dem_run(dem, cycles, &reason) != STATUS_OK)
         die(STATUS_INTERNAL, "%s", reason.text);
-    printf("%.0f\n", (double)cycles * dem->n_particle / (now() - start));
+    const double rate = (double)cycles * dem->n_particle / (now() - start);
+    const struct cost step = cost_of_step(dem);
+    printf("%.0f particle-steps/s, %.2f pairs a grain, %.1f Gflop/s, %.1f GB/s\n", rate,
+           (double)dem->pairs.n_pair / dem->n_particle, 1e-9 * rate * step.flops,
+           1e-9 * rate * step.bytes);
     dem_free(dem);
     packing_free(&packing);
     return 0;
@@ -263,14 +293,14 @@ int main(int argc, char **argv)
             struct dem *dem = build(&packing, threads);
             dem->sweep = (w ? pair_sweeps_wide : pair_sweeps_narrow)[dem->features];
             const double rate = particle_steps(dem, 5);
-            const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
-            const double flops = grain_flops + pairs * (pair_flops + 2 * slot_flops);
-            const double bytes = grain_bytes + pairs * (pair_bytes + 2 * slot_bytes);
+            const struct cost step = cost_of_step(dem);
             char name[32];
             snprintf(name, sizeof name, "%dx%dx%d", size[s][0], size[s][1], size[s][2]);
             printf("%-10s %8d %8d %5d %10.2f %9.0f %9.0f %8.0f%% %9.1f\n", name,
-                   dem->n_particle, dem->pairs.n_pair, w ? 8 : 4, rate / 1e6, flops,
-                   bytes, 100 * flops * rate / (threads * peak[w]), bytes * rate / 1e9);
+                   dem->n_particle, dem->pairs.n_pair, w ? 8 : 4, rate / 1e6,
+                   step.flops, step.bytes,
+                   100 * step.flops * rate / (threads * peak[w]),
+                   step.bytes * rate / 1e9);
             dem_free(dem);
         }
         packing_free(&packing);

@@ -743,6 +743,48 @@ scene("a spiral has no hole",
       "method=inward_spiral upper=[1,1,1] radius=0.1 domain.cut.shape=sphere "
       "domain.cut.radius=0.1",
       "pack.domain.cut.shape: must be none for inward_spiral")
+few = "method=deposition count=100"
+dense = "method=radius_expansion count=100 periodic=[true,true,true]"
+scene("grains that fall need a count or a box", "method=deposition",
+      "pack.count: must be given, or pack.upper: the box to fill")
+scene("they need a floor", f"{few} periodic=[true,true,true]",
+      "pack.periodic: must be false along z for deposition: grains need a floor")
+scene("they settle and nothing else", f"{few} target=porosity target_value=0.4",
+      "pack.target: must be settled for this method, or, for explosive_repulsion, porosity")
+scene("gravity upwards is refused", f"{few} dynamics.gravity=-9.81",
+      r"pack.dynamics.gravity: must be > 0 m/s2, got -9.81\d*")
+scene("grains too stiff to fall in time are refused at once", f"{few} dynamics.stiffness=1e150",
+      r"falling \S+ m takes \S+ cycles of \S+ s, and pack.dynamics.most_cycles = 3000000 "
+      r"\(.stiffness, .overlap, .gravity\)", status=UNSTABLE)
+scene("a time step past stability is refused at once", f"{few} dynamics.time_step_safety=1",
+      r"time step \S+ s is past the stability limit of \S+ s: time_step_safety must be below "
+      r"\S+, got 1", status=UNSTABLE)
+for words in [f"{few} dynamics.most_cycles=4000", f"{dense} dynamics.most_cycles=1",
+              "method=explosive_repulsion count=100 dynamics.most_cycles=1"]:
+    scene(f"giving up is said: {words}", words,
+          r".*unbalanced ratio .*", status=UNSTABLE)
+scene("an extra layer above no top is refused before grains move",
+      f"{dense} extra_layer=true",
+      "pack.extra_layer: must be false where there is no top face")
+for words, line in [
+        ("target=porosity", "must be given, for this target"),
+        ("target=porosity target_value=1", "must be below 1 for a porosity, got 1"),
+        ("target_value=0.3", "must be null where pack.target is settled"),
+        ("target=coordination target_value=20",
+         "must be below 14.9 contacts a grain, got 20"),
+        ("target=coordination target_value=6 dimensions=2",
+         "must be below 6 contacts a grain, got 6"),
+        ("target=pressure target_value=1e6 dynamics.stiffness=1e-3",
+         "must be at most 100 Pa for pack.dynamics.stiffness: grains would overlap by a "
+         r"tenth, got 1e\+06")]:
+    scene(f"a target out of reach is refused: {words}", f"{dense} {words}",
+          f"pack.target_value: {line}")
+scene("a box that repeats too soon is refused", f"{dense} upper=[1.1e-6,1e-3,1e-3]",
+      r"pack.upper: must make a box of at least 1.2e-06 m along x, which repeats: 2.4 of the "
+      r"largest diameter, got 1.1e-06")
+scene("a box with walls does not close in", "method=domain_contraction count=100",
+      r"pack.method: domain_contraction closes in a box that repeats along all axes "
+      r"\(pack.periodic\); between walls use radius_expansion")
 scene("an extra layer needs a top", "extra_layer=true periodic=[false,false,true]",
       "pack.extra_layer: must be false where there is no top face")
 for words, line in [
@@ -814,7 +856,7 @@ refused("an unknown --progress is refused", USAGE, ["pack", "--progress=maybe"],
 refused("a second input is refused", USAGE, ["tessellate", "packing", "packing"],
         "packing: too many inputs, takes at most 1")
 refused("a lattice takes no input", USAGE, ["pack", "packing"],
-        "packing: only method=import takes an input")
+        "packing: only method=import and explosive_repulsion take an input")
 refused("inspect takes one input", USAGE, ["inspect", "packing", "packing"],
         "packing: one input only", output=())
 refused("inspect refuses --frames 0", USAGE, ["inspect", "--frames=0", "packing"],

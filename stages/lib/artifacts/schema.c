@@ -8,13 +8,14 @@
 #include <string.h>
 
 extern const char schema_packing[], schema_network[], schema_drying[], schema_forces[],
-    schema_response[], schema_crackstats[];
+    schema_response[], schema_crackstats[], schema_restart[];
 
 static const struct {
     const char *name, *text;
 } schemas[] = {{"packing", schema_packing},   {"network", schema_network},
                {"drying", schema_drying},     {"forces", schema_forces},
-               {"response", schema_response}, {"crackstats", schema_crackstats}};
+               {"response", schema_response}, {"crackstats", schema_crackstats},
+               {"restart", schema_restart}};
 
 static json_t *load(const char *text)
 {

@@ -14,5 +14,6 @@
     schema schema_forces, "schemas/forces.json"
     schema schema_response, "schemas/response.json"
     schema schema_crackstats, "schemas/crackstats.json"
+    schema schema_restart, "schemas/restart.json"
 
     .section .note.GNU-stack, "", @progbits

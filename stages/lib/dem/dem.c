@@ -10,35 +10,18 @@
 void dem_free(struct dem *dem)
 {
     if (!dem) return;
-    void *const owned[] = {dem->material,
-                           dem->pair_friction,
-                           dem->pair_restitution,
-                           dem->identity,
-                           dem->number,
-                           dem->start,
-                           dem->place,
-                           dem->motion,
-                           dem->external,
-                           dem->applied,
-                           dem->mobility,
-                           dem->mass,
-                           dem->weight,
-                           dem->material_of,
-                           dem->bond_particle,
-                           dem->bond_radius,
-                           dem->bond_strength[0],
-                           dem->bond_strength[1],
-                           dem->wall,
-                           dem->wall_pair,
-                           dem->wall_offset,
-                           dem->pair_offset,
-                           dem->pair_of,
-                           dem->first_group,
-                           dem->last_group,
-                           dem->sum,
-                           dem->place_at_search,
-                           dem->grain_books,
-                           dem->crack};
+    void *const owned[] = {
+        dem->material,    dem->pair_friction,    dem->pair_restitution,
+        dem->identity,    dem->number,           dem->start,
+        dem->place,       dem->motion,           dem->external,
+        dem->applied,     dem->mobility,         dem->mass,
+        dem->weight,      dem->material_of,      dem->bond_particle,
+        dem->bond_radius, dem->bond_strength[0], dem->bond_strength[1],
+        dem->wall,        dem->wall_pair,        dem->wall_offset,
+        dem->pair_offset, dem->pair_of,          dem->is_late,
+        dem->late,        dem->first_group,      dem->last_group,
+        dem->sum,         dem->place_at_search,  dem->grain_books,
+        dem->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free_pairs(&dem->pairs);
@@ -107,6 +90,11 @@ static int first_unfinished(const struct dem *dem, int group)
     return low;
 }
 
+static int smaller(int a, int b)
+{
+    return a < b ? a : b;
+}
+
 struct outcome {
     int n_broken;
     struct pace pace;
@@ -128,39 +116,48 @@ static struct outcome sweep_share(struct dem *dem, int begin, int end)
         const int next = block + BLOCK < end ? block + BLOCK : end;
         outcome.n_broken += dem->sweep(dem, block, next);
         const int finished = first_unfinished(dem, next);
-        add_pace(&outcome, move_grains(dem, grain, finished, begin, false));
+        add_pace(&outcome, move_grains(dem, grain, finished));
         grain = finished;
     }
     return outcome;
 }
 
-// Shares of equal size; then the grains that two of them have to do with.
-static struct outcome sweep_shares(struct dem *dem, int threads)
+// Shares of equal size; then, when all are done, as much of the late grains each.
+static struct outcome sweep_shares(struct dem *dem, int n_share)
 {
     const int n = dem->pairs.n_group, share = groups_in_share(dem);
-    struct outcome *part = NEW_ARRAY(struct outcome, threads);
-#pragma omp parallel for num_threads(threads) schedule(static, 1)
-    for (int t = 0; t < threads; t++) {
-        const int begin = t * share < n ? t * share : n;
-        part[t] = sweep_share(dem, begin, begin + share < n ? begin + share : n);
+    const int n_late = dem->n_late, late_share = (n_late + n_share - 1) / n_share;
+    struct outcome total = {0, {0, true}};
+#pragma omp parallel num_threads(n_share)
+    {
+        struct outcome mine = {0, {0, true}};
+#pragma omp for schedule(static, 1)
+        for (int t = 0; t < n_share; t++) {
+            const int begin = smaller(t * share, n);
+            const struct outcome part =
+                sweep_share(dem, begin, smaller(begin + share, n));
+            mine.n_broken += part.n_broken;
+            add_pace(&mine, part.pace);
+        }
+#pragma omp for schedule(static, 1) nowait
+        for (int t = 0; t < n_share; t++) {
+            const int begin = smaller(t * late_share, n_late);
+            const int end = smaller(begin + late_share, n_late);
+            add_pace(&mine, move_late_grains(dem, begin, end));
+        }
+#pragma omp critical
+        { // sums of integers and maxima: in any order the same
+            total.n_broken += mine.n_broken;
+            add_pace(&total, mine.pace);
+        }
     }
-    struct outcome total = part[0];
-    for (int t = 1; t < threads && t * share < n; t++) {
-        const int begin = t * share, end = begin + share < n ? begin + share : n;
-        total.n_broken += part[t].n_broken;
-        add_pace(&total, part[t].pace);
-        add_pace(&total, move_grains(dem, first_unfinished(dem, begin),
-                                     first_unfinished(dem, end), begin, true));
-    }
-    free(part);
     return total;
 }
 
 static struct outcome sweep(struct dem *dem)
 {
     const int n = dem->pairs.n_group;
-    if (n == 0)
-        return (struct outcome){0, move_grains(dem, 0, dem->n_particle, 0, false)};
+    if (n == 0) return (struct outcome){0, move_grains(dem, 0, dem->n_particle)};
     return dem->n_share > 1 ? sweep_shares(dem, dem->n_share) : sweep_share(dem, 0, n);
 }
 

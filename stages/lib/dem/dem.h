@@ -220,7 +220,8 @@ double dem_unbalanced_ratio(const struct dem *dem);
 struct dem_energy dem_energy(const struct dem *dem);
 struct dem_momentum dem_momentum(const struct dem *dem);
 
-// How grains touch each other, walls apart, in the last cycle. O(pairs).
+// How grains touch each other, in the last cycle, and the stress that they and walls
+// put on each other. O(pairs).
 struct dem_census {
     int contacts;
     double mean_overlap, largest_overlap; // over the mean radius
@@ -268,6 +269,15 @@ struct dem_array {
 // A new list of *COUNT arrays, to be freed with dem_free_arrays.
 struct dem_array *dem_save(const struct dem *dem, int *count);
 void dem_free_arrays(struct dem_array *array, int count);
+// The one of that name, or NULL.
+const struct dem_array *dem_find_array(const struct dem_array *array, int count,
+                                       const char *name);
+size_t dem_number_size(enum dem_array_type type); // bytes
+// Whether ARRAY, which may be NULL, is of TYPE and has COUNT numbers from LEAST to
+// MOST.
+enum status dem_check_array(const struct dem_array *array, const char *name,
+                            enum dem_array_type type, int64_t count, double least,
+                            double most, struct reason *reason);
 // STATUS_BAD_DATA: arrays that are not those of such an engine; the engine must then be
 // freed.
 enum status dem_restore(struct dem *dem, const struct dem_array *array, int count,

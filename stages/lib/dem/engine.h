@@ -169,6 +169,13 @@ struct units {
 
 // The sweep over groups BEGIN..END-1; how many bonds broke.
 typedef int pair_sweep(const struct dem *dem, int begin, int end);
+// The sets of features that can occur: bonds always turn, contact bonds are linear.
+#define EACH_SET(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(9) DO(13)
+#define EACH_PARALLEL_BOND_SET(DO) DO(17) DO(19) DO(21) DO(23)
+#define DECLARE(features) pair_sweep sweep_narrow_##features, sweep_wide_##features;
+EACH_SET(DECLARE)
+EACH_PARALLEL_BOND_SET(DECLARE)
+#undef DECLARE
 extern pair_sweep *const pair_sweeps_narrow[FEATURE_SETS];
 extern pair_sweep *const pair_sweeps_wide[FEATURE_SETS];
 
@@ -228,6 +235,9 @@ struct dem {
     int *first_group;            // (n_particle) with a pair of the grain
     int *last_group;             // (n_particle) with a pair whose first is <= the grain
     int n_share;                 // of the groups, for as many threads
+    uint8_t *is_late;            // (n_particle)
+    int n_late;
+    int32_t *late; // (n_late)
     // (n_particle + n_share) rows of 4 or, if grains turn, 8: force and moment; 0
     // between cycles. The last n_share take what is of no use, one for each share.
     double *sum;
@@ -248,11 +258,29 @@ struct dem {
     struct dem_crack *crack;
 };
 
+// Nothing in the setup that cannot be [check_setup.c].
+enum status check_setup(const struct dem_setup *setup, struct reason *reason);
+
+// Material KIND of the setup, 0 the first.
+static inline const struct dem_material *material(const struct dem_setup *setup,
+                                                  int kind)
+{
+    return kind == 0 ? &setup->material : &setup->other[kind - 1];
+}
+
+static inline bool has_direction(enum dem_wall_shape shape)
+{
+    return shape == DEM_PLANE || shape == DEM_CYLINDER || shape == DEM_RING;
+}
+
 // COUNT zeroed elements of SIZE bytes on a cache line, to be freed with free().
 void *allocate_aligned(size_t count, size_t size);
 
 // Seeks the pairs anew, with the history of those that stay [neighbours.c].
 void find_pairs(struct dem *dem);
+// Makes these the pairs, sorted, with all that is told from them; takes over both
+// arrays. Those that were there before keep their history.
+void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
 // Seeks them if a grain may have moved further than half the skin.
 void keep_pairs(struct dem *dem);
 // Adds the losses of all pairs to the books and clears them.
@@ -273,6 +301,9 @@ void set_pair_law(struct dem *dem, int pair);
 
 // Numbers the grains along a curve, pairs and bonds too [order.c].
 void renumber_grains(struct dem *dem);
+// Numbers them so that number k is grain IDENTITY[k] of the packing, each once; what
+// pairs point to is left to whoever makes them anew.
+void number_grains(struct dem *dem, const int32_t *identity);
 
 // What two grains, or a grain and a wall (-1: rigid), do to each other [materials.c].
 struct contact_law pair_law(const struct dem *dem, int i, int j);
@@ -285,6 +316,7 @@ void set_external(struct dem *dem);
 
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);
+void list_walls_of_grains(struct dem *dem); // sets wall_offset
 void sweep_walls(struct dem *dem);
 void move_walls(struct dem *dem);
 // How far any wall has moved since the pairs were sought: as with grains, not more than
@@ -313,9 +345,10 @@ struct pace {
     bool sound;
 };
 
-// Moves, of the grains BEGIN..END-1, those with a pair in a group before FROM_GROUP if
-// LATE, the others if not [grains.c].
-struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late);
+// Moves the grains BEGIN..END-1 except for those that are late, and of those the ones
+// that are listed there [grains.c].
+struct pace move_grains(struct dem *dem, int begin, int end);
+struct pace move_late_grains(struct dem *dem, int begin, int end);
 
 // Force and moment on a grain in the last cycle, from outside too; of grains that are
 // not late only if loads were kept.

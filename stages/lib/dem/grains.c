@@ -73,9 +73,10 @@ struct motion load_on_grain(const struct dem *dem, int particle)
 INLINE quad damped(quad load, quad motion, double share)
 {
     const quad power = load * motion;
-    const quad zero = {0};
-    // Comparisons give -1 where they hold.
-    const quad sign = __builtin_convertvector((power < zero) - (power > zero), quad);
+    const quad zero = {0}, one = zero + 1;
+    typedef int64_t mask __attribute__((vector_size(32)));
+    const quad sign =
+        (quad)((mask)one & (power > zero)) - (quad)((mask)one & (power < zero));
     return load - share * (sign * load);
 }
 
@@ -95,16 +96,16 @@ static void keep_books(const struct dem *dem, int i, const struct load *sum,
     dem->grain_books[i][1] += dem->time_step * sum_of(taken);
 }
 
-INLINE struct pace move(struct dem *dem, int begin, int end, int from_group, bool late,
-                        bool turns)
+INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool turns)
 {
     const double dt = dem->time_step;
     const double furthest = FURTHEST_STEP / dt, limit = furthest * furthest;
     const double turning = dem->largest_radius * dem->largest_radius;
     const quad zero = {0};
     struct pace pace = {.largest = 0, .sound = true};
-    for (int i = begin; i < end; i++) {
-        if ((dem->first_group[i] < from_group) != late) continue;
+    for (int k = begin; k < end; k++) {
+        const int i = late ? dem->late[k] : k;
+        if (!late && dem->is_late[i]) continue;
         const struct load sum = late ? add_up(dem, i, turns) : take_sum(dem, i, turns);
         quad *velocity = (quad *)dem->motion[i].linear;
         quad *spin = (quad *)dem->motion[i].angular;
@@ -128,9 +129,14 @@ INLINE struct pace move(struct dem *dem, int begin, int end, int from_group, boo
     return pace;
 }
 
-struct pace move_grains(struct dem *dem, int begin, int end, int from_group, bool late)
+struct pace move_grains(struct dem *dem, int begin, int end)
 {
-    return dem->features & FEATURE_TURN
-               ? move(dem, begin, end, from_group, late, true)
-               : move(dem, begin, end, from_group, late, false);
+    return dem->features & FEATURE_TURN ? move(dem, begin, end, false, true)
+                                        : move(dem, begin, end, false, false);
+}
+
+struct pace move_late_grains(struct dem *dem, int begin, int end)
+{
+    return dem->features & FEATURE_TURN ? move(dem, begin, end, true, true)
+                                        : move(dem, begin, end, true, false);
 }

@@ -254,20 +254,24 @@ static void list_pairs_of_grains(struct dem *dem)
     free(next);
 }
 
-// Whether groups of another share than the one that finishes a grain have to do with
-// it.
-static bool is_late(const struct dem *dem, int particle)
+// Late are those with which groups of another share than the one that finishes them
+// have to do.
+static void find_late_grains(struct dem *dem)
 {
     const int share = groups_in_share(dem);
-    return dem->last_group[particle] >= 0 &&
-           dem->first_group[particle] / share < dem->last_group[particle] / share;
+    dem->n_late = 0;
+    for (int i = 0; i < dem->n_particle; i++) {
+        dem->is_late[i] = dem->last_group[i] >= 0 &&
+                          dem->first_group[i] / share < dem->last_group[i] / share;
+        if (dem->is_late[i]) dem->late[dem->n_late++] = i;
+    }
 }
 
 // Each grain has the row of its number, those that are late or not there the spare row
 // of the share.
 static int32_t sum_of(const struct dem *dem, int particle, int group)
 {
-    const bool late = particle < dem->n_particle && is_late(dem, particle);
+    const bool late = particle < dem->n_particle && dem->is_late[particle];
     if (late) dem->pairs.kept[group] = true;
     return late || particle == dem->n_particle
                ? dem->n_particle + group / groups_in_share(dem)
@@ -278,6 +282,7 @@ static void assign_sums(struct dem *dem)
 {
     const bool is_large = dem->pairs.n_pair > LEAST_TO_SHARE;
     dem->n_share = is_large ? dem->threads : 1;
+    find_late_grains(dem);
     for (int k = 0; k < dem->pairs.n_group; k++) {
         const struct pair_group *group = &dem->pairs.group[k];
         struct sum_group *sum = &dem->pairs.sum[k];
@@ -362,38 +367,63 @@ void close_pair_books(struct dem *dem)
     memset(dem->pairs.loss, 0, (size_t)dem->pairs.n_group * sizeof *dem->pairs.loss);
 }
 
-// As many cycles between searches as make sweeping and searching together cheapest: a
-// search costs as much as some 75 pairs a grain, the next layer of the skin holds about
-// 4 pairs a grain for each radius of depth, and a skin lasts in proportion to its
-// depth. No clock is asked, so that every run does the same.
+// A search costs as much as sweeping some 75 pairs a grain, and the next layer of the
+// skin holds about 4 pairs a grain for each radius of depth.
+static const double search_over_pairs = 75.0 / 4;
+
+static double cycles_since_search(const struct dem *dem)
+{
+    return (double)(dem->cycle - dem->search_cycle);
+}
+
+// The depth that makes sweeping and searching together cheapest if grains go on as fast
+// as they did since the last search. No clock is asked, so that every run does the
+// same.
+static double best_skin(const struct dem *dem)
+{
+    const double deepest = 0.6, shallowest = 0.05;
+    const double rate = 2 * dem->travelled / cycles_since_search(dem);
+    return fmin(fmax(sqrt(search_over_pairs * rate), shallowest), deepest);
+}
+
+// Whether the pairs that the best skin would spare in as many cycles again cost more
+// than a search now.
+static bool skin_is_too_deep(const struct dem *dem)
+{
+    const double cycles = cycles_since_search(dem);
+    return dem->n_bond == 0 && cycles > 0 &&
+           cycles * (dem->skin - best_skin(dem)) > search_over_pairs;
+}
+
 static void tune_skin(struct dem *dem)
 {
-    const double search_over_pairs = 75.0 / 4;
-    const double deepest = 0.6, shallowest = 0.05;
-    const double cycles = (double)(dem->cycle - dem->search_cycle);
-    if (cycles <= 0 || dem->n_bond > 0) return;
-    const double best = sqrt(search_over_pairs * dem->skin / cycles);
-    double skin = sqrt(dem->skin * best); // no sudden turns
-    skin = fmin(fmax(skin, shallowest), deepest);
+    if (cycles_since_search(dem) <= 0 || dem->n_bond > 0) return;
+    const double best = best_skin(dem);
+    double skin = fmin(best, sqrt(dem->skin * best)); // deeper in small steps only
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] > 0)
             skin = fmin(skin, 0.5 * dem->period[axis] - 2 * dem->largest_radius);
     dem->skin = fmax(skin, 1e-3);
 }
 
+void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond)
+{
+    struct pair_list old = dem->pairs;
+    new_pairs(dem, n_pair, particle, bond);
+    fill_pairs(dem, &old);
+    free_pairs(&old);
+    list_pairs_of_grains(dem);
+    assign_groups(dem);
+    assign_sums(dem);
+}
+
 void find_pairs(struct dem *dem)
 {
     tune_skin(dem);
     close_pair_books(dem);
-    struct pair_list old = dem->pairs;
     const struct candidates found = seek(dem);
-    new_pairs(dem, found.count, found.particle, found.bond);
-    fill_pairs(dem, &old);
-    free_pairs(&old);
+    take_pairs(dem, found.count, found.particle, found.bond);
     find_wall_pairs(dem);
-    list_pairs_of_grains(dem);
-    assign_groups(dem);
-    assign_sums(dem);
     for (int i = 0; i < dem->n_particle; i++)
         dem->place_at_search[i] = as_vector(dem->place[i].displacement);
     dem->travelled = dem->closed_in = 0;
@@ -403,7 +433,8 @@ void find_pairs(struct dem *dem)
 void keep_pairs(struct dem *dem)
 {
     double furthest = wall_travel(dem);
-    if (fmax(dem->travelled, furthest) <= 0.5 * dem->skin) return;
+    const bool is_near = fmax(dem->travelled, furthest) <= 0.5 * dem->skin;
+    if (is_near && !skin_is_too_deep(dem)) return;
     for (int i = 0; i < dem->n_particle; i++)
         furthest = fmax(furthest, distance(as_vector(dem->place[i].displacement),
                                            dem->place_at_search[i]));
@@ -411,7 +442,7 @@ void keep_pairs(struct dem *dem)
     furthest = fmax(furthest + dem->closed_in, wall_travel(dem));
     dem->travelled = furthest;
     // So near the limit that looking again soon would cost more than a search.
-    if (furthest <= 0.9 * 0.5 * dem->skin) return;
+    if (furthest <= 0.9 * 0.5 * dem->skin && !skin_is_too_deep(dem)) return;
     enum { SEARCHES_IN_ORDER = 64 };
     if (++dem->searches_in_order > SEARCHES_IN_ORDER) renumber_grains(dem);
     find_pairs(dem);

@@ -183,6 +183,15 @@ struct dem_census dem_census(const struct dem *dem)
             census.stress[k / 3][k % 3] +=
                 unit * branch * component(lie.normal, k / 3) * component(force, k % 3);
     }
+    for (int p = 0; p < dem->n_wall_pair; p++) {
+        const struct wall_pair *pair = &dem->wall_pair[p];
+        const struct wall_geometry lie =
+            wall_geometry(dem, pair->particle, pair->wall, places_ahead(dem));
+        for (int k = 0; k < 9; k++)
+            census.stress[k / 3][k % 3] -= unit * lie.arm *
+                                           component(lie.normal, k / 3) *
+                                           component(pair->load, k % 3);
+    }
     if (census.contacts > 0) census.mean_overlap /= census.contacts;
     return census;
 }

@@ -156,12 +156,8 @@ static int by_wall(const void *a, const void *b)
     return order ? order : (p->wall > q->wall) - (p->wall < q->wall);
 }
 
-void renumber_grains(struct dem *dem)
+static void renumber(struct dem *dem, const struct keyed *order)
 {
-    dem->searches_in_order = 0;
-    if (dem->n_particle < LEAST_TO_ORDER) return;
-    close_pair_books(dem);
-    struct keyed *order = along_curve(dem);
     int32_t *new_number = NEW_ARRAY(int32_t, dem->n_particle);
     for (int k = 0; k < dem->n_particle; k++)
         new_number[order[k].grain] = k;
@@ -170,8 +166,28 @@ void renumber_grains(struct dem *dem)
         relabel(dem->bond_particle[b], new_number);
     for (int k = 0; k < dem->n_wall_pair; k++)
         dem->wall_pair[k].particle = new_number[dem->wall_pair[k].particle];
-    qsort(dem->wall_pair, (size_t)dem->n_wall_pair, sizeof *dem->wall_pair, by_wall);
+    if (dem->n_wall_pair > 0)
+        qsort(dem->wall_pair, (size_t)dem->n_wall_pair, sizeof *dem->wall_pair,
+              by_wall);
     reorder_pairs(dem, new_number);
-    free(order);
     free(new_number);
+}
+
+void renumber_grains(struct dem *dem)
+{
+    dem->searches_in_order = 0;
+    if (dem->n_particle < LEAST_TO_ORDER) return;
+    close_pair_books(dem);
+    struct keyed *order = along_curve(dem);
+    renumber(dem, order);
+    free(order);
+}
+
+void number_grains(struct dem *dem, const int32_t *identity)
+{
+    struct keyed *order = NEW_ARRAY(struct keyed, dem->n_particle);
+    for (int k = 0; k < dem->n_particle; k++)
+        order[k].grain = dem->number[identity[k]];
+    renumber(dem, order);
+    free(order);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The forces between LANES pairs at once; included by the files that define LANES (4 or
-// 8) and PAIR_SWEEPS, the name of the table of functions made: one for each set of
-// features that a scene may need, all from the one source below, where FEATURES is a
-// constant. The arithmetic is that of each pair alone, in one order, without fused
-// operations, so every width gives the same bytes.
+// 8), FUSED (0 or 1) and SWEEP_NAME, the names of the functions made: one for each set
+// of features that a scene may need, all from the one source below, where FEATURES is a
+// constant. The arithmetic is that of each pair alone, in one order, fused where it
+// says so and nowhere else, so every width gives the same bytes.
 //
 // The overlap never is the difference of two large numbers. With s0 = x_j - x_i where
 // the grains began, d0 = |s0| and du = u_j - u_i what the displacements add,
@@ -45,6 +45,15 @@ struct lanes3 {
 };
 
 #define INLINE static inline __attribute__((always_inline))
+
+INLINE lanes splat(double a)
+{
+#if LANES == 8
+    return (lanes){a, a, a, a, a, a, a, a};
+#else
+    return (lanes){a, a, a, a};
+#endif
+}
 
 INLINE lanes load(const double *p)
 {
@@ -111,6 +120,29 @@ INLINE struct lanes3 scale3(lanes s, struct lanes3 a)
     return (struct lanes3){s * a.x, s * a.y, s * a.z};
 }
 
+// A B + C. Kernels of parallel bonds round the product too: the numbers published for
+// bonded scenes are theirs. Written out, as compilers do not contract alike.
+INLINE lanes fused(lanes a, lanes b, lanes c)
+{
+#if !FUSED
+    return a * b + c;
+#elif LANES == 8
+    return (lanes)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#else
+    return (lanes)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#endif
+}
+
+INLINE struct lanes3 add_scaled3(struct lanes3 a, lanes s, struct lanes3 b)
+{
+    return (struct lanes3){fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
+}
+
+INLINE struct lanes3 subtract_scaled3(struct lanes3 a, lanes s, struct lanes3 b)
+{
+    return add_scaled3(a, -s, b);
+}
+
 INLINE struct lanes3 only_where3(mask m, struct lanes3 a)
 {
     return (struct lanes3){only_where(m, a.x), only_where(m, a.y), only_where(m, a.z)};
@@ -118,13 +150,13 @@ INLINE struct lanes3 only_where3(mask m, struct lanes3 a)
 
 INLINE lanes dot3(struct lanes3 a, struct lanes3 b)
 {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+    return fused(a.z, b.z, fused(a.y, b.y, a.x * b.x));
 }
 
 INLINE struct lanes3 cross3(struct lanes3 a, struct lanes3 b)
 {
-    return (struct lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                           a.x * b.y - a.y * b.x};
+    return (struct lanes3){fused(a.y, b.z, -(a.z * b.y)), fused(a.z, b.x, -(a.x * b.z)),
+                           fused(a.x, b.y, -(a.y * b.x))};
 }
 
 // Four numbers from each of LANES places, transposed to three vectors and a fourth.
@@ -173,6 +205,13 @@ struct rows {
 INLINE struct rows fetch(const double *p, size_t stride, const int32_t *i)
 {
     return (struct rows){ROWS};
+}
+
+INLINE struct rows add_rows(struct rows a, struct rows b)
+{
+    for (int k = 0; k < 4; k++)
+        a.row[k] += b.row[k];
+    return a;
 }
 
 INLINE struct rows subtract_rows(struct rows a, struct rows b)
@@ -234,8 +273,14 @@ struct turning {
 
 INLINE struct lanes3 turn(struct turning by, struct lanes3 f)
 {
-    const struct lanes3 flat = subtract3(f, scale3(dot3(f, by.normal), by.middle));
-    return add3(scale3(by.shrink, flat), scale3(by.spin, cross3(by.normal, flat)));
+    const struct lanes3 flat = subtract_scaled3(f, dot3(f, by.normal), by.middle);
+    return add_scaled3(scale3(by.shrink, flat), by.spin, cross3(by.normal, flat));
+}
+
+// Whether both grains feel the same moment.
+INLINE bool have_one_arm(unsigned features)
+{
+    return !(features & (FEATURE_OWN | FEATURE_PARALLEL_BOND));
 }
 
 // How pairs lie and move [K 4.7-4.9, 4.15, 4.17].
@@ -248,52 +293,105 @@ struct meeting {
     struct lanes3 turning_apart;  // omega_j - omega_i
 };
 
+// The surfaces' velocity at the contact is that of the centres less rolling x n.
+struct spinning {
+    struct lanes3 sum, rolling;
+    struct lanes3 apart; // omega_j - omega_i
+};
+
+INLINE struct spinning spins_of(const struct meeting *m, const double *spins,
+                                const int32_t *i, const int32_t *j, unsigned features)
+{
+    const struct rows rows_i = fetch(spins, 8, i), rows_j = fetch(spins, 8, j);
+    struct spinning s;
+    if (have_one_arm(features)) {
+        s.sum = transpose(add_rows(rows_i, rows_j)).xyz;
+        s.rolling = scale3(m->first_arm, s.sum);
+        return s;
+    }
+    const struct lanes3 spin_i = transpose(rows_i).xyz, spin_j = transpose(rows_j).xyz;
+    s.sum = add3(spin_i, spin_j);
+    s.rolling = add_scaled3(scale3(m->first_arm, spin_i), m->second_arm, spin_j);
+    s.apart = subtract3(spin_j, spin_i);
+    return s;
+}
+
 // What only grains that turn need.
-INLINE void meet_turning(struct meeting *m, const double *spins, const int32_t *i,
-                         const int32_t *j, struct lanes3 velocity, lanes inverse,
-                         lanes time_step)
+INLINE void meet_turning(struct meeting *m, const struct spinning *spins,
+                         struct lanes3 velocity, lanes inverse, lanes time_step)
 {
     const struct lanes3 n = m->turning.normal;
-    const struct lanes3 spin_i = transpose(fetch(spins, 8, i)).xyz;
-    const struct lanes3 spin_j = transpose(fetch(spins, 8, j)).xyz;
-    const struct lanes3 rolling =
-        add3(scale3(m->first_arm, spin_i), scale3(m->second_arm, spin_j));
-    const struct lanes3 sideways = subtract3(velocity, scale3(m->normal_velocity, n));
-    m->shear_velocity = subtract3(sideways, cross3(rolling, n));
-    m->turning_apart = subtract3(spin_j, spin_i);
-    m->turning.middle = subtract3(n, scale3(0.5 * time_step * inverse, sideways));
-    m->turning.spin = 0.5 * time_step * dot3(add3(spin_i, spin_j), n);
+    const struct lanes3 sideways = subtract_scaled3(velocity, m->normal_velocity, n);
+    m->shear_velocity = subtract3(sideways, cross3(spins->rolling, n));
+    m->turning_apart = spins->apart;
+    m->turning.middle = subtract_scaled3(n, 0.5 * time_step * inverse, sideways);
+    m->turning.spin = 0.5 * time_step * dot3(spins->sum, n);
     m->turning.shrink = 1.0 - 0.5 * m->turning.spin * m->turning.spin;
 }
 
+// 1/d and 1/(d + d0). Dividing takes as long as some thirty multiplications: one
+// division does for both where the bytes may change with it.
+struct inverses {
+    lanes distance, sum;
+};
+
+INLINE struct inverses invert(lanes distance, lanes distance_at_start)
+{
+    const lanes d = distance + 1e-300; // n = 0 if they ever coincide
+    const lanes sum = d + distance_at_start;
+    const lanes both = 1.0 / (d * sum);
+    return (struct inverses){both * sum, both * d};
+}
+
+// How pairs lie.
+struct lie {
+    struct lanes3 separation;
+    lanes inverse; // 1 / d
+    lanes stretch;
+    struct rows place_i, place_j;
+};
+
+INLINE struct lie look(const struct dem *dem, int k, int at)
+{
+    const struct pair_group *g = dem->pairs.group + k;
+    const double *places = (const double *)dem->place;
+    struct lie lie = {.place_i = fetch(places, 4, g->first + at),
+                      .place_j = fetch(places, 4, g->second + at)};
+    const struct lanes3 apart = transpose(subtract_rows(lie.place_j, lie.place_i)).xyz;
+    const struct lanes3 start = load3(g->separation, at);
+    lie.separation = add3(start, apart);
+    const lanes distance = square_root(dot3(lie.separation, lie.separation));
+    const lanes distance_at_start = load(g->distance + at);
+    const lanes grown = dot3(apart, add3(start, lie.separation)); // d^2 - d0^2
+    if (FUSED) {
+        const struct inverses inverses = invert(distance, distance_at_start);
+        lie.inverse = inverses.distance;
+        lie.stretch = grown * inverses.sum;
+    } else {
+        lie.inverse = 1.0 / (distance + 1e-300);
+        lie.stretch = grown / (distance + distance_at_start);
+    }
+    return lie;
+}
+
 INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, int at,
-                           lanes time_step, unsigned features)
+                           const struct lie *lie, lanes time_step, unsigned features)
 {
     const int32_t *i = g->first + at, *j = g->second + at;
-    const double *places = (const double *)dem->place;
     const double *motions = (const double *)dem->motion;
-    const struct rows place_i = fetch(places, 4, i), place_j = fetch(places, 4, j);
-    const struct lanes3 apart = transpose(subtract_rows(place_j, place_i)).xyz;
     const struct lanes3 velocity =
         transpose(subtract_rows(fetch(motions, 8, j), fetch(motions, 8, i))).xyz;
-    const struct lanes3 start = load3(g->separation, at);
-    const struct lanes3 separation = add3(start, apart);
-    const lanes distance = square_root(dot3(separation, separation));
-    const lanes inverse = 1.0 / (distance + 1e-300); // n = 0 if they ever coincide
-
-    struct meeting m;
-    m.turning.normal = scale3(inverse, separation);
-    m.stretch =
-        dot3(apart, add3(start, separation)) / (distance + load(g->distance + at));
+    struct meeting m = {.stretch = lie->stretch};
+    m.turning.normal = scale3(lie->inverse, lie->separation);
     m.overlap = load(g->overlap + at) - m.stretch;
-    const lanes radius =
-        (lanes){0} + dem->place[0].radius; // of all, unless they differ
+    const lanes radius = splat(dem->place[0].radius); // of all, unless they differ
     const bool differ = features & FEATURE_OWN;
-    m.first_arm = (differ ? transpose(place_i).w : radius) - 0.5 * m.overlap;
-    m.second_arm = (differ ? transpose(place_j).w : radius) - 0.5 * m.overlap;
+    m.first_arm = (differ ? transpose(lie->place_i).w : radius) - 0.5 * m.overlap;
+    m.second_arm = (differ ? transpose(lie->place_j).w : radius) - 0.5 * m.overlap;
     m.normal_velocity = dot3(velocity, m.turning.normal);
-    if (features & FEATURE_TURN)
-        meet_turning(&m, motions + 4, i, j, velocity, inverse, time_step);
+    if (!(features & FEATURE_TURN)) return m;
+    const struct spinning spins = spins_of(&m, motions + 4, i, j, features);
+    meet_turning(&m, &spins, velocity, lie->inverse, time_step);
     return m;
 }
 
@@ -309,20 +407,19 @@ struct law {
 INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meeting *m,
                          mask touch, lanes time_step, unsigned features)
 {
-    const lanes zero = {0};
     const struct contact_law *all = &dem->law;
     const struct own_group *own = dem->pairs.own + k;
     const bool differ = features & FEATURE_OWN;
     const lanes stiffness =
-        differ ? load(own->normal_stiffness + at) : zero + all->normal_stiffness;
+        differ ? load(own->normal_stiffness + at) : splat(all->normal_stiffness);
     struct law law = {.shear_stiffness = differ ? load(own->shear_stiffness + at)
-                                                : zero + all->shear_stiffness,
+                                                : splat(all->shear_stiffness),
                       .normal_damping = differ ? load(own->normal_damping + at)
-                                               : zero + all->normal_damping,
+                                               : splat(all->normal_damping),
                       .shear_damping = differ ? load(own->shear_damping + at)
-                                              : zero + all->shear_damping,
+                                              : splat(all->shear_damping),
                       .friction =
-                          differ ? load(own->friction + at) : zero + all->friction};
+                          differ ? load(own->friction + at) : splat(all->friction)};
     if (!(features & FEATURE_HERTZ)) {
         law.spring = only_where(touch, stiffness * m->overlap);
         law.shear_stiffness_before = law.shear_stiffness;
@@ -339,8 +436,8 @@ INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meet
     law.normal_damping *= fourth;
     law.shear_damping *= fourth;
     const mask unloads = was & (overlap < before);
-    law.forget = choose(unloads, square_root(overlap / choose(was, before, zero + 1.0)),
-                        zero + 1.0);
+    law.forget =
+        choose(unloads, square_root(overlap / choose(was, before, splat(1))), splat(1));
     return law;
 }
 
@@ -361,14 +458,13 @@ INLINE void book(double *account, mask where, lanes amount)
 INLINE lanes spring_loss(struct lanes3 before, lanes stiffness_before,
                          struct lanes3 after, lanes stiffness)
 {
-    const lanes zero = {0};
     const lanes had =
         only_where(stiffness_before > 0.0,
                    dot3(before, before) /
-                       choose(stiffness_before > 0.0, stiffness_before, zero + 1.0));
+                       choose(stiffness_before > 0.0, stiffness_before, splat(1)));
     const lanes has =
         only_where(stiffness > 0.0,
-                   dot3(after, after) / choose(stiffness > 0.0, stiffness, zero + 1.0));
+                   dot3(after, after) / choose(stiffness > 0.0, stiffness, splat(1)));
     return 0.5 * (had - has);
 }
 
@@ -379,15 +475,14 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
                                   mask touch, mask held, lanes time_step,
                                   unsigned features, mask *slips)
 {
-    const lanes zero = {0};
     double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
     const mask acts = features & FEATURE_CONTACT_BOND ? touch | held : touch;
     const struct lanes3 turned = turn(m->turning, load3(history, at));
     struct lanes3 kept = only_where3(acts, turned);
     if (features & FEATURE_HERTZ) kept = scale3(law->forget, kept);
-    const struct lanes3 slide =
-        scale3(law->shear_stiffness * time_step, m->shear_velocity);
-    const struct lanes3 trial = only_where3(acts, subtract3(kept, slide));
+    const struct lanes3 trial =
+        only_where3(acts, subtract_scaled3(kept, law->shear_stiffness * time_step,
+                                           m->shear_velocity));
 
     const lanes limit = law->friction * law->spring;
     const lanes square = dot3(trial, trial);
@@ -395,8 +490,8 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
     *slips = square > limit * limit;
     if (features & FEATURE_CONTACT_BOND) *slips &= ~held;
     if (any(*slips)) {
-        const lanes factor = limit / square_root(choose(*slips, square, zero + 1.0));
-        shear = scale3(choose(*slips, factor, zero + 1.0), trial);
+        const lanes factor = limit / square_root(choose(*slips, square, splat(1)));
+        shear = scale3(choose(*slips, factor, splat(1)), trial);
     }
     store3(history, at, shear);
     if (dem->pairs.loss) { // what a contact forgot, and what slip took: the mean force
@@ -404,7 +499,7 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
         const lanes now = law->shear_stiffness, before = law->shear_stiffness_before;
         const lanes slip = dot3(add3(kept, shear), subtract3(trial, shear));
         const lanes taken =
-            only_where(now > 0.0, 0.5 * slip / choose(now > 0.0, now, zero + 1.0));
+            only_where(now > 0.0, 0.5 * slip / choose(now > 0.0, now, splat(1)));
         book(dem->pairs.loss[k].slip + at, acts | ~acts,
              spring_loss(turned, before, kept, now) + taken);
     }
@@ -429,7 +524,7 @@ INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
         shear_spring(dem, k, at, m, law, touch, held, time_step, features, &slips);
     const mask sticks = held | (touch & ~slips);
     const lanes damping = only_where(sticks, law->shear_damping);
-    load.shear = subtract3(shear, scale3(damping, m->shear_velocity));
+    load.shear = subtract_scaled3(shear, damping, m->shear_velocity);
     if (dem->pairs.loss)
         book(dem->pairs.loss[k].dashpots + at, sticks,
              damping * dot3(m->shear_velocity, m->shear_velocity) * time_step);
@@ -541,7 +636,7 @@ INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, in
     struct bond_group *g = dem->pairs.bonds + k;
     const lanes stiffness = features & FEATURE_OWN
                                 ? load(dem->pairs.own[k].normal_stiffness + at)
-                                : zero + dem->law.normal_stiffness;
+                                : splat(dem->law.normal_stiffness);
     const lanes spring = stiffness * m->overlap;
     struct lanes3 shear = turn(m->turning, load3(dem->pairs.shear[k].force, at));
     shear =
@@ -611,6 +706,27 @@ INLINE void add_eight(double *sum, const int32_t *first, const int32_t *second,
     }
 }
 
+// The same with the same moment on both.
+INLINE void add_opposite(double *sum, const int32_t *first, const int32_t *second,
+                         struct rows force, struct rows moment)
+{
+#if LANES == 8
+    const lanes sign = {1, 1, 1, 1, -1, -1, -1, -1};
+#pragma GCC unroll 8
+    for (int k = 0; k < LANES; k++) {
+        const lanes both = both_of(force, moment, k);
+        *(lanes *)(sum + 8 * (size_t)first[k]) -= both;
+        double *of_second = sum + 8 * (size_t)second[k];
+        store(of_second, fused(sign, both, load(of_second)));
+    }
+#else
+    struct rows opposite;
+    for (int k = 0; k < 4; k++)
+        opposite.row[k] = -moment.row[k];
+    add_eight(sum, first, second, force, moment, opposite);
+#endif
+}
+
 // Minus F_ij and minus what it turns for the first grain, the opposite force for the
 // second [K 4.18, 4.21, 4.43, 4.44].
 INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting *m,
@@ -620,8 +736,8 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
     const int32_t *first = dem->pairs.sum[k].first + at;
     const int32_t *second = dem->pairs.sum[k].second + at;
     const bool turns = features & FEATURE_TURN;
-    const struct lanes3 along = scale3(pair->normal, n);
-    const struct lanes3 force = turns ? add3(along, pair->shear) : along;
+    const struct lanes3 force =
+        turns ? add_scaled3(pair->shear, pair->normal, n) : scale3(pair->normal, n);
     if (keep) store3(dem->pairs.load[k].force, at, force);
     if (!turns) {
         add_four(dem->sum, first, second, rows_of(force), rows_of(force));
@@ -635,19 +751,22 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
         on_first = add3(on_first, pair->moment);
         on_second = add3(pair->moment, on_second);
     }
-    add_eight(dem->sum, first, second, rows_of(force), rows_of(on_first),
-              rows_of(on_second));
+    if (have_one_arm(features))
+        add_opposite(dem->sum, first, second, rows_of(force), rows_of(on_first));
+    else
+        add_eight(dem->sum, first, second, rows_of(force), rows_of(on_first),
+                  rows_of(on_second));
     if (!keep) return;
     store3(dem->pairs.moment[k].first, at, on_first);
     store3(dem->pairs.moment[k].second, at, on_second);
 }
 
-INLINE int sweep_lanes(const struct dem *dem, int k, int at, lanes time_step, int *busy,
-                       unsigned features)
+INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *lie,
+                       lanes time_step, int *busy, unsigned features)
 {
     const lanes zero = {0};
     const struct pair_group *g = dem->pairs.group + k;
-    const struct meeting m = meet(dem, g, at, time_step, features);
+    const struct meeting m = meet(dem, g, at, lie, time_step, features);
     const mask touch = m.overlap >= 0.0;
     mask held = (mask)zero;
     if (features & FEATURE_BOND)
@@ -678,26 +797,31 @@ INLINE int sweep_groups(const struct dem *dem, int begin, int end, unsigned feat
     // Velocities given at the start have displaced nothing yet.
     const lanes time_step = zero + (dem->cycle > 0 ? dem->time_step : 0);
     int n_broken = 0;
+    struct lie next = look(dem, begin, 0);
     for (int k = begin; k < end; k++) {
         int busy = 0;
-        for (int at = 0; at < PAIRS_IN_GROUP; at += LANES)
-            n_broken += sweep_lanes(dem, k, at, time_step, &busy, features);
+        for (int at = 0; at < PAIRS_IN_GROUP; at += LANES) {
+            // Roots and quotients take long: while they are on their way for the next
+            // lanes, these are swept.
+            const struct lie lie = next;
+            const bool is_last = at + LANES == PAIRS_IN_GROUP;
+            next =
+                look(dem, is_last && k + 1 < end ? k + 1 : k, is_last ? 0 : at + LANES);
+            n_broken += sweep_lanes(dem, k, at, &lie, time_step, &busy, features);
+        }
         dem->pairs.group[k].idle = !busy;
     }
     return n_broken;
 }
 
 #define SWEEP(features)                                                                \
-    static int sweep_##features(const struct dem *dem, int begin, int end)             \
+    int SWEEP_NAME(features)(const struct dem *dem, int begin, int end)                \
     {                                                                                  \
         return sweep_groups(dem, begin, end, features);                                \
     }
-#define ENTRY(features) [features] = sweep_##features,
 
-// The sets of features that can occur: bonds always turn, contact bonds are linear.
-#define EACH_SET(DO)                                                                   \
-    DO(0)                                                                              \
-    DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(9) DO(13) DO(17) DO(19) DO(21) DO(23)
-
+#if FUSED
 EACH_SET(SWEEP)
-pair_sweep *const PAIR_SWEEPS[FEATURE_SETS] = {EACH_SET(ENTRY)};
+#else
+EACH_PARALLEL_BOND_SET(SWEEP)
+#endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pair sweeps for every processor: 4 pairs at once.
 #define LANES 4
-#define PAIR_SWEEPS pair_sweeps_narrow
+#define FUSED 1
+#define SWEEP_NAME(features) sweep_narrow_##features
 #include "dem/pair_kernel.h"

@@ -12,6 +12,16 @@
 
 // ---- which grains are near ----------------------------------------------------------
 
+void list_walls_of_grains(struct dem *dem)
+{
+    memset(dem->wall_offset, 0,
+           ((size_t)dem->n_particle + 1) * sizeof *dem->wall_offset);
+    for (int k = 0; k < dem->n_wall_pair; k++)
+        dem->wall_offset[dem->wall_pair[k].particle + 1] = k + 1;
+    for (int i = 0; i < dem->n_particle; i++)
+        if (dem->wall_offset[i + 1] == 0) dem->wall_offset[i + 1] = dem->wall_offset[i];
+}
+
 void find_wall_pairs(struct dem *dem)
 {
     struct wall_pair *old = dem->wall_pair;
@@ -40,12 +50,7 @@ void find_wall_pairs(struct dem *dem)
             dem->wall_pair[dem->n_wall_pair++] = pair;
         }
     free(old);
-    memset(dem->wall_offset, 0,
-           ((size_t)dem->n_particle + 1) * sizeof *dem->wall_offset);
-    for (int k = 0; k < dem->n_wall_pair; k++)
-        dem->wall_offset[dem->wall_pair[k].particle + 1] = k + 1;
-    for (int i = 0; i < dem->n_particle; i++)
-        if (dem->wall_offset[i + 1] == 0) dem->wall_offset[i + 1] = dem->wall_offset[i];
+    list_walls_of_grains(dem);
     for (int w = 0; w < dem->n_wall; w++)
         dem->wall[w].displacement_at_search = dem->wall[w].displacement;
 }

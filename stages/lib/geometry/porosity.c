@@ -27,8 +27,7 @@ bool packing_is_flat(const struct packing *packing)
         if (packing->position[i].y != packing->position[0].y) return false;
         largest = fmax(largest, packing->radius[i]);
     }
-    return !packing->periodic[1] &&
-           packing->upper.y - packing->lower.y <= 2 * largest * (1 + 1e-6);
+    return !packing->periodic[1] && packing->upper.y - packing->lower.y < 4 * largest;
 }
 
 // Summed as differences: equal radii have just that mean.

@@ -18,7 +18,15 @@ static const char *const sections[] = {"pack",       "tessellate",     "merge-no
                                        "crackstats", "bridge",         "dem-shear",
                                        "shearstats", "flow",           NULL};
 
-enum { KEY_THREADS = 256, KEY_PROGRESS, KEY_SCHEMA, KEY_PARAMETERS, KEY_REPORT };
+enum {
+    KEY_THREADS = 256,
+    KEY_PROGRESS,
+    KEY_SCHEMA,
+    KEY_PARAMETERS,
+    KEY_REPORT,
+    KEY_CHECKPOINT,
+    KEY_EVERY
+};
 enum { MOST_OPTIONS = 16 };
 
 static const struct argp_option options[] = {
@@ -70,6 +78,15 @@ static int parse_threads(const char *text)
     return (int)threads;
 }
 
+static double parse_every(const char *text)
+{
+    char *end;
+    const double every = strtod(text, &end);
+    if (*end || end == text || !(every >= 0 && every <= 1e9))
+        die(STATUS_USAGE, "--checkpoint-every: must be from 0 to 1e9, got %s", text);
+    return every;
+}
+
 static enum progress_mode parse_progress(const char *text)
 {
     if (!strcmp(text, "auto")) return PROGRESS_AUTO;
@@ -116,6 +133,12 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         exit(STATUS_OK);
     case KEY_REPORT:
         invocation->report = argument;
+        return 0;
+    case KEY_CHECKPOINT:
+        invocation->checkpoint = argument;
+        return 0;
+    case KEY_EVERY:
+        invocation->checkpoint_every = parse_every(argument);
         return 0;
     case KEY_THREADS:
         invocation->threads = parse_threads(argument);
@@ -229,33 +252,62 @@ static void fill(const struct command_line *line, void *parameters)
     json_decref(section);
 }
 
+static struct argp_option *add_option(struct argp_option *end, const char *name,
+                                      int key, const char *argument, const char *text)
+{
+    end[1] = *end;
+    *end = (struct argp_option){name, key, argument, 0, text, 0};
+    return end + 1;
+}
+
 // The options of every stage, and its own.
 static void list_options(const struct stage *stage, struct argp_option *list)
 {
-    static_assert(sizeof options < MOST_OPTIONS * sizeof *options, "room for one more");
+    static_assert(sizeof options <= (MOST_OPTIONS - 3) * sizeof *options,
+                  "room for three more");
     memcpy(list, options, sizeof options);
-    if (!stage->reports) return;
     struct argp_option *end = list;
     while (end->name)
         end++;
-    end[1] = *end;
-    *end = (struct argp_option){"report", KEY_REPORT, "FILE", 0, stage->reports, 0};
+    if (stage->reports)
+        end = add_option(end, "report", KEY_REPORT, "FILE", stage->reports);
+    if (!stage->checkpoints) return;
+    end = add_option(end, "checkpoint", KEY_CHECKPOINT, "FILE",
+                     "Keep the state there now and then, and when stopped by SIGTERM, "
+                     "SIGINT or SIGHUP; go on from it if it is there; remove it at the "
+                     "end. Results do not depend on it");
+    add_option(end, "checkpoint-every", KEY_EVERY, "SECONDS",
+               "Time between two checkpoints [600]");
 }
 
-// Two outputs need two places.
-static void check_report(const struct invocation *invocation)
+// Another output, of OPTION, needs another place.
+static void check_other(const struct invocation *invocation, const char *option,
+                        const char *path)
 {
-    if (!invocation->report) return;
-    if (!strcmp(invocation->report, invocation->output))
-        die(STATUS_USAGE, "--report %s: is where the output goes: name another file",
-            invocation->report);
-    check_output(invocation->report);
+    if (!path) return;
+    if (!strcmp(path, invocation->output))
+        die(STATUS_USAGE, "%s %s: is where the output goes: name another file", option,
+            path);
+    check_output(path);
+}
+
+static void check_checkpoint(const struct invocation *invocation)
+{
+    const char *path = invocation->checkpoint;
+    if (!path) return;
+    if (!strcmp(path, "-"))
+        die(STATUS_USAGE, "--checkpoint: must be a file, not standard output");
+    if (invocation->report && !strcmp(path, invocation->report))
+        die(STATUS_USAGE,
+            "--checkpoint %s: is where the report goes: name another file", path);
+    check_other(invocation, "--checkpoint", path);
 }
 
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
-    struct invocation invocation = {.stage = stage, .output = "-", .threads = 1};
+    struct invocation invocation = {
+        .stage = stage, .output = "-", .checkpoint_every = 600, .threads = 1};
     struct command_line line = {.stage = stage, .invocation = &invocation};
     struct argp_option all[MOST_OPTIONS];
     list_options(stage, all);
@@ -276,7 +328,8 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");
     check_output(invocation.output);
-    check_report(&invocation);
+    check_other(&invocation, "--report", invocation.report);
+    check_checkpoint(&invocation);
     if (stage->reads && !invocation.n_input) add_input(&line, "-");
     return invocation;
 }

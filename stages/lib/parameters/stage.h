@@ -20,6 +20,7 @@ struct stage {
     const struct parameter *parameters;
     const char *notes;   // more for --help; may be NULL
     const char *reports; // what --report FILE writes; NULL: there is no such option
+    bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
 };
 
 // What the user asked for on this call.
@@ -27,8 +28,10 @@ struct invocation {
     const struct stage *stage;
     const char **inputs; // "-" is standard input; one "-" when none was named
     int n_input;
-    const char *output; // "-" is standard output
-    const char *report; // of --report; NULL: not asked for; not "-" when OUTPUT is
+    const char *output;      // "-" is standard output
+    const char *report;      // of --report; NULL: not asked for; not "-" when OUTPUT is
+    const char *checkpoint;  // of --checkpoint; NULL: not asked for
+    double checkpoint_every; // s
     int threads;
     bool quiet;
     enum progress_mode progress;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a replay has to remember besides the engine, as named arrays.
+#ifndef CRAQUELURE_RESUME_H
+#define CRAQUELURE_RESUME_H
+
+#include "dem/keeper.h"
+#include "replay.h"
+
+// Where in the load a replay is.
+struct replay_place {
+    int step;
+    int64_t began; // cycle of the engine when the step began
+};
+
+// A new list, freed by keep_state.
+struct array_list save_response(const struct response *response,
+                                const struct packing *packing, int n_time,
+                                struct replay_place place);
+
+// Fills RESPONSE, as empty as replay begins with, from LIST and the cracks of DEM.
+// STATUS_BAD_DATA: not the list of such a replay.
+enum status restore_response(struct response *response, const struct packing *packing,
+                             const struct load *load, int most_snapshots,
+                             const struct dem *dem, const struct array_list *list,
+                             struct replay_place *place, struct reason *reason);
+
+#endif

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Long runs that may be stopped: the restart artifact (schemas/restart.json), and when
+// it is written. The clock decides on that alone, never on a result.
+#ifndef CRAQUELURE_CHECKPOINT_H
+#define CRAQUELURE_CHECKPOINT_H
+
+#include "artifacts/artifact.h"
+#include "dem/keeper.h"
+
+struct checkpoint {
+    const struct invocation *invocation;
+    json_t *inputs;          // digests, as in the provenance of the output
+    double written;          // s, when the last one was, or the run began
+    struct kept_state begin; // what FILE held
+    struct keeper keeper;    // for the run
+};
+
+// Reads the file of --checkpoint if there is one. From here on SIGTERM,
+// SIGINT and SIGHUP wait until the run asks; a second one ends the program at once.
+// Without
+// --checkpoint does nothing. INPUTS must last as long. Exits 65 when the file is not a
+// whole restart artifact or one of another run, which it then leaves where it is.
+void checkpoint_begin(struct checkpoint *checkpoint,
+                      const struct invocation *invocation, json_t *inputs);
+
+// After the output is written: removes the file.
+void checkpoint_end(struct checkpoint *checkpoint);
+
+#endif

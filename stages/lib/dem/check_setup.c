@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What cannot be, in a setup, and why.
+#include "dem/engine.h"
+
+#include <math.h>
+
+static bool is_finite_vector(struct vector a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
+
+// A number in [LOW, HIGH]; an infinite HIGH itself is not in it unless OR_INFINITE.
+struct quantity {
+    const char *name;
+    double value, low, high;
+    bool above; // > LOW, not >=
+    bool or_infinite;
+};
+
+static enum status check_quantity(const struct quantity *q, struct reason *reason)
+{
+    const bool low = q->above ? q->value > q->low : q->value >= q->low;
+    const bool high = q->value <= q->high && (!isinf(q->value) || q->or_infinite);
+    if (low && high) return STATUS_OK;
+    if (isinf(q->high))
+        return refuse(reason, STATUS_BAD_DATA, "%s must be %s %g, got %g", q->name,
+                      q->above ? ">" : ">=", q->low, q->value);
+    return refuse(reason, STATUS_BAD_DATA, "%s must be in %c%g,%g], got %g", q->name,
+                  q->above ? '(' : '[', q->low, q->high, q->value);
+}
+
+static enum status check_quantities(const struct quantity *q, size_t count,
+                                    struct reason *reason)
+{
+    enum status status = STATUS_OK;
+    for (size_t k = 0; k < count && status == STATUS_OK; k++)
+        status = check_quantity(&q[k], reason);
+    return status;
+}
+#define CHECK(list, reason)                                                            \
+    check_quantities(list, sizeof(list) / sizeof *(list), reason)
+
+static enum status check_material(const struct dem_material *m, enum dem_law law,
+                                  struct reason *reason)
+{
+    const double no_limit = INFINITY;
+    const struct quantity common[] = {
+        {"density", m->density, 0, no_limit, true, false},
+        {"friction", m->friction, 0, no_limit, false, false},
+        {"local damping", m->local_damping, 0, 0x1.fffffffffffffp-1, false, false}};
+    const struct quantity linear[] = {
+        {"normal stiffness", m->normal_stiffness, 0, no_limit, false, false},
+        {"shear stiffness", m->shear_stiffness, 0, no_limit, false, false},
+        {"damping ratio", m->damping_ratio, 0, no_limit, false, false}};
+    const struct quantity timed[] = {
+        {"contact time", m->contact_time, 0, no_limit, true, false},
+        {"restitution", m->restitution, 0, 1, true, false}};
+    const struct quantity hertz[] = {
+        {"Young's modulus", m->young_modulus, 0, no_limit, true, false},
+        {"Poisson's ratio", m->poisson_ratio, 0, 0.5, false, false},
+        {"restitution", m->restitution, 0, 1, true, false}};
+    const enum status status = CHECK(common, reason);
+    if (status != STATUS_OK) return status;
+    return law == DEM_HERTZ   ? CHECK(hertz, reason)
+           : law == DEM_TIMED ? CHECK(timed, reason)
+                              : CHECK(linear, reason);
+}
+
+static enum status check_materials(const struct dem_setup *setup, struct reason *reason)
+{
+    const int n = 1 + setup->n_other;
+    for (int k = 0; k < n; k++) {
+        const enum status status =
+            check_material(material(setup, k), setup->law, reason);
+        if (status != STATUS_OK) return status;
+    }
+    for (int k = 0; k < n * n; k++) {
+        const double friction = setup->pair_friction ? setup->pair_friction[k] : 0;
+        const double rebound = setup->pair_restitution ? setup->pair_restitution[k] : 1;
+        if (!(friction >= 0) || isinf(friction) || !(rebound > 0 && rebound <= 1))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "materials %d and %d: friction must be >= 0 and restitution "
+                          "in (0,1], got %g and %g",
+                          k / n, k % n, friction, rebound);
+    }
+    for (int i = 0; setup->material_of && i < setup->packing->n_particle; i++)
+        if (setup->material_of[i] >= n)
+            return refuse(reason, STATUS_BAD_DATA, "grain %d: no material %d among %d",
+                          i, setup->material_of[i], n);
+    return STATUS_OK;
+}
+
+static enum status check_bonds(const struct dem_setup *setup, struct reason *reason)
+{
+    const struct dem_bond_material *b = &setup->bond;
+    const double no_limit = INFINITY;
+    const struct quantity quantity[] = {
+        {"normal stiffness of bonds", b->normal_stiffness, 0, no_limit, false, false},
+        {"shear stiffness of bonds", b->shear_stiffness, 0, no_limit, false, false},
+        {"normal strength of bonds", b->normal_strength, 0, no_limit, false, true},
+        {"shear strength of bonds", b->shear_strength, 0, no_limit, false, true}};
+    const enum status status = CHECK(quantity, reason);
+    if (status != STATUS_OK || setup->packing->n_bond == 0) return status;
+    if (b->kind == DEM_PARALLEL_BOND &&
+        !(b->radius_fraction > 0 && b->radius_fraction <= 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "radius fraction of bonds must be in (0,1], got %g",
+                      b->radius_fraction);
+    if (b->kind == DEM_CONTACT_BOND && setup->law == DEM_HERTZ)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "contact bonds pull with the contact's springs, and a Hertz "
+                      "contact has none in tension [K 4.2]");
+    for (int k = 0; k < setup->packing->n_bond; k++)
+        if ((setup->normal_strength && !(setup->normal_strength[k] >= 0)) ||
+            (setup->shear_strength && !(setup->shear_strength[k] >= 0)))
+            return refuse(reason, STATUS_BAD_DATA, "bond %d: strengths must be >= 0",
+                          k);
+    return STATUS_OK;
+}
+
+static enum status check_numbers(const struct dem_setup *setup, struct reason *reason)
+{
+    enum status status = check_materials(setup, reason);
+    if (status == STATUS_OK) status = check_bonds(setup, reason);
+    if (status != STATUS_OK) return status;
+    const double no_limit = INFINITY;
+    const struct quantity step[] = {
+        {"time step safety", setup->time_step > 0 ? 1 : setup->time_step_safety, 0,
+         no_limit, true, false},
+        {"time step", setup->time_step, 0, no_limit, false, false},
+        {"largest overlap", setup->largest_overlap, 0, 1, false, false},
+        {"threads", setup->threads, 1, no_limit, false, false}};
+    if (!is_finite_vector(setup->gravity))
+        return refuse(reason, STATUS_BAD_DATA, "gravity is not finite");
+    return CHECK(step, reason);
+}
+
+static enum status check_wall(const struct dem_setup *setup, int w,
+                              struct reason *reason)
+{
+    const struct dem_wall *wall = &setup->wall[w];
+    const enum dem_wall_shape shape = wall->shape;
+    const struct vector edge = wall->half_edge;
+    const bool round = shape != DEM_PLANE && shape != DEM_BLOCK;
+    if (!is_finite_vector(wall->point) ||
+        (has_direction(shape) &&
+         !(is_finite_vector(wall->normal) && norm(wall->normal) > 0)))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: needs a point and a normal that is not zero", w);
+    if ((round && !(wall->radius > 0 && isfinite(wall->radius))) ||
+        (shape == DEM_RING &&
+         !(wall->inner_radius >= 0 && wall->inner_radius < wall->radius)))
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "wall %d: needs a radius > 0 and an inner one below it, got %g and "
+            "%g",
+            w, wall->radius, wall->inner_radius);
+    if (shape == DEM_BLOCK &&
+        !(is_finite_vector(edge) && edge.x > 0 && edge.y > 0 && edge.z > 0))
+        return refuse(reason, STATUS_BAD_DATA, "wall %d: needs half edges > 0", w);
+    if (wall->material < 0 || wall->material > setup->n_other ||
+        (wall->has_friction && !(wall->friction >= 0 && isfinite(wall->friction))))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: no such material (%d) or friction (%g)", w,
+                      wall->material, wall->friction);
+    if (!is_finite_vector(wall->velocity) || !is_finite_vector(wall->spin))
+        return refuse(reason, STATUS_BAD_DATA, "wall %d: its motion is not finite", w);
+    if (wall->servo_force != 0 &&
+        !(wall->servo_force > 0 && isfinite(wall->servo_force) && shape == DEM_PLANE &&
+          wall->servo_largest_speed > 0 && isfinite(wall->servo_largest_speed)))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "wall %d: a servo moves a plane, by a force and a largest speed "
+                      "> 0, got %g and %g",
+                      w, wall->servo_force, wall->servo_largest_speed);
+    return STATUS_OK;
+}
+
+static enum status check_scene(const struct dem_setup *setup, struct reason *reason)
+{
+    const struct packing *packing = setup->packing;
+    for (int i = 0; i < packing->n_particle; i++) {
+        if (!is_finite_vector(packing->position[i]))
+            return refuse(reason, STATUS_BAD_DATA, "grain %d: position is not finite",
+                          i);
+        if (!(packing->radius[i] > 0) || isinf(packing->radius[i]))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "grain %d: radius must be > 0 m, got %g", i,
+                          packing->radius[i]);
+    }
+    for (int b = 0; b < packing->n_bond; b++) {
+        const int32_t *end = packing->bond[b];
+        for (int k = 0; k < 2; k++)
+            if (end[k] < 0 || end[k] >= packing->n_particle)
+                return refuse(reason, STATUS_BAD_DATA, "bond %d: no grain %d among %d",
+                              b, end[k], packing->n_particle);
+        if (end[0] == end[1])
+            return refuse(reason, STATUS_BAD_DATA, "bond %d: joins grain %d to itself",
+                          b, end[0]);
+    }
+    for (int w = 0; w < setup->n_wall; w++) {
+        const enum status status = check_wall(setup, w, reason);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+enum status check_setup(const struct dem_setup *setup, struct reason *reason)
+{
+    const enum status status = check_numbers(setup, reason);
+    return status == STATUS_OK ? check_scene(setup, reason) : status;
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What cannot come out well when grains move, said before they do.
+#include "methods.h"
+
+#include <math.h>
+
+static bool is_compressed(const struct pack_parameters *parameters)
+{
+    return parameters->method == METHOD_RADIUS_EXPANSION ||
+           parameters->method == METHOD_DOMAIN_CONTRACTION;
+}
+
+// Spheres of any sizes that touch have fewer contacts on average than 8 + 4 sqrt 3
+// [Kuperberg & Schramm 1994], discs fewer than 6 (Euler: theirs is a plane graph).
+static enum status check_coordination(const struct pack_parameters *parameters,
+                                      struct reason *reason)
+{
+    const double most = parameters->dimensions == 2 ? 6 : 8 + 4 * sqrt(3);
+    if (parameters->dynamics.value < most) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "pack.target_value: must be below %.3g contacts a grain, got %g",
+                  most, parameters->dynamics.value);
+}
+
+// A pressure that a given stiffness cannot hold without grains in one another.
+static enum status check_pressure(const struct pack_parameters *parameters,
+                                  const struct sizes *sizes, struct reason *reason)
+{
+    const struct dynamics_parameters *how = &parameters->dynamics;
+    const double most = 0.1 * how->stiffness / (4 * sizes->smallest);
+    if (isnan(how->stiffness) || how->value <= most) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "pack.target_value: must be at most %g Pa for "
+                  "pack.dynamics.stiffness: grains would overlap by a tenth, got %g",
+                  most, how->value);
+}
+
+static enum status check_target(const struct pack_parameters *parameters,
+                                const struct sizes *sizes, struct reason *reason)
+{
+    const struct dynamics_parameters *how = &parameters->dynamics;
+    if (how->target == TARGET_SETTLED && !isnan(how->value))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.target_value: must be null where pack.target is settled");
+    if (how->target == TARGET_COORDINATION)
+        return check_coordination(parameters, reason);
+    if (how->target == TARGET_PRESSURE)
+        return check_pressure(parameters, sizes, reason);
+    return STATUS_OK;
+}
+
+// The engine knows one image of each neighbour.
+static enum status check_periods(const struct domain *domain, const struct sizes *sizes,
+                                 struct reason *reason)
+{
+    const double least = 4.8 * sizes->largest;
+    const struct vector edge = subtract(domain->upper, domain->lower);
+    for (int axis = 0; axis < 3; axis++)
+        if (domain->periodic[axis] && component(edge, axis) < least)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "pack.upper: must make a box of at least %g m along %c, "
+                          "which repeats: 2.4 of the largest diameter, got %g",
+                          least, "xyz"[axis], component(edge, axis));
+    return STATUS_OK;
+}
+
+enum status check_moved(const struct pack_parameters *parameters,
+                        const struct domain *domain, const struct sizes *sizes,
+                        struct reason *reason)
+{
+    if (parameters->method == METHOD_DEPOSITION && domain->periodic[2])
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.periodic: must be false along z for deposition: grains "
+                      "need a floor");
+    if (parameters->extra_layer &&
+        (domain->shape == DOMAIN_SPHERE || domain->periodic[2]))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.extra_layer: must be false where there is no top face");
+    const enum status status = check_target(parameters, sizes, reason);
+    if (status != STATUS_OK || !is_compressed(parameters)) return status;
+    return check_periods(domain, sizes, reason);
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A steel ball shot into a bed of beads: the third case of Dosta et al. (2024), Comput.
+// Phys. Commun. 296, 109066. Prints time, height and velocity of the ball.
+//
+//     penetration_study BED.h5 M1|M2 [SECONDS [THREADS]]
+//
+// BED.h5 is a packing of beads at rest in the box below, by pack.
+#include "artifacts/artifact.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "dem/dem.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The inner faces of the benchmark's box, m.
+static const struct vector box_lower = {-0.049, -0.03, -0.0902431};
+static const struct vector box_upper = {0.049, 0.03, 0.107757};
+static const struct vector ball_start = {0, 0, 0.06}, ball_velocity = {0, 0, -5};
+static const double ball_radius = 0.01, time_step = 5e-7, gravity = 9.81;
+
+struct beads {
+    const char *name;
+    double density, young_modulus, friction, restitution; // of bead on bead
+};
+
+static const struct beads kinds[] = {{"M1", 2500, 1e9, 0.3, 0.5},
+                                     {"M2", 2000, 0.5e9, 0.4, 0.4}};
+// Of bead on steel, and of steel on steel, which never meets here.
+static const double steel_friction[2] = {0.2, 0.5}, steel_restitution[2] = {0.4, 0.6};
+
+static const struct beads *beads_of(const char *name)
+{
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        if (!strcmp(name, kinds[k].name)) return &kinds[k];
+    die(STATUS_USAGE, "%s: M1 or M2", name);
+}
+
+static struct packing read_bed(const char *path)
+{
+    struct artifact *bed = artifact_open(path, "packing");
+    struct packing packing = artifact_get_packing(bed);
+    artifact_close(bed);
+    packing.n_bond = 0;
+    for (int i = 0; i < packing.n_particle; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double x = component(packing.position[i], axis);
+            if (x < component(box_lower, axis) || x > component(box_upper, axis))
+                die(STATUS_BAD_DATA, "%s: grain %d is outside the box", path, i);
+        }
+    return packing;
+}
+
+// The ball comes last.
+static void add_ball(struct packing *packing)
+{
+    const size_t n = (size_t)packing->n_particle++;
+    packing->position = reallocate(packing->position, n + 1, sizeof *packing->position);
+    packing->radius = reallocate(packing->radius, n + 1, sizeof *packing->radius);
+    packing->position[n] = ball_start;
+    packing->radius[n] = ball_radius;
+    packing->lower = box_lower;
+    packing->upper = box_upper;
+}
+
+static struct dem_material material(double density, double young_modulus)
+{
+    // Friction and restitution are those of pairs.
+    return (struct dem_material){.density = density,
+                                 .young_modulus = young_modulus,
+                                 .poisson_ratio = 0.2,
+                                 .friction = 0,
+                                 .restitution = 1};
+}
+
+// Five faces, all but the top, of steel.
+static void make_walls(struct dem_wall wall[5])
+{
+    for (int w = 0; w < 5; w++) {
+        const bool upper = w % 2;
+        wall[w] =
+            (struct dem_wall){.point = upper ? box_upper : box_lower, .material = 1};
+        set_component(&wall[w].normal, w / 2, upper ? -1 : 1);
+    }
+}
+
+static struct dem *build(const struct packing *packing, const struct beads *beads,
+                         int threads)
+{
+    const struct dem_material steel = material(7200, 210e9);
+    struct dem_wall wall[5];
+    make_walls(wall);
+    uint8_t *material_of = NEW_ARRAY(uint8_t, packing->n_particle);
+    material_of[packing->n_particle - 1] = 1;
+    const double friction[4] = {beads->friction, steel_friction[0], steel_friction[0],
+                                steel_friction[1]};
+    const double restitution[4] = {beads->restitution, steel_restitution[0],
+                                   steel_restitution[0], steel_restitution[1]};
+    const struct dem_setup setup = {.packing = packing,
+                                    .law = DEM_HERTZ,
+                                    .material =
+                                        material(beads->density, beads->young_modulus),
+                                    .n_other = 1,
+                                    .other = &steel,
+                                    .material_of = material_of,
+                                    .pair_friction = friction,
+                                    .pair_restitution = restitution,
+                                    .n_wall = 5,
+                                    .wall = wall,
+                                    .gravity = {0, 0, -gravity},
+                                    .time_step = time_step,
+                                    .largest_overlap = 0.05,
+                                    .threads = threads};
+    struct dem *dem;
+    struct reason reason;
+    const enum status status = dem_create(&dem, &setup, &reason);
+    if (status != STATUS_OK) die(status, "%s", reason.text);
+    free(material_of);
+    return dem;
+}
+
+static void shoot(struct dem *dem, int n)
+{
+    struct vector *velocity = NEW_ARRAY(struct vector, n);
+    velocity[n - 1] = ball_velocity;
+    dem_set_velocity(dem, velocity, NULL);
+    free(velocity);
+}
+
+static void print_ball(const struct dem *dem, int n, struct vector *scratch)
+{
+    dem_positions(dem, scratch);
+    const double height = scratch[n - 1].z;
+    dem_velocities(dem, scratch);
+    printf("%.4f %.7f %.5f\n", (double)dem_cycle(dem) * time_step, height,
+           scratch[n - 1].z);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 3 || argc > 5)
+        die(STATUS_USAGE, "penetration_study BED.h5 M1|M2 [SECONDS [THREADS]]");
+    const struct beads *beads = beads_of(argv[2]);
+    const double seconds = argc > 3 ? atof(argv[3]) : 0.1;
+    struct packing packing = read_bed(argv[1]);
+    add_ball(&packing);
+    const int n = packing.n_particle;
+    struct dem *dem = build(&packing, beads, argc > 4 ? atoi(argv[4]) : 1);
+    shoot(dem, n);
+    printf("# %d beads of %s; stable below %.3g s\n# time (s), height of the ball "
+           "(m), velocity (m/s)\n",
+           n - 1, beads->name, dem_time_step_limit(dem));
+
+    const int64_t between = 1000; // half a millisecond
+    struct vector *scratch = NEW_ARRAY(struct vector, n);
+    struct reason reason;
+    print_ball(dem, n, scratch);
+    while (dem_cycle(dem) < llround(seconds / time_step)) {
+        const enum status status = dem_run(dem, between, &reason);
+        if (status != STATUS_OK) die(status, "%s", reason.text);
+        print_ball(dem, n, scratch);
+    }
+    free(scratch);
+    dem_free(dem);
+    packing_free(&packing);
+    return 0;
+}

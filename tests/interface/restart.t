@@ -1,0 +1,187 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A run that was stopped and gone on with writes the bytes of one that never was, and a
+# checkpoint that is damaged or of another run is refused and left where it is.
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+
+sys.path.insert(0, "tests")
+from tap import BIN, SCENE, done, ok, read, run, scratch
+
+MOST_STOPS = 60
+
+
+def call(stage, *arguments):
+    return subprocess.run([f"{BIN}/{stage}", *map(str, arguments)], capture_output=True)
+
+
+def stopped_after(seconds, name, command):
+    """Starts the command, sends the signal, gives its status and what it said."""
+    process = subprocess.Popen([f"{BIN}/{command[0]}", *map(str, command[1:])],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    try:
+        _, said = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        process.send_signal(getattr(signal, name))
+        _, said = process.communicate(timeout=30)
+    return process.returncode, said.decode()
+
+
+def in_pieces(title, command):
+    """Runs to the end in pieces of a third of the time; compares with one piece."""
+    with scratch() as folder:
+        stop_and_go_on(title, command, folder)
+
+
+def stop_and_go_on(title, command, folder):
+    whole, cut, kept = (os.path.join(folder, name) for name in ("whole", "cut", "kept"))
+    began = time.monotonic()
+    run(*command, "-o", whole)
+    piece = (time.monotonic() - began) / 3
+    names = ["SIGTERM", "SIGINT", "SIGHUP"]
+    stops, kept_once = 0, False
+    for number in range(MOST_STOPS):
+        name = names[number % 3]
+        status, said = stopped_after(piece, name, [*command, "--checkpoint", kept, "-o", cut,
+                                                   "--threads", 1 + number % 2])
+        if status == 0:
+            break
+        stops += 1
+        kept_once = kept_once or os.path.exists(kept)
+        piece *= 1.1  # a signal may come before the work began
+        if status != -getattr(signal, name) or os.path.exists(cut):
+            ok(False, f"{title}: stopped by {name}", f"status {status}: {said}")
+            return
+    ok(kept_once and status == 0, f"{title}: stopped and gone on with", f"{stops} stops")
+    ok(read(whole) == read(cut), f"{title}: the same bytes as in one piece")
+    ok(not os.path.exists(kept), f"{title}: and no checkpoint is left")
+
+
+def make_forces(folder):
+    made = b""
+    for stage in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol"]:
+        made = run(stage, "-p", SCENE, input=made)
+    path = os.path.join(folder, "forces")
+    with open(path, "wb") as file:
+        file.write(made)
+    return path
+
+
+def refused(title, kept, command, status, says):
+    before = read(kept) if os.path.exists(kept) else None
+    end = call(*command, "--checkpoint", kept, "-o", kept + ".out")
+    lines = end.stderr.decode().splitlines()
+    after = read(kept) if os.path.exists(kept) else None
+    ok(end.returncode == status and len(lines) == 1 and says in lines[0] and before == after
+       and not os.path.exists(kept + ".out"), title,
+       f"status {end.returncode}: {end.stderr.decode()}")
+
+
+def keep_one(command, kept):
+    """A checkpoint on the way, from a run that is stopped."""
+    for seconds in (0.5, 1, 2, 4):
+        stopped_after(seconds, "SIGTERM", [*command, "--checkpoint", kept, "-o", kept + ".out"])
+        if os.path.exists(kept):
+            return
+
+
+def flip(path, at):
+    with open(path, "r+b") as file:
+        file.seek(at)
+        byte = file.read(1)[0]
+        file.seek(at)
+        file.write(bytes([byte ^ 0x10]))
+
+
+with scratch() as folder:
+    forces = make_forces(folder)
+    short = ["dem-replay", forces, "-p", SCENE]
+    in_pieces("dem-replay", short)
+    in_pieces("dem-replay to a tolerance",
+              [*short, "--set", "cycles=100", "--set", "tolerance=0.02", "--set",
+               "bond.normal_strength=1.2e4"])
+
+    pack = ["pack", "--quiet", "--set", "radius=1e-3", "--set"]
+    in_pieces("pack by deposition", [*pack, "count=400", "--set", "method=deposition"])
+    grow = [*pack, "method=radius_expansion", "--set"]
+    in_pieces("pack by growing grains to a porosity",
+              [*grow, "count=1000", "--set", "target=porosity", "--set", "target_value=0.45"])
+    in_pieces("pack by growing grains to a coordination",
+              [*grow, "count=120", "--set", "target=coordination", "--set", "target_value=5"])
+    in_pieces("pack by growing discs to a pressure",
+              [*grow, "count=800", "--set", "target=pressure", "--set", "target_value=1e4",
+               "--set", "dimensions=2"])
+    in_pieces("pack in a box that closes in",
+              [*pack, "method=domain_contraction", "--set", "count=400", "--set",
+               "periodic=[true,true,true]", "--set", "dynamics.friction=0"])
+
+    # By the clock as often as can be.
+    kept = os.path.join(folder, "kept")
+    often = run(*short, "--checkpoint", kept, "--checkpoint-every", 0, "--set", "cycles=50")
+    ok(often == run(*short, "--set", "cycles=50"), "checkpoints at every step change no byte")
+
+    long = [*short, "--set", "cycles=1000000000"]
+    keep_one(long, kept)
+    with h5py.File(kept) as file:
+        ok(file.attrs["schema"] in ("craquelure/restart/1", b"craquelure/restart/1")
+           and file["engine/velocity"].shape == (250, 3) and file["stage/step"][0] == 0,
+           "a checkpoint is an artifact")
+    ok(call("inspect", kept).returncode == 0, "that inspect shows")
+    good = os.path.join(folder, "good")
+    shutil.copy(kept, good)
+    refused("another parameter is another run", kept, [*long, "--set", "friction=0.4"], 65,
+            "its parameters differ")
+    other = os.path.join(folder, "other")
+    shutil.copy(forces, other)
+    with h5py.File(other, "a") as file:
+        file["force"][...] *= 1.5
+    refused("another input is another run", kept,
+            ["dem-replay", other, *long[2:]], 65, "its inputs differ")
+    shutil.copy(forces, kept)
+    refused("another artifact is no checkpoint", kept, long, 65, "must be a restart, is a forces")
+    for share in (0, 0.1, 0.5, 0.99):
+        with open(kept, "wb") as file:
+            file.write(read(good)[:int(share * len(read(good)))])
+        refused(f"cut off after {share:.0%}", kept, long, 65, "kept: ")
+    # Into the numbers of each array, and anywhere.
+    with h5py.File(good) as file:
+        places = []
+        file.visititems(lambda name, item: places.append((name, item.id.get_offset()))
+                        if isinstance(item, h5py.Dataset) and item.id.get_offset() else None)
+    survived = []
+    for name, at in places:
+        shutil.copy(good, kept)
+        flip(kept, at + 1)
+        end = call(*long, "--checkpoint", kept, "-o", kept + ".out")
+        if end.returncode != 65 or len(end.stderr.splitlines()) != 1:
+            survived.append(f"{name}: {end.returncode}: {end.stderr.decode()}")
+    ok(len(places) > 40 and not survived, "a flipped bit in any array", "\n".join(survived))
+    wrong = []
+    size = len(read(good))
+    for k in range(40):
+        shutil.copy(good, kept)
+        at = (k * 7919 * 131) % size
+        flip(kept, at)
+        status, said = stopped_after(0.4, "SIGTERM", [*long, "--checkpoint", kept, "-o", kept + ".out"])
+        if not (status == -signal.SIGTERM or (status == 65 and said.count("\n") == 1)):
+            wrong.append(f"byte {at}: status {status}: {said}")
+    ok(not wrong, "a flipped bit anywhere is refused, or does no harm", "\n".join(wrong))
+
+    for title, arguments, status, says in [
+            ("standard output is no place for it", ["--checkpoint", "-"], 64, "standard output"),
+            ("nor is the output", ["--checkpoint", "x", "-o", "x"], 64, "another file"),
+            ("nor a folder that is not there", ["--checkpoint", "/no/such/x"], 73, "/no/such/x"),
+            ("the time between must be a number", ["--checkpoint-every", "soon"], 64, "soon")]:
+        end = call(*short, "-o", os.path.join(folder, "out"), *arguments)
+        ok(end.returncode == status and says in end.stderr.decode(), title, end.stderr.decode())
+    made = call("pack", "--checkpoint", kept, "-o", kept + ".out")
+    ok(made.returncode == 0 and b"none is kept" in made.stderr,
+       "a method without dynamics says that it keeps none", made.stderr.decode())
+    ok(call("dry", "--checkpoint", "x").returncode == 64, "a stage without checkpoints says so")
+done()

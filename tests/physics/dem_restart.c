@@ -1,0 +1,479 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An engine made anew from the saved state of another goes on to the same bytes, and
+// what is not such a state is refused.
+#include "dem_scene.h"
+
+#include <stdbool.h>
+
+// ---- what is compared ---------------------------------------------------------------
+
+static void assert_same(const char *what, const void *a, const void *b, size_t size)
+{
+    if (size > 0 && memcmp(a, b, size)) fail_msg("%s differs", what);
+}
+
+static void assert_same_vectors(const char *what, const struct dem *a,
+                                const struct dem *b,
+                                void (*ask)(const struct dem *, struct vector *))
+{
+    const size_t n = (size_t)a->n_particle;
+    struct vector *of_a = NEW_ARRAY(struct vector, n);
+    struct vector *of_b = NEW_ARRAY(struct vector, n);
+    ask(a, of_a);
+    ask(b, of_b);
+    assert_same(what, of_a, of_b, n * sizeof *of_a);
+    free(of_a);
+    free(of_b);
+}
+
+static void assert_same_contacts(const struct dem *a, const struct dem *b)
+{
+    int n, m;
+    struct dem_contact *p = dem_contacts(a, &n), *q = dem_contacts(b, &m);
+    assert_int_equal(n, m);
+    for (int k = 0; k < n; k++) {
+        assert_same("contact", p[k].particle, q[k].particle, sizeof p->particle);
+        assert_int_equal(p[k].bond, q[k].bond);
+        assert_same("overlap", &p[k].overlap, &q[k].overlap, sizeof p->overlap);
+        assert_same("force", &p[k].force, &q[k].force, sizeof p->force);
+        assert_same("position", &p[k].position, &q[k].position, sizeof p->position);
+    }
+    free(p);
+    free(q);
+}
+
+static void assert_same_cracks(const struct dem *a, const struct dem *b)
+{
+    int n, m;
+    const struct dem_crack *p = dem_cracks(a, &n), *q = dem_cracks(b, &m);
+    assert_int_equal(n, m);
+    for (int k = 0; k < n; k++) {
+        assert_int_equal(p[k].bond, q[k].bond);
+        assert_int_equal(p[k].mode, q[k].mode);
+        assert_int_equal(p[k].cycle, q[k].cycle);
+        assert_same("crack", &p[k].position, &q[k].position, sizeof p->position);
+    }
+}
+
+static void assert_same_sums(const struct dem *a, const struct dem *b)
+{
+    const struct dem_energy ea = dem_energy(a), eb = dem_energy(b);
+    assert_same("energy", &ea, &eb, sizeof ea);
+    const struct dem_momentum ma = dem_momentum(a), mb = dem_momentum(b);
+    assert_same("momentum", &ma, &mb, sizeof ma);
+    const struct dem_census ca = dem_census(a), cb = dem_census(b);
+    assert_int_equal(ca.contacts, cb.contacts);
+    assert_same("stress", ca.stress, cb.stress, sizeof ca.stress);
+    const double la = dem_time_step_limit_now(a), lb = dem_time_step_limit_now(b);
+    assert_same("time step limit", &la, &lb, sizeof la);
+    const double ua = dem_unbalanced_ratio(a), ub = dem_unbalanced_ratio(b);
+    assert_same("unbalanced ratio", &ua, &ub, sizeof ua);
+    for (int w = 0; w < a->n_wall; w++) {
+        const struct dem_wall_state wa = dem_wall_state(a, w),
+                                    wb = dem_wall_state(b, w);
+        assert_same("wall", &wa, &wb, sizeof wa);
+    }
+}
+
+static void assert_same_state(const struct dem *a, const struct dem *b)
+{
+    int n, m;
+    struct dem_array *p = dem_save(a, &n), *q = dem_save(b, &m);
+    assert_int_equal(n, m);
+    for (int k = 0; k < n; k++) {
+        static const size_t size[] = {8, 4, 8, 1};
+        assert_string_equal(p[k].name, q[k].name);
+        assert_int_equal(p[k].count, q[k].count);
+        assert_same(p[k].name, p[k].data, q[k].data,
+                    (size_t)p[k].count * size[p[k].type]);
+    }
+    dem_free_arrays(p, n);
+    dem_free_arrays(q, m);
+}
+
+static void assert_same_everything(const struct dem *a, const struct dem *b)
+{
+    assert_int_equal(dem_cycle(a), dem_cycle(b));
+    assert_same_vectors("position", a, b, dem_positions);
+    assert_same_vectors("displacement", a, b, dem_displacements);
+    assert_same_vectors("velocity", a, b, dem_velocities);
+    assert_same_vectors("spin", a, b, dem_spins);
+    assert_same_contacts(a, b);
+    assert_same_cracks(a, b);
+    assert_same_sums(a, b);
+    assert_same_state(a, b);
+}
+
+// ---- run, stop, go on ---------------------------------------------------------------
+
+// What a scene does between its two halves and on the way; HALF is 0 or 1.
+typedef void task(struct dem *dem, int half);
+
+static struct dem *restored(const struct dem *from, struct dem_setup setup, int threads)
+{
+    setup.threads = threads;
+    struct dem *dem = create(&setup);
+    struct reason reason = {""};
+    int count;
+    struct dem_array *array = dem_save(from, &count);
+    if (dem_restore(dem, array, count, &reason) != STATUS_OK)
+        fail_msg("dem_restore: %s", reason.text);
+    dem_free_arrays(array, count);
+    return dem;
+}
+
+// The whole against the two halves, the second by 1, 2 and 3 threads.
+static void check(const struct dem_setup *setup, task *work)
+{
+    struct dem *whole = create(setup), *first = create(setup);
+    work(whole, 0);
+    work(whole, 1);
+    work(first, 0);
+    for (int threads = 1; threads <= 3; threads++) {
+        struct dem *second = restored(first, *setup, threads);
+        assert_same_everything(first, second);
+        work(second, 1);
+        assert_same_everything(whole, second);
+        dem_free(second);
+    }
+    dem_free(first);
+    dem_free(whole);
+}
+
+// ---- scenes -------------------------------------------------------------------------
+
+static void pull(struct dem *dem, int half)
+{
+    const int n = dem->n_particle;
+    struct vector *force = random_vectors(n, half ? 2e-8 : 1e-8, 11);
+    dem_set_force(dem, force);
+    free(force);
+    run(dem, half ? 150 : 120);
+    int n_crack;
+    dem_cracks(dem, &n_crack);
+    assert_in_range(n_crack, 1, dem->n_bond - 1); // or the scene tests nothing
+}
+
+static void bonded_lattice(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(6, 6, 8, false);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.bond.normal_strength = setup.bond.shear_strength = 3e3;
+    setup.balance_energy = true;
+    uint8_t *fixed = NEW_ARRAY(uint8_t, packing.n_particle);
+    for (int i = 0; i < 36; i++)
+        fixed[i] = 1;
+    setup.fixed = fixed;
+    check(&setup, pull);
+    free(fixed);
+    packing_free(&packing);
+}
+
+static void contact_bonds(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(6, 6, 8, true);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.bond.kind = DEM_CONTACT_BOND;
+    setup.bond.normal_strength = setup.bond.shear_strength = 4e-9;
+    setup.balance_energy = true;
+    check(&setup, pull);
+    packing_free(&packing);
+}
+
+// Grains of several sizes on a loose lattice, moving at random.
+static struct packing cloud(int edge, double spread, bool periodic)
+{
+    const int n = edge * edge * edge;
+    struct packing packing = new_packing(n, 0);
+    struct vector *shift = random_vectors(n, 0.2 * RADIUS, 3);
+    uint64_t seed = 5;
+    for (int i = 0; i < n; i++) {
+        const double at[3] = {i % edge, i / edge % edge, i / (edge * edge)};
+        packing.position[i] =
+            add(shift[i], (struct vector){(2.4 * at[0] + 1.3) * RADIUS,
+                                          (2.4 * at[1] + 1.3) * RADIUS,
+                                          (2.4 * at[2] + 1.3) * RADIUS});
+        packing.radius[i] = RADIUS * (1 - spread * fabs(next_random(&seed)));
+    }
+    const double side = 2.4 * edge * RADIUS;
+    packing.upper = (struct vector){side, side, side};
+    for (int axis = 0; axis < 3; axis++)
+        packing.periodic[axis] = periodic;
+    free(shift);
+    return packing;
+}
+
+static void throw(struct dem * dem, double radii_a_step)
+{
+    const double speed = radii_a_step * RADIUS / dem_time_step(dem);
+    struct vector *velocity = random_vectors(dem->n_particle, speed, 7);
+    struct vector *spin = random_vectors(dem->n_particle, speed / RADIUS, 9);
+    dem_set_velocity(dem, velocity, spin);
+    free(velocity);
+    free(spin);
+}
+
+// A lid under servo control, a floor that moves aside, a belt about them.
+static void shake(struct dem *dem, int half)
+{
+    if (half == 0) {
+        throw(dem, 0.02);
+        run(dem, 400);
+        dem_set_gravity(dem, (struct vector){1e11, 0, -1e12});
+        dem_set_wall_motion(dem, 1, (struct vector){100, 0, 0}, (struct vector){0});
+        dem_set_servo(dem, 0, 2e-5);
+        dem_set_friction(dem, 0.3);
+        dem_set_local_damping(dem, 0.2);
+    }
+    run(dem, 400);
+    assert_true(dem->search_cycle > 0); // pairs were sought again
+}
+
+static void walled_cloud(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(8, 0.4, false);
+    const struct vector up = packing.upper, middle = scale(0.5, up);
+    const struct dem_wall wall[] = {
+        {.point = up,
+         .normal = {0, 0, -1},
+         .servo_force = 1e-5,
+         .servo_largest_speed = 50},
+        {.point = packing.lower, .normal = {0, 0, 1}, .velocity = {50, 0, 0}},
+        {.point = middle,
+         .normal = {0, 0, 1},
+         .shape = DEM_CYLINDER,
+         .radius = 0.75 * up.x,
+         .spin = {0, 0, 1e7},
+         .has_friction = true,
+         .friction = 0.2}};
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.n_wall = 3;
+    setup.wall = wall;
+    setup.balance_energy = true;
+    check(&setup, shake);
+    packing_free(&packing);
+}
+
+static void fly(struct dem *dem, int half)
+{
+    if (half == 0) throw(dem, 0.02);
+    run(dem, half ? 500 : 300);
+}
+
+static void hertz_cloud(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(8, 0.4, true);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.law = DEM_HERTZ;
+    setup.material.young_modulus = 1e9;
+    setup.material.poisson_ratio = 0.25;
+    setup.material.restitution = 0.8;
+    setup.largest_overlap = 0.1;
+    setup.balance_energy = true;
+    check(&setup, fly);
+    packing_free(&packing);
+}
+
+static void two_timed_materials(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(8, 0.3, true);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.law = DEM_TIMED;
+    setup.material.contact_time = 1e-7;
+    setup.material.restitution = 0.7;
+    struct dem_material other = setup.material;
+    other.density = 1000;
+    other.friction = 0.1;
+    setup.other = &other;
+    setup.n_other = 1;
+    uint8_t *material = NEW_ARRAY(uint8_t, packing.n_particle);
+    for (int i = 0; i < packing.n_particle; i++)
+        material[i] = i % 3 == 0;
+    setup.material_of = material;
+    check(&setup, fly);
+    free(material);
+    packing_free(&packing);
+}
+
+// More than are left in the order they came in, enough for several threads; numbered
+// anew on the way.
+static void crowd(struct dem *dem, int half)
+{
+    if (half == 0) throw(dem, 0.03);
+    run(dem, 120);
+    assert_true(half == 0 || dem->searches_in_order < 64); // it was renumbered
+    if (half == 0) dem->searches_in_order = 64;            // as after many searches
+}
+
+static void renumbered_crowd(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(18, 0.3, true);
+    assert_true(packing.n_particle > 5000);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.density_scaling = true;
+    check(&setup, crowd);
+    packing_free(&packing);
+}
+
+// As pack does it: grains that grow in a box that closes in, without friction.
+static void squeeze(struct dem *dem, int half)
+{
+    const double stretch[3] = {0.998, 1, 0.997};
+    for (int k = 0; k < 15 + half; k++) {
+        dem_rescale(dem, stretch, 1.001);
+        run(dem, 20);
+    }
+}
+
+static void squeezed_crowd(void **state)
+{
+    (void)state;
+    for (int spread = 0; spread < 2; spread++) {
+        struct packing packing = cloud(18, 0.3 * spread, true);
+        struct dem_setup setup = stiff_setup(&packing);
+        setup.material.friction = 0;
+        setup.density_scaling = true;
+        check(&setup, squeeze);
+        packing_free(&packing);
+    }
+}
+
+static void no_grains(void **state)
+{
+    (void)state;
+    struct packing packing = new_packing(0, 0);
+    packing.upper = (struct vector){1, 1, 1};
+    struct dem_setup setup = stiff_setup(&packing);
+    check(&setup, fly);
+    packing_free(&packing);
+}
+
+// ---- what is refused ----------------------------------------------------------------
+
+static enum status try_restore(const struct dem_setup *setup,
+                               const struct dem_array *array, int count)
+{
+    struct dem *dem = create(setup);
+    struct reason reason = {""};
+    const enum status status = dem_restore(dem, array, count, &reason);
+    if (status == STATUS_OK)
+        dem_run(dem, 50, &reason); // may diverge, must not crash
+    else
+        assert_true(strlen(reason.text) > 0 && !strchr(reason.text, '\n'));
+    dem_free(dem);
+    return status;
+}
+
+// One number of one array at a time becomes what it cannot be.
+static void damaged_arrays(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(4, 4, 4, false);
+    const struct dem_wall floor = {.normal = {0, 0, 1}};
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.bond.normal_strength = setup.bond.shear_strength = 1e3;
+    setup.n_wall = 1;
+    setup.wall = &floor;
+    setup.balance_energy = true;
+    struct dem *dem = create(&setup);
+    pull(dem, 0);
+    int count;
+    struct dem_array *array = dem_save(dem, &count);
+    dem_free(dem);
+    for (int k = 0; k < count; k++) {
+        struct dem_array *of = &array[k];
+        assert_true(of->count > 0); // each is tried
+        const int64_t was = of->count;
+        of->count--;
+        assert_int_equal(try_restore(&setup, array, count), STATUS_BAD_DATA);
+        of->count = was;
+        const int64_t at = was / 2;
+        double *number = of->data;
+        int32_t *integer = of->data;
+        int64_t *large = of->data;
+        uint8_t *small = of->data;
+        const double number_was = of->type == DEM_FLOAT64 ? number[at] : 0;
+        const int32_t integer_was = of->type == DEM_INT32 ? integer[at] : 0;
+        const int64_t large_was = of->type == DEM_INT64 ? large[at] : 0;
+        const uint8_t small_was = of->type == DEM_UINT8 ? small[at] : 0;
+        if (of->type == DEM_FLOAT64) number[at] = NAN;
+        if (of->type == DEM_INT32) integer[at] = INT32_MIN;
+        if (of->type == DEM_INT64) large[at] = -1;
+        if (of->type == DEM_UINT8) small[at] = 7;
+        assert_int_equal(try_restore(&setup, array, count), STATUS_BAD_DATA);
+        if (of->type == DEM_FLOAT64) number[at] = number_was;
+        if (of->type == DEM_INT32) integer[at] = integer_was;
+        if (of->type == DEM_INT64) large[at] = large_was;
+        if (of->type == DEM_UINT8) small[at] = small_was;
+    }
+    assert_int_equal(try_restore(&setup, array, count), STATUS_OK);
+    assert_int_equal(try_restore(&setup, array, count - 1), STATUS_BAD_DATA);
+    dem_free_arrays(array, count);
+    packing_free(&packing);
+}
+
+// Any bit of any integer array: refused, or run without a crash.
+static void flipped_bits(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(3, 3, 3, false);
+    const struct dem_wall floor = {.normal = {0, 0, 1}};
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.n_wall = 1;
+    setup.wall = &floor;
+    struct dem *dem = create(&setup);
+    run(dem, 10);
+    int count;
+    struct dem_array *array = dem_save(dem, &count);
+    dem_free(dem);
+    uint64_t seed = 1;
+    for (int k = 0; k < count; k++) {
+        static const int64_t size[] = {8, 4, 8, 1};
+        const int64_t bytes = array[k].count * size[array[k].type];
+        for (int trial = 0; trial < 20 && bytes > 0; trial++) {
+            const double where = 0.5 * (next_random(&seed) + 1);
+            uint8_t *byte = (uint8_t *)array[k].data + (int64_t)(where * (double)bytes);
+            const uint8_t was = *byte;
+            *byte ^= (uint8_t)(1u << trial % 8);
+            try_restore(&setup, array, count);
+            *byte = was;
+        }
+    }
+    dem_free_arrays(array, count);
+    packing_free(&packing);
+}
+
+static void another_scene(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(3, 3, 3, false);
+    struct packing other = cubic_lattice(3, 3, 4, false);
+    struct dem_setup setup = stiff_setup(&packing), larger = stiff_setup(&other);
+    struct dem *dem = create(&setup);
+    int count;
+    struct dem_array *array = dem_save(dem, &count);
+    assert_int_equal(try_restore(&larger, array, count), STATUS_BAD_DATA);
+    dem_free_arrays(array, count);
+    dem_free(dem);
+    packing_free(&packing);
+    packing_free(&other);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bonded_lattice),      cmocka_unit_test(contact_bonds),
+        cmocka_unit_test(walled_cloud),        cmocka_unit_test(hertz_cloud),
+        cmocka_unit_test(two_timed_materials), cmocka_unit_test(renumbered_crowd),
+        cmocka_unit_test(squeezed_crowd),      cmocka_unit_test(no_grains),
+        cmocka_unit_test(damaged_arrays),      cmocka_unit_test(flipped_bits),
+        cmocka_unit_test(another_scene)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
