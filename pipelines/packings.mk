@@ -16,7 +16,7 @@ close_packing = $(call packing,close-$1-$2,method=radius_expansion count=$1 peri
 settled_packing = $(call packing,settled-$1d-$2-$3,method=deposition dimensions=$1 count=$2 dynamics.friction=$3)
 
 .PHONY: packings
-packings: ## random close packing, and grains that settle (about ten minutes)
+packings: ## random close packing, and grains that settle (about ten minutes of one core)
 
 ifneq ($(filter packings,$(MAKECMDGOALS)),)
 $(foreach f,0 0.5,$(foreach n,267 1000 4161,$(call settled_packing,2,$n,$f)))
