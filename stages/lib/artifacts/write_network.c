@@ -14,6 +14,12 @@ void write_network(const struct network *network, const struct invocation *invoc
                         network->n_node ? 2.0 * network->n_throat / network->n_node
                                         : 0);
     artifact_put_number(artifact, "/summary/void_volume", void_volume);
+    if (network->unmerged_throats) {
+        artifact_put_number(artifact, "/summary/unmerged_throats",
+                            network->unmerged_throats);
+        artifact_put_number(artifact, "/summary/unmerged_length",
+                            network->unmerged_length);
+    }
     artifact_put_vtk(artifact, "/nodes/position", network->n_node,
                      (const char *const[]){"/nodes/kind", NULL},
                      (const int32_t(*)[2])network->throat_nodes, network->n_throat,
