@@ -3,6 +3,7 @@
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <stdlib.h>
 
 void draw_normal_radii(struct network *network, double mean, double deviation,
                        unsigned long seed)
@@ -16,4 +17,6 @@ void draw_normal_radii(struct network *network, double mean, double deviation,
         while (*radius <= 0);
     }
     gsl_rng_free(generator);
+    free(network->throat_volume); // of other radii
+    network->throat_volume = NULL;
 }
