@@ -4,6 +4,7 @@
 # what the report says.
 import json
 import os
+import subprocess
 import sys
 from collections import Counter
 
@@ -11,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, read, run, scratch
+from tap import BIN, done, ok, read, run, scratch
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
@@ -93,6 +94,19 @@ with scratch() as folder:
                          "volumes=conserved")
     ok(abs(last["throats/volume"][:].sum() / cylinders.sum() - 1) < 1e-13,
        "also when all but what spans the box is merged", len(last["throats/length"]))
+
+    # A picture: of these, and of a network without grains.
+    run("import-network", "-o", at("bare.h5"), input=json.dumps({"graph": {
+        "metadata": {"number_of_nodes": 2, "number_of_links": 1},
+        "nodes": [{"id": str(k), "metadata": {"node_coordinates": {"x": k, "y": 0, "z": 0}}}
+                  for k in range(2)],
+        "edges": [{"id": "0", "source": "0", "target": "1",
+                   "metadata": {"link_length": 1, "link_squared_radius": 0.01}}]}}).encode())
+    for names in ["before.h5", "0.06.h5", "0.13.h5", "0.28.h5"], ["bare.h5"]:
+        drawn = subprocess.run(["pipelines/network-figure", *map(at, names), at("figure.svg")],
+                               capture_output=True, env=dict(os.environ, BIN=BIN))
+        ok(drawn.returncode == 0 and not drawn.stderr and open(at("figure.svg")).read()
+           .rstrip().endswith("</svg>"), f"a figure of {len(names)}", drawn.stderr.decode())
 
     # The report counts as numpy does.
     _, report = merge("before.h5", "kept.h5", "measure=fraction", "threshold=0.28")
