@@ -29,6 +29,11 @@ r = 0
 size = int(system("wc -l <" . table("nodes", 0))) > 3000 ? 0.3 : 0.5
 do for [c = 0:columns - 1] {
     @panel
+    set autoscale xy # what stats sees is what is in range
+    stats table("nodes", c) using 2 nooutput
+    set yrange [STATS_min - 0.5:STATS_max + 0.5]
+    stats table("nodes", c) using 1 nooutput
+    set xrange [STATS_min - 0.5:STATS_max + 0.5]
     nodes = int(system("wc -l <" . table("nodes", c)))
     throats = int(system("wc -l <" . sprintf("%s/length-%d-all", tables, c)))
     set label 1 sprintf("(%c)  %d nodes, %d throats", 97 + c, nodes, throats) \
@@ -57,7 +62,7 @@ labels = "'throats at a node' 'throat length / " . unit . "' 'throat radius / " 
 do for [r = 1:3] {
     what = word(words, r)
     most = 0; farthest = 0
-    set autoscale # what stats sees is what is in range
+    set autoscale xy
     do for [c = 0:columns - 1] {
         stats table(what, c) using 2 nooutput
         most = STATS_max > most ? STATS_max : most

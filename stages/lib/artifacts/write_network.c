@@ -21,10 +21,12 @@ void write_network_of(const struct network *network,
         artifact_put_number(artifact, "/summary/unmerged_length",
                             network->unmerged_length);
     }
-    artifact_put_vtk(artifact, "/nodes/position", network->n_node,
-                     (const char *const[]){"/nodes/kind", NULL},
-                     (const int32_t(*)[2])network->throat_nodes, network->n_throat,
-                     (const char *const[]){"/throats/radius", "/throats/kind", NULL});
+    artifact_put_vtk(
+        artifact, "/nodes/position", network->n_node,
+        (const char *const[]){"/nodes/kind", NULL},
+        (const int32_t(*)[2])network->throat_nodes, network->n_throat,
+        (const char *const[]){"/throats/radius", "/throats/kind",
+                              network->throat_volume ? "/throats/volume" : NULL, NULL});
     artifact_finish(artifact, invocation, inputs, model);
 }
 
