@@ -39,15 +39,24 @@ with scratch() as folder:
         ok(abs(got / expected - 1) < 1e-12, f"spheres of many sizes, {unit} m, none cut",
            got / expected - 1)
 
+    # By symmetry: on the cubic lattice each inner throat has a third of a cell's void.
+    tessellate("method=cubic", "counts=[4,4,4]", "radius=0.5")
+    run("merge-nodes", at("network.h5"), "-o", at("merged.h5"))
+    merged = h5py.File(at("merged.h5"))
+    inner = (merged["nodes/kind"][:] == 0)[merged["throats/nodes"][:]].all(axis=1)
+    ok(inner.sum() == 54 and np.allclose(merged["throats/volume"][:][inner], (1 - np.pi / 6) / 3,
+                                         rtol=1e-13, atol=0), "each throat has its share")
+
     # Grains that overlap meet in the face between them; what sticks out of the box is not
     # in it. Two of radii a, b at distance d share a lens; a wall cuts off a cap.
-    a, b, d = 1.0, 0.7, 1.3
-    lens = np.pi * (a + b - d)**2 * (d**2 + 2 * d * (a + b) - 3 * (a - b)**2) / (12 * d)
-    network = tessellate("method=import", "lower=[-2,-2,-2]", "upper=[3,2,0.6]",
-                         text=f"0 0 -0.4 {a}\n{d} 0 -0.4 {b}\n".encode())
-    void = 5 * 4 * 2.6 - (4 / 3 * np.pi * (a**3 + b**3) - lens)
-    got = network["throats/volume"][:].sum()
-    ok(abs(got / void - 1) < 1e-14, "two grains that overlap", got / void - 1)
+    for a, b, d, title in [(1, 0.7, 1.3, "two grains that overlap"),
+                           (1, 0.4, 0.9, "one with its centre in the other, beyond its own face")]:
+        lens = np.pi * (a + b - d)**2 * (d**2 + 2 * d * (a + b) - 3 * (a - b)**2) / (12 * d)
+        network = tessellate("method=import", "lower=[-2,-2,-2]", "upper=[3,2,0.6]",
+                             text=f"0 0 -0.4 {a}\n{d} 0 -0.4 {b}\n".encode())
+        void = 5 * 4 * 2.6 - (4 / 3 * np.pi * (a**3 + b**3) - lens)
+        got = network["throats/volume"][:].sum()
+        ok(abs(got / void - 1) < 1e-14, title, got / void - 1)
     network = tessellate("method=import", "lower=[-2,-2,-2]", "upper=[3,2,0.6]",
                          text=b"0 0 0.1 1\n")
     cap = np.pi / 3 * (1 - 0.5)**2 * (2 + 0.5)

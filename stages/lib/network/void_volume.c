@@ -6,16 +6,23 @@
 
 #include <stdlib.h>
 
+// Of the face's rim: nodes that coincide, as on lattices, do not pull it to their side.
 static struct vector middle_of(const struct network *network, int face)
 {
     const int64_t begin = network->face_offset[face],
                   end = network->face_offset[face + 1];
     const struct vector origin = network->node_position[network->face_nodes[begin]];
-    struct vector sum = {0};
-    for (int64_t k = begin; k < end; k++)
-        sum =
-            add(sum, subtract(network->node_position[network->face_nodes[k]], origin));
-    return add(origin, scale(1 / (double)(end - begin), sum));
+    struct vector sum = {0}, from = {0};
+    double rim = 0;
+    for (int64_t k = begin; k < end; k++) {
+        const int next = network->face_nodes[k + 1 < end ? k + 1 : begin];
+        const struct vector to = subtract(network->node_position[next], origin);
+        const double length = distance(from, to);
+        sum = add(sum, scale(length / 2, add(from, to)));
+        rim += length;
+        from = to;
+    }
+    return rim > 0 ? add(origin, scale(1 / rim, sum)) : origin;
 }
 
 // On both sides of the face where there is a grain; the loop runs counter-clockwise
