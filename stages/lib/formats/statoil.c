@@ -131,7 +131,7 @@ static enum status read_line(struct reading *reading, int wanted, double *number
     } while (*reading->rest == '\n' && reading->rest++);
     for (int k = 0; k < wanted; k++) {
         reading->rest += strspn(reading->rest, blanks);
-        char *end;
+        char *end = NULL;
         number[k] = *reading->rest == '\n' ? 0 : strtod(reading->rest, &end);
         if (*reading->rest == '\n' || end == reading->rest || !isfinite(number[k]))
             return refuse(reason, STATUS_BAD_DATA,
@@ -222,7 +222,7 @@ enum status network_from_statoil(const char *const text[STATOIL_FILES],
     struct reading node1 = {STATOIL_NODE1, 0, text[STATOIL_NODE1]};
     struct reading link1 = {STATOIL_LINK1, 0, text[STATOIL_LINK1]};
     struct reading link2 = {STATOIL_LINK2, 0, text[STATOIL_LINK2]};
-    double header[4], links;
+    double header[4] = {0}, links = 0;
     int n_node = 0, n_link = 0;
     *network = (struct network){0};
     enum status status = read_line(&node1, 4, header, reason);
