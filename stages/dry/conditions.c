@@ -72,6 +72,7 @@ enum status check_throats(const struct network *network, struct reason *reason)
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
         const double length = network->throat_length[t];
         const double radius = network->throat_radius[t];
+        const double volume = throat_volume(network, t);
         n++;
         if (!(length > 0) || !isfinite(length))
             return refuse(
@@ -85,6 +86,9 @@ enum status check_throats(const struct network *network, struct reason *reason)
                 "/throats/radius: row %d: must be above 0, is %g (grains that overlap "
                 "close it)",
                 t, radius);
+        if (!(volume > 0) || !isfinite(volume))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/throats/volume: row %d: must be above 0, is %g", t, volume);
         if (network->throat_nodes[t][0] == network->throat_nodes[t][1])
             return refuse(reason, STATUS_BAD_DATA,
                           "/throats/nodes: row %d: both ends are node %d", t,

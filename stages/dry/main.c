@@ -9,14 +9,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum distribution { DISTRIBUTION_NETWORK, DISTRIBUTION_NORMAL };
+enum { RADII_OF_NETWORK }; // the choices that follow are those of enum radius_law
 
 struct dry_parameters {
     struct drying_conditions conditions;
     int liquid, distribution;
     int64_t layers, seed;
     unsigned open_walls, imposed_empty;
-    double mean_radius, radius_deviation;
+    struct radius_distribution radii;
 };
 
 #define AT(member) offsetof(struct dry_parameters, member)
@@ -34,12 +34,25 @@ static const struct parameter table[] = {
      "walls whose throats hold no liquid and let nothing through [K 5.4]",
      AT(imposed_empty)},
     {"throat_radius.distribution", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0,
-     0, "network|normal", "throat radii: as in the network, or drawn [K 3.11]",
+     0, "network|normal|lognormal|uniform|two_mode",
+     "throat radii: as in the network, or drawn [K 2.2, 3.11]; drawn ones make the "
+     "throats cylinders",
      AT(distribution)},
     {"throat_radius.mean", PARAMETER_NUMBER, "m", "103e-9", BOUND_ABOVE, 0, 0, NULL,
-     "mean of drawn radii", AT(mean_radius)},
+     "mean of drawn radii; two_mode: of the first mode", AT(radii.mean)},
     {"throat_radius.standard_deviation", PARAMETER_NUMBER, "m", "1e-9", BOUND_MINIMUM,
-     0, 0, NULL, "standard deviation of drawn radii", AT(radius_deviation)},
+     0, 0, NULL, "their standard deviation", AT(radii.deviation)},
+    {"throat_radius.second_mean", PARAMETER_NUMBER, "m", "40e-9", BOUND_ABOVE, 0, 0,
+     NULL, "two_mode: mean of the second mode", AT(radii.second_mean)},
+    {"throat_radius.second_standard_deviation", PARAMETER_NUMBER, "m", "2e-9",
+     BOUND_MINIMUM, 0, 0, NULL, "its standard deviation", AT(radii.second_deviation)},
+    {"throat_radius.second_share", PARAMETER_NUMBER, "1", "0.5", BOUND_BETWEEN, 0, 1,
+     NULL, "share of the throats in it", AT(radii.second_share)},
+    {"throat_radius.correlation_length", PARAMETER_NUMBER, "m", "0", BOUND_MINIMUM, 0,
+     0, NULL,
+     "drawn radii are alike within this distance, their distribution the same; 0: "
+     "independent",
+     AT(radii.correlation_length)},
     {"throat_radius.seed", PARAMETER_INTEGER, "1", "1", BOUND_BETWEEN, 0, 4294967295.0,
      NULL, "seed of drawn radii", AT(seed)},
     {"temperature", PARAMETER_NUMBER, "K", "293.15", BOUND_ABOVE, 0, 0, NULL,
@@ -164,6 +177,17 @@ static void write_drying(const struct network *network,
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
+static void give_radii(struct network *network, const struct dry_parameters *parameters)
+{
+    if (parameters->distribution == RADII_OF_NETWORK) return;
+    struct radius_distribution distribution = parameters->radii;
+    distribution.law = (enum radius_law)(parameters->distribution - 1);
+    distribution.seed = (unsigned long)parameters->seed;
+    struct reason reason;
+    const enum status status = draw_radii(network, &distribution, &reason);
+    if (status) die(status, "dry.%s", reason.text);
+}
+
 int main(int argc, char **argv)
 {
     struct dry_parameters parameters = {0};
@@ -174,9 +198,7 @@ int main(int argc, char **argv)
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_network(input);
 
-    if (parameters.distribution == DISTRIBUTION_NORMAL)
-        draw_normal_radii(&network, parameters.mean_radius, parameters.radius_deviation,
-                          (unsigned long)parameters.seed);
+    give_radii(&network, &parameters);
     impose_empty_throats(&network, parameters.imposed_empty);
     struct drying_history history;
     dry(&network, &parameters, &invocation, input->path, &history);

@@ -49,19 +49,6 @@ static struct vector foot_of_face(const struct network *network, int face)
     return add(foot, scale(share, apart));
 }
 
-static int throat_between(const struct network *network,
-                          const struct incidence *incidence, int a, int b)
-{
-    const int lower = a < b ? a : b, upper = a < b ? b : a;
-    for (int k = incidence->offset[lower]; k < incidence->offset[lower + 1]; k++) {
-        const int t = incidence->throat[k];
-        if (network->throat_nodes[t][0] == lower &&
-            network->throat_nodes[t][1] == upper)
-            return t;
-    }
-    return -1;
-}
-
 // From GRAIN towards what lies behind the face. Not towards the foot: a grain whose
 // centre another one has engulfed lies beyond its own face.
 static struct vector outwards(const struct network *network, int face, int grain)

@@ -4,6 +4,7 @@
 #include "artifacts/check.h"
 #include "basics/status.h"
 #include "describe.h"
+#include "export.h"
 #include "series.h"
 
 #include <argp.h>
@@ -13,11 +14,11 @@
 #include <string.h>
 
 struct options {
-    const char *input, *data, *vtk;
+    const char *input, *data, *vtk, *openpnm, *statoil;
     int frames;
 };
 
-enum { KEY_VTK = 256, KEY_FRAMES };
+enum { KEY_VTK = 256, KEY_FRAMES, KEY_OPENPNM, KEY_STATOIL };
 
 static const struct argp_option option_table[] = {
     {"data", 'd', "NAME", 0, "Print one dataset, as nested lists", 0},
@@ -27,6 +28,10 @@ static const struct argp_option option_table[] = {
      "liquid in the throats, forces, cracks and displacements",
      0},
     {"frames", KEY_FRAMES, "N", 0, "Frames of a drying or of forces [11]", 0},
+    {"openpnm", KEY_OPENPNM, "FILE", 0,
+     "Write a network as JSON graph, which OpenPNM and import-network read", 0},
+    {"statoil", KEY_STATOIL, "PREFIX", 0,
+     "Write a network as PREFIX_node1.dat, _node2.dat, _link1.dat and _link2.dat", 0},
     {"version", 'V', NULL, 0, "Print program version", -1},
     {0}};
 
@@ -54,6 +59,12 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         return 0;
     case KEY_FRAMES:
         options->frames = parse_frames(argument);
+        return 0;
+    case KEY_OPENPNM:
+        options->openpnm = argument;
+        return 0;
+    case KEY_STATOIL:
+        options->statoil = argument;
         return 0;
     case 'V':
         printf("inspect (craquelure %s) stage version %d\n", CRAQUELURE_VERSION,
@@ -97,7 +108,7 @@ static json_t *json_artifact(const struct options *options, const struct bytes *
     if (check_document(document, schema, &reason))
         die(STATUS_BAD_DATA, "%s: %s", input_name(options->input), reason.text);
     schema_free(schema);
-    if (options->data || options->vtk)
+    if (options->data || options->vtk || options->openpnm || options->statoil)
         die(STATUS_USAGE, "%s: is JSON: read it with jq", input_name(options->input));
     return document;
 }
@@ -130,7 +141,9 @@ int main(int argc, char **argv)
         return STATUS_OK;
     }
     struct artifact *artifact = artifact_open_bytes(options.input, bytes, NULL);
-    if (options.vtk)
+    if (options.openpnm || options.statoil)
+        export_network(artifact, options.openpnm, options.statoil);
+    else if (options.vtk)
         write_series(artifact, options.vtk, options.frames);
     else
         print(options.data ? dataset_json(artifact, options.data)

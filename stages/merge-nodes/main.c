@@ -2,13 +2,19 @@
 // merge-nodes: short throats removed from a pore network [K 3.3.7].
 #include "artifacts/artifact.h"
 #include "artifacts/write_network.h"
+#include "basics/memory.h"
 #include "basics/status.h"
 #include "merge.h"
+#include "report.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum volumes { VOLUMES_AS_GIVEN, VOLUMES_CONSERVED };
 
 struct merge_parameters {
-    int measure;
+    int measure, volumes;
     double threshold;
 };
 
@@ -16,12 +22,18 @@ static const struct parameter table[] = {
     {"measure", PARAMETER_CHOICE, "1", "\"grain_radius\"", BOUND_NONE, 0, 0,
      "grain_radius|mean_length|absolute|fraction",
      "what the threshold counts: mean grain radii, mean throat lengths, metres, or the "
-     "share of throats to remove",
+     "share of throats to remove; the last two of the network before any merging",
      offsetof(struct merge_parameters, measure)},
     {"threshold", PARAMETER_NUMBER, "1", "1e-6", BOUND_MINIMUM, 0, 0, NULL,
      "throats shorter than this go, the shortest first; the default removes only those "
      "that a degenerate packing makes",
      offsetof(struct merge_parameters, threshold)},
+    {"volumes", PARAMETER_CHOICE, "1", "\"as_given\"", BOUND_NONE, 0, 0,
+     "as_given|conserved",
+     "as_given: where throats have volumes (/throats/volume) their sum stays, "
+     "cylinders "
+     "stay cylinders; conserved: the sum of cylinders stays as well, as volumes",
+     offsetof(struct merge_parameters, volumes)},
     {0}};
 
 static const struct stage stage = {
@@ -31,7 +43,44 @@ static const struct stage stage = {
     .reads = "network",
     .writes = "network",
     .most_inputs = 1,
-    .parameters = table};
+    .parameters = table,
+    .reports = "coordination, lengths and radii before and after, as JSON"};
+
+// Cylinders become volumes.
+static void give_volumes(struct network *network)
+{
+    if (network->throat_volume) return;
+    double *volume = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        volume[t] = throat_volume(network, t);
+    network->throat_volume = volume;
+}
+
+static void write_report(const char *path, json_t *document)
+{
+    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    char *line = allocate(strlen(text) + 2, 1);
+    sprintf(line, "%s\n", text);
+    write_whole(path, line, strlen(line));
+    free(line);
+    free(text);
+    json_decref(document);
+}
+
+static void merge(struct network *network, const struct merge_parameters *parameters,
+                  const char *path, struct merge_report *report)
+{
+    struct census before = {0};
+    if (path) before = take_census(network);
+    if (parameters->volumes == VOLUMES_CONSERVED) give_volumes(network);
+    merge_nodes(network, (enum merge_measure)parameters->measure, parameters->threshold,
+                report);
+    if (!path) return;
+    struct census after = take_census(network);
+    write_report(path, merging_json(report, &before, &after));
+    census_free(&before);
+    census_free(&after);
+}
 
 int main(int argc, char **argv)
 {
@@ -46,17 +95,18 @@ int main(int argc, char **argv)
     struct network network = artifact_get_network(input);
 
     struct merge_report report;
-    merge_nodes(&network, (enum merge_measure)parameters.measure, parameters.threshold,
-                &report);
+    merge(&network, &parameters, invocation.report, &report);
 
-    char model[400];
+    char model[500];
     snprintf(model, sizeof model,
              "shortest first: %d throats merged away, %d fused with a parallel one, %d "
              "short ones kept\n"
              "nodes %d -> %d, throats %d -> %d\n"
-             "parallel throats: the wider radius stays\n",
+             "parallel throats: the wider radius stays\n"
+             "%s\n",
              report.merged, report.fused, report.kept, report.nodes_before,
-             network.n_node, report.throats_before, network.n_throat);
+             network.n_node, report.throats_before, network.n_throat,
+             network.throat_volume ? "volumes: their sum stays" : "volumes: cylinders");
     write_network(&network, &invocation, input, model);
 
     artifact_close(input);

@@ -16,10 +16,20 @@ static double mean(const double *values, int count)
     return count ? sum / count : 0;
 }
 
+// What thresholds are relative to stays that of the first time, so that merging again
+// changes nothing.
+static void remember_unmerged(struct network *network)
+{
+    if (network->unmerged_throats) return;
+    network->unmerged_throats = network->n_throat;
+    network->unmerged_length = mean(network->throat_length, network->n_throat);
+}
+
 // The length below which throats go, and how many may go at most.
 static void limits(const struct network *network, enum merge_measure measure,
                    double threshold, double *length, int *most)
 {
+    const int gone = network->unmerged_throats - network->n_throat;
     *most = network->n_throat;
     switch (measure) {
     case MERGE_GRAIN_RADIUS:
@@ -27,14 +37,14 @@ static void limits(const struct network *network, enum merge_measure measure,
             threshold * mean(network->packing.radius, network->packing.n_particle);
         break;
     case MERGE_MEAN_LENGTH:
-        *length = threshold * mean(network->throat_length, network->n_throat);
+        *length = threshold * network->unmerged_length;
         break;
     case MERGE_ABSOLUTE:
         *length = threshold;
         break;
     case MERGE_FRACTION:
         *length = HUGE_VAL;
-        *most = (int)floor(threshold * network->n_throat);
+        *most = (int)floor(threshold * network->unmerged_throats) - gone;
         break;
     }
 }
@@ -68,8 +78,9 @@ static void place_union(struct merging *merging, int root, int other)
                           wall_position(&network->packing, wall));
 }
 
-// Unites the two nodes of throat T. False when it has to stay.
-static bool merge_ends(struct merging *merging, int t)
+// Unites the two nodes of throat T. False when it has to stay. What of its volume no
+// throat was there to take is added to LOST.
+static bool merge_ends(struct merging *merging, int t, double *lost)
 {
     int a = merging_node(merging, merging->network->throat_nodes[t][0]);
     int b = merging_node(merging, merging->network->throat_nodes[t][1]);
@@ -84,6 +95,8 @@ static bool merge_ends(struct merging *merging, int t)
     merging->parent[b] = a;
     merging_remove(merging, t);
     merging_move_throats(merging, a, b, distance(before, merging->position[a]) > 0);
+    const double *volume = merging->network->throat_volume;
+    if (volume) *lost += merging_share(merging, a, volume[t]);
     return true;
 }
 
@@ -92,6 +105,7 @@ void merge_nodes(struct network *network, enum merge_measure measure, double thr
 {
     double shortest_kept = 0;
     int most;
+    remember_unmerged(network);
     limits(network, measure, threshold, &shortest_kept, &most);
     *report = (struct merge_report){.nodes_before = network->n_node,
                                     .throats_before = network->n_throat};
@@ -100,7 +114,7 @@ void merge_nodes(struct network *network, enum merge_measure measure, double thr
     double length;
     while (merging.removed < most && merging_shortest(&merging, &throat, &length)) {
         if (!(length < shortest_kept)) break;
-        if (merge_ends(&merging, throat))
+        if (merge_ends(&merging, throat, &report->lost_volume))
             report->merged++;
         else
             report->kept++;

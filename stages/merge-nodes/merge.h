@@ -7,9 +7,9 @@
 
 enum merge_measure {
     MERGE_GRAIN_RADIUS, // threshold in mean grain radii
-    MERGE_MEAN_LENGTH,  // in mean throat lengths, before merging
+    MERGE_MEAN_LENGTH,  // in mean throat lengths, before any merging
     MERGE_ABSOLUTE,     // in metres
-    MERGE_FRACTION      // share of the throats to remove
+    MERGE_FRACTION      // share of the throats to remove, of those before any merging
 };
 
 struct merge_report {
@@ -17,16 +17,24 @@ struct merge_report {
     int merged; // throats whose two nodes became one
     int fused;  // throats that had become parallel to another and were united with it
     int kept;   // short throats that had to stay: from wall to opposite wall
+    double lost_volume; // m3, where no throat was left to take it
 };
 
-// Merges, the shortest throat first (of equal ones the lowest index), until none is
-// shorter than the threshold, or the asked-for share of throats is gone.
+// Merges, the shortest throat first (of equal ones that of the lowest nodes), until
+// none is shorter than the threshold, or the asked-for share of throats is gone. What
+// is relative is so to the network before any merging, which it remembers: merging it
+// again changes nothing.
 //
 // A merged node lies at the mean of the nodes it was made from, those on most walls
 // alone counting, and exactly on all their walls. Throats that become parallel (between
 // the same two nodes) are one: they were the same opening, seen twice; the wider radius
 // stays. Lengths follow the nodes; radii are those from before. Faces stay closed
 // loops; one left with fewer than three nodes is gone.
+//
+// Where throats have volumes, their sum stays: those of parallel throats add up, and
+// that of a throat merged away goes to the throats at the merged node, in proportion to
+// theirs. Cylinders stay cylinders of their radius and length; they overlap most where
+// throats are short [K 3.3.7], so merging takes away what they count twice.
 //
 // O(n log n). NETWORK is changed in place.
 void merge_nodes(struct network *network, enum merge_measure measure, double threshold,

@@ -6,16 +6,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-// ---- the queue: a binary heap, shortest first, then lowest index --------------------
+// ---- the queue: a binary heap, shortest first, then lowest nodes --------------------
 
 static bool comes_before(const struct queued *a, const struct queued *b)
 {
     if (a->length != b->length) return a->length < b->length;
+    for (int end = 0; end < 2; end++)
+        if (a->nodes[end] != b->nodes[end]) return a->nodes[end] < b->nodes[end];
     return a->throat < b->throat;
 }
 
-static void push(struct merging *merging, struct queued item)
+static void push(struct merging *merging, int throat, double length)
 {
+    const int32_t *nodes = merging->network->throat_nodes[throat];
+    const struct queued item = {
+        length, {nodes[0], nodes[1]}, throat, merging->stamp[throat]};
     GROW_ARRAY(merging->queue, merging->n_queue, merging->queue_capacity);
     int at = merging->n_queue++;
     for (; at > 0 && comes_before(&item, &merging->queue[(at - 1) / 2]);
@@ -85,8 +90,23 @@ void merging_remove(struct merging *merging, int throat)
 static void fuse(struct merging *merging, int kept, int removed)
 {
     double *radius = merging->network->throat_radius;
+    double *volume = merging->network->throat_volume;
     radius[kept] = fmax(radius[kept], radius[removed]);
+    if (volume) volume[kept] += volume[removed];
     merging_remove(merging, removed);
+}
+
+double merging_share(struct merging *merging, int root, double volume)
+{
+    const struct throat_row *row = &merging->row[root];
+    double *of = merging->network->throat_volume, sum = 0;
+    for (int k = 0; k < row->count; k++)
+        sum += of[row->throat[k]];
+    for (int k = 0; k < row->count; k++) {
+        double *share = &of[row->throat[k]];
+        *share += sum > 0 ? volume * (*share / sum) : volume / row->count;
+    }
+    return row->count ? 0 : volume;
 }
 
 // A tessellation unites nodes on walls, and so may bring throats that are parallel.
@@ -102,6 +122,14 @@ static void fuse_parallel(struct merging *merging)
                 fuse(merging, t, other);
         }
     }
+}
+
+// As merging_finish will write it: a length from elsewhere may differ in its last
+// digit, and so fall on the other side of a threshold when merged again.
+static double node_distance(const struct network *network, int throat)
+{
+    const int32_t *nodes = network->throat_nodes[throat];
+    return distance(network->node_position[nodes[0]], network->node_position[nodes[1]]);
 }
 
 struct merging merging_begin(struct network *network)
@@ -123,7 +151,7 @@ struct merging merging_begin(struct network *network)
     for (int t = 0; t < network->n_throat; t++) {
         append(&merging.row[network->throat_nodes[t][0]], t);
         append(&merging.row[network->throat_nodes[t][1]], t);
-        push(&merging, (struct queued){network->throat_length[t], t, 0});
+        push(&merging, t, node_distance(network, t));
     }
     fuse_parallel(&merging);
     return merging;
@@ -134,7 +162,8 @@ static void measure_again(struct merging *merging, int root, int throat)
     const int other = other_end(merging, throat, root);
     const double length = distance(merging->position[root], merging->position[other]);
     merging->network->throat_length[throat] = length;
-    push(merging, (struct queued){length, throat, ++merging->stamp[throat]});
+    merging->stamp[throat]++;
+    push(merging, throat, length);
 }
 
 static void drop_gone(struct merging *merging, struct throat_row *row)
@@ -222,7 +251,9 @@ static void write_throats(struct merging *merging, const int *number)
         const int b = number[network->throat_nodes[t][1]];
         network->throat_nodes[kept][0] = a < b ? a : b;
         network->throat_nodes[kept][1] = a < b ? b : a;
-        network->throat_radius[kept] = merging->network->throat_radius[t];
+        network->throat_radius[kept] = network->throat_radius[t];
+        if (network->throat_volume)
+            network->throat_volume[kept] = network->throat_volume[t];
         network->throat_length[kept] =
             distance(network->node_position[a], network->node_position[b]);
         network->throat_kind[kept++] = network->throat_kind[t];

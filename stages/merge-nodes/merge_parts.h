@@ -17,6 +17,7 @@ struct throat_row {
 // A throat in the queue; out of date when its stamp is not the throat's.
 struct queued {
     double length;
+    int32_t nodes[2]; // as they were numbered at first
     int throat, stamp;
 };
 
@@ -43,6 +44,10 @@ int merging_node(struct merging *merging, int node);
 bool merging_shortest(struct merging *merging, int *throat, double *length);
 
 void merging_remove(struct merging *merging, int throat);
+
+// Hands the VOLUME of a throat that is gone to those at ROOT, in proportion to what
+// they have (equally where they have none). Returns what no throat was there to take.
+double merging_share(struct merging *merging, int root, double volume);
 
 // Gives the throats of OTHER to ROOT, fusing those that have become parallel, and
 // measures again what has changed: the moved ones, and all of ROOT if it MOVED itself.

@@ -34,6 +34,11 @@ static struct unit_cell unit_cell(enum lattice lattice)
             {{0}, {0.5, 0.5, 0}, {0.5, 1. / 6, 0.5}, {0, 2. / 3, 0.5}}};
     case LATTICE_TRIANGULAR:
         return (struct unit_cell){{2, 2, 2 * sqrt(3)}, 2, {{0}, {0.5, 0, 0.5}}};
+    case LATTICE_HONEYCOMB:
+        return (struct unit_cell){
+            {2 * sqrt(3), 2, 6},
+            4,
+            {{0}, {0, 0, 1. / 3}, {0.5, 0, 0.5}, {0.5, 0, 5. / 6}}};
     }
     return simple;
 }

@@ -25,6 +25,8 @@ static enum lattice lattice_of(const struct pack_parameters *parameters)
         return LATTICE_FACE_CENTRED;
     case METHOD_HEXAGONAL:
         return parameters->dimensions == 2 ? LATTICE_TRIANGULAR : LATTICE_HEXAGONAL;
+    case METHOD_HONEYCOMB:
+        return LATTICE_HONEYCOMB;
     default:
         return LATTICE_CUBIC;
     }
@@ -44,16 +46,18 @@ static enum status check_lattice(const struct pack_parameters *parameters,
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.sizes.distribution: must be one for a lattice");
     if (parameters->dimensions == 2 && method != METHOD_SQUARE &&
-        method != METHOD_HEXAGONAL)
+        method != METHOD_HEXAGONAL && method != METHOD_HONEYCOMB)
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.dimensions: must be 3 for this lattice (two dimensions: "
-                      "square, hexagonal)");
+                      "square, hexagonal, honeycomb)");
     if (dimensions_of(parameters) == 2 && parameters->counts[1] != 1 &&
         !fills_domain(parameters))
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.counts: a %s lattice is one layer: must be 1 along y, got "
                       "%lld",
-                      method == METHOD_SQUARE ? "square" : "triangular",
+                      method == METHOD_SQUARE      ? "square"
+                      : method == METHOD_HEXAGONAL ? "triangular"
+                                                   : "honeycomb",
                       (long long)parameters->counts[1]);
     return STATUS_OK;
 }

@@ -22,8 +22,9 @@ enum lattice {
     LATTICE_CUBIC, // also the square lattice, one layer of it
     LATTICE_BODY_CENTRED,
     LATTICE_FACE_CENTRED,
-    LATTICE_HEXAGONAL, // hexagonal close packing; cell 1 : sqrt(3) : sqrt(8/3)
-    LATTICE_TRIANGULAR // one layer, in x and z
+    LATTICE_HEXAGONAL,  // hexagonal close packing; cell 1 : sqrt(3) : sqrt(8/3)
+    LATTICE_TRIANGULAR, // one layer, in x and z
+    LATTICE_HONEYCOMB   // rings of six in x and z, one layer on the other in y
 };
 
 // Edges of the box that COUNTS unit cells fill, m: whole cells where it repeats, around

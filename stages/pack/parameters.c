@@ -5,10 +5,12 @@
 
 const struct parameter pack_table[] = {
     {"method", PARAMETER_CHOICE, "1", "\"cubic\"", BOUND_NONE, 0, 0,
-     "square|cubic|bcc|fcc|hexagonal|poisson|random_sequential|inward_spiral|"
+     "square|cubic|bcc|fcc|hexagonal|honeycomb|poisson|random_sequential|inward_spiral|"
      "deposition|radius_expansion|domain_contraction|explosive_repulsion|import",
      "lattice of touching grains (square: one layer in x and z; hexagonal: close "
-     "packing, or the triangular layer where dimensions=2); poisson: random points, "
+     "packing, or the triangular layer where dimensions=2; honeycomb: layers of "
+     "hexagonal rings in x and z, one on the other, whose network has 8 throats a node "
+     "[K Fig. 2.3]); poisson: random points, "
      "grains may overlap; random_sequential: random points, refused where grains would "
      "overlap; inward_spiral: a layer of grains from the walls inwards, each touching "
      "two others [K 3.1.2]; by moving grains [K 3.1.1]: deposition by gravity, "

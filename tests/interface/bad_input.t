@@ -672,7 +672,7 @@ drawn, ring = "method=random_sequential", "method=poisson count=9 domain.shape=r
 scene("a lattice of unequal grains is refused", "sizes.distribution=normal",
       "pack.sizes.distribution: must be one for a lattice")
 scene("a lattice in space has no plane", "method=bcc dimensions=2",
-      r"pack.dimensions: must be 3 for this lattice \(two dimensions: square, hexagonal\)")
+      r"pack.dimensions: must be 3 for this lattice \(two dimensions: square, hexagonal, honeycomb\)")
 scene("a triangular lattice of several layers is refused", "method=hexagonal dimensions=2",
       "pack.counts: a triangular lattice is one layer: must be 1 along y, got 5")
 scene("a lattice that does not fit its periodic box is refused",

@@ -52,7 +52,8 @@ class Packing:
 
 for method, in_cell, solid, contacts in [
         ("cubic", 1, pi / 6, 6), ("bcc", 2, sqrt(3) * pi / 8, 8),
-        ("fcc", 4, sqrt(2) * pi / 6, 12), ("hexagonal", 4, sqrt(2) * pi / 6, 12)]:
+        ("fcc", 4, sqrt(2) * pi / 6, 12), ("hexagonal", 4, sqrt(2) * pi / 6, 12),
+        ("honeycomb", 4, 2 * pi / sqrt(243), 5)]:
     lattice = Packing(f"method={method}", "counts=[4,3,5]", ALL, "radius=3e-7")
     ok(len(lattice.r) == 60 * in_cell and abs(lattice.porosity - (1 - solid)) < 1e-12,
        f"porosity of the {method} lattice", lattice.porosity)
@@ -66,7 +67,8 @@ for method, in_cell, solid, contacts in [
 
 for settings, in_cell, solid, contacts in [
         (["method=square"], 1, pi / 4, 4),
-        (["method=hexagonal", "dimensions=2"], 2, pi / sqrt(12), 6)]:
+        (["method=hexagonal", "dimensions=2"], 2, pi / sqrt(12), 6),
+        (["method=honeycomb", "dimensions=2"], 4, pi / sqrt(27), 3)]:
     layer = Packing(*settings, "counts=[6,1,4]", "radius=0.5", "periodic=[true,false,true]")
     area = pi / 4 * len(layer.r) / (layer.edge[0] * layer.edge[2])
     ok(len(layer.r) == 24 * in_cell and abs(area - solid) < 1e-12 and layer.edge[1] == 1

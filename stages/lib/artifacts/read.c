@@ -198,8 +198,14 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     return packing;
 }
 
+static bool artifact_has(const struct artifact *artifact, const json_t *entry)
+{
+    return entry && has_entry(artifact->file, entry);
+}
+
 struct network artifact_get_network(const struct artifact *artifact)
 {
+    const struct schema *schema = artifact->schema;
     struct network network = {.packing = artifact_get_packing(artifact)};
     network.node_position = artifact_get(artifact, "/nodes/position", &network.n_node);
     network.node_walls = artifact_get(artifact, "/nodes/kind", NULL);
@@ -211,5 +217,13 @@ struct network artifact_get_network(const struct artifact *artifact)
     network.face_nodes = artifact_get(artifact, "/faces/nodes", NULL);
     network.face_particles =
         artifact_get(artifact, "/faces/particles", &network.n_face);
+    if (artifact_has(artifact, schema_dataset(schema, "/throats/volume")))
+        network.throat_volume = artifact_get(artifact, "/throats/volume", NULL);
+    if (artifact_has(artifact, schema_attribute(schema, "/summary/unmerged_throats"))) {
+        network.unmerged_throats =
+            (int)artifact_get_number(artifact, "/summary/unmerged_throats");
+        network.unmerged_length =
+            artifact_get_number(artifact, "/summary/unmerged_length");
+    }
     return network;
 }

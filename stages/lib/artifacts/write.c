@@ -159,6 +159,9 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
     artifact_put(artifact, "/throats/length", network->throat_length,
                  network->n_throat);
     artifact_put(artifact, "/throats/kind", network->throat_kind, network->n_throat);
+    if (network->throat_volume)
+        artifact_put(artifact, "/throats/volume", network->throat_volume,
+                     network->n_throat);
     artifact_put(artifact, "/faces/offset", network->face_offset, network->n_face + 1);
     artifact_put(artifact, "/faces/nodes", network->face_nodes, n_face_node);
     artifact_put(artifact, "/faces/particles", network->face_particles,

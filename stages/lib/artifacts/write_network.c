@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "artifacts/write_network.h"
 
-void write_network(const struct network *network, const struct invocation *invocation,
-                   const struct artifact *input, const char *model)
+void write_network_of(const struct network *network,
+                      const struct invocation *invocation, json_t *inputs,
+                      const char *model)
 {
     double void_volume = 0;
     for (int t = 0; t < network->n_throat; t++)
@@ -14,9 +15,23 @@ void write_network(const struct network *network, const struct invocation *invoc
                         network->n_node ? 2.0 * network->n_throat / network->n_node
                                         : 0);
     artifact_put_number(artifact, "/summary/void_volume", void_volume);
-    artifact_put_vtk(artifact, "/nodes/position", network->n_node,
-                     (const char *const[]){"/nodes/kind", NULL},
-                     (const int32_t(*)[2])network->throat_nodes, network->n_throat,
-                     (const char *const[]){"/throats/radius", "/throats/kind", NULL});
-    artifact_finish(artifact, invocation, one_input(input), model);
+    if (network->unmerged_throats) {
+        artifact_put_number(artifact, "/summary/unmerged_throats",
+                            network->unmerged_throats);
+        artifact_put_number(artifact, "/summary/unmerged_length",
+                            network->unmerged_length);
+    }
+    artifact_put_vtk(
+        artifact, "/nodes/position", network->n_node,
+        (const char *const[]){"/nodes/kind", NULL},
+        (const int32_t(*)[2])network->throat_nodes, network->n_throat,
+        (const char *const[]){"/throats/radius", "/throats/kind",
+                              network->throat_volume ? "/throats/volume" : NULL, NULL});
+    artifact_finish(artifact, invocation, inputs, model);
+}
+
+void write_network(const struct network *network, const struct invocation *invocation,
+                   const struct artifact *input, const char *model)
+{
+    write_network_of(network, invocation, one_input(input), model);
 }

@@ -9,4 +9,9 @@
 void write_network(const struct network *network, const struct invocation *invocation,
                    const struct artifact *input, const char *model);
 
+// The same for one made from anything: INPUTS are their digests, taken over.
+void write_network_of(const struct network *network,
+                      const struct invocation *invocation, json_t *inputs,
+                      const char *model);
+
 #endif

@@ -14,6 +14,7 @@ void network_free(struct network *network)
     free(network->throat_radius);
     free(network->throat_length);
     free(network->throat_kind);
+    free(network->throat_volume);
     free(network->face_offset);
     free(network->face_nodes);
     free(network->face_particles);
@@ -46,8 +47,22 @@ void incidence_free(struct incidence *incidence)
     *incidence = (struct incidence){0};
 }
 
+int throat_between(const struct network *network, const struct incidence *incidence,
+                   int a, int b)
+{
+    const int lower = a < b ? a : b, upper = a < b ? b : a;
+    for (int k = incidence->offset[lower]; k < incidence->offset[lower + 1]; k++) {
+        const int t = incidence->throat[k];
+        if (network->throat_nodes[t][0] == lower &&
+            network->throat_nodes[t][1] == upper)
+            return t;
+    }
+    return -1;
+}
+
 double throat_volume(const struct network *network, int throat)
 {
+    if (network->throat_volume) return network->throat_volume[throat];
     const double radius = network->throat_radius[throat];
     return M_PI * radius * radius * network->throat_length[throat];
 }

@@ -27,11 +27,17 @@ struct network {
     double *throat_radius;      // (n_throat) m
     double *throat_length;      // (n_throat) m
     uint8_t *throat_kind;       // (n_throat) enum throat_kind
+    double *throat_volume;      // (n_throat) m3; NULL: the throats are cylinders
 
     int n_face;
     int64_t *face_offset;         // (n_face+1) into face_nodes
     int32_t *face_nodes;          // each face a closed loop of nodes
     int32_t (*face_particles)[2]; // (n_face) two grains; -1-w for wall w = 0..5
+
+    // Throats, and their mean length in m, before any were merged away: what thresholds
+    // of merging are relative to. 0: not merged yet.
+    int unmerged_throats;
+    double unmerged_length;
 };
 
 // Frees what the network owns, packing included, and empties it; safe on an empty one.
@@ -48,7 +54,12 @@ struct incidence {
 struct incidence network_incidence(const struct network *network);
 void incidence_free(struct incidence *incidence);
 
-// Liquid a full throat holds: the cylinder pi r^2 L [K 3.3.4], m3.
+// The throat between nodes A and B, in any order, or -1.
+int throat_between(const struct network *network, const struct incidence *incidence,
+                   int a, int b);
+
+// Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L
+// [K 3.3.4].
 double throat_volume(const struct network *network, int throat);
 
 #endif

@@ -13,10 +13,10 @@
 #include <unistd.h>
 
 // Sections a scene may hold: the stages, whether this one or another.
-static const char *const sections[] = {"pack",       "tessellate",     "merge-nodes",
-                                       "dry",        "force-protocol", "dem-replay",
-                                       "crackstats", "bridge",         "dem-shear",
-                                       "shearstats", "flow",           NULL};
+static const char *const sections[] = {
+    "pack",       "tessellate",     "merge-nodes", "dry",       "force-protocol",
+    "dem-replay", "crackstats",     "bridge",      "dem-shear", "shearstats",
+    "flow",       "import-network", NULL};
 
 enum {
     KEY_THREADS = 256,

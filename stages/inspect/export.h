@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef CRAQUELURE_EXPORT_H
+#define CRAQUELURE_EXPORT_H
+
+#include "artifacts/artifact.h"
+
+// Writes the network of ARTIFACT (a network, or a drying that carries one) as the file
+// OPENPNM and as the four files of the prefix STATOIL, where they are not NULL. Exits
+// 65 for an artifact without a network.
+void export_network(const struct artifact *artifact, const char *openpnm,
+                    const char *statoil);
+
+#endif

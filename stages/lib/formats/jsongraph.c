@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/jsongraph.h"
+
+#include "basics/memory.h"
+#include "formats/foreign.h"
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+// ---- out ----------------------------------------------------------------------------
+
+static json_t *id_of(int number)
+{
+    return json_sprintf("%d", number);
+}
+
+static json_t *vector_json(struct vector x)
+{
+    return json_pack("[f,f,f]", x.x, x.y, x.z);
+}
+
+static json_t *pairs_json(const int32_t (*pair)[2], int count)
+{
+    json_t *list = json_array();
+    for (int k = 0; k < count; k++)
+        json_array_append_new(list, json_pack("[i,i]", pair[k][0], pair[k][1]));
+    return list;
+}
+
+static json_t *nodes_json(const struct network *network)
+{
+    double *radius = NEW_ARRAY(double, network->n_node);
+    for (int t = 0; t < network->n_throat; t++)
+        for (int end = 0; end < 2; end++) {
+            double *of = &radius[network->throat_nodes[t][end]];
+            *of = fmax(*of, network->throat_radius[t]);
+        }
+    json_t *nodes = json_array();
+    for (int i = 0; i < network->n_node; i++) {
+        const struct vector at = network->node_position[i];
+        json_array_append_new(
+            nodes, json_pack("{s:o,s:{s:{s:f,s:f,s:f},s:f,s:i}}", "id", id_of(i),
+                             "metadata", "node_coordinates", "x", at.x, "y", at.y, "z",
+                             at.z, "node_squared_radius", radius[i] * radius[i],
+                             "node_walls", (int)network->node_walls[i]));
+    }
+    free(radius);
+    return nodes;
+}
+
+static json_t *edges_json(const struct network *network)
+{
+    json_t *edges = json_array();
+    for (int t = 0; t < network->n_throat; t++) {
+        const double radius = network->throat_radius[t];
+        json_array_append_new(
+            edges,
+            json_pack("{s:o,s:o,s:o,s:{s:f,s:f,s:f,s:f,s:i}}", "id", id_of(t), "source",
+                      id_of(network->throat_nodes[t][0]), "target",
+                      id_of(network->throat_nodes[t][1]), "metadata", "link_length",
+                      network->throat_length[t], "link_squared_radius", radius * radius,
+                      "link_radius", radius, "link_volume", throat_volume(network, t),
+                      "link_kind", (int)network->throat_kind[t]));
+    }
+    return edges;
+}
+
+static json_t *faces_json(const struct network *network)
+{
+    json_t *loops = json_array();
+    for (int f = 0; f < network->n_face; f++) {
+        json_t *loop = json_array();
+        for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
+            json_array_append_new(loop, json_integer(network->face_nodes[k]));
+        json_array_append_new(loops, loop);
+    }
+    return json_pack(
+        "{s:o,s:o}", "nodes", loops, "particles",
+        pairs_json((const int32_t(*)[2])network->face_particles, network->n_face));
+}
+
+static json_t *rest_json(const struct network *network)
+{
+    const struct packing *packing = &network->packing;
+    json_t *position = json_array(), *radius = json_array();
+    for (int i = 0; i < packing->n_particle; i++) {
+        json_array_append_new(position, vector_json(packing->position[i]));
+        json_array_append_new(radius, json_real(packing->radius[i]));
+    }
+    return json_pack(
+        "{s:o,s:o,s:[i,i,i],s:{s:o,s:o},s:o,s:o,s:i,s:f}", "lower",
+        vector_json(packing->lower), "upper", vector_json(packing->upper), "periodic",
+        packing->periodic[0], packing->periodic[1], packing->periodic[2], "particles",
+        "position", position, "radius", radius, "bonds",
+        pairs_json((const int32_t(*)[2])packing->bond, packing->n_bond), "faces",
+        faces_json(network), "unmerged_throats", network->unmerged_throats,
+        "unmerged_length", network->unmerged_length);
+}
+
+json_t *jsongraph_from_network(const struct network *network)
+{
+    return json_pack("{s:{s:b,s:{s:i,s:i,s:s,s:o},s:o,s:o}}", "graph", "directed", 0,
+                     "metadata", "number_of_nodes", network->n_node, "number_of_links",
+                     network->n_throat, "units", "m", "craquelure", rest_json(network),
+                     "nodes", nodes_json(network), "edges", edges_json(network));
+}
+
+// ---- in -----------------------------------------------------------------------------
+
+// The number an id stands for, "12" or 12, or -1.
+static int number_of(const json_t *id)
+{
+    const char *text = json_string_value(id);
+    char *end = NULL;
+    const long long number = text ? strtoll(text, &end, 10) : json_integer_value(id);
+    const bool whole = text ? end != text && !*end : json_is_integer(id);
+    return whole && number >= 0 && number <= INT_MAX ? (int)number : -1;
+}
+
+static bool get_vector(json_t *list, struct vector *x)
+{
+    return !json_unpack(list, "[F,F,F]", &x->x, &x->y, &x->z);
+}
+
+static enum status read_node(json_t *node, int k, struct network *network,
+                             struct reason *reason)
+{
+    const int i = number_of(json_object_get(node, "id"));
+    if (i < 0 || i >= network->n_node)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.nodes[%d].id: must be a number below number_of_nodes = %d",
+                      k, network->n_node);
+    struct vector *at = &network->node_position[i];
+    int walls = 0;
+    if (json_unpack(node, "{s:{s:{s:F,s:F,s:F},s?i}}", "metadata", "node_coordinates",
+                    "x", &at->x, "y", &at->y, "z", &at->z, "node_walls", &walls))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.nodes[%d].metadata.node_coordinates: must be numbers x, "
+                      "y, z",
+                      k);
+    network->node_walls[i] = (uint8_t)(walls & 63);
+    return STATUS_OK;
+}
+
+static enum status read_edge(json_t *edge, int k, struct network *network,
+                             struct reason *reason)
+{
+    const int t = number_of(json_object_get(edge, "id"));
+    if (t < 0 || t >= network->n_throat)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.edges[%d].id: must be a number below number_of_links = %d",
+                      k, network->n_throat);
+    network->throat_nodes[t][0] = number_of(json_object_get(edge, "source"));
+    network->throat_nodes[t][1] = number_of(json_object_get(edge, "target"));
+    double radius = -1, section, volume = -1;
+    int kind = 0;
+    if (json_unpack(edge, "{s:{s:F,s:F,s?F,s?F,s?i}}", "metadata", "link_length",
+                    &network->throat_length[t], "link_squared_radius", &section,
+                    "link_radius", &radius, "link_volume", &volume, "link_kind", &kind))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.edges[%d].metadata: must have the numbers link_length and "
+                      "link_squared_radius",
+                      k);
+    network->throat_radius[t] = radius >= 0 ? radius : sqrt(section);
+    network->throat_volume[t] =
+        volume >= 0 ? volume : M_PI * section * network->throat_length[t];
+    network->throat_kind[t] =
+        (uint8_t)(kind >= 0 && kind <= THROAT_IMPOSED_EMPTY ? kind : THROAT_NETWORK);
+    return STATUS_OK;
+}
+
+static int32_t (*read_pairs(json_t *list, int *count))[2]
+{
+    *count = (int)json_array_size(list);
+    int32_t(*pair)[2] = allocate((size_t)*count, sizeof *pair);
+    for (int k = 0; k < *count; k++)
+        if (json_unpack(json_array_get(list, (size_t)k), "[i,i]", &pair[k][0],
+                        &pair[k][1])) {
+            free(pair);
+            return NULL;
+        }
+    return pair;
+}
+
+static enum status read_particles(json_t *rest, struct packing *packing,
+                                  struct reason *reason)
+{
+    json_t *position = NULL, *radius = NULL;
+    json_unpack(rest, "{s:{s:o,s:o}}", "particles", "position", &position, "radius",
+                &radius);
+    const size_t n = json_array_size(position);
+    free(packing->position);
+    free(packing->radius);
+    packing->position = NEW_ARRAY(struct vector, n);
+    packing->radius = NEW_ARRAY(double, n);
+    packing->n_particle = (int)n;
+    bool good = json_array_size(radius) == n;
+    for (size_t i = 0; i < n && good; i++) {
+        packing->radius[i] = json_number_value(json_array_get(radius, i));
+        good = get_vector(json_array_get(position, i), &packing->position[i]) &&
+               packing->radius[i] > 0;
+    }
+    return good
+               ? STATUS_OK
+               : refuse(reason, STATUS_BAD_DATA,
+                        "graph.metadata.craquelure.particles: must have a position and "
+                        "a radius above 0 each");
+}
+
+static enum status read_loops(json_t *loops, struct network *network,
+                              struct reason *reason)
+{
+    const size_t n_face = json_array_size(loops);
+    free(network->face_offset);
+    network->face_offset = NEW_ARRAY(int64_t, n_face + 1);
+    for (size_t f = 0; f < n_face; f++)
+        network->face_offset[f + 1] =
+            network->face_offset[f] +
+            (int64_t)json_array_size(json_array_get(loops, f));
+    free(network->face_nodes);
+    network->face_nodes = NEW_ARRAY(int32_t, network->face_offset[n_face]);
+    for (size_t f = 0; f < n_face; f++)
+        for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1];
+             k++) {
+            const json_t *node = json_array_get(json_array_get(loops, f),
+                                                (size_t)(k - network->face_offset[f]));
+            network->face_nodes[k] = number_of(node);
+            if (network->face_nodes[k] < 0 || network->face_nodes[k] >= network->n_node)
+                return refuse(reason, STATUS_BAD_DATA,
+                              "graph.metadata.craquelure.faces.nodes[%zu]: must be a "
+                              "loop of nodes",
+                              f);
+        }
+    return STATUS_OK;
+}
+
+static enum status read_faces(json_t *rest, struct network *network,
+                              struct reason *reason)
+{
+    json_t *faces = json_object_get(rest, "faces");
+    json_t *loops = json_object_get(faces, "nodes");
+    free(network->face_particles);
+    network->face_particles =
+        read_pairs(json_object_get(faces, "particles"), &network->n_face);
+    bool good =
+        network->face_particles && json_array_size(loops) == (size_t)network->n_face;
+    for (int f = 0; f < network->n_face && good; f++)
+        for (int side = 0; side < 2; side++)
+            good = good && network->face_particles[f][side] >= -WALL_COUNT * side &&
+                   network->face_particles[f][side] < network->packing.n_particle;
+    if (!good)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.metadata.craquelure.faces.particles: must be a grain, and "
+                      "a grain or wall, for each face");
+    return read_loops(loops, network, reason);
+}
+
+static enum status read_rest(json_t *rest, struct network *network,
+                             struct reason *reason)
+{
+    struct packing *packing = &network->packing;
+    int periodic[3] = {0};
+    json_unpack(rest, "{s:[i,i,i],s?i,s?F}", "periodic", &periodic[0], &periodic[1],
+                &periodic[2], "unmerged_throats", &network->unmerged_throats,
+                "unmerged_length", &network->unmerged_length);
+    bool good = get_vector(json_object_get(rest, "lower"), &packing->lower) &&
+                get_vector(json_object_get(rest, "upper"), &packing->upper);
+    for (int axis = 0; axis < 3; axis++) {
+        packing->periodic[axis] = periodic[axis] != 0;
+        good =
+            good && component(packing->lower, axis) < component(packing->upper, axis);
+    }
+    if (!good)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.metadata.craquelure: must have a box, lower below upper");
+    enum status status = read_particles(rest, packing, reason);
+    if (status) return status;
+    free(packing->bond);
+    packing->bond = read_pairs(json_object_get(rest, "bonds"), &packing->n_bond);
+    good = packing->bond != NULL;
+    for (int b = 0; b < packing->n_bond && good; b++)
+        good = packing->bond[b][0] >= 0 && packing->bond[b][0] < packing->bond[b][1] &&
+               packing->bond[b][1] < packing->n_particle;
+    if (!good)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.metadata.craquelure.bonds: must be pairs of grains, the "
+                      "lower first");
+    return read_faces(rest, network, reason);
+}
+
+static enum status read_graph(json_t *graph, struct network *network,
+                              struct reason *reason)
+{
+    size_t k;
+    json_t *item;
+    enum status status = STATUS_OK;
+    json_array_foreach(json_object_get(graph, "nodes"), k, item)
+    {
+        if (!status) status = read_node(item, (int)k, network, reason);
+    }
+    json_array_foreach(json_object_get(graph, "edges"), k, item)
+    {
+        if (!status) status = read_edge(item, (int)k, network, reason);
+    }
+    if (!status) status = check_network(network, reason);
+    if (status) return status;
+    drop_cylinder_volumes(network);
+    json_t *rest = json_object_get(json_object_get(graph, "metadata"), "craquelure");
+    if (rest) return read_rest(rest, network, reason);
+    box_around_nodes(network);
+    find_walls(network);
+    return STATUS_OK;
+}
+
+enum status network_from_jsongraph(const json_t *document, struct network *network,
+                                   struct reason *reason)
+{
+    json_t *graph = json_object_get(document, "graph");
+    const json_t *metadata = json_object_get(graph, "metadata");
+    const int n_node = number_of(json_object_get(metadata, "number_of_nodes"));
+    const int n_throat = number_of(json_object_get(metadata, "number_of_links"));
+    *network = (struct network){0};
+    if (n_node < 0 || n_throat < 0 ||
+        json_array_size(json_object_get(graph, "nodes")) != (size_t)n_node ||
+        json_array_size(json_object_get(graph, "edges")) != (size_t)n_throat)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph: must have as many nodes and edges as number_of_nodes and "
+                      "number_of_links say");
+    *network = new_network(n_node, n_throat);
+    const enum status status = read_graph(graph, network, reason);
+    if (status) network_free(network);
+    return status;
+}

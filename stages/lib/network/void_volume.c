@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "network/void_volume.h"
+
+#include "basics/memory.h"
+#include "geometry/sphere_cone.h"
+
+#include <stdlib.h>
+
+// Of the face's rim: nodes that coincide, as on lattices, do not pull it to their side.
+static struct vector middle_of(const struct network *network, int face)
+{
+    const int64_t begin = network->face_offset[face],
+                  end = network->face_offset[face + 1];
+    const struct vector origin = network->node_position[network->face_nodes[begin]];
+    struct vector sum = {0}, from = {0};
+    double rim = 0;
+    for (int64_t k = begin; k < end; k++) {
+        const int next = network->face_nodes[k + 1 < end ? k + 1 : begin];
+        const struct vector to = subtract(network->node_position[next], origin);
+        const double length = distance(from, to);
+        sum = add(sum, scale(length / 2, add(from, to)));
+        rim += length;
+        from = to;
+    }
+    return rim > 0 ? add(origin, scale(1 / rim, sum)) : origin;
+}
+
+// On both sides of the face where there is a grain; the loop runs counter-clockwise
+// seen from the second.
+static double void_beside(const struct network *network, int face, struct vector middle,
+                          int a, int b)
+{
+    double volume = 0;
+    for (int side = 0; side < 2; side++) {
+        const int grain = network->face_particles[face][side];
+        if (grain < 0) continue;
+        const struct vector centre = network->packing.position[grain];
+        const struct vector to_middle = subtract(middle, centre);
+        const struct vector to_a = subtract(network->node_position[a], centre);
+        const struct vector to_b = subtract(network->node_position[b], centre);
+        volume += tetrahedron_outside_ball(network->packing.radius[grain], to_middle,
+                                           side ? to_b : to_a, side ? to_a : to_b);
+    }
+    return volume;
+}
+
+static enum status add_face(const struct network *network,
+                            const struct incidence *incidence, int face, double *volume,
+                            struct reason *reason)
+{
+    const int32_t *loop = network->face_nodes + network->face_offset[face];
+    const int count =
+        (int)(network->face_offset[face + 1] - network->face_offset[face]);
+    const struct vector middle = middle_of(network, face);
+    for (int k = 0; k < count; k++) {
+        const int a = loop[k], b = loop[(k + 1) % count];
+        const int throat = throat_between(network, incidence, a, b);
+        if (throat < 0)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/faces/nodes: face %d: no throat between nodes %d and %d",
+                          face, a, b);
+        volume[throat] += void_beside(network, face, middle, a, b);
+    }
+    return STATUS_OK;
+}
+
+// Rounding may leave a throat between touching grains a little below nothing.
+static enum status check_volumes(const struct network *network, double *volume,
+                                 struct reason *reason)
+{
+    double largest = 0;
+    for (int i = 0; i < network->packing.n_particle; i++)
+        largest = fmax(largest, network->packing.radius[i]);
+    for (int t = 0; t < network->n_throat; t++) {
+        if (volume[t] < -1e-12 * largest * largest * largest)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "throat %d would have a void of %g m3: a grain beside it has "
+                          "its centre in another one",
+                          t, volume[t]);
+        volume[t] = fmax(0, volume[t]);
+    }
+    return STATUS_OK;
+}
+
+enum status find_void_volumes(struct network *network, struct reason *reason)
+{
+    struct incidence incidence = network_incidence(network);
+    double *volume = NEW_ARRAY(double, network->n_throat);
+    enum status status = STATUS_OK;
+    for (int face = 0; face < network->n_face && !status; face++)
+        status = add_face(network, &incidence, face, volume, reason);
+    if (!status) status = check_volumes(network, volume, reason);
+    incidence_free(&incidence);
+    if (status) {
+        free(volume);
+        return status;
+    }
+    free(network->throat_volume);
+    network->throat_volume = volume;
+    return STATUS_OK;
+}

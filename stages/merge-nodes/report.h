@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What merging did to the distributions of coordination, length and radius, as JSON
+// [K Figs. 3.24, 3.25].
+#ifndef CRAQUELURE_MERGE_NODES_REPORT_H
+#define CRAQUELURE_MERGE_NODES_REPORT_H
+
+#include "merge.h"
+
+#include <jansson.h>
+
+// Of a network as it is: copies of what is to be counted.
+struct census {
+    int n_node, n_throat, most_throats; // at one node
+    int *coordination;                  // (n_node)
+    double *length, *radius;            // (n_throat) m
+    double volume;                      // of all throats, m3
+};
+
+// The caller frees it with census_free.
+struct census take_census(const struct network *network);
+void census_free(struct census *census);
+
+// {"merged":…, "before":{…}, "after":{…}}; classes of length and of radius are the same
+// before and after. The caller owns it.
+json_t *merging_json(const struct merge_report *report, const struct census *before,
+                     const struct census *after);
+
+#endif
