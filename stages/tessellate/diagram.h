@@ -25,8 +25,8 @@ struct tessellation_report {
 };
 
 // The network of PACKING truncated to its box. On success *NETWORK is the caller's; the
-// packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside the box, a
-// periodic box (not yet), two grains at one place.
+// packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside the box, two
+// grains at one place, a box that repeats and is too narrow.
 //
 // Nodes come in the order of the grains they lie between, so that their order says
 // where they are, not how the triangulation was built. Wall nodes that coincide (an

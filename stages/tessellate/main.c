@@ -33,6 +33,20 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table};
 
+// Says what becomes of the diagram at the sides of the box.
+static const char *bounding(const struct packing *packing, char text[200])
+{
+    char along[4] = "";
+    int count = 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis]) along[count++] = "xyz"[axis];
+    const bool walls = count < 3;
+    snprintf(text, 200, "%s%s%s%s",
+             walls ? "truncated to the box by reflecting grains in its walls" : "",
+             walls && count ? ", " : "", count ? "repeated along " : "", along);
+    return text;
+}
+
 int main(int argc, char **argv)
 {
     struct tessellate_parameters parameters;
@@ -48,13 +62,13 @@ int main(int argc, char **argv)
     const enum status status = tessellate(&packing, &how, &network, &report, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[600];
+    char model[600], bounded[200];
     snprintf(model, sizeof model,
-             "%s diagram, truncated to the box by reflecting grains in its walls\n"
+             "%s diagram, %s\n"
              "throat radius: least clearance over the %s\n"
              "%d throats without clearance, %d grains without a cell\n"
-             "left out: periodic images, boundary layer\n",
-             how.power ? "power" : "Voronoi",
+             "left out: boundary layer\n",
+             how.power ? "power" : "Voronoi", bounding(&packing, bounded),
              how.clearance == CLEARANCE_SEGMENT ? "throat" : "infinite line [K 3.7]",
              report.n_closed, report.hidden);
     write_network(&network, &invocation, input, model);
