@@ -104,20 +104,14 @@ static bool is_face(const struct generators *generators, int32_t p, int32_t q,
     return wall < 0 || (generators->particle[q] == p && !row->key[2]);
 }
 
-// The normal of a face points from its first side to its second, also where the first
-// lies beyond its own face.
-static void reverse(struct loop *loop)
+static bool comes_first(const struct loop *loop, int a, int b)
 {
-    for (int a = 1, b = loop->count - 1; a < b; a++, b--) {
-        const int32_t node = loop->node[a];
-        const struct image image = loop->image[a];
-        loop->node[a] = loop->node[b];
-        loop->image[a] = loop->image[b];
-        loop->node[b] = node;
-        loop->image[b] = image;
-    }
+    if (loop->node[a] != loop->node[b]) return loop->node[a] < loop->node[b];
+    return image_number(loop->image[a]) < image_number(loop->image[b]);
 }
 
+// A loop begins with its lowest node, and its normal points from the first side of the
+// face to the second, also where the first lies beyond its own face.
 static void append_face(struct face_list *faces, const struct row *row,
                         const struct loop *loop)
 {
@@ -133,9 +127,14 @@ static void append_face(struct face_list *faces, const struct row *row,
         faces->node = reallocate(faces->node, capacity, sizeof *faces->node);
         faces->image = reallocate(faces->image, capacity, sizeof *faces->image);
     }
-    const size_t count = (size_t)loop->count;
-    memcpy(faces->node + faces->n_node, loop->node, count * sizeof *loop->node);
-    memcpy(faces->image + faces->n_node, loop->image, count * sizeof *loop->image);
+    int first = 0;
+    for (int k = 1; k < loop->count; k++)
+        if (comes_first(loop, k, first)) first = k;
+    for (int k = 0; k < loop->count; k++) {
+        const int from = first + (loop->forward ? k : loop->count - k);
+        faces->node[faces->n_node + k] = loop->node[from % loop->count];
+        faces->image[faces->n_node + k] = loop->image[from % loop->count];
+    }
     faces->row[faces->count] = *row;
     faces->row[faces->count].item = faces->count;
     faces->offset[faces->count++] = faces->n_node;
@@ -191,7 +190,6 @@ static void find_faces(const struct assembly *assembly, int cell, struct loop *l
         if (!is_face(generators, p, q, &row)) continue;
         if (!turn_around(assembly, cell, p, q, loop)) continue;
         if (loop->count < 3) continue; // closed up on a wall
-        if (!loop->forward) reverse(loop);
         append_face(faces, &row, loop);
     }
 }

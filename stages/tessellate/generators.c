@@ -222,6 +222,7 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     const enum status status = check_inside(generators, reason);
     if (status) return status;
     add_reflections(generators);
+    generators->n_base = generators->n;
     add_copies(generators);
     return STATUS_OK;
 }

@@ -18,7 +18,7 @@
 // In units of length from the lower corner of the box: first the grains, then their
 // reflections, then copies of both.
 struct generators {
-    int n, n_particle, capacity;
+    int n, n_particle, n_base, capacity; // bases: grains and reflections
     struct vector *position;
     double *weight;      // radius squared; 0 for Voronoi
     int32_t *particle;   // the grain itself, or that an image belongs to
@@ -48,6 +48,17 @@ enum status check_distinct(const struct generators *generators, struct reason *r
 // POSITION in another repetition of the box.
 struct vector moved(const struct generators *generators, struct vector position,
                     struct image image);
+
+// Orders generators by what they repeat, then by the repetition: so do all their copies
+// with each other.
+static inline int compare_generators(const struct generators *generators, int32_t a,
+                                     int32_t b)
+{
+    if (a < generators->n_base && b < generators->n_base) return (a > b) - (a < b);
+    const int32_t first = generators->base[a], second = generators->base[b];
+    if (first != second) return first < second ? -1 : 1;
+    return image_number(generators->image[a]) - image_number(generators->image[b]);
+}
 
 // The unit of length, m: the mean grain diameter, or the edge of a grain's share of the
 // box where that is larger. Far larger or smaller ones would cost digits.

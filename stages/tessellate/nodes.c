@@ -20,18 +20,6 @@ static bool repeats(const struct generators *generators)
     return generators->repeats[0] || generators->repeats[1] || generators->repeats[2];
 }
 
-static int32_t base_of(const struct generators *generators, int32_t i)
-{
-    return i < generators->n_particle ? i : generators->base[i];
-}
-
-int compare_generators(const struct generators *generators, int32_t a, int32_t b)
-{
-    const int32_t first = base_of(generators, a), second = base_of(generators, b);
-    if (first != second) return first < second ? -1 : 1;
-    return image_number(generators->image[a]) - image_number(generators->image[b]);
-}
-
 // The point of equal power to the four corners: 2 (x_k - x_0).c = |x_k - x_0|^2 - w_k +
 // w_0 for c relative to corner 0, so that no large numbers are subtracted.
 static struct vector power_centre(const struct generators *generators,
@@ -114,8 +102,9 @@ static bool name_cell(const struct generators *generators, const int32_t cell[4]
     int32_t corner[4];
     sort_corners(generators, cell, corner);
     for (int k = 0; k < 4; k++)
-        name->key[k] = base_of(generators, corner[k]);
-    for (int k = 1; k < 4; k++) {
+        name->key[k] =
+            corner[k] < generators->n_base ? corner[k] : generators->base[corner[k]];
+    for (int k = 1; k < 4 && generators->n > generators->n_base; k++) {
         const struct image apart = image_difference(generators->image[corner[k]],
                                                     generators->image[corner[0]]);
         if (is_far(apart)) return false;

@@ -23,8 +23,4 @@ enum status find_nodes(const struct generators *generators,
                        struct reason *reason);
 void nodes_free(struct nodes *nodes);
 
-// Orders generators by what they repeat, then by the repetition: so do all their copies
-// with each other.
-int compare_generators(const struct generators *generators, int32_t a, int32_t b);
-
 #endif
