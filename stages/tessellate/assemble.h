@@ -16,10 +16,10 @@ struct assembly {
     enum clearance clearance;
 };
 
-// Fills the throats of the network; CLOSED gets how many have no clearance at all.
-// STATUS_BAD_DATA: a throat would join a node to its own image.
+// Fills the throats of the network. STATUS_BAD_DATA: a throat would join a node to its
+// own image.
 enum status assemble_throats(const struct assembly *assembly, struct network *network,
-                             int *closed, struct reason *reason);
+                             struct reason *reason);
 
 // Fills the faces: each a loop of nodes, normal pointing from its first side to its
 // second, sorted by the grains they separate.

@@ -3,6 +3,7 @@
 
 #include "assemble.h"
 #include "basics/memory.h"
+#include "eliminate.h"
 
 #include <stdlib.h>
 
@@ -106,6 +107,14 @@ static void copy_nodes(const struct nodes *nodes, const struct generators *gener
     }
 }
 
+static int count_closed(const struct network *network)
+{
+    int closed = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        closed += network->throat_radius[t] == 0;
+    return closed;
+}
+
 enum status tessellate(const struct packing *packing, const struct tessellation *how,
                        struct network *network, struct tessellation_report *report,
                        struct reason *reason)
@@ -129,13 +138,20 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
                                           how->clearance};
         copy_packing(packing, &network->packing);
         copy_nodes(&nodes, &generators, network);
-        status = assemble_throats(&assembly, network, &report->n_closed, reason);
+        status = assemble_throats(&assembly, network, reason);
         if (!status) assemble_faces(&assembly, network);
         free(radius);
     }
     nodes_free(&nodes);
     triangulation_free(&triangulation);
     generators_free(&generators);
+    report->n_cell = packing->n_particle - report->hidden;
+    if (!status && how->boundary == BOUNDARY_ELIMINATE)
+        report->n_cell = eliminate_cut_cells(network);
+    if (!status && !report->n_cell)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "boundary=eliminate leaves no cell: the box cuts all of them");
+    report->n_closed = count_closed(network);
     if (status) network_free(network);
     return status;
 }

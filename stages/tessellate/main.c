@@ -10,7 +10,7 @@
 enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
 
 struct tessellate_parameters {
-    int diagram, clearance;
+    int diagram, clearance, boundary;
 };
 
 static const struct parameter table[] = {
@@ -22,6 +22,12 @@ static const struct parameter table[] = {
      "least clearance between throat and grains: over the throat itself, or over the "
      "infinite line through it [K 3.7]",
      offsetof(struct tessellate_parameters, clearance)},
+    {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"", BOUND_NONE, 0, 0,
+     "truncate|eliminate",
+     "what becomes of cells that do not end inside the walls: cut by them, or left "
+     "out, "
+     "as unbounded ones are in K",
+     offsetof(struct tessellate_parameters, boundary)},
     {0}};
 
 static const struct stage stage = {
@@ -34,7 +40,8 @@ static const struct stage stage = {
     .parameters = table};
 
 // Says what becomes of the diagram at the sides of the box.
-static const char *bounding(const struct packing *packing, char text[200])
+static const char *bounding(const struct packing *packing, enum boundary boundary,
+                            char text[200])
 {
     char along[4] = "";
     int count = 0;
@@ -42,7 +49,10 @@ static const char *bounding(const struct packing *packing, char text[200])
         if (packing->periodic[axis]) along[count++] = "xyz"[axis];
     const bool walls = count < 3;
     snprintf(text, 200, "%s%s%s%s",
-             walls ? "truncated to the box by reflecting grains in its walls" : "",
+             !walls ? ""
+             : boundary == BOUNDARY_TRUNCATE
+                 ? "truncated to the box by reflecting grains in its walls"
+                 : "cells that the box would cut left out",
              walls && count ? ", " : "", count ? "repeated along " : "", along);
     return text;
 }
@@ -58,7 +68,8 @@ int main(int argc, char **argv)
     struct tessellation_report report;
     struct reason reason;
     const struct tessellation how = {.power = parameters.diagram == DIAGRAM_POWER,
-                                     .clearance = (enum clearance)parameters.clearance};
+                                     .clearance = (enum clearance)parameters.clearance,
+                                     .boundary = (enum boundary)parameters.boundary};
     const enum status status = tessellate(&packing, &how, &network, &report, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
@@ -68,9 +79,9 @@ int main(int argc, char **argv)
              "throat radius: least clearance over the %s\n"
              "%d throats without clearance, %d grains without a cell\n"
              "left out: boundary layer\n",
-             how.power ? "power" : "Voronoi", bounding(&packing, bounded),
+             how.power ? "power" : "Voronoi", bounding(&packing, how.boundary, bounded),
              how.clearance == CLEARANCE_SEGMENT ? "throat" : "infinite line [K 3.7]",
-             report.n_closed, report.hidden);
+             report.n_closed, packing.n_particle - report.n_cell);
     write_network(&network, &invocation, input, model);
 
     artifact_close(input);

@@ -267,12 +267,21 @@ static void number_nodes(const struct generators *generators, struct places *pla
 
 // ---- what was left out --------------------------------------------------------------
 
+// The cell of a grain among its corners is unbounded.
+static bool is_open(const struct generators *generators, const struct cell *cell)
+{
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 4 && cell->neighbour[k] < 0; m++)
+            if (m != k && cell->vertex[m] < generators->n_particle) return true;
+    return false;
+}
+
 // An image left out is farther from the box than the reach; it could change a cell only
 // from inside the sphere around the node that no generator has less power to.
 static bool is_complete(const struct generators *generators, const struct cell *cell)
 {
-    for (int k = 0; k < 4; k++)
-        if (cell->neighbour[k] < 0) return false;
+    if (is_open(generators, cell)) return false;
+    if (!repeats(generators)) return true;
     const int32_t corner = cell->vertex[0];
     const struct vector to = subtract(generators->position[corner], cell->at);
     const double power = dot(to, to) - generators->weight[corner];
@@ -308,7 +317,7 @@ enum status find_nodes(const struct generators *generators,
     free(places.place);
     nodes->complete = !outside;
     for (int c = 0; c < triangulation->n_cell; c++)
-        if (repeats(generators) && triangulation->cell[c].node >= 0)
+        if (triangulation->cell[c].node >= 0)
             nodes->complete &= is_complete(generators, &triangulation->cell[c]);
     return STATUS_OK;
 }

@@ -128,7 +128,7 @@ static void store_images(const struct row *row, struct network *network)
 }
 
 static void store(const struct candidates *candidates, double unit,
-                  struct network *network, int *closed)
+                  struct network *network)
 {
     const int count = network->n_throat;
     network->throat_nodes = allocate((size_t)count, sizeof *network->throat_nodes);
@@ -141,13 +141,12 @@ static void store(const struct candidates *candidates, double unit,
             network->throat_nodes[t][end] = row->key[end];
         network->throat_length[t] = unit * candidates->length[row->item];
         network->throat_radius[t] = unit * fmax(0, candidates->radius[row->item]);
-        *closed += candidates->radius[row->item] < 0;
     }
     if (is_periodic(&network->packing)) store_images(candidates->row, network);
 }
 
 enum status assemble_throats(const struct assembly *assembly, struct network *network,
-                             int *closed, struct reason *reason)
+                             struct reason *reason)
 {
     struct candidates candidates = {0};
     enum status status = STATUS_OK;
@@ -155,11 +154,10 @@ enum status assemble_throats(const struct assembly *assembly, struct network *ne
         status = refuse(reason, STATUS_BAD_DATA,
                         "/domain/upper: the box is too narrow for a network that "
                         "repeats: a throat would join a node to its own image");
-    *closed = 0;
     if (!status) {
         candidates.row = sort_rows(candidates.row, candidates.count);
         network->n_throat = fuse_in_walls(assembly->nodes, &candidates);
-        store(&candidates, assembly->generators->unit, network, closed);
+        store(&candidates, assembly->generators->unit, network);
     }
     free(candidates.row);
     free(candidates.radius);
