@@ -234,7 +234,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-.PHONY: check hard bench sanitize check-c
+.PHONY: check hard bench bench-network sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
 	@tests/hard/run
@@ -253,6 +253,8 @@ hard: all ## run the hard cases and print a table
 	@tests/hard/run
 bench: all $(BENCHES) ## measure speeds, as ratios within one run
 	@tests/bench/run
+bench-network: all ## measure time and memory of the tessellation, next to voro++
+	@tests/bench/network
 
 # --- house ----------------------------------------------------------------------------
 

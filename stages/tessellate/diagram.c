@@ -3,7 +3,7 @@
 
 #include "assemble.h"
 #include "basics/memory.h"
-#include "eliminate.h"
+#include "reduce.h"
 
 #include <stdlib.h>
 
@@ -21,6 +21,24 @@ static bool all_images(const struct generators *generators)
         if (generators->reach < most) return false;
     }
     return true;
+}
+
+// Centres in one plane, half way between walls: then those walls are half way between
+// layers.
+static enum status check_layer(const struct packing *packing, struct reason *reason)
+{
+    const double middle = 0.5 * (packing->lower.y + packing->upper.y);
+    const double thickness = packing->upper.y - packing->lower.y;
+    if (packing->periodic[1])
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/domain/periodic: row 1: dimensions=2 wants walls along y");
+    for (int i = 0; i < packing->n_particle; i++)
+        if (fabs(packing->position[i].y - middle) > 1e-9 * thickness)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/particles/position: row %d: dimensions=2 wants all centres "
+                          "half way between the walls y, at %g m, got %g m",
+                          i, middle, packing->position[i].y);
+    return STATUS_OK;
 }
 
 // Grains inside a larger one, which have no cell in a power diagram.
@@ -126,8 +144,10 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     *report = (struct tessellation_report){0};
     if (packing->n_particle == 0)
         return refuse(reason, STATUS_BAD_DATA, "/particles/position: no grains");
-    enum status status = triangulate_in_box(packing, how->power, &generators,
-                                            &triangulation, &nodes, reason);
+    enum status status = how->layer ? check_layer(packing, reason) : STATUS_OK;
+    if (status) return status;
+    status = triangulate_in_box(packing, how->power, &generators, &triangulation,
+                                &nodes, reason);
     if (!status) report->hidden = count_hidden(&generators, &triangulation);
     if (!status && report->hidden) status = check_distinct(&generators, reason);
     if (!status) {
@@ -147,10 +167,11 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     generators_free(&generators);
     report->n_cell = packing->n_particle - report->hidden;
     if (!status && how->boundary == BOUNDARY_ELIMINATE)
-        report->n_cell = eliminate_cut_cells(network);
+        report->n_cell = eliminate_cut_cells(network, how->layer);
     if (!status && !report->n_cell)
         status = refuse(reason, STATUS_BAD_DATA,
                         "boundary=eliminate leaves no cell: the box cuts all of them");
+    if (!status && how->layer) reduce_to_plane(network);
     report->n_closed = count_closed(network);
     if (status) network_free(network);
     return status;

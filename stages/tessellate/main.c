@@ -10,7 +10,7 @@
 enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
 
 struct tessellate_parameters {
-    int diagram, clearance, boundary;
+    int diagram, clearance, boundary, dimensions;
 };
 
 static const struct parameter table[] = {
@@ -28,6 +28,10 @@ static const struct parameter table[] = {
      "out, "
      "as unbounded ones are in K",
      offsetof(struct tessellate_parameters, boundary)},
+    {"dimensions", PARAMETER_INTEGER, "1", "3", BOUND_BETWEEN, 2, 3, NULL,
+     "2: the network of one layer of grains, in a plane between it and the next, which "
+     "is as far away as the box is thick along y [K 3.3.6]",
+     offsetof(struct tessellate_parameters, dimensions)},
     {0}};
 
 static const struct stage stage = {
@@ -69,17 +73,20 @@ int main(int argc, char **argv)
     struct reason reason;
     const struct tessellation how = {.power = parameters.diagram == DIAGRAM_POWER,
                                      .clearance = (enum clearance)parameters.clearance,
-                                     .boundary = (enum boundary)parameters.boundary};
+                                     .boundary = (enum boundary)parameters.boundary,
+                                     .layer = parameters.dimensions == 2};
     const enum status status = tessellate(&packing, &how, &network, &report, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
     char model[600], bounded[200];
     snprintf(model, sizeof model,
-             "%s diagram, %s\n"
+             "%s diagram%s, %s\n"
              "throat radius: least clearance over the %s\n"
              "%d throats without clearance, %d grains without a cell\n"
              "left out: boundary layer\n",
-             how.power ? "power" : "Voronoi", bounding(&packing, how.boundary, bounded),
+             how.power ? "power" : "Voronoi",
+             how.layer ? " of a layer, staggered against its grains" : "",
+             bounding(&packing, how.boundary, bounded),
              how.clearance == CLEARANCE_SEGMENT ? "throat" : "infinite line [K 3.7]",
              report.n_closed, packing.n_particle - report.n_cell);
     write_network(&network, &invocation, input, model);

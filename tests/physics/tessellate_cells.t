@@ -121,6 +121,37 @@ def check_elimination(folder):
         ok(set(np.unique(some.ends)) == set(range(len(some.node))), "  and no node is left alone")
 
 
+def check_layer(title, grains, edge, radius, folder, around, nodes, throats, inner,
+                clearance):
+    """The network in the plane of a layer: K 3.3.6."""
+    flat = np.stack([grains[:, 0], np.full(len(grains), radius), grains[:, 1]], 1)
+    box = [edge[0], 2 * radius, edge[1]]
+    net = tessellate(flat, box, folder, "--set", "dimensions=2", radius=radius)
+    ok((net.node[:, 1] == 0).all() and np.array_equal(net.sides, [[i, -3] for i in range(
+        len(grains))]), f"{title}: a polygon for each grain, in one plane")
+    ok(len(net.node) - len(net.ends) + len(net.sides) == 1, "  Euler's formula of the plane")
+    area = np.abs(net.areas()[:, 1]).sum()
+    ok(abs(area / np.prod(edge) - 1) < 1e-12, "  which the polygons fill", area)
+    degree = np.bincount(net.ends.ravel(), minlength=len(net.node))
+    ok((degree[net.walls == 0] == around).all(), f"  {around} throats at every inner node")
+    if clearance is None:
+        return
+    shape = len(net.node), len(net.ends)
+    ok(shape == (nodes, throats), f"  {nodes} nodes and {throats} throats", shape)
+    within = (net.walls[net.ends] == 0).all(1)
+    ok(np.abs(net.clearance[within] - clearance).max() < 1e-12 and within.sum() == inner,
+       "  clearance as in closed form", net.clearance[within])
+
+
+def check_layers(folder):
+    # 5 x 5 touching grains: from the middle of a square to its side half a diameter, to the
+    # plane of the throats as much.
+    grid = np.stack(np.meshgrid(*[np.arange(5) + 0.5] * 2), -1).reshape(-1, 2)
+    check_layer("square layer", grid, [5, 5], 0.5, folder, 4, 36, 60, 24, 0.5**0.5 - 0.5)
+    check_layer("random layer", random.uniform(0, 1, (200, 2)), [1, 1], 0.02, folder, 3, None,
+                None, None, None)
+
+
 def refused(title, grains, folder, *options, pattern, edge=1, periodic=NONE, radius=0.01):
     try:
         tessellate(grains, edge, folder, *options, periodic=periodic, radius=radius)
@@ -138,6 +169,9 @@ with scratch() as folder:
     check_scales(folder)
     check_hard(folder)
     check_elimination(folder)
+    check_layers(folder)
+    refused("grains not in one plane as a layer", random.uniform(0, 1, (5, 3)), folder, "--set",
+            "dimensions=2", pattern="half way between the walls y")
     refused("two grains in one place", np.array([[.5, .5, .5], [.2, .2, .2], [.5, .5, .5]]), folder,
             pattern="row 2: has the same centre as row 0")
     refused("two grains in one place by repetition", np.array([[.25, .5, .5], [1.25, .5, .5]]),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eliminate.h"
+#include "reduce.h"
 
 #include "basics/memory.h"
 
@@ -12,7 +12,12 @@ struct staying {
     int *node; // its new number; -1: does not stay
 };
 
-static int choose_grains(const struct network *network, bool *stays)
+static bool is_along_y(int32_t side)
+{
+    return side < 0 && (-1 - side) / 2 == 1;
+}
+
+static int choose_grains(const struct network *network, bool layer, bool *stays)
 {
     bool *cut = NEW_ARRAY(bool, network->packing.n_particle);
     for (int f = 0; f < network->n_face; f++) {
@@ -20,7 +25,7 @@ static int choose_grains(const struct network *network, bool *stays)
         stays[side[0]] = true;
         if (side[1] >= 0)
             stays[side[1]] = true;
-        else
+        else if (!layer || !is_along_y(side[1]))
             cut[side[0]] = true;
     }
     int count = 0;
@@ -134,7 +139,7 @@ static void pack_faces(struct network *network, const struct staying *stays)
     network->n_face = n;
 }
 
-int eliminate_cut_cells(struct network *network)
+static struct staying nothing_stays(const struct network *network)
 {
     struct staying stays = {.grain = NEW_ARRAY(bool, network->packing.n_particle),
                             .face = NEW_ARRAY(bool, network->n_face),
@@ -142,14 +147,41 @@ int eliminate_cut_cells(struct network *network)
                             .node = NEW_ARRAY(int, network->n_node)};
     for (int i = 0; i < network->n_node; i++)
         stays.node[i] = -1;
-    const int count = choose_grains(network, stays.grain);
+    return stays;
+}
+
+// Leaves in the network what stays; frees STAYS.
+static void leave(struct network *network, struct staying *stays)
+{
+    pack_nodes(network, stays->node);
+    pack_throats(network, stays);
+    pack_faces(network, stays);
+    free(stays->grain);
+    free(stays->face);
+    free(stays->throat);
+    free(stays->node);
+}
+
+int eliminate_cut_cells(struct network *network, bool layer)
+{
+    struct staying stays = nothing_stays(network);
+    const int count = choose_grains(network, layer, stays.grain);
     choose_rest(network, &stays);
-    pack_nodes(network, stays.node);
-    pack_throats(network, &stays);
-    pack_faces(network, &stays);
-    free(stays.grain);
-    free(stays.face);
-    free(stays.throat);
-    free(stays.node);
+    leave(network, &stays);
     return count;
+}
+
+void reduce_to_plane(struct network *network)
+{
+    struct staying stays = nothing_stays(network);
+    for (int i = 0; i < network->n_node; i++)
+        if (network->node_walls[i] & WALL_Y_LOWER) stays.node[i] = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        stays.throat[t] = stays.node[network->throat_nodes[t][0]] >= 0 &&
+                          stays.node[network->throat_nodes[t][1]] >= 0;
+    for (int f = 0; f < network->n_face; f++)
+        stays.face[f] = network->face_particles[f][1] == -3; // the lower wall y
+    leave(network, &stays);
+    for (int i = 0; i < network->n_node; i++) // a wall of the box, not of the layer
+        network->node_walls[i] &= (uint8_t)~WALL_Y_LOWER;
 }
