@@ -56,8 +56,9 @@ static enum status check_inside(const struct generators *generators,
             return refuse(
                 reason, STATUS_BAD_DATA,
                 "/particles/position: row %d: the centre must be inside the box "
-                "along %c, from 0 to %g, got %g grain spacings from its lower wall",
-                i, "xyz"[axis], component(generators->box, axis), at);
+                "along %c, from 0 to %g, got %g, in units of %g m",
+                i, "xyz"[axis], component(generators->box, axis), at,
+                generators -> unit);
         }
     return STATUS_OK;
 }
