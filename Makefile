@@ -56,7 +56,7 @@ LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig -lgsl -lgslcb
 
 PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
 	libjansson-dev libssl-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
-	libcmocka-dev perl python3-h5py python3-vtk9 hdf5-tools
+	libcmocka-dev perl python3-h5py python3-vtk9 hdf5-tools voro++
 
 # --- `make deps demo`: first things first ---------------------------------------------
 # What is stale is decided while parsing, with jq and the compiler at hand. So when `deps` or
@@ -234,7 +234,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-.PHONY: check hard bench bench-dem bench-impact sanitize check-c
+.PHONY: check hard bench bench-dem bench-impact bench-network sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
 	@tests/hard/run
@@ -257,6 +257,8 @@ bench-dem: all $(BENCHES) ## the discrete elements beside LAMMPS, LIGGGHTS and Y
 	@tests/bench/dem
 bench-impact: all $(BENCHES) ## error of the contact laws against cost, over time steps
 	@tests/bench/impact
+bench-network: all ## measure time and memory of the tessellation, next to voro++
+	@tests/bench/network
 
 # --- house ----------------------------------------------------------------------------
 

@@ -137,7 +137,8 @@ int main(int argc, char **argv)
     struct patch *patches;
     int n_patch;
     struct reason reason;
-    const enum status status = find_patches(&network, &patches, &n_patch, &reason);
+    enum status status = find_patches(&network, &patches, &n_patch, &reason);
+    if (!status) status = check_closed(patches, n_patch, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
     if (parameters.open_surface == OPEN_SURFACE_IDLE)

@@ -131,6 +131,24 @@ static enum status find_throats(const struct network *network,
     return STATUS_OK;
 }
 
+enum status check_closed(const struct patch *patches, int count, struct reason *reason)
+{
+    static const double rounding = 1e-6; // of a whole sphere, 4 pi
+    struct vector sum = {0};
+    for (int k = 0; k < count; k++) {
+        sum = add(sum, patches[k].normal);
+        const int32_t grain = patches[k].particle;
+        if (k + 1 < count && patches[k + 1].particle == grain) continue;
+        if (norm(sum) > rounding)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/faces/particles: the cell of grain %d is open: tessellate "
+                          "with boundary=truncate and dimensions=3",
+                          grain);
+        sum = (struct vector){0};
+    }
+    return STATUS_OK;
+}
+
 enum status find_patches(const struct network *network, struct patch **patches,
                          int *count, struct reason *reason)
 {

@@ -24,6 +24,11 @@ struct patch {
 enum status find_patches(const struct network *network, struct patch **patches,
                          int *count, struct reason *reason);
 
+// The normals of a closed cell add up to nothing. STATUS_BAD_DATA when a grain has a
+// cell that the tessellation left open (boundary=eliminate, dimensions=2): it would be
+// pulled by liquid all around it.
+enum status check_closed(const struct patch *patches, int count, struct reason *reason);
+
 // Takes out the patches of throats that lie in one of WALLS (bits of enum wall);
 // returns how many are left.
 int drop_patches_in_walls(const struct network *network, unsigned walls,

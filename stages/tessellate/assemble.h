@@ -4,7 +4,7 @@
 #define CRAQUELURE_ASSEMBLE_H
 
 #include "diagram.h"
-#include "mirrored.h"
+#include "generators.h"
 #include "nodes.h"
 
 // All that is known when throats and faces are read off.
@@ -12,12 +12,14 @@ struct assembly {
     const struct generators *generators;
     const struct triangulation *triangulation;
     const struct nodes *nodes;
-    const double *radius; // (n_particle) mean diameters
+    const double *radius; // (n_particle) in units
     enum clearance clearance;
 };
 
-// Fills the throats of the network; returns how many have no clearance at all.
-int assemble_throats(const struct assembly *assembly, struct network *network);
+// Fills the throats of the network. STATUS_BAD_DATA: a throat would join a node to its
+// own image.
+enum status assemble_throats(const struct assembly *assembly, struct network *network,
+                             struct reason *reason);
 
 // Fills the faces: each a loop of nodes, normal pointing from its first side to its
 // second, sorted by the grains they separate.

@@ -3,34 +3,41 @@
 
 #include "assemble.h"
 #include "basics/memory.h"
+#include "reduce.h"
 
 #include <stdlib.h>
 
-// Images of grains farther from a wall than this many mean spacings are made only when
-// the cells show that they are needed.
+// Images of grains farther from a side than this many units are made only when the
+// cells show that they are needed.
 static const double first_reach = 2;
 
-// The edge of the box's share of a grain, or the diameter where grains overlap that
-// much; mean diameters.
-static double mean_spacing(const struct packing *packing)
+// Whether a larger reach would give no more images: each grain is reflected in each
+// wall, and copied as far as can be told.
+static bool all_images(const struct generators *generators)
 {
-    const struct vector edge = subtract(packing->upper, packing->lower);
-    const double diameter = mean_diameter(packing);
-    const double share = edge.x / diameter * (edge.y / diameter) * (edge.z / diameter);
-    return fmax(1, cbrt(share / packing->n_particle));
+    for (int axis = 0; axis < 3; axis++) {
+        const double edge = component(generators->box, axis);
+        const double most = generators->repeats[axis] ? FARTHEST_IMAGE * edge : edge;
+        if (generators->reach < most) return false;
+    }
+    return true;
 }
 
-static enum status check_packing(const struct packing *packing, struct reason *reason)
+// Centres in one plane, half way between walls: then those walls are half way between
+// layers.
+static enum status check_layer(const struct packing *packing, struct reason *reason)
 {
-    if (packing->n_particle == 0)
-        return refuse(reason, STATUS_BAD_DATA, "/particles/position: no grains");
-    for (int axis = 0; axis < 3; axis++)
-        if (packing->periodic[axis])
-            return refuse(
-                reason, STATUS_BAD_DATA,
-                "/domain/periodic: row %d: periodic boxes cannot be tessellated "
-                "yet; pack with periodic=[false,false,false]",
-                axis);
+    const double middle = 0.5 * (packing->lower.y + packing->upper.y);
+    const double thickness = packing->upper.y - packing->lower.y;
+    if (packing->periodic[1])
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/domain/periodic: row 1: dimensions=2 wants walls along y");
+    for (int i = 0; i < packing->n_particle; i++)
+        if (fabs(packing->position[i].y - middle) > 1e-9 * thickness)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/particles/position: row %d: dimensions=2 wants all centres "
+                          "half way between the walls y, at %g m, got %g m",
+                          i, middle, packing->position[i].y);
     return STATUS_OK;
 }
 
@@ -41,7 +48,7 @@ static int count_hidden(const struct generators *generators,
     bool *used = NEW_ARRAY(bool, generators->n);
     for (int c = 0; c < triangulation->n_cell; c++)
         for (int k = 0; k < 4; k++)
-            used[triangulation->vertex[c][k]] = true;
+            used[triangulation->cell[c].vertex[k]] = true;
     int hidden = 0;
     for (int i = 0; i < generators->n_particle; i++)
         hidden += !used[i];
@@ -49,30 +56,46 @@ static int count_hidden(const struct generators *generators,
     return hidden;
 }
 
-// Reflects ever deeper layers until the cells of all grains lie inside the box: then
-// the images left out could not have cut them.
+// Takes in images from ever farther until none that is left out could cut the cell of a
+// grain: until those cells lie inside the walls, and clear of the images left out.
 static enum status triangulate_in_box(const struct packing *packing, bool power,
                                       struct generators *generators,
                                       struct triangulation *triangulation,
                                       struct nodes *nodes, struct reason *reason)
 {
-    double reach = first_reach * mean_spacing(packing);
+    double reach = first_reach;
     for (;;) {
-        const enum status status =
-            mirror_grains(packing, reach, power, generators, reason);
+        enum status status =
+            place_generators(packing, reach, power, generators, reason);
         if (status) return status;
-        if (triangulate(generators->position, power ? generators->weight : NULL,
-                        generators->n, triangulation))
-            return refuse(reason, STATUS_BAD_DATA,
-                          "the grains do not span three dimensions");
-        *nodes = find_nodes(generators, triangulation);
-        const bool all = generators->n == generators->n_particle * (1 + WALL_COUNT);
-        if (nodes->farthest_outside == 0 || all) return STATUS_OK;
+        const bool spans =
+            !triangulate(generators->position, power ? generators->weight : NULL,
+                         generators->n, triangulation);
+        if (spans) status = find_nodes(generators, triangulation, nodes, reason);
+        if (status || (spans && nodes->complete)) return status;
+        if (all_images(generators))
+            return spans ? STATUS_OK
+                         : refuse(reason, STATUS_BAD_DATA,
+                                  "the grains do not span three dimensions");
         nodes_free(nodes);
         triangulation_free(triangulation);
         generators_free(generators);
         reach *= 2;
     }
+}
+
+// Grains outside a box that repeats are moved into it: images are told from there.
+static void move_inside(struct packing *packing)
+{
+    for (int i = 0; i < packing->n_particle; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double lower = component(packing->lower, axis);
+            const double edge = component(packing->upper, axis) - lower;
+            const double x = component(packing->position[i], axis);
+            if (packing->periodic[axis] && (x < lower || x >= lower + edge))
+                set_component(&packing->position[i], axis,
+                              x - edge * floor((x - lower) / edge));
+        }
 }
 
 static void copy_packing(const struct packing *from, struct packing *to)
@@ -82,6 +105,7 @@ static void copy_packing(const struct packing *from, struct packing *to)
         duplicate(from->position, (size_t)from->n_particle, sizeof *to->position);
     to->radius = duplicate(from->radius, (size_t)from->n_particle, sizeof *to->radius);
     to->bond = duplicate(from->bond, (size_t)from->n_bond, sizeof *to->bond);
+    move_inside(to);
 }
 
 static void copy_nodes(const struct nodes *nodes, const struct generators *generators,
@@ -101,6 +125,14 @@ static void copy_nodes(const struct nodes *nodes, const struct generators *gener
     }
 }
 
+static int count_closed(const struct network *network)
+{
+    int closed = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        closed += network->throat_radius[t] == 0;
+    return closed;
+}
+
 enum status tessellate(const struct packing *packing, const struct tessellation *how,
                        struct network *network, struct tessellation_report *report,
                        struct reason *reason)
@@ -110,12 +142,15 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     struct nodes nodes = {0};
     *network = (struct network){0};
     *report = (struct tessellation_report){0};
-    enum status status = check_packing(packing, reason);
-    if (!status)
-        status = triangulate_in_box(packing, how->power, &generators, &triangulation,
-                                    &nodes, reason);
+    if (packing->n_particle == 0)
+        return refuse(reason, STATUS_BAD_DATA, "/particles/position: no grains");
+    enum status status = how->layer ? check_layer(packing, reason) : STATUS_OK;
+    if (status) return status;
+    status = triangulate_in_box(packing, how->power, &generators, &triangulation,
+                                &nodes, reason);
+    if (!status) report->hidden = count_hidden(&generators, &triangulation);
+    if (!status && report->hidden) status = check_distinct(&generators, reason);
     if (!status) {
-        report->hidden = count_hidden(&generators, &triangulation);
         double *radius = NEW_ARRAY(double, packing->n_particle);
         for (int i = 0; i < packing->n_particle; i++)
             radius[i] = packing->radius[i] / generators.unit;
@@ -123,12 +158,21 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
                                           how->clearance};
         copy_packing(packing, &network->packing);
         copy_nodes(&nodes, &generators, network);
-        report->n_closed = assemble_throats(&assembly, network);
-        assemble_faces(&assembly, network);
+        status = assemble_throats(&assembly, network, reason);
+        if (!status) assemble_faces(&assembly, network);
         free(radius);
     }
     nodes_free(&nodes);
     triangulation_free(&triangulation);
     generators_free(&generators);
+    report->n_cell = packing->n_particle - report->hidden;
+    if (!status && how->boundary == BOUNDARY_ELIMINATE)
+        report->n_cell = eliminate_cut_cells(network, how->layer);
+    if (!status && !report->n_cell)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "boundary=eliminate leaves no cell: the box cuts all of them");
+    if (!status && how->layer) reduce_to_plane(network);
+    report->n_closed = count_closed(network);
+    if (status) network_free(network);
     return status;
 }

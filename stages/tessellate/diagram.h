@@ -13,20 +13,29 @@ enum clearance {
     CLEARANCE_LINE     // [K 3.7]: least distance from the infinite line through it
 };
 
+enum boundary {
+    BOUNDARY_TRUNCATE, // the box cuts the cells [K 3.3.1]
+    BOUNDARY_ELIMINATE // cells that the box would cut are left out [K 3.3.3, 3.7]
+};
+
 struct tessellation {
     bool power; // power diagram (K's Dirichlet); else Voronoi
     enum clearance clearance;
+    enum boundary boundary;
+    bool layer; // the network of one layer of grains, in a plane [K 3.3.6]
 };
 
 // What the network left out or had to decide.
 struct tessellation_report {
     int hidden;   // grains without a cell of their own (power diagrams)
-    int n_closed; // throats whose clearance is below 0, taken as 0
+    int n_closed; // throats without clearance; below 0 is taken as 0
+    int n_cell;   // cells in the network
 };
 
-// The network of PACKING truncated to its box. On success *NETWORK is the caller's; the
-// packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside the box, a
-// periodic box (not yet), two grains at one place.
+// The network of PACKING in its box. On success *NETWORK is the caller's; the
+// packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside the box, two
+// grains at one place, a box that repeats and is too narrow, or
+// no cell left.
 //
 // Nodes come in the order of the grains they lie between, so that their order says
 // where they are, not how the triangulation was built. Wall nodes that coincide (an

@@ -12,7 +12,7 @@ enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
 enum throat_volume { VOLUME_CYLINDER, VOLUME_VOID };
 
 struct tessellate_parameters {
-    int diagram, clearance, volume;
+    int diagram, clearance, volume, boundary, dimensions;
 };
 
 static const struct parameter table[] = {
@@ -30,6 +30,16 @@ static const struct parameter table[] = {
      "share "
      "of the void between the grains (/throats/volume), the sum of which is exact",
      offsetof(struct tessellate_parameters, volume)},
+    {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"", BOUND_NONE, 0, 0,
+     "truncate|eliminate",
+     "what becomes of cells that do not end inside the walls: cut by them, or left "
+     "out, "
+     "as unbounded ones are in K",
+     offsetof(struct tessellate_parameters, boundary)},
+    {"dimensions", PARAMETER_INTEGER, "1", "3", BOUND_BETWEEN, 2, 3, NULL,
+     "2: the network of one layer of grains, in a plane between it and the next, which "
+     "is as far away as the box is thick along y [K 3.3.6]",
+     offsetof(struct tessellate_parameters, dimensions)},
     {0}};
 
 static const struct stage stage = {
@@ -49,7 +59,29 @@ static enum status give_void_volumes(const struct tessellation *how,
     if (!how->power)
         return refuse(reason, STATUS_BAD_DATA,
                       "tessellate.throat_volume: void must go with diagram=power");
+    if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->throat_image)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "tessellate.throat_volume: void must go with whole cells in a box "
+                      "that does not repeat: dimensions=3, boundary=truncate");
     return find_void_volumes(network, reason);
+}
+
+// Says what becomes of the diagram at the sides of the box.
+static const char *bounding(const struct packing *packing, enum boundary boundary,
+                            char text[200])
+{
+    char along[4] = "";
+    int count = 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis]) along[count++] = "xyz"[axis];
+    const bool walls = count < 3;
+    snprintf(text, 200, "%s%s%s%s",
+             !walls ? ""
+             : boundary == BOUNDARY_TRUNCATE
+                 ? "truncated to the box by reflecting grains in its walls"
+                 : "cells that the box would cut left out",
+             walls && count ? ", " : "", count ? "repeated along " : "", along);
+    return text;
 }
 
 int main(int argc, char **argv)
@@ -63,24 +95,28 @@ int main(int argc, char **argv)
     struct tessellation_report report;
     struct reason reason;
     const struct tessellation how = {.power = parameters.diagram == DIAGRAM_POWER,
-                                     .clearance = (enum clearance)parameters.clearance};
+                                     .clearance = (enum clearance)parameters.clearance,
+                                     .boundary = (enum boundary)parameters.boundary,
+                                     .layer = parameters.dimensions == 2};
     enum status status = tessellate(&packing, &how, &network, &report, &reason);
     if (!status && parameters.volume == VOLUME_VOID)
         status = give_void_volumes(&how, &network, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[600];
+    char model[600], bounded[200];
     snprintf(model, sizeof model,
-             "%s diagram, truncated to the box by reflecting grains in its walls\n"
+             "%s diagram%s, %s\n"
              "throat radius: least clearance over the %s\n"
              "throat volume: %s\n"
              "%d throats without clearance, %d grains without a cell\n"
-             "left out: periodic images, boundary layer\n",
+             "left out: boundary layer\n",
              how.power ? "power" : "Voronoi",
+             how.layer ? " of a layer, staggered against its grains" : "",
+             bounding(&packing, how.boundary, bounded),
              how.clearance == CLEARANCE_SEGMENT ? "throat" : "infinite line [K 3.7]",
              parameters.volume == VOLUME_VOID ? "its share of the void"
                                               : "the cylinder of its radius and length",
-             report.n_closed, report.hidden);
+             report.n_closed, packing.n_particle - report.n_cell);
     write_network(&network, &invocation, input, model);
 
     artifact_close(input);

@@ -2,17 +2,23 @@
 #include "nodes.h"
 
 #include "basics/memory.h"
+#include "rows.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 // Nodes closer to a wall, or wall nodes closer to each other, than this are taken to
-// coincide: a thousand times the grid the generators are rounded to, mean diameters.
+// coincide; in units. A thousand times what rounding the generators does.
 static const double coincide = 1e-9;
 
 // Determinants below this, of the product of the edges, lose digits that matter.
 static const double flat = 1e-3;
+
+static bool repeats(const struct generators *generators)
+{
+    return generators->repeats[0] || generators->repeats[1] || generators->repeats[2];
+}
 
 // The point of equal power to the four corners: 2 (x_k - x_0).c = |x_k - x_0|^2 - w_k +
 // w_0 for c relative to corner 0, so that no large numbers are subtracted.
@@ -54,134 +60,271 @@ static bool near_grain(const struct generators *generators, const int32_t corner
 }
 
 // Puts a node exactly on every wall it is close to; returns those walls.
-static uint8_t snap_to_walls(struct vector *position, struct vector box,
-                             double *outside)
+static uint8_t snap_to_walls(const struct generators *generators,
+                             struct vector *position, bool *outside)
 {
     uint8_t walls = 0;
     for (int wall = 0; wall < WALL_COUNT; wall++) {
-        const double at = wall % 2 ? component(box, wall / 2) : 0;
+        if (generators->repeats[wall / 2]) continue;
+        const double at = wall % 2 ? component(generators->box, wall / 2) : 0;
         const double beyond =
             (wall % 2 ? 1 : -1) * (component(*position, wall / 2) - at);
         if (fabs(beyond) < coincide) {
             walls |= (uint8_t)(1 << wall);
             set_component(position, wall / 2, at);
-        } else {
-            *outside = fmax(*outside, beyond);
+        } else if (beyond > 0) {
+            *outside = true;
         }
     }
     return walls;
 }
 
-static int root_of(int *parent, int i)
+// ---- names --------------------------------------------------------------------------
+
+static void sort_corners(const struct generators *generators, const int32_t cell[4],
+                         int32_t corner[4])
 {
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
+    for (int k = 0; k < 4; k++) {
+        int to = k;
+        for (; to > 0 && compare_generators(generators, corner[to - 1], cell[k]) > 0;
+             to--)
+            corner[to] = corner[to - 1];
+        corner[to] = cell[k];
+    }
+}
+
+// A cell is named after its corners in order, and where they are relative to the first:
+// cells that are copies of each other have one name. False when that does not fit.
+static bool name_cell(const struct generators *generators, const int32_t cell[4],
+                      struct row *name)
+{
+    enum { IMAGES = 343, MIDDLE = 171 }; // of image_number
+    int32_t corner[4];
+    sort_corners(generators, cell, corner);
+    for (int k = 0; k < 4; k++)
+        name->key[k] =
+            corner[k] < generators->n_base ? corner[k] : generators->base[corner[k]];
+    for (int k = 1; k < 4 && generators->n > generators->n_base; k++) {
+        const struct image apart = image_difference(generators->image[corner[k]],
+                                                    generators->image[corner[0]]);
+        if (is_far(apart)) return false;
+        name->key[4] = name->key[4] * IMAGES + image_number(apart) + MIDDLE;
+    }
+    return true;
+}
+
+static struct row *sorted_names(const struct generators *generators,
+                                const struct triangulation *triangulation, int *count)
+{
+    struct row *names = NEW_ARRAY(struct row, triangulation->n_cell);
+    *count = 0;
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        if (!near_grain(generators, triangulation->cell[c].vertex)) continue;
+        names[*count].item = c;
+        if (!name_cell(generators, triangulation->cell[c].vertex, &names[(*count)++])) {
+            free(names);
+            return NULL;
+        }
+    }
+    return sort_rows(names, *count);
+}
+
+// ---- places -------------------------------------------------------------------------
+
+// One for all cells of one name, and those united with it on a wall.
+struct place {
+    struct vector position;
+    int parent;             // itself, or a place it coincides with
+    struct image of_parent; // the repetition of the box in which it does
+    int node;
+    uint8_t walls;
+};
+
+struct places {
+    int n;
+    struct place *place;
+};
+
+// Where a cell has its node, when its first corner is one of the grains themselves;
+// then moved into the box, by the image this returns.
+static struct image find_place(const struct generators *generators,
+                               const int32_t cell[4], struct place *place,
+                               bool *outside)
+{
+    int32_t corner[4];
+    sort_corners(generators, cell, corner);
+    const struct image none = {0}, first = generators->image[corner[0]];
+    struct vector at = power_centre(generators, corner);
+    at = moved(generators, at, image_difference(none, first));
+    place->walls = snap_to_walls(generators, &at, outside);
+    struct image within = {0};
+    for (int axis = 0; axis < 3; axis++)
+        if (generators->repeats[axis])
+            within.along[axis] =
+                (int8_t)floor(component(at, axis) / component(generators->box, axis));
+    place->position = moved(generators, at, image_difference(none, within));
+    return within;
+}
+
+static struct image first_image(const struct generators *generators,
+                                const int32_t cell[4])
+{
+    int32_t corner[4];
+    sort_corners(generators, cell, corner);
+    return generators->image[corner[0]];
+}
+
+// Gives every named cell its place, for a node, and the repetition it has it in.
+static struct places find_places(const struct generators *generators,
+                                 struct triangulation *triangulation,
+                                 const struct row *names, int count, bool *outside)
+{
+    struct places places = {.place = NEW_ARRAY(struct place, count)};
+    const bool periodic = repeats(generators);
+    struct image within = {0};
+    for (int c = 0; c < triangulation->n_cell; c++)
+        triangulation->cell[c].node = -1;
+    for (int k = 0; k < count; k++) {
+        struct cell *cell = &triangulation->cell[names[k].item];
+        if (!k || memcmp(names[k].key, names[k - 1].key, sizeof names->key)) {
+            struct place *place = &places.place[places.n];
+            within = find_place(generators, cell->vertex, place, outside);
+            place->parent = places.n++;
+            place->node = -1;
+        }
+        cell->node = places.n - 1;
+        if (periodic)
+            cell->image = image_sum(within, first_image(generators, cell->vertex));
+        cell->at = moved(generators, places.place[cell->node].position, cell->image);
+    }
+    return places;
+}
+
+// The place that I is united with, and the repetition in which it is I.
+static int root_of(const struct places *places, int i, struct image *image)
+{
+    *image = (struct image){0};
+    while (places->place[i].parent != i) {
+        *image = image_sum(*image, places->place[i].of_parent);
+        i = places->place[i].parent;
+    }
     return i;
 }
 
-// The corners of a cell in ascending order of grain, walls last: names a node.
-struct name {
-    int32_t corner[4];
-    int cell;
-};
-
-static int compare_int(const void *a, const void *b)
+static void unite(struct places *places, int a, struct image in_a, int b,
+                  struct image in_b)
 {
-    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
+    struct image from_a, from_b;
+    const int first = root_of(places, a, &from_a), second = root_of(places, b, &from_b);
+    if (first == second) return;
+    in_a = image_sum(in_a, from_a);
+    in_b = image_sum(in_b, from_b);
+    struct place *later = &places->place[first > second ? first : second];
+    later->parent = first > second ? second : first;
+    later->of_parent =
+        first > second ? image_difference(in_b, in_a) : image_difference(in_a, in_b);
 }
-
-static int compare_names(const void *a, const void *b)
-{
-    const struct name *first = a, *second = b;
-    for (int k = 0; k < 4; k++)
-        if (first->corner[k] != second->corner[k])
-            return first->corner[k] < second->corner[k] ? -1 : 1;
-    return (first->cell > second->cell) - (first->cell < second->cell);
-}
-
-static struct name *sorted_names(const struct generators *generators,
-                                 const struct triangulation *triangulation, int *count)
-{
-    struct name *names = NEW_ARRAY(struct name, triangulation->n_cell);
-    *count = 0;
-    for (int c = 0; c < triangulation->n_cell; c++) {
-        if (!near_grain(generators, triangulation->vertex[c])) continue;
-        struct name *name = &names[(*count)++];
-        memcpy(name->corner, triangulation->vertex[c], sizeof name->corner);
-        qsort(name->corner, 4, sizeof *name->corner, compare_int);
-        name->cell = c;
-    }
-    qsort(names, (size_t)*count, sizeof *names, compare_names);
-    return names;
-}
-
-// Where each cell's node would be, before those on walls are united.
-struct places {
-    struct vector *position;
-    uint8_t *walls;
-    int *parent; // cells whose nodes coincide on a wall; -1: no grain near
-};
 
 static void unite_on_walls(const struct triangulation *triangulation,
                            struct places *places)
 {
     for (int c = 0; c < triangulation->n_cell; c++) {
-        if (places->parent[c] < 0 || !places->walls[c]) continue;
+        const struct cell *cell = &triangulation->cell[c];
+        if (cell->node < 0 || !places->place[cell->node].walls) continue;
         for (int k = 0; k < 4; k++) {
-            const int d = triangulation->neighbour[c][k];
-            if (d < 0 || places->parent[d] < 0 || !places->walls[d]) continue;
-            if (distance(places->position[c], places->position[d]) > coincide) continue;
-            const int first = root_of(places->parent, c),
-                      second = root_of(places->parent, d);
-            places->parent[first > second ? first : second] =
-                first < second ? first : second;
+            if (cell->neighbour[k] < c) continue;
+            const struct cell *other = &triangulation->cell[cell->neighbour[k]];
+            if (other->node < 0 || !places->place[other->node].walls) continue;
+            if (distance(cell->at, other->at) <= coincide)
+                unite(places, cell->node, cell->image, other->node, other->image);
         }
     }
 }
 
-struct nodes find_nodes(const struct generators *generators,
-                        const struct triangulation *triangulation)
+// Nodes are numbered in the order of the names.
+static void number_nodes(const struct generators *generators, struct places *places,
+                         struct triangulation *triangulation, struct nodes *nodes)
 {
-    const int n_cell = triangulation->n_cell;
-    struct nodes nodes = {.of_cell = NEW_ARRAY(int, n_cell)};
-    struct places places = {.position = NEW_ARRAY(struct vector, n_cell),
-                            .walls = NEW_ARRAY(uint8_t, n_cell),
-                            .parent = NEW_ARRAY(int, n_cell)};
-    for (int c = 0; c < n_cell; c++) {
-        places.parent[c] = near_grain(generators, triangulation->vertex[c]) ? c : -1;
-        nodes.of_cell[c] = -1;
-        if (places.parent[c] < 0) continue;
-        places.position[c] = power_centre(generators, triangulation->vertex[c]);
-        places.walls[c] = snap_to_walls(&places.position[c], generators->box,
-                                        &nodes.farthest_outside);
+    nodes->position = NEW_ARRAY(struct vector, places->n);
+    nodes->walls = NEW_ARRAY(uint8_t, places->n);
+    for (int i = 0; i < places->n; i++) {
+        struct place *place = &places->place[i];
+        if (place->parent != i) continue; // united with an earlier one
+        nodes->position[nodes->n] = place->position;
+        nodes->walls[nodes->n] = place->walls;
+        place->node = nodes->n++;
     }
-    unite_on_walls(triangulation, &places);
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        struct cell *cell = &triangulation->cell[c];
+        if (cell->node < 0) continue;
+        struct image image;
+        const int root = root_of(places, cell->node, &image);
+        cell->node = places->place[root].node;
+        cell->image = image_sum(cell->image, image);
+        cell->at = moved(generators, nodes->position[cell->node], cell->image);
+    }
+}
 
-    int count;
-    struct name *names = sorted_names(generators, triangulation, &count);
-    nodes.position = NEW_ARRAY(struct vector, count);
-    nodes.walls = NEW_ARRAY(uint8_t, count);
-    for (int k = 0; k < count; k++) {
-        const int root = root_of(places.parent, names[k].cell);
-        if (nodes.of_cell[root] < 0) {
-            nodes.position[nodes.n] = places.position[root];
-            nodes.walls[nodes.n] = places.walls[root];
-            nodes.of_cell[root] = nodes.n++;
-        }
-        nodes.of_cell[names[k].cell] = nodes.of_cell[root];
+// ---- what was left out --------------------------------------------------------------
+
+// The cell of a grain among its corners is unbounded.
+static bool is_open(const struct generators *generators, const struct cell *cell)
+{
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 4 && cell->neighbour[k] < 0; m++)
+            if (m != k && cell->vertex[m] < generators->n_particle) return true;
+    return false;
+}
+
+// An image left out is farther from the box than the reach; it could change a cell only
+// from inside the sphere around the node that no generator has less power to.
+static bool is_complete(const struct generators *generators, const struct cell *cell)
+{
+    if (is_open(generators, cell)) return false;
+    if (!repeats(generators)) return true;
+    const int32_t corner = cell->vertex[0];
+    const struct vector to = subtract(generators->position[corner], cell->at);
+    const double power = dot(to, to) - generators->weight[corner];
+    const double radius = sqrt(fmax(0, power + generators->largest_weight));
+    for (int axis = 0; axis < 3; axis++) {
+        if (!generators->repeats[axis]) continue;
+        const double x = component(cell->at, axis);
+        if (x - radius <= -generators->reach ||
+            x + radius >= component(generators->box, axis) + generators->reach)
+            return false;
     }
+    return true;
+}
+
+enum status find_nodes(const struct generators *generators,
+                       struct triangulation *triangulation, struct nodes *nodes,
+                       struct reason *reason)
+{
+    int count;
+    *nodes = (struct nodes){0};
+    struct row *names = sorted_names(generators, triangulation, &count);
+    if (!names)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/domain/upper: the box is too narrow for a network that "
+                      "repeats: grains meet that are more than %d boxes apart",
+                      FARTHEST_IMAGE);
+    bool outside = false;
+    struct places places =
+        find_places(generators, triangulation, names, count, &outside);
     free(names);
-    free(places.position);
-    free(places.walls);
-    free(places.parent);
-    return nodes;
+    unite_on_walls(triangulation, &places);
+    number_nodes(generators, &places, triangulation, nodes);
+    free(places.place);
+    nodes->complete = !outside;
+    for (int c = 0; c < triangulation->n_cell; c++)
+        if (triangulation->cell[c].node >= 0)
+            nodes->complete &= is_complete(generators, &triangulation->cell[c]);
+    return STATUS_OK;
 }
 
 void nodes_free(struct nodes *nodes)
 {
     free(nodes->position);
     free(nodes->walls);
-    free(nodes->of_cell);
     *nodes = (struct nodes){0};
 }

@@ -3,21 +3,24 @@
 #ifndef CRAQUELURE_NODES_H
 #define CRAQUELURE_NODES_H
 
-#include "mirrored.h"
+#include "generators.h"
 #include "regular_triangulation.h"
 
 struct nodes {
     int n;
-    struct vector *position; // (n) mean diameters, exactly on the walls they lie on
+    struct vector *position; // (n) in units, exactly on the walls they lie on,
+                             // and inside the box where it repeats
     uint8_t *walls;          // (n) bits of enum wall
-    int *of_cell; // (n_cell) node of each tetrahedron, -1 if no grain is near
-    double farthest_outside; // how far any node lies outside the box, mean diameters
+    bool complete; // no image that was left out could have changed the cell of a grain
 };
 
-// Nodes of the tetrahedra that have a grain among their corners. Those that coincide on
-// a wall are one. The caller frees with nodes_free.
-struct nodes find_nodes(const struct generators *generators,
-                        const struct triangulation *triangulation);
+// Gives the cells that have a grain among their corners their nodes, in the order of
+// the grains they lie between. Those that coincide on a wall are one, and so are those
+// that are copies of each other. STATUS_BAD_DATA when a box that repeats is too narrow.
+// The caller frees with nodes_free.
+enum status find_nodes(const struct generators *generators,
+                       struct triangulation *triangulation, struct nodes *nodes,
+                       struct reason *reason);
 void nodes_free(struct nodes *nodes);
 
 #endif

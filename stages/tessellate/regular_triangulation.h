@@ -4,6 +4,7 @@
 #ifndef CRAQUELURE_REGULAR_TRIANGULATION_H
 #define CRAQUELURE_REGULAR_TRIANGULATION_H
 
+#include "geometry/image.h"
 #include "geometry/vector.h"
 
 #include <stdint.h>
@@ -12,12 +13,24 @@
 extern "C" {
 #endif
 
-// Tetrahedra, the infinite ones left out. Exact predicates: also where many points are
+// A tetrahedron, positively oriented, and what is found out about it later. Whoever
+// goes from cell to cell waits for memory, so that all of it is on one cache line.
+struct cell {
+    int32_t vertex[4];    // points
+    int32_t neighbour[4]; // cell opposite each vertex; -1: infinite
+    struct vector at;     // where it has its node
+    int32_t node;         // -1: none that is wanted
+    struct image image;   // repetition of the box that `at` is in
+    uint8_t seen;         // edges done with
+};
+
+static_assert(sizeof(struct cell) == 64, "one cache line");
+
+// The infinite cells are left out. Exact predicates: also where many points are
 // cospherical, and never a flat one.
 struct triangulation {
     int n_cell;
-    int32_t (*vertex)[4];    // (n_cell) points
-    int32_t (*neighbour)[4]; // (n_cell) cell opposite each vertex; -1: infinite
+    struct cell *cell;
 };
 
 // Triangulates N points with WEIGHTS (radius squared; NULL: all equal). Returns 0, or

@@ -3,124 +3,164 @@
 #include "assemble.h"
 
 #include "basics/memory.h"
+#include "rows.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-// A throat as seen from one facet: two nodes, and how wide it is beside these grains.
-struct candidate {
-    int32_t node[2];
-    double radius; // mean diameters; may be below 0 where grains overlap
-    int cell;      // keeps the order deterministic
+// Throats as seen from facets.
+struct candidates {
+    struct row *row; // the two nodes, the image of the second; which of those below
+    double *radius;  // in units; may be below 0 where grains overlap
+    double *length;  // in units
+    int count, capacity;
 };
 
-static double clearance(const struct assembly *assembly, const int32_t node[2],
-                        int particle, double radius)
+static double clearance(const struct assembly *assembly, const struct vector end[2],
+                        int32_t point)
 {
-    const struct vector a = assembly->nodes->position[node[0]];
-    const struct vector along = subtract(assembly->nodes->position[node[1]], a);
-    const struct vector to = subtract(assembly->generators->position[particle], a);
+    const struct vector along = subtract(end[1], end[0]);
+    const struct vector to = subtract(assembly->generators->position[point], end[0]);
     const double length2 = dot(along, along);
     double t = length2 > 0 ? dot(to, along) / length2 : 0;
     if (assembly->clearance == CLEARANCE_SEGMENT) t = fmin(fmax(t, 0), 1);
-    return norm(subtract(to, scale(t, along))) - radius; // [K 3.7, 3.8]
+    return norm(subtract(to, scale(t, along))) -
+           assembly->radius[assembly->generators->particle[point]]; // [K 3.7, 3.8]
 }
 
 // The least clearance to the grains of the facet opposite corner K of CELL.
 static double facet_clearance(const struct assembly *assembly, int cell, int k,
-                              const int32_t node[2])
+                              const struct vector end[2])
 {
     double least = HUGE_VAL;
     for (int m = 0; m < 4; m++) {
-        const int point = assembly->triangulation->vertex[cell][m];
-        if (m == k || point >= assembly->generators->n_particle) continue;
-        least = fmin(least, clearance(assembly, node, point, assembly->radius[point]));
+        const int32_t point = assembly->triangulation->cell[cell].vertex[m];
+        if (m == k || assembly->generators->wall[point] >= 0) continue;
+        least = fmin(least, clearance(assembly, end, point));
     }
     return least;
 }
 
-static bool facet_has_grain(const struct assembly *assembly, int cell, int k)
+// Each facet has many copies where the box repeats: the one whose first corner is a
+// grain itself counts. Where nothing repeats, that is each facet with a grain.
+static bool facet_counts(const struct assembly *assembly, int cell, int k)
 {
+    const struct generators *generators = assembly->generators;
+    const int32_t *corner = assembly->triangulation->cell[cell].vertex;
+    int32_t first = -1;
     for (int m = 0; m < 4; m++)
         if (m != k &&
-            assembly->triangulation->vertex[cell][m] < assembly->generators->n_particle)
-            return true;
-    return false;
+            (first < 0 || compare_generators(generators, corner[m], first) < 0))
+            first = corner[m];
+    return first < generators->n_particle;
 }
 
-static int compare_candidates(const void *a, const void *b)
+static void append(struct candidates *candidates, const struct row *row, double radius,
+                   double length)
 {
-    const struct candidate *first = a, *second = b;
-    for (int end = 0; end < 2; end++)
-        if (first->node[end] != second->node[end])
-            return first->node[end] < second->node[end] ? -1 : 1;
-    return (first->cell > second->cell) - (first->cell < second->cell);
+    if (candidates->count == candidates->capacity) {
+        const size_t capacity =
+            candidates->capacity ? 2 * (size_t)candidates->capacity : 1024;
+        candidates->row = reallocate(candidates->row, capacity, sizeof *row);
+        candidates->radius =
+            reallocate(candidates->radius, capacity, sizeof *candidates->radius);
+        candidates->length =
+            reallocate(candidates->length, capacity, sizeof *candidates->length);
+        candidates->capacity = (int)capacity;
+    }
+    candidates->row[candidates->count] = *row;
+    candidates->row[candidates->count].item = candidates->count;
+    candidates->radius[candidates->count] = radius;
+    candidates->length[candidates->count++] = length;
 }
 
-static struct candidate *find_candidates(const struct assembly *assembly, int *count)
+// False when a throat would join a node to its own image.
+static bool find_candidates(const struct assembly *assembly,
+                            struct candidates *candidates)
 {
-    struct candidate *candidates = NULL;
-    int capacity = 0;
-    *count = 0;
-    for (int c = 0; c < assembly->triangulation->n_cell; c++)
+    const struct triangulation *cells = assembly->triangulation;
+    for (int c = 0; c < cells->n_cell; c++) {
+        const struct cell *from = &cells->cell[c];
         for (int k = 0; k < 4; k++) {
-            const int d = assembly->triangulation->neighbour[c][k];
-            if (d < c || !facet_has_grain(assembly, c, k)) continue;
-            int32_t a = assembly->nodes->of_cell[c], b = assembly->nodes->of_cell[d];
-            if (a == b) continue; // united on a wall
-            const int32_t node[2] = {a < b ? a : b, a < b ? b : a};
-            GROW_ARRAY(candidates, *count, capacity);
-            candidates[(*count)++] =
-                (struct candidate){.node = {node[0], node[1]},
-                                   .radius = facet_clearance(assembly, c, k, node),
-                                   .cell = c};
+            const int d = from->neighbour[k];
+            if (d < c || from->node < 0 || !facet_counts(assembly, c, k)) continue;
+            const struct cell *to = &cells->cell[d];
+            const int32_t a = from->node, b = to->node;
+            const struct image apart = a < b ? image_difference(to->image, from->image)
+                                             : image_difference(from->image, to->image);
+            const bool united = same_image(apart, (struct image){0}); // on a wall
+            if (a == b && united) continue;
+            if (a == b) return false;
+            const struct vector end[2] = {from->at, to->at};
+            append(candidates,
+                   &(struct row){
+                       .key = {a < b ? a : b, a < b ? b : a, image_number(apart)}},
+                   facet_clearance(assembly, c, k, end), distance(end[0], end[1]));
         }
-    if (*count)
-        qsort(candidates, (size_t)*count, sizeof *candidates, compare_candidates);
-    return candidates;
+    }
+    return true;
 }
 
 // A throat in a wall is seen from the facets of several images: one throat, as wide as
 // the narrowest of them says.
-static int fuse_in_walls(const struct assembly *assembly, struct candidate *candidates,
-                         int count)
+static int fuse_in_walls(const struct nodes *nodes, struct candidates *candidates)
 {
+    struct row *row = candidates->row;
     int kept = 0;
-    for (int k = 0; k < count; k++) {
-        const struct candidate *next = &candidates[k];
-        struct candidate *last = kept ? &candidates[kept - 1] : NULL;
-        const bool same = last && last->node[0] == next->node[0] &&
-                          last->node[1] == next->node[1] &&
-                          (assembly->nodes->walls[next->node[0]] &
-                           assembly->nodes->walls[next->node[1]]);
-        if (same)
-            last->radius = fmin(last->radius, next->radius);
-        else
-            candidates[kept++] = *next;
+    for (int k = 0; k < candidates->count; k++) {
+        struct row *last = kept ? &row[kept - 1] : NULL;
+        const bool same = last && !memcmp(last->key, row[k].key, sizeof last->key) &&
+                          (nodes->walls[last->key[0]] & nodes->walls[last->key[1]]);
+        if (!same)
+            row[kept++] = row[k];
+        else if (candidates->radius[row[k].item] < candidates->radius[last->item])
+            last->item = row[k].item;
     }
     return kept;
 }
 
-int assemble_throats(const struct assembly *assembly, struct network *network)
+// The images of second nodes.
+static void store_images(const struct row *row, struct network *network)
 {
-    int count, closed = 0;
-    struct candidate *candidates = find_candidates(assembly, &count);
-    count = fuse_in_walls(assembly, candidates, count);
+    network->throat_image = NEW_ARRAY(struct image, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        network->throat_image[t] = numbered_image(row[t].key[2]);
+}
 
-    const double unit = assembly->generators->unit;
-    network->n_throat = count;
+static void store(const struct candidates *candidates, double unit,
+                  struct network *network)
+{
+    const int count = network->n_throat;
     network->throat_nodes = allocate((size_t)count, sizeof *network->throat_nodes);
     network->throat_radius = NEW_ARRAY(double, count);
     network->throat_length = NEW_ARRAY(double, count);
     network->throat_kind = NEW_ARRAY(uint8_t, count);
     for (int t = 0; t < count; t++) {
+        const struct row *row = &candidates->row[t];
         for (int end = 0; end < 2; end++)
-            network->throat_nodes[t][end] = candidates[t].node[end];
-        network->throat_length[t] =
-            unit * distance(assembly->nodes->position[candidates[t].node[0]],
-                            assembly->nodes->position[candidates[t].node[1]]);
-        network->throat_radius[t] = unit * fmax(0, candidates[t].radius);
-        closed += candidates[t].radius < 0;
+            network->throat_nodes[t][end] = row->key[end];
+        network->throat_length[t] = unit * candidates->length[row->item];
+        network->throat_radius[t] = unit * fmax(0, candidates->radius[row->item]);
     }
-    free(candidates);
-    return closed;
+    if (is_periodic(&network->packing)) store_images(candidates->row, network);
+}
+
+enum status assemble_throats(const struct assembly *assembly, struct network *network,
+                             struct reason *reason)
+{
+    struct candidates candidates = {0};
+    enum status status = STATUS_OK;
+    if (!find_candidates(assembly, &candidates))
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "/domain/upper: the box is too narrow for a network that "
+                        "repeats: a throat would join a node to its own image");
+    if (!status) {
+        candidates.row = sort_rows(candidates.row, candidates.count);
+        network->n_throat = fuse_in_walls(assembly->nodes, &candidates);
+        store(&candidates, assembly->generators->unit, network);
+    }
+    free(candidates.row);
+    free(candidates.radius);
+    free(candidates.length);
+    return status;
 }

@@ -49,7 +49,11 @@ extern const char *const provenance_names[]; // ends with NULL
 // Everything a packing or network artifact holds (also drying, forces, response, which
 // carry one along).
 struct packing artifact_get_packing(const struct artifact *artifact);
+//
+// Exits 65 on a network in a box that repeats, unless asked for such a one: a stage that
+// does not know of images would take a throat across a side for one across the box.
 struct network artifact_get_network(const struct artifact *artifact);
+struct network artifact_get_periodic_network(const struct artifact *artifact);
 
 // ---- writing ------------------------------------------------------------------------
 

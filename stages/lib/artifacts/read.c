@@ -164,6 +164,12 @@ void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
     return data;
 }
 
+static bool has_dataset(const struct artifact *artifact, const char *name)
+{
+    const json_t *entry = schema_dataset(artifact->schema, name);
+    return entry && has_entry(artifact->file, entry);
+}
+
 double artifact_get_number(const struct artifact *artifact, const char *name)
 {
     char group[128];
@@ -205,6 +211,16 @@ static bool artifact_has(const struct artifact *artifact, const json_t *entry)
 
 struct network artifact_get_network(const struct artifact *artifact)
 {
+    if (has_dataset(artifact, "/throats/image"))
+        die(STATUS_BAD_DATA,
+            "%s: /domain/periodic: this stage knows no networks in boxes that repeat "
+            "yet; pack with periodic=[false,false,false]",
+            input_name(artifact->path));
+    return artifact_get_periodic_network(artifact);
+}
+
+struct network artifact_get_periodic_network(const struct artifact *artifact)
+{
     const struct schema *schema = artifact->schema;
     struct network network = {.packing = artifact_get_packing(artifact)};
     network.node_position = artifact_get(artifact, "/nodes/position", &network.n_node);
@@ -225,5 +241,9 @@ struct network artifact_get_network(const struct artifact *artifact)
         network.unmerged_length =
             artifact_get_number(artifact, "/summary/unmerged_length");
     }
+    if (!has_dataset(artifact, "/throats/image")) return network;
+    network.throat_image = artifact_get(artifact, "/throats/image", NULL);
+    network.face_image = artifact_get(artifact, "/faces/image", NULL);
+    network.face_node_image = artifact_get(artifact, "/faces/node_image", NULL);
     return network;
 }

@@ -109,22 +109,23 @@ bool has_entry(hid_t file, const json_t *entry)
 
 static int type_index(const json_t *entry)
 {
-    static const char *const names[] = {"float64", "int32", "int64", "uint8"};
+    static const char *const names[] = {"float64", "int32", "int64", "uint8", "int8"};
     const char *type = json_string_value(json_object_get(entry, "type"));
-    for (int k = 0; type && k < 4; k++)
+    for (int k = 0; type && k < 5; k++)
         if (!strcmp(names[k], type)) return k;
     die(STATUS_INTERNAL, "schema: unknown type %s", type ? type : "(none)");
 }
 
 hid_t entry_file_type(const json_t *entry)
 {
-    const hid_t types[] = {H5T_IEEE_F64LE, H5T_STD_I32LE, H5T_STD_I64LE, H5T_STD_U8LE};
+    const hid_t types[] = {H5T_IEEE_F64LE, H5T_STD_I32LE, H5T_STD_I64LE, H5T_STD_U8LE,
+                           H5T_STD_I8LE};
     return types[type_index(entry)];
 }
 
 hid_t entry_memory_type(const json_t *entry)
 {
     const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT32, H5T_NATIVE_INT64,
-                           H5T_NATIVE_UINT8};
+                           H5T_NATIVE_UINT8, H5T_NATIVE_INT8};
     return types[type_index(entry)];
 }

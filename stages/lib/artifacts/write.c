@@ -166,6 +166,10 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
     artifact_put(artifact, "/faces/nodes", network->face_nodes, n_face_node);
     artifact_put(artifact, "/faces/particles", network->face_particles,
                  network->n_face);
+    if (!network->throat_image) return;
+    artifact_put(artifact, "/throats/image", network->throat_image, network->n_throat);
+    artifact_put(artifact, "/faces/image", network->face_image, network->n_face);
+    artifact_put(artifact, "/faces/node_image", network->face_node_image, n_face_node);
 }
 
 // ---- ParaView -----------------------------------------------------------------------

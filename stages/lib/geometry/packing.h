@@ -6,6 +6,7 @@
 
 #include "geometry/vector.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 // The six walls of the box, as bits (a node may lie on up to three) and in this order
@@ -30,6 +31,9 @@ struct packing {
     int n_bond;
     int32_t (*bond)[2]; // (n_bond) the two bonded grains, lower index first
 };
+
+// Whether the box repeats along any direction.
+bool is_periodic(const struct packing *packing);
 
 // Where wall 0..5 of the box stands along its axis, wall / 2; m.
 double wall_position(const struct packing *packing, int wall);

@@ -18,6 +18,9 @@ void network_free(struct network *network)
     free(network->face_offset);
     free(network->face_nodes);
     free(network->face_particles);
+    free(network->throat_image);
+    free(network->face_image);
+    free(network->face_node_image);
     *network = (struct network){0};
 }
 

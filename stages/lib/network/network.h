@@ -7,6 +7,7 @@
 #ifndef CRAQUELURE_NETWORK_H
 #define CRAQUELURE_NETWORK_H
 
+#include "geometry/image.h"
 #include "geometry/packing.h"
 
 enum throat_kind {
@@ -15,6 +16,8 @@ enum throat_kind {
     THROAT_IMPOSED_EMPTY = 2   // holds no liquid and lets nothing through [K 5.4]
 };
 
+// The images are NULL unless the box repeats; then what is in another repetition of it
+// than the nodes and grains listed lies that many boxes away.
 struct network {
     struct packing packing; // the grains travel along
 
@@ -28,11 +31,14 @@ struct network {
     double *throat_length;      // (n_throat) m
     uint8_t *throat_kind;       // (n_throat) enum throat_kind
     double *throat_volume;      // (n_throat) m3; NULL: the throats are cylinders
+    struct image *throat_image; // (n_throat) of the second node, seen from the first
 
     int n_face;
-    int64_t *face_offset;         // (n_face+1) into face_nodes
-    int32_t *face_nodes;          // each face a closed loop of nodes
-    int32_t (*face_particles)[2]; // (n_face) two grains; -1-w for wall w = 0..5
+    int64_t *face_offset;          // (n_face+1) into face_nodes
+    int32_t *face_nodes;           // each face a closed loop of nodes
+    int32_t (*face_particles)[2];  // (n_face) two grains; -1-w for wall w = 0..5
+    struct image *face_image;      // (n_face) of the second grain, seen from the first
+    struct image *face_node_image; // of each of face_nodes, seen from the first grain
 
     // Throats, and their mean length in m, before any were merged away: what thresholds
     // of merging are relative to. 0: not merged yet.

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which repetition of a periodic box something lies in: whole boxes along x, y, z.
+#ifndef CRAQUELURE_IMAGE_H
+#define CRAQUELURE_IMAGE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { FARTHEST_IMAGE = 3 }; // what three bits a direction can hold
+
+struct image {
+    int8_t along[3];
+};
+
+static inline struct image image_sum(struct image a, struct image b)
+{
+    for (int axis = 0; axis < 3; axis++)
+        a.along[axis] = (int8_t)(a.along[axis] + b.along[axis]);
+    return a;
+}
+
+static inline struct image image_difference(struct image a, struct image b)
+{
+    for (int axis = 0; axis < 3; axis++)
+        a.along[axis] = (int8_t)(a.along[axis] - b.along[axis]);
+    return a;
+}
+
+static inline bool same_image(struct image a, struct image b)
+{
+    return a.along[0] == b.along[0] && a.along[1] == b.along[1] &&
+           a.along[2] == b.along[2];
+}
+
+static inline bool is_far(struct image a)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (a.along[axis] > FARTHEST_IMAGE || a.along[axis] < -FARTHEST_IMAGE)
+            return true;
+    return false;
+}
+
+// A number that orders images as their components do; different for images that are
+// not far.
+static inline int32_t image_number(struct image a)
+{
+    enum { STEP = 2 * FARTHEST_IMAGE + 1 };
+    return (a.along[0] * STEP + a.along[1]) * STEP + a.along[2];
+}
+
+// The image that is not far and has this number.
+static inline struct image numbered_image(int32_t number)
+{
+    enum { STEP = 2 * FARTHEST_IMAGE + 1, ORIGIN = 171 }; // the number of 3, 3, 3
+    number += ORIGIN;
+    return (struct image){{(int8_t)(number / (STEP * STEP) - FARTHEST_IMAGE),
+                           (int8_t)(number / STEP % STEP - FARTHEST_IMAGE),
+                           (int8_t)(number % STEP - FARTHEST_IMAGE)}};
+}
+
+#endif

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "generators.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+enum { GRID_BITS = 40, SAFE_BITS = 50 };
+
+// A power of two: 2^-40 mean diameters, or coarser where the box is so large that sums
+// on the grid would not be exact; in units.
+static double grid_for(double diameter, struct vector box)
+{
+    const double largest = fmax(box.x, fmax(box.y, box.z));
+    return ldexp(1, (int)fmax(ilogb(diameter) - GRID_BITS, ilogb(largest) - SAFE_BITS));
+}
+
+static struct vector round_to(double grid, struct vector x)
+{
+    return (struct vector){grid * nearbyint(x.x / grid), grid * nearbyint(x.y / grid),
+                           grid * nearbyint(x.z / grid)};
+}
+
+static double mean_diameter(const struct packing *packing)
+{
+    double sum = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        sum += 2 * packing->radius[i];
+    return sum / packing->n_particle;
+}
+
+double unit_of_length(const struct packing *packing)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    const double diameter = mean_diameter(packing);
+    const double share = edge.x / diameter * (edge.y / diameter) * (edge.z / diameter);
+    const double spacing = cbrt(share / packing->n_particle);
+    return spacing > 1.1 ? spacing * diameter : diameter; // a lattice keeps its digits
+}
+
+static struct vector scaled(const struct packing *packing, struct vector x, double unit)
+{
+    const struct vector from_corner = subtract(x, packing->lower);
+    return (struct vector){from_corner.x / unit, from_corner.y / unit,
+                           from_corner.z / unit};
+}
+
+static enum status check_inside(const struct generators *generators,
+                                struct reason *reason)
+{
+    for (int i = 0; i < generators->n_particle; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const double at = component(generators->position[i], axis);
+            if (generators->repeats[axis]) continue;
+            if (at > 0 && at < component(generators->box, axis)) continue;
+            return refuse(
+                reason, STATUS_BAD_DATA,
+                "/particles/position: row %d: the centre must be inside the box "
+                "along %c, from 0 to %g, got %g, in units of %g m",
+                i, "xyz"[axis], component(generators->box, axis), at,
+                generators -> unit);
+        }
+    return STATUS_OK;
+}
+
+static int compare_places(const void *a, const void *b, void *positions)
+{
+    const int32_t i = *(const int32_t *)a, j = *(const int32_t *)b;
+    const struct vector *at = positions;
+    for (int axis = 0; axis < 3; axis++) {
+        const double x = component(at[i], axis), y = component(at[j], axis);
+        if (x != y) return x < y ? -1 : 1;
+    }
+    return (i > j) - (i < j);
+}
+
+enum status check_distinct(const struct generators *generators, struct reason *reason)
+{
+    const struct vector *at = generators->position;
+    const int n = generators->n_particle;
+    int32_t *order = NEW_ARRAY(int32_t, n);
+    for (int i = 0; i < n; i++)
+        order[i] = i;
+    qsort_r(order, (size_t)n, sizeof *order, compare_places, generators->position);
+    enum status status = STATUS_OK;
+    for (int k = 1; k < n && !status; k++)
+        if (norm(subtract(at[order[k]], at[order[k - 1]])) == 0)
+            status =
+                refuse(reason, STATUS_BAD_DATA,
+                       "/particles/position: row %d: has the same centre as row %d",
+                       order[k], order[k - 1]);
+    free(order);
+    return status;
+}
+
+struct vector moved(const struct generators *generators, struct vector position,
+                    struct image image)
+{
+    return add(position, (struct vector){image.along[0] * generators->box.x,
+                                         image.along[1] * generators->box.y,
+                                         image.along[2] * generators->box.z});
+}
+
+static void grow(struct generators *generators)
+{
+    const size_t capacity = 2 * (size_t)generators->capacity;
+    generators->capacity *= 2;
+    generators->position =
+        reallocate(generators->position, capacity, sizeof *generators->position);
+    generators->weight =
+        reallocate(generators->weight, capacity, sizeof *generators->weight);
+    generators->particle =
+        reallocate(generators->particle, capacity, sizeof *generators->particle);
+    generators->base = reallocate(generators->base, capacity, sizeof *generators->base);
+    generators->image =
+        reallocate(generators->image, capacity, sizeof *generators->image);
+    generators->wall = reallocate(generators->wall, capacity, 1);
+}
+
+// Room for one more, with all that is the same as for generator FROM.
+static int add_like(struct generators *generators, int from)
+{
+    if (generators->n == generators->capacity) grow(generators);
+    const int i = generators->n++;
+    generators->position[i] = generators->position[from];
+    generators->weight[i] = generators->weight[from];
+    generators->particle[i] = generators->particle[from];
+    generators->base[i] = generators->base[from];
+    generators->image[i] = generators->image[from];
+    generators->wall[i] = generators->wall[from];
+    return i;
+}
+
+static double depth(const struct generators *generators, int i, int wall)
+{
+    const double at = component(generators->position[i], wall / 2);
+    return wall % 2 ? component(generators->box, wall / 2) - at : at;
+}
+
+static void add_reflections(struct generators *generators)
+{
+    for (int i = 0; i < generators->n_particle; i++)
+        for (int wall = 0; wall < WALL_COUNT; wall++) {
+            const int axis = wall / 2;
+            if (generators->repeats[axis] ||
+                depth(generators, i, wall) > generators->reach)
+                continue;
+            const double at = wall % 2 ? component(generators->box, axis) : 0;
+            const double from = component(generators->position[i], axis);
+            const int added = add_like(generators, i);
+            set_component(&generators->position[added], axis,
+                          2 * at - from); // exact on the grid
+            generators->base[added] = added;
+            generators->wall[added] = (int8_t)wall;
+        }
+}
+
+// One direction after the other, so that copies are copied too: across edges and
+// corners.
+static void add_copies(struct generators *generators)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        if (!generators->repeats[axis]) continue;
+        const double edge = component(generators->box, axis);
+        const int most = (int)fmin(ceil(generators->reach / edge), FARTHEST_IMAGE);
+        const int before = generators->n;
+        for (int i = 0; i < before; i++)
+            for (int boxes = -most; boxes <= most; boxes++) {
+                const double at =
+                    component(generators->position[i], axis) + boxes * edge;
+                if (!boxes || at < -generators->reach || at > edge + generators->reach)
+                    continue;
+                const int added = add_like(generators, i);
+                set_component(&generators->position[added], axis, at);
+                generators->image[added].along[axis] = (int8_t)boxes;
+            }
+    }
+}
+
+// Into the box where it repeats.
+static struct vector wrapped(const struct generators *generators, struct vector at)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        if (!generators->repeats[axis]) continue;
+        const double edge = component(generators->box, axis);
+        const double x = component(at, axis);
+        set_component(&at, axis, x - edge * floor(x / edge));
+    }
+    return at;
+}
+
+enum status place_generators(const struct packing *packing, double reach, bool power,
+                             struct generators *generators, struct reason *reason)
+{
+    const int n = packing->n_particle, room = n + n / 2 + 64;
+    *generators = (struct generators){.n = n,
+                                      .n_particle = n,
+                                      .capacity = room,
+                                      .position = NEW_ARRAY(struct vector, room),
+                                      .weight = NEW_ARRAY(double, room),
+                                      .particle = NEW_ARRAY(int32_t, room),
+                                      .base = NEW_ARRAY(int32_t, room),
+                                      .image = NEW_ARRAY(struct image, room),
+                                      .wall = NEW_ARRAY(int8_t, room),
+                                      .reach = reach,
+                                      .unit = unit_of_length(packing)};
+    const double unit = generators->unit;
+    generators->box = scaled(packing, packing->upper, unit);
+    const double grid = grid_for(mean_diameter(packing) / unit, generators->box);
+    generators->box = round_to(grid, generators->box);
+    for (int axis = 0; axis < 3; axis++)
+        generators->repeats[axis] = packing->periodic[axis];
+    for (int i = 0; i < n; i++) {
+        const double radius = packing->radius[i] / unit;
+        generators->position[i] = wrapped(
+            generators, round_to(grid, scaled(packing, packing->position[i], unit)));
+        generators->weight[i] = power ? radius * radius : 0;
+        generators->largest_weight =
+            fmax(generators->largest_weight, generators->weight[i]);
+        generators->particle[i] = generators->base[i] = i;
+        generators->wall[i] = -1;
+    }
+    const enum status status = check_inside(generators, reason);
+    if (status) return status;
+    add_reflections(generators);
+    generators->n_base = generators->n;
+    add_copies(generators);
+    return STATUS_OK;
+}
+
+void generators_free(struct generators *generators)
+{
+    free(generators->position);
+    free(generators->weight);
+    free(generators->particle);
+    free(generators->base);
+    free(generators->image);
+    free(generators->wall);
+    *generators = (struct generators){0};
+}

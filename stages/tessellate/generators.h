@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The points of the diagram: grains, and images of those near the sides of the box.
+//
+// Walls are mirrors: a grain reflected in a wall shares with its image exactly that
+// wall as the face between them, so the diagram of the grains and their images, looked
+// at from the grains alone, is the diagram cut by the box (truncation strategy, K
+// 3.3.1), and border throats meet the wall at right angles. Where the box repeats, both
+// grains and reflections are copied beyond its sides (K 3.3.2).
+#ifndef CRAQUELURE_GENERATORS_H
+#define CRAQUELURE_GENERATORS_H
+
+#include "basics/status.h"
+#include "geometry/image.h"
+#include "geometry/packing.h"
+
+#include <stdbool.h>
+
+// In units of length from the lower corner of the box: first the grains, then their
+// reflections, then copies of both.
+struct generators {
+    int n, n_particle, n_base, capacity; // bases: grains and reflections
+    struct vector *position;
+    double *weight;      // radius squared; 0 for Voronoi
+    int32_t *particle;   // the grain itself, or that an image belongs to
+    int32_t *base;       // what a copy repeats; itself for a grain and a reflection
+    struct image *image; // how many boxes a copy is away from its base
+    int8_t *wall;        // 0..5 the wall it is reflected in; else -1
+    struct vector box;   // upper corner
+    bool repeats[3];
+    double reach; // images farther from the box are left out
+    double largest_weight;
+    double unit; // m
+};
+
+// Grains, and images of those within REACH (in units) of a side. Positions and box are
+// rounded to 2^-40 of the mean diameter: what is degenerate but for rounding errors (a
+// lattice) becomes exactly so, the exact predicates then make no slivers of the noise,
+// and copies are exact. A grain outside the box along a direction that repeats is moved
+// into it. STATUS_BAD_DATA when a grain's centre is outside the box or on a wall.
+enum status place_generators(const struct packing *packing, double reach, bool power,
+                             struct generators *generators, struct reason *reason);
+void generators_free(struct generators *generators);
+
+// Of two grains in one place only one would get a cell, whichever came first:
+// STATUS_BAD_DATA.
+enum status check_distinct(const struct generators *generators, struct reason *reason);
+
+// POSITION in another repetition of the box.
+struct vector moved(const struct generators *generators, struct vector position,
+                    struct image image);
+
+// Orders generators by what they repeat, then by the repetition: so do all their copies
+// with each other.
+static inline int compare_generators(const struct generators *generators, int32_t a,
+                                     int32_t b)
+{
+    if (a < generators->n_base && b < generators->n_base) return (a > b) - (a < b);
+    const int32_t first = generators->base[a], second = generators->base[b];
+    if (first != second) return first < second ? -1 : 1;
+    return image_number(generators->image[a]) - image_number(generators->image[b]);
+}
+
+// The unit of length, m: the mean grain diameter, or the edge of a grain's share of the
+// box where that is larger. Far larger or smaller ones would cost digits.
+double unit_of_length(const struct packing *packing);
+
+#endif
