@@ -113,6 +113,7 @@ static void degenerate_triangles_are_nothing(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_lose_what_the_sphere_takes),
         cmocka_unit_test(triangles_add_up),

@@ -172,6 +172,7 @@ static void what_cannot_be_drawn_is_refused(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_law_is_met),
         cmocka_unit_test(neighbours_are_alike),
