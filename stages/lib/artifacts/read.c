@@ -164,10 +164,14 @@ void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
     return data;
 }
 
+static bool artifact_has(const struct artifact *artifact, const json_t *entry)
+{
+    return entry && has_entry(artifact->file, entry);
+}
+
 static bool has_dataset(const struct artifact *artifact, const char *name)
 {
-    const json_t *entry = schema_dataset(artifact->schema, name);
-    return entry && has_entry(artifact->file, entry);
+    return artifact_has(artifact, schema_dataset(artifact->schema, name));
 }
 
 double artifact_get_number(const struct artifact *artifact, const char *name)
@@ -204,11 +208,6 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     return packing;
 }
 
-static bool artifact_has(const struct artifact *artifact, const json_t *entry)
-{
-    return entry && has_entry(artifact->file, entry);
-}
-
 struct network artifact_get_network(const struct artifact *artifact)
 {
     if (has_dataset(artifact, "/throats/image"))
@@ -233,7 +232,7 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     network.face_nodes = artifact_get(artifact, "/faces/nodes", NULL);
     network.face_particles =
         artifact_get(artifact, "/faces/particles", &network.n_face);
-    if (artifact_has(artifact, schema_dataset(schema, "/throats/volume")))
+    if (has_dataset(artifact, "/throats/volume"))
         network.throat_volume = artifact_get(artifact, "/throats/volume", NULL);
     if (artifact_has(artifact, schema_attribute(schema, "/summary/unmerged_throats"))) {
         network.unmerged_throats =
