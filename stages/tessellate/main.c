@@ -60,9 +60,10 @@ static enum status give_void_volumes(const struct tessellation *how,
         return refuse(reason, STATUS_BAD_DATA,
                       "tessellate.throat_volume: void must go with diagram=power");
     if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->throat_image)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "tessellate.throat_volume: void must go with whole cells in a box "
-                      "that does not repeat: dimensions=3, boundary=truncate");
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "tessellate.throat_volume: void must go with whole cells in a box "
+            "that does not repeat: dimensions=3, boundary=truncate");
     return find_void_volumes(network, reason);
 }
 

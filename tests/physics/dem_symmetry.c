@@ -72,7 +72,7 @@ static void test_width_makes_no_difference(void **state)
     struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
     struct vector *force = random_vectors(N, 5e-10, 12);
     struct dem_setup setup = weak_setup(&packing);
-        struct dem *dem[2];
+    struct dem *dem[2];
     for (int k = 0; k < 2; k++) {
         dem[k] = loaded(&setup, force);
         const unsigned features = dem[k]->features;

@@ -50,8 +50,9 @@ extern const char *const provenance_names[]; // ends with NULL
 // carry one along).
 struct packing artifact_get_packing(const struct artifact *artifact);
 //
-// Exits 65 on a network in a box that repeats, unless asked for such a one: a stage that
-// does not know of images would take a throat across a side for one across the box.
+// Exits 65 on a network in a box that repeats, unless asked for such a one: a stage
+// that does not know of images would take a throat across a side for one across the
+// box.
 struct network artifact_get_network(const struct artifact *artifact);
 struct network artifact_get_periodic_network(const struct artifact *artifact);
 

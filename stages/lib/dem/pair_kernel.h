@@ -791,8 +791,8 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *l
     return n_broken;
 }
 
-// Asks early for the records of second grains, which lie here and there; first grains come
-// in order, and the processor sees that for itself.
+// Asks early for the records of second grains, which lie here and there; first grains
+// come in order, and the processor sees that for itself.
 INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
 {
     const int32_t *second = dem->pairs.group[k].second;
