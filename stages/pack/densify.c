@@ -3,8 +3,8 @@
 // packing, by grains that grow or by a box that closes in, ever more slowly.
 //
 // Strain is the relative change of lengths, of all radii or of the box. It is applied
-// in small steps between some cycles of dynamics; each change of direction halves the
-// largest step, so that the end is approached quasi-statically from either side.
+// in small steps between some cycles of dynamics; whenever the stress is past its
+// target the largest step halves, so that the end is approached quasi-statically.
 #include "dynamics.h"
 #include "pack.h"
 
@@ -27,8 +27,7 @@ struct densification {
     bool jammed;                   // once grains have found their places
     double done;                   // share of the way, for the progress bar
     double pair_stiffness, radius; // N/m, m by volume: the scale of pressure
-    int n_wall;
-    double target;     // of the pressing under way, 0 when there is none
+    double target;                 // of the pressing under way, 0 when there is none
     double gone_on_at; // of a run that was stopped: the target it was at; 0 once met
 };
 
@@ -345,15 +344,9 @@ static enum status make_loose(const struct making *making, int count, bool grow,
                               double *shrunk, struct reason *reason)
 {
     struct domain *domain = making->domain;
-    gsl_rng *same = gsl_rng_clone(making->random);
-    struct packing drawn = packing_in(domain, count);
-    for (int i = 0; i < count; i++)
-        drawn.radius[i] = sizes_draw(making->sizes, same);
-    const double solid = solid_fraction(domain, &drawn);
-    packing_free(&drawn);
-
+    const double solid = drawn_fraction(making, count);
     // Less fits where walls are near: looser, until all have a place.
-    gsl_rng_memcpy(same, making->random);
+    gsl_rng *same = gsl_rng_clone(making->random);
     const int64_t most_trials = 100000;
     double loose = loose_fraction(domain), stretched = 1;
     enum status status;
@@ -411,19 +404,19 @@ enum status densify(const struct making *making, int count, bool grow,
 
     const double first_step = 1e-3;
     struct dem_wall wall[MOST_WALLS];
-    struct densification d = {
-        .making = making,
-        .grow = grow,
-        .most = first_step,
-        .radius = typical_radius(making->packing) / (grow ? shrunk : 1),
-        .n_wall = domain_walls(making->domain, making->how, false, wall)};
+    const int n_wall = domain_walls(making->domain, making->how, false, wall);
+    struct densification d = {.making = making,
+                              .grow = grow,
+                              .most = first_step,
+                              .radius = typical_radius(making->packing) /
+                                        (grow ? shrunk : 1)};
     const double stiffness = stiffness_for(making->how, d.radius);
     d.pair_stiffness = 0.5 * stiffness;
     making->reached->growth = grow ? shrunk : 1;
     thicken_layer(making);
     const struct vector none = {0, 0, 0};
-    status = start_dynamics(making, stiffness, making->how->safety, none, wall,
-                            d.n_wall, &d.dem, reason);
+    status = start_dynamics(making, stiffness, making->how->safety, none, wall, n_wall,
+                            &d.dem, reason);
     if (status == STATUS_OK) status = take_up_protocol(&d, reason);
     if (status == STATUS_OK) status = reach_target(&d, reason);
     if (status == STATUS_OK) {

@@ -21,25 +21,12 @@ static struct domain cloud_domain(const struct domain *domain, double volume,
     return tall;
 }
 
-// Volume of the grains; in two dimensions area.
-static double sum_of_sizes(const struct domain *domain, const struct packing *packing)
-{
-    return solid_fraction(domain, packing) * domain_volume(domain);
-}
-
 static enum status make_cloud(const struct making *making, int count,
                               struct domain *tall, struct reason *reason)
 {
-    // As many draws as the cloud will take, to know how large it must be.
-    gsl_rng *same = gsl_rng_clone(making->random);
-    struct packing drawn = packing_in(making->domain, count);
-    for (int i = 0; i < count; i++)
-        drawn.radius[i] = sizes_draw(making->sizes, same);
-    const double volume = sum_of_sizes(making->domain, &drawn);
-    packing_free(&drawn);
-
+    const double volume = drawn_fraction(making, count) * domain_volume(making->domain);
     // Less fits where walls are near: thinner, until all have a place.
-    gsl_rng_memcpy(same, making->random);
+    gsl_rng *same = gsl_rng_clone(making->random);
     double cloud = making->domain->dimensions == 2 ? 0.4 : 0.28;
     const double thinnest = making->domain->shape == DOMAIN_SPHERE ? cloud : 0.01;
     const int64_t most_trials = 100000;

@@ -2,6 +2,7 @@
 #include "dynamics.h"
 
 #include "basics/memory.h"
+#include "pack.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -84,6 +85,18 @@ double solid_fraction(const struct domain *domain, const struct packing *packing
                  (domain->dimensions == 2 ? thick : 4 * radius / 3);
     }
     return share;
+}
+
+double drawn_fraction(const struct making *making, int count)
+{
+    gsl_rng *same = gsl_rng_clone(making->random);
+    struct packing drawn = packing_in(making->domain, count);
+    for (int i = 0; i < count; i++)
+        drawn.radius[i] = sizes_draw(making->sizes, same);
+    const double fraction = solid_fraction(making->domain, &drawn);
+    packing_free(&drawn);
+    gsl_rng_free(same);
+    return fraction;
 }
 
 enum status start_dynamics(const struct making *making, double stiffness, double safety,

@@ -93,6 +93,9 @@ int domain_walls(const struct domain *domain, const struct dynamics_parameters *
 // Solid volume over the domain's (areas in two dimensions), overlaps counted twice.
 double solid_fraction(const struct domain *domain, const struct packing *packing);
 
+// The same of COUNT grains as they will be drawn next.
+double drawn_fraction(const struct making *making, int count);
+
 // An engine on the packing, between WALLS; STIFFNESS in N/m.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
