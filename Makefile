@@ -52,7 +52,7 @@ HDF5_LIBS = $(call once,HDF5_LIBS,pkg-config --libs-only-L hdf5-serial 2>/dev/nu
 	|| echo -L/usr/lib/$$($(CC) -print-multiarch)/hdf5/serial)
 CPPFLAGS = -Istages/lib $(HDF5_CPPFLAGS) -I/usr/include/suitesparse
 LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig -lgsl -lgslcblas -ljansson \
-	-lcrypto -lm
+	-lcrypto -lstdc++ -lmpfr -lgmp -lm
 
 PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
 	libjansson-dev libssl-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
@@ -82,7 +82,7 @@ LIBRARY := $(BUILD)/libcraquelure.a
 CORES := $(BUILD)/libstages.a# all stages without their mains, for the tests
 
 object = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$(basename $1)))
-library_objects := $(call object,$(wildcard stages/lib/*/*.c stages/lib/*/*.S))
+library_objects := $(call object,$(wildcard $(addprefix stages/lib/*/*.,c cpp S)))
 core_sources := $(filter-out %/main.c stages/lib/%,$(wildcard stages/*/*.c))
 
 # A test is a C program; support_*.c beside it is linked into each.
@@ -106,7 +106,7 @@ VERSION := $(file <VERSION)
 # Two notes, rewritten only when they differ from what is on disk: other flags recompile
 # everything, an added or removed source relinks.
 flags := $(strip $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(VERSION))
-sources := $(sort $(wildcard stages/*/*.c stages/*/*.cpp stages/lib/*/*.[cS] \
+sources := $(sort $(wildcard stages/*/*.c $(addprefix stages/lib/*/*.,c cpp S) \
 	tests/*/support_*.c))
 define note
 $(BUILD)/$1: $(if $(findstring |$($1)|,|$(file <$(BUILD)/$1)|),,FORCE)
@@ -128,14 +128,13 @@ $(call object,stages/lib/artifacts/schemas.S): $(wildcard schemas/*.json)
 
 # A stage: its objects, with its version compiled in, and its program.
 define stage_rules
-$1_objects := $(call object,$(wildcard stages/$1/*.c stages/$1/*.cpp))
+$1_objects := $(call object,$(wildcard stages/$1/*.c))
 $(BUILD)/obj/stages/$1/%.o: own_flags = \
 	-DSTAGE_VERSION=$(call version_of,$1) -DCRAQUELURE_VERSION='"$(VERSION)"'
 $$($1_objects): $(wildcard stages/$1/version)
 $(BUILD)/bin/$1: $$($1_objects) $(LIBRARY) $(BUILD)/sources
 	$$(call quiet,LINK,$1)mkdir -p $$(@D) \
-	&& $(if $(wildcard stages/$1/*.cpp),$(CXX),$(CC)) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) \
-		$(if $(wildcard stages/$1/*.cpp),-lmpfr -lgmp) -o $$@
+	&& $(CC) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) -o $$@
 endef
 $(foreach stage,$(STAGES),$(eval $(call stage_rules,$(stage))))
 
@@ -262,7 +261,7 @@ bench-network: all ## measure time and memory of the tessellation, next to voro+
 
 # --- house ----------------------------------------------------------------------------
 
-C_SOURCES := $(wildcard stages/*/*.[ch] stages/*/*.cpp stages/lib/*/*.[ch] tests/*/*.[ch])
+C_SOURCES := $(wildcard stages/*/*.[ch] stages/lib/*/*.[ch] stages/lib/*/*.cpp tests/*/*.[ch])
 
 .PHONY: format tidy help
 format: ## format the C and C++ sources

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only file that talks to CGAL.
-#include "regular_triangulation.h"
+#include "geometry/regular_triangulation.h"
 
 // Its own checks of what it does cost a fifth of the time.
 #define CGAL_NDEBUG
