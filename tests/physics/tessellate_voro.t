@@ -36,7 +36,28 @@ def compare(title, folder, grains, edge, periodic, radius=None):
        "  cells closed, filling the box", (mine.box_error(), mine.volumes()[1].max(), mine.euler()))
 
 
+def packed(title, folder, *settings, power=False):
+    """A packing of pack's own, grains in contact."""
+    path = os.path.join(folder, "packed.h5")
+    words = [word for s in settings for word in ("--set", s)]
+    run("pack", "-q", "--set", "radius=0.05", *words, "-o", path)
+    with h5py.File(path) as file:
+        grains, radius = file["particles/position"][()], file["particles/radius"][()]
+        lower, upper = file["domain/lower"][()], file["domain/upper"][()]
+        periodic = tuple(map(bool, file["domain/periodic"][()]))
+    compare(title, folder, grains - lower, upper - lower, periodic, radius if power else None)
+
+
+MANY = ["sizes.distribution=uniform", "sizes.smallest=0.02", "sizes.largest=0.06"]
+CLOSE = ["method=radius_expansion", "count=200", "periodic=[true,true,true]"]
 with scratch() as folder:
+    box = "upper=[0.5,0.5,0.8]"
+    packed("settled", folder, "method=deposition", box)
+    packed("settled, many sizes", folder, "method=deposition", box, *MANY, power=True)
+    packed("settled between sides that repeat", folder, "method=deposition", box, *MANY,
+           "periodic=[true,true,false]", power=True)
+    packed("close", folder, *CLOSE)
+    packed("close, many sizes", folder, *CLOSE, *MANY, power=True)
     for periodic in PERIODIC:
         compare("random", folder, random.uniform(0, 1, (1000, 3)), 1, periodic)
     for periodic in (PERIODIC[0], PERIODIC[3], PERIODIC[7]):
