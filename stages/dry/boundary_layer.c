@@ -11,7 +11,8 @@ struct planar {
     double x, y;
 };
 
-// One edge of one face on the wall, between two exposed nodes.
+// One edge of one face on the wall (of a layer: one throat in it), between two exposed
+// nodes.
 struct wall_edge {
     int node[2]; // indices into exposed, lower first
     int face;
@@ -39,16 +40,6 @@ static struct planar difference(struct planar a, struct planar b)
     return (struct planar){a.x - b.x, a.y - b.y};
 }
 
-// From FROM to TO along AXIS, the shortest way where the box repeats.
-static double offset_along(const struct packing *packing, struct vector from,
-                           struct vector to, int axis)
-{
-    const double way = component(to, axis) - component(from, axis);
-    const double size =
-        component(packing->upper, axis) - component(packing->lower, axis);
-    return packing->periodic[axis] ? way - size * round(way / size) : way;
-}
-
 // The face's nodes in the plane of the wall, in scaled lengths about the foot of the
 // grain's centre; about their mean if the foot lies outside the face, as it may between
 // unequal grains, where triangles from the foot would overlap.
@@ -62,10 +53,9 @@ static void face_polygon(const struct survey *survey, int face, struct planar *c
         network->packing.position[network->face_particles[face][0]];
     struct planar mean = {0};
     for (int k = 0; k < n; k++) {
-        const struct vector node =
-            network->node_position[network->face_nodes[begin + k]];
-        corner[k].x = offset_along(&network->packing, centre, node, (axis + 1) % 3);
-        corner[k].y = offset_along(&network->packing, centre, node, (axis + 2) % 3);
+        const struct vector apart = subtract(face_corner(network, begin + k), centre);
+        corner[k].x = component(apart, (axis + 1) % 3);
+        corner[k].y = component(apart, (axis + 2) % 3);
         corner[k] =
             (struct planar){corner[k].x / survey->length, corner[k].y / survey->length};
         mean = (struct planar){mean.x + corner[k].x / n, mean.y + corner[k].y / n};
@@ -107,16 +97,16 @@ static void share_area(struct survey *survey, const int32_t *node,
     if (n_exposed == 0) survey->spare += fabs(total);
 }
 
-static void add_edge(struct survey *survey, int face, int i, int j, struct planar a,
-                     struct planar b)
+static void add_edge(struct survey *survey, int face, int i, int j, double width,
+                     double length)
 {
     if (i < 0 || j < 0 || i == j) return;
     GROW_ARRAY(survey->edge, survey->n_edge, survey->edge_capacity);
     survey->edge[survey->n_edge++] =
         (struct wall_edge){.node = {i < j ? i : j, i < j ? j : i},
                            .face = face,
-                           .width = hypot(a.x + b.x, a.y + b.y) / 2,
-                           .length = hypot(b.x - a.x, b.y - a.y)};
+                           .width = width,
+                           .length = length};
 }
 
 static void survey_face(struct survey *survey, int face)
@@ -127,10 +117,35 @@ static void survey_face(struct survey *survey, int face)
     struct planar *corner = NEW_ARRAY(struct planar, n);
     face_polygon(survey, face, corner);
     share_area(survey, node, corner, n);
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; k++) {
+        const struct planar a = corner[k], b = corner[(k + 1) % n];
         add_edge(survey, face, survey->index_of[node[k]],
-                 survey->index_of[node[(k + 1) % n]], corner[k], corner[(k + 1) % n]);
+                 survey->index_of[node[(k + 1) % n]], hypot(a.x + b.x, a.y + b.y) / 2,
+                 hypot(b.x - a.x, b.y - a.y));
+    }
     free(corner);
+}
+
+// Of a layer of grains: its wall is a strip as wide as the layer is thick, and falls
+// into the throats that lie in it, half of each belonging to either end.
+static void survey_strip(struct survey *survey)
+{
+    const struct network *network = survey->network;
+    const double width =
+        (network->packing.upper.y - network->packing.lower.y) / survey->length;
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *ends = network->throat_nodes[t];
+        const unsigned walls =
+            network->node_walls[ends[0]] & network->node_walls[ends[1]];
+        if (!(walls >> survey->wall & 1)) continue;
+        const int i = survey->index_of[ends[0]], j = survey->index_of[ends[1]];
+        const double length = norm(along_throat(network, t)) / survey->length;
+        const double area = length * width;
+        if (i < 0 && j < 0) survey->spare += area;
+        if (i >= 0) survey->area[i] += j >= 0 ? area / 2 : area;
+        if (j >= 0) survey->area[j] += i >= 0 ? area / 2 : area;
+        add_edge(survey, t, i, j, width, length);
+    }
 }
 
 static int compare_edges(const void *a, const void *b)
@@ -218,6 +233,7 @@ static enum status survey_wall(struct survey *survey, struct boundary_layer *lay
                                struct reason *reason)
 {
     const struct network *network = survey->network;
+    if (is_layer(network)) survey_strip(survey);
     for (int face = 0; face < network->n_face; face++)
         if (network->face_particles[face][1] == -1 - survey->wall)
             survey_face(survey, face);

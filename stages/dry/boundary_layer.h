@@ -9,7 +9,8 @@
 // Each node's area is what the faces around it give it; two nodes at the ends of an
 // edge exchange through the width between the feet on both sides of it. On the square
 // faces of the cubic lattice this is K's A = L^2, and half of it for lateral links
-// along the surface.
+// along the surface. Above a layer of grains the cells stand on the throats in the
+// wall, as wide as the layer is thick.
 #ifndef CRAQUELURE_BOUNDARY_LAYER_H
 #define CRAQUELURE_BOUNDARY_LAYER_H
 
@@ -35,9 +36,10 @@ struct boundary_layer {
 // their own; that of faces without any, among all. THICKNESS is in units of LENGTH (m).
 // LAYERS = 0 takes the number that brings the spacing nearest to LENGTH.
 //
-// STATUS_BAD_DATA: no exposed node; no face on the wall; a wall that is not there
-// because the box repeats; exposed nodes one on the other; too many levels to number.
-// The caller frees LAYER with boundary_layer_free, also after a failure.
+// STATUS_BAD_DATA: no exposed node; no face (of a layer: throat) on the wall; a wall
+// that is not there because the box repeats; exposed nodes one on the other; too many
+// levels to number. The caller frees LAYER with boundary_layer_free, also after a
+// failure.
 enum status boundary_layer_make(const struct network *network, int wall, double length,
                                 double thickness, int layers,
                                 struct boundary_layer *layer, struct reason *reason);

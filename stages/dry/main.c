@@ -196,7 +196,7 @@ int main(int argc, char **argv)
     parameters.conditions.open_walls = parameters.open_walls;
     parameters.conditions.layers = (int)parameters.layers;
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
-    struct network network = artifact_get_network(input);
+    struct network network = artifact_get_periodic_network(input);
 
     give_radii(&network, &parameters);
     impose_empty_throats(&network, parameters.imposed_empty);

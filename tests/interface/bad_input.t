@@ -420,10 +420,12 @@ damage("a grain outside the box is refused", "packing",
 damage("two grains in one place are refused", "packing",
        lambda file: value("particles/position", 4, file["particles/position"][3])(file),
        "/particles/position: row 4: has the same centre as row 3")
-make("periodic", "pack", "--set", "periodic=[true,false,false]")
+make("periodic", "pack", "--set", "method=fcc", "--set", "count=[2,2,2]",
+     "--set", "periodic=[true,true,true]")
 make("periodic-network", "tessellate", "periodic")
-refused("dry knows no networks that repeat yet", BAD_DATA, ["dry", "periodic-network"],
-        r"periodic-network: /domain/periodic: this stage knows no networks in boxes that repeat .*")
+refused("a box that repeats has no open wall", BAD_DATA,
+        ["dry", "--set", "throat_radius.distribution=normal", "periodic-network"],
+        r"periodic-network: /domain/periodic: the open wall cannot be on an axis .*")
 refused("dry sends throats of no length to merge-nodes", BAD_DATA, ["dry", "degenerate"],
         r"degenerate: /throats/length: row \d+: must be above 0, is [\de.-]+ "
         r"\(merge-nodes removes short throats\)")

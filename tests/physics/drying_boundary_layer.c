@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The finite-volume scheme of the boundary layer: K's areas on the cubic lattice [K
 // 3.3.5], and no area lost or won where the surface is irregular.
+#include "basics/memory.h"
 #include "dry/boundary_layer.h"
 #include "support_lattice.h"
 
@@ -127,9 +128,16 @@ static void test_periodic_faces_are_whole(void **state)
     const double width = 4 * spacing;
     for (int axis = 0; axis < 2; axis++)
         network.packing.periodic[axis] = 1;
+    const int64_t n_corner = network.face_offset[network.n_face];
+    network.face_node_image = NEW_ARRAY(struct image, n_corner);
+    for (int64_t k = 0; k < n_corner; k++) { // as if the box began elsewhere
+        const struct vector node = network.node_position[network.face_nodes[k]];
+        network.face_node_image[k].along[0] = node.x > 2.2 * spacing;
+        network.face_node_image[k].along[1] = node.y > 1.2 * spacing;
+    }
     for (int i = 0; i < network.n_node; i++) {
         struct vector *node = &network.node_position[i];
-        node->x -= node->x > 2.2 * spacing ? width : 0; // as if the box began elsewhere
+        node->x -= node->x > 2.2 * spacing ? width : 0;
         node->y -= node->y > 1.2 * spacing ? width : 0;
     }
     struct boundary_layer after = make(&network, 4, spacing);

@@ -24,6 +24,46 @@ void network_free(struct network *network)
     *network = (struct network){0};
 }
 
+bool is_layer(const struct network *network)
+{
+    for (int f = 0; f < network->n_face; f++)
+        if (network->face_particles[f][1] != -3) return false;
+    return network->n_face > 0;
+}
+
+static struct vector image_offset(const struct network *network,
+                                  const struct image *image)
+{
+    if (!image) return (struct vector){0};
+    const struct vector edge = subtract(network->packing.upper, network->packing.lower);
+    return (struct vector){image->along[0] * edge.x, image->along[1] * edge.y,
+                           image->along[2] * edge.z};
+}
+
+// Exactly opposite when seen from the other end: the difference comes first.
+struct vector along_throat(const struct network *network, int throat)
+{
+    const int32_t *ends = network->throat_nodes[throat];
+    const struct image *image = network->throat_image;
+    return add(
+        subtract(network->node_position[ends[1]], network->node_position[ends[0]]),
+        image_offset(network, image ? &image[throat] : NULL));
+}
+
+struct vector face_corner(const struct network *network, int64_t corner)
+{
+    const struct image *image = network->face_node_image;
+    return add(network->node_position[network->face_nodes[corner]],
+               image_offset(network, image ? &image[corner] : NULL));
+}
+
+struct vector second_grain(const struct network *network, int face)
+{
+    const struct image *image = network->face_image;
+    return add(network->packing.position[network->face_particles[face][1]],
+               image_offset(network, image ? &image[face] : NULL));
+}
+
 struct incidence network_incidence(const struct network *network)
 {
     struct incidence incidence = {.offset = NEW_ARRAY(int, network->n_node + 1),

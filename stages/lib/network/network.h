@@ -46,6 +46,20 @@ struct network {
     double unmerged_length;
 };
 
+// Whether it is the network of one layer of grains, in a plane (tessellate's
+// dimensions=2): then faces are the cells of the grains, each with the lower wall y as
+// its second side.
+bool is_layer(const struct network *network);
+
+// Where the second node of a throat is, seen from the first: in another repetition of
+// the box, if the throat leads there.
+struct vector along_throat(const struct network *network, int throat);
+
+// Where the node face_nodes[CORNER] is, and the second grain of FACE (not a wall), both
+// in the repetition of the box in which the first grain of the face is.
+struct vector face_corner(const struct network *network, int64_t corner);
+struct vector second_grain(const struct network *network, int face);
+
 // Frees what the network owns, packing included, and empties it; safe on an empty one.
 void network_free(struct network *network);
 

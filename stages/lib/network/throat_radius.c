@@ -53,15 +53,26 @@ struct wave {
     double phase;
 };
 
+// The nearest wave that repeats with the box.
+static double repeating(const struct packing *packing, int axis, double number)
+{
+    const double longest =
+        2 * M_PI / (component(packing->upper, axis) - component(packing->lower, axis));
+    return packing->periodic[axis] ? longest * round(number / longest) : number;
+}
+
 // Waves whose numbers are normally distributed with deviation 1/l add up to a field of
 // covariance exp(-d^2 / (2 l^2)).
-static struct wave *draw_waves(gsl_rng *generator, double correlation_length)
+static struct wave *draw_waves(gsl_rng *generator, const struct packing *packing,
+                               double correlation_length)
 {
     struct wave *wave = NEW_ARRAY(struct wave, WAVES);
     for (int k = 0; k < WAVES; k++) {
-        for (int axis = 0; axis < 3; axis++)
-            set_component(&wave[k].number, axis,
-                          gsl_ran_gaussian_ziggurat(generator, 1) / correlation_length);
+        for (int axis = 0; axis < 3; axis++) {
+            const double number =
+                gsl_ran_gaussian_ziggurat(generator, 1) / correlation_length;
+            set_component(&wave[k].number, axis, repeating(packing, axis, number));
+        }
         wave[k].phase = 2 * M_PI * gsl_rng_uniform(generator);
     }
     return wave;
@@ -98,13 +109,12 @@ static void correlate(struct network *network, double correlation_length,
                       gsl_rng *generator)
 {
     const size_t n = (size_t)network->n_throat;
-    struct wave *wave = draw_waves(generator, correlation_length);
+    struct wave *wave = draw_waves(generator, &network->packing, correlation_length);
     struct ranked *order = NEW_ARRAY(struct ranked, n);
 #pragma omp parallel for
     for (int t = 0; t < network->n_throat; t++) {
         const struct vector from = network->node_position[network->throat_nodes[t][0]];
-        const struct vector to = network->node_position[network->throat_nodes[t][1]];
-        const struct vector middle = scale(0.5, add(from, to));
+        const struct vector middle = add(from, scale(0.5, along_throat(network, t)));
         order[t] =
             (struct ranked){height(wave, subtract(middle, network->packing.lower)), t};
     }
