@@ -29,12 +29,12 @@
 struct cost {
     double flops, bytes;
 };
-static const struct cost bonded_pair = {296 + 12, 56 + 8 + 24 + 2 * 80};
-static const struct cost gripping_pair = {165, 56 + 8 + 2 * 24};
-static const struct cost hertz_pair = {165 + 14, 56 + 8 + 2 * 24};
-static const struct cost smooth_pair = {51, 56 + 8};
-static const struct cost turning_grain = {35, 32 + 16 + 5 + 2 * 160};
-static const struct cost smooth_grain = {18, 32 + 16 + 5 + 2 * 96};
+static const struct cost bonded_pair = {296 + 12, 48 + 24 + 2 * 80};
+static const struct cost gripping_pair = {165, 48 + 2 * 24};
+static const struct cost hertz_pair = {165 + 14, 48 + 2 * 24};
+static const struct cost smooth_pair = {51, 48};
+static const struct cost turning_grain = {35, 1 + 2 * 160};
+static const struct cost smooth_grain = {18, 1 + 2 * 96};
 
 static struct cost cost_of_step(const struct dem *dem)
 {
@@ -45,8 +45,10 @@ static struct cost cost_of_step(const struct dem *dem)
                                                               : gripping_pair;
     const struct cost grain = features & FEATURE_TURN ? turning_grain : smooth_grain;
     const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
+    const double as_needed = (dem->is_pulled ? 32 : 0) + (dem->moves_alike ? 0 : 16) +
+                             (dem->n_wall_pair > 0 ? 4 : 0);
     return (struct cost){grain.flops + pairs * pair.flops,
-                         grain.bytes + pairs * pair.bytes};
+                         grain.bytes + as_needed + pairs * pair.bytes};
 }
 
 static double now(void)

@@ -8,15 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void *allocate_aligned(size_t count, size_t size)
-{
-    const size_t bytes = (count * size + CACHE_LINE) / CACHE_LINE * CACHE_LINE;
-    void *memory = aligned_alloc(CACHE_LINE, bytes);
-    if (!memory) die(STATUS_INTERNAL, "out of memory: %zu bytes", bytes);
-    memset(memory, 0, bytes);
-    return memory;
-}
-
 static double grain_mass(const struct dem_setup *setup, int particle)
 {
     const int kind = setup->material_of ? setup->material_of[particle] : 0;

@@ -63,7 +63,6 @@ struct pair_group {
     double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
     double distance[PAIRS_IN_GROUP];      // |separation|
     double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance
-    int32_t idle; // no pair touches or is bonded, and all loads kept are 0
 };
 
 // Where the loads on the two grains of each pair are added up: rows of dem->sum.
@@ -128,7 +127,10 @@ struct pair_list {
     struct pair_group *group; // (n_group)
     struct sum_group *sum;    // (n_group)
     struct load_group *load;  // (n_group)
-    uint8_t *kept; // (n_group) with a late grain: loads are kept in every cycle
+    // (n_group) with a late grain, or one that is not there: loads are kept in every
+    // cycle, and `sum` says where they are added up; otherwise at the grains' numbers.
+    uint8_t *kept;
+    uint8_t *idle; // (n_group) no pair touches or is bonded, and all loads kept are 0
     // (n_group) or NULL where not needed
     struct moment_group *moment;
     struct shear_group *shear;
@@ -207,9 +209,11 @@ struct dem {
     struct place *place;    // (n_particle+1), the last is the grain that is not there
     struct motion *motion;  // (n_particle+1) half a step behind the places
     double (*external)[4];  // (n_particle) force, weight included
+    bool is_pulled;         // by any of them
     struct vector *applied; // (n_particle) without weight; NULL: none
     struct vector gravity;
     double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed
+    bool moves_alike;      // they are all the same
     double *mass;          // (n_particle) inertia
     double *weight;        // (n_particle) mass that gravity pulls
     uint8_t *material_of;  // (n_particle)
@@ -273,9 +277,6 @@ static inline bool has_direction(enum dem_wall_shape shape)
     return shape == DEM_PLANE || shape == DEM_CYLINDER || shape == DEM_RING;
 }
 
-// COUNT zeroed elements of SIZE bytes on a cache line, to be freed with free().
-void *allocate_aligned(size_t count, size_t size);
-
 // Seeks the pairs anew, with the history of those that stay [neighbours.c].
 void find_pairs(struct dem *dem);
 // Makes these the pairs, sorted, with all that is told from them; takes over both
@@ -313,6 +314,7 @@ struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall 
 void weigh_grains(struct dem *dem, const uint8_t *fixed);
 // External forces from what is applied and gravity.
 void set_external(struct dem *dem);
+void compare_mobilities(struct dem *dem); // sets moves_alike
 
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The grain sweep: forces and moments added up [K 4.18, 4.21], velocities, then places
-// [K 4.1, 4.5, 4.6]. A grain costs 35 operations and 6 a slot, and moves 244 bytes (48
-// constant, 96 read and written, 4 of index) and 64 a slot; half of most of that when
-// grains do not turn.
+// [K 4.1, 4.5, 4.6]. What a scene does not have is not read: far from caches bytes are
+// time. tests/bench/bench_dem.c counts operations and bytes.
 #include "dem/engine.h"
 
 #define INLINE static inline __attribute__((always_inline))
@@ -22,11 +21,14 @@ INLINE quad as_quad(struct vector a)
 INLINE struct load with_walls(const struct dem *dem, int particle, struct load sum,
                               bool turns)
 {
-    for (int k = dem->wall_offset[particle]; k < dem->wall_offset[particle + 1]; k++) {
-        sum.force += as_quad(dem->wall_pair[k].load);
-        if (turns) sum.moment += as_quad(dem->wall_pair[k].moment);
+    const int *walls = dem->wall_offset + particle;
+    const int n_wall_pair = dem->n_wall_pair > 0 ? walls[1] - walls[0] : 0;
+    for (int k = 0; k < n_wall_pair; k++) {
+        const struct wall_pair *pair = &dem->wall_pair[walls[0] + k];
+        sum.force += as_quad(pair->load);
+        if (turns) sum.moment += as_quad(pair->moment);
     }
-    sum.force += *(const quad *)dem->external[particle];
+    if (dem->is_pulled) sum.force += *(const quad *)dem->external[particle];
     return sum;
 }
 
@@ -107,12 +109,13 @@ INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool tur
         const int i = late ? dem->late[k] : k;
         if (!late && dem->is_late[i]) continue;
         const struct load sum = late ? add_up(dem, i, turns) : take_sum(dem, i, turns);
+        const double *mobility = dem->mobility[dem->moves_alike ? 0 : i];
         quad *velocity = (quad *)dem->motion[i].linear;
         quad *spin = (quad *)dem->motion[i].angular;
         struct load net = {damped(sum.force, *velocity, dem->local_damping), zero};
         if (turns) net.moment = damped(sum.moment, *spin, dem->local_damping);
-        const quad v = *velocity + dt * dem->mobility[i][0] * net.force;
-        const quad w = turns ? *spin + dt * dem->mobility[i][1] * net.moment : zero;
+        const quad v = *velocity + dt * mobility[0] * net.force;
+        const quad w = turns ? *spin + dt * mobility[1] * net.moment : zero;
         const quad squares = turns ? v * v + turning * (w * w) : v * v;
         const double square = sum_of(squares);
         if (!(square <= limit)) { // also when it is not a number
@@ -123,8 +126,7 @@ INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool tur
         *velocity = v;
         if (turns) *spin = w;
         *(quad *)&dem->place[i] += dt * v; // the radius by 0
-        if (dem->balance_energy && dem->mobility[i][0] > 0)
-            keep_books(dem, i, &sum, net, v, w);
+        if (dem->balance_energy && mobility[0] > 0) keep_books(dem, i, &sum, net, v, w);
     }
     return pace;
 }

@@ -129,6 +129,14 @@ static void set_mobility(struct dem *dem, int i)
     dem->mobility[i][1] = 1 / (0.4 * dem->mass[i] * radius * radius);
 }
 
+void compare_mobilities(struct dem *dem)
+{
+    dem->moves_alike = true;
+    for (int i = 1; i < dem->n_particle && dem->moves_alike; i++)
+        dem->moves_alike = dem->mobility[i][0] == dem->mobility[0][0] &&
+                           dem->mobility[i][1] == dem->mobility[0][1];
+}
+
 void weigh_grains(struct dem *dem, const uint8_t *fixed)
 {
     const int n = dem->n_particle;
@@ -151,14 +159,18 @@ void weigh_grains(struct dem *dem, const uint8_t *fixed)
         else
             set_mobility(dem, i);
     }
+    compare_mobilities(dem);
     if (n > 0) dem->law = pair_law(dem, 0, 0);
 }
 
 void set_external(struct dem *dem)
 {
+    dem->is_pulled = false;
     for (int i = 0; i < dem->n_particle; i++)
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; axis++) {
             dem->external[i][axis] =
                 (dem->applied ? component(dem->applied[i], axis) : 0) +
                 dem->weight[i] * component(dem->gravity, axis);
+            if (dem->external[i][axis] != 0) dem->is_pulled = true;
+        }
 }

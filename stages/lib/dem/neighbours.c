@@ -271,11 +271,9 @@ static void find_late_grains(struct dem *dem)
 // of the share.
 static int32_t sum_of(const struct dem *dem, int particle, int group)
 {
-    const bool late = particle < dem->n_particle && dem->is_late[particle];
-    if (late) dem->pairs.kept[group] = true;
-    return late || particle == dem->n_particle
-               ? dem->n_particle + group / groups_in_share(dem)
-               : particle;
+    if (particle < dem->n_particle && !dem->is_late[particle]) return particle;
+    dem->pairs.kept[group] = true;
+    return dem->n_particle + group / groups_in_share(dem);
 }
 
 static void assign_sums(struct dem *dem)
@@ -327,7 +325,8 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
                                 .group = allocate_aligned(n, sizeof *pairs->group),
                                 .sum = allocate_aligned(n, sizeof *pairs->sum),
                                 .load = allocate_aligned(n, sizeof *pairs->load),
-                                .kept = NEW_ARRAY(uint8_t, n)};
+                                .kept = NEW_ARRAY(uint8_t, n),
+                                .idle = NEW_ARRAY(uint8_t, n)};
     if (dem->features & FEATURE_TURN) {
         pairs->moment = allocate_aligned(n, sizeof *pairs->moment);
         pairs->shear = allocate_aligned(n, sizeof *pairs->shear);
@@ -347,6 +346,7 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->sum);
     free(pairs->load);
     free(pairs->kept);
+    free(pairs->idle);
     free(pairs->moment);
     free(pairs->shear);
     free(pairs->own);

@@ -733,8 +733,11 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
                       const struct pair_load *pair, bool keep, unsigned features)
 {
     const struct lanes3 n = m->turning.normal;
-    const int32_t *first = dem->pairs.sum[k].first + at;
-    const int32_t *second = dem->pairs.sum[k].second + at;
+    const struct pair_group *g = dem->pairs.group + k;
+    const struct sum_group *sum = dem->pairs.sum + k;
+    const bool elsewhere = dem->pairs.kept[k];
+    const int32_t *first = (elsewhere ? sum->first : g->first) + at;
+    const int32_t *second = (elsewhere ? sum->second : g->second) + at;
     const bool turns = features & FEATURE_TURN;
     const struct lanes3 force =
         turns ? add_scaled3(pair->shear, pair->normal, n) : scale3(pair->normal, n);
@@ -772,7 +775,7 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *l
     if (features & FEATURE_BOND)
         held = load(dem->pairs.bonds[k].normal_strength + at) >= 0.0;
     const bool keep = dem->keeps_loads || dem->pairs.kept[k];
-    if (!any(touch | held) && g->idle && !keep) return 0;
+    if (!any(touch | held) && dem->pairs.idle[k] && !keep) return 0;
 
     *busy |= any(touch | held);
     int n_broken = 0;
@@ -826,7 +829,7 @@ INLINE int sweep_groups(const struct dem *dem, int begin, int end, unsigned feat
                 look(dem, is_last && k + 1 < end ? k + 1 : k, is_last ? 0 : at + LANES);
             n_broken += sweep_lanes(dem, k, at, &lie, time_step, &busy, features);
         }
-        dem->pairs.group[k].idle = !busy;
+        dem->pairs.idle[k] = !busy;
     }
     return n_broken;
 }

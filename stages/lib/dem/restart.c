@@ -230,8 +230,8 @@ static void add_pairs(struct column_list *list, struct dem *dem)
     if (dem->n_bond > 0)
         add_integers(list, "pair_bond", DEM_INT32, WHOLE(pairs->bond), n, -1,
                      dem->n_bond - 1);
-    add_integers(list, "group_idle", DEM_INT32,
-                 OF(pairs->group, struct pair_group, idle), pairs->n_group, 0, 1);
+    add_integers(list, "group_idle", DEM_UINT8, WHOLE(pairs->idle), pairs->n_group, 0,
+                 1);
 #define LANES(name, groups, type, member, width)                                       \
     add_lanes(list, dem, name, OF(pairs->groups, type, member), width)
     LANES("pair_separation", group, struct pair_group, separation, 3);
@@ -518,6 +518,7 @@ static void derive(struct dem *dem)
     set_wall_laws(dem);
     list_walls_of_grains(dem);
     set_external(dem);
+    compare_mobilities(dem);
 }
 
 enum status dem_restore(struct dem *dem, const struct dem_array *array, int count,
