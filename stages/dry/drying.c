@@ -45,7 +45,7 @@ static double network_saturation(const struct run *run)
 
 static void record_state(struct run *run)
 {
-    const double rate = run->phases.n_full > 0 ? run->phases.vapour.rate : 0;
+    const double rate = run->phases.n_full > 0 ? vapour_rate(&run->phases.vapour) : 0;
     recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
                       network_saturation(run), rate * run->scale.rate,
                       run->phases.clusters.count);
@@ -88,7 +88,7 @@ static void advance(struct run *run, double duration)
 {
     struct phases *phases = &run->phases;
     compensated_add(&run->time, duration);
-    compensated_add(&run->evaporated, phases->vapour.rate * duration);
+    compensated_add(&run->evaporated, vapour_rate(&phases->vapour) * duration);
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
         const double before = throat_saturation(phases, loss->throat);
@@ -127,9 +127,7 @@ static enum status dry_step(struct run *run, struct reason *reason)
             phases->n_full);
     advance(run, time_to_first(run));
     empty_throats(run);
-    // Once all is dry there is no vapour to balance.
-    const enum status status =
-        phases->n_full > 0 ? vapour_solve(&phases->vapour, reason) : STATUS_OK;
+    const enum status status = vapour_check(&phases->vapour, reason);
     record_state(run);
     return status;
 }
@@ -138,7 +136,7 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
                            struct reason *reason)
 {
     const int n = run->phases.n_full;
-    enum status status = vapour_solve(&run->phases.vapour, reason);
+    enum status status = STATUS_OK;
     record_state(run);
     while (!status && run->phases.n_full > 0) {
         status = dry_step(run, reason);

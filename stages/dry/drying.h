@@ -104,10 +104,10 @@ int impose_empty_throats(struct network *network, unsigned walls);
 // STATUS_BAD_DATA: conditions under which nothing would dry or that are not positive;
 // not exactly one open wall; a throat of zero length or radius (merge-nodes removes the
 // first); no throat reaches the open wall; liquid without a way to it.
-// STATUS_NOT_CONVERGED: the vapour balance does not close to VAPOUR_TOLERANCE.
+// STATUS_NOT_CONVERGED: evaporation may be wrong by more than VAPOUR_TOLERANCE.
 //
-// Cost: one sparse factorisation an event where the gas has changed; all the rest of an
-// event costs as many operations as there are wet throats.
+// Cost of an event: the square of the wet nodes that see each other through the gas, at
+// most; the rest as many operations as there are wet throats.
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,

@@ -84,7 +84,9 @@ void phases_empty_throat(struct phases *phases, int throat)
     const unsigned opposite = 1u << (phases->open_wall ^ 1);
     phases->n_full--;
     phases->liquid[throat] = (struct compensated){0};
-    vapour_open_throat(&phases->vapour, throat);
+    vapour_open_throat(&phases->vapour, throat,
+                       phases->network->throat_nodes[throat][0],
+                       phases->network->throat_nodes[throat][1]);
     clusters_empty_throat(&phases->clusters, throat);
     for (int end = 0; end < 2; end++) {
         const int node = phases->network->throat_nodes[throat][end];

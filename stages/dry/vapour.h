@@ -2,46 +2,28 @@
 // Quasi-steady vapour transport [K 3.9] through the empty throats and the boundary
 // layer.
 //
-// With the potential ln(1 - p_v/p_g), K 3.9 is linear. It is solved for the deficit:
-// the potential scaled to 0 where the vapour is saturated and 1 in the drying air. Then
-// wet nodes give no right-hand side, the matrix is a symmetric M-matrix, and its
-// Cholesky solution is a sum of positive terms: gas that is shut in between wet nodes
-// comes out saturated exactly, and small fluxes deep inside keep their digits.
+// With the potential ln(1 - p_v/p_g), K 3.9 is linear: a network of conductances, with
+// the potential scaled to 0 where the vapour is saturated and 1 in the drying air. Only
+// what wet nodes give off matters, so nodes of the gas are eliminated as they dry: what
+// is left links wet nodes with each other, through which nothing flows since all are at
+// 0, and with the air, at 1. What a wet node evaporates is its conductance to the air.
 #ifndef CRAQUELURE_VAPOUR_H
 #define CRAQUELURE_VAPOUR_H
 
 #include "boundary_layer.h"
 #include "compensated.h"
+#include "star_mesh.h"
 
-#include <stdbool.h>
-
-// Largest error of a vapour balance, relative to the drying rate.
+// Largest error of what wet nodes evaporate, all together, relative to the drying rate.
 #define VAPOUR_TOLERANCE 1e-12
 
-// From one site to another. Sites are the network's nodes, then the boundary layer's
-// nodes level by level, then the drying air.
-struct vapour_link {
-    int site;
-    int throat; // open to vapour only when it is empty; -1: always
-    double conductance;
-};
-
-struct vapour_solver; // the factorised matrix
-
 struct vapour {
-    int n_site; // without the drying air, which is site n_site
-    int *offset;
-    struct vapour_link *link; // of site i: link[offset[i]] .. link[offset[i+1]-1]
-    bool *open;               // (n_throat) empty, so that vapour passes
-    bool *dry;                // (n_site) gas without liquid beside it: deficit unknown
-    // (n_site+1) In two parts: across a link of large conductance, as in a thin
-    // boundary layer or along a thick one, deficits differ by less than the last digit
-    // of one.
-    struct compensated *deficit;
-    double rate;     // into the drying air
-    double residual; // largest so far, of the rate
-    bool changed;    // since the last solution
-    struct vapour_solver *solver;
+    // Sites are the network's nodes, then the boundary layer's nodes level by level.
+    int n_site;
+    double *conductance; // (n_throat) area over length
+    int *region;         // (n_site) sites near each other
+    struct star_mesh mesh;
+    double residual; // bound of the largest error so far, of the rate
 };
 
 // For a network that is full of liquid. Lengths are in units of LENGTH (m),
@@ -49,14 +31,16 @@ struct vapour {
 struct vapour vapour_make(const struct network *network, double length,
                           const struct boundary_layer *layer);
 
-// THROAT has emptied; NODE has gas and no liquid beside it any more.
-void vapour_open_throat(struct vapour *vapour, int throat);
+// THROAT, from node A to node B, has emptied. NODE has gas and no liquid beside it any
+// more; the nodes that then evaporate more are the mesh's changed ones.
+void vapour_open_throat(struct vapour *vapour, int throat, int a, int b);
 void vapour_dry_node(struct vapour *vapour, int node);
 
-// Potentials and rate for the gas as it is now; costs nothing if no node has dried
-// since the last call, for then none of them changes. STATUS_NOT_CONVERGED if the
-// balances do not close to VAPOUR_TOLERANCE: at any one site, or over all of them.
-enum status vapour_solve(struct vapour *vapour, struct reason *reason);
+// STATUS_NOT_CONVERGED if the error may be larger than VAPOUR_TOLERANCE.
+enum status vapour_check(const struct vapour *vapour, struct reason *reason);
+
+// Into the drying air.
+double vapour_rate(const struct vapour *vapour);
 
 // What a wet node gives off. Exactly 0 if no way leads from it to the drying air.
 double vapour_evaporation(const struct vapour *vapour, int node);
