@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boundary layer above the open wall, as a network of its own [K 3.3.5]: the
-// exposed nodes of the surface are extended into the gas, layer by layer up to the
-// drying air.
+// The boundary layer above the open face, as a network of its own [K 3.3.5, 3.7]: nodes
+// of the surface are extended into the gas by straight columns, level by level up to
+// the drying air, and neighbouring columns exchange vapour sideways.
 //
-// Exchange areas are those of a finite-volume scheme whose cells stand on the wall's
-// faces. A face is the wall's part of a grain's cell; seen from the foot of the grain's
-// centre it falls into triangles, half of each belonging to either end of its edge.
-// Each node's area is what the faces around it give it; two nodes at the ends of an
-// edge exchange through the width between the feet on both sides of it. On the square
-// faces of the cubic lattice this is K's A = L^2, and half of it for lateral links
-// along the surface. Above a layer of grains the cells stand on the throats in the
-// wall, as wide as the layer is thick.
+// Exchange areas (K Fig. 3.44) are those of a finite-volume scheme: seen along the
+// columns, each has the part of the open face that is nearest to it, and two that share
+// an edge exchange through it, square to the line between them. The areas sum to the
+// face whatever the network; on the cubic lattice they are K's L^2, and half of it for
+// links along the surface.
 #ifndef CRAQUELURE_BOUNDARY_LAYER_H
 #define CRAQUELURE_BOUNDARY_LAYER_H
 
 #include "basics/status.h"
 #include "network/network.h"
+
+// Which nodes of the network stand below a column. K has both [K 3.3.5].
+enum boundary_feet {
+    FEET_SURFACE,  // all that lie on the open wall or, where cut cells are left out,
+                   // face it
+    FEET_AUXILIARY // those where a throat of kind THROAT_BOUNDARY_LAYER begins
+};
+
+struct boundary_form {
+    enum boundary_feet feet;
+    int layers;  // 0: as many as bring their spacing nearest to the unit of length
+    bool lumped; // no lattice: each node exchanges with the air through its own area
+};
 
 // In units of the length given to boundary_layer_make.
 struct boundary_layer {
@@ -23,25 +33,25 @@ struct boundary_layer {
     double spacing; // between levels
 
     int n_exposed;
-    int *exposed; // (n_exposed) nodes of the network, ascending
-    double *area; // (n_exposed) exchange area; they sum to the area of the wall
+    int *exposed; // (n_exposed) nodes of the network with a column, ascending
+    double *area; // (n_exposed) exchange area; they sum to the area of the open face
 
     int n_lateral;
     int (*lateral)[2]; // (n_lateral) links along a level, as indices into exposed
     double *lateral_conductance; // (n_lateral) area over length; half of it at level 0
 };
 
-// Exposed are the nodes on WALL (0..5) with a throat of kind THROAT_NETWORK. Area that
-// belongs to other nodes of a face is shared among its exposed ones in proportion to
-// their own; that of faces without any, among all. THICKNESS is in units of LENGTH (m).
-// LAYERS = 0 takes the number that brings the spacing nearest to LENGTH.
+// Only nodes with a throat of kind THROAT_NETWORK have columns; of several that lie one
+// behind the other, the outermost. The open face is the rectangle that these throats
+// span: the wall itself, where cells are cut by it. It repeats where the box does;
+// along an axis without extent it is as wide as the box (a layer of grains). THICKNESS
+// is in units of LENGTH (m).
 //
-// STATUS_BAD_DATA: no exposed node; no face (of a layer: throat) on the wall; a wall
-// that is not there because the box repeats; exposed nodes one on the other; too many
-// levels to number. The caller frees LAYER with boundary_layer_free, also after a
-// failure.
+// STATUS_BAD_DATA: no node for a column; a wall that is not there because the box
+// repeats; too many levels to number. The caller frees LAYER with boundary_layer_free,
+// also after a failure.
 enum status boundary_layer_make(const struct network *network, int wall, double length,
-                                double thickness, int layers,
+                                double thickness, const struct boundary_form *form,
                                 struct boundary_layer *layer, struct reason *reason);
 
 void boundary_layer_free(struct boundary_layer *layer);

@@ -49,6 +49,9 @@ enum status check_conditions(const struct drying_conditions *conditions,
     if (conditions->layers < 0)
         return refuse(reason, STATUS_BAD_DATA, "layers: must not be below 0, is %d",
                       conditions->layers);
+    if (conditions->feet != FEET_SURFACE && conditions->feet != FEET_AUXILIARY)
+        return refuse(reason, STATUS_BAD_DATA, "feet: no such choice, %d",
+                      (int)conditions->feet);
     if (__builtin_popcount(conditions->open_walls) != 1 ||
         conditions->open_walls >= 1u << WALL_COUNT)
         return refuse(reason, STATUS_BAD_DATA,

@@ -176,9 +176,11 @@ enum status dry_network(const struct network *network,
                       .recorder = recorder_make(history)};
     const int wall = open_wall(conditions);
     struct boundary_layer layer;
-    status =
-        boundary_layer_make(network, wall, run.scale.length, run.scale.boundary_layer,
-                            conditions->layers, &layer, reason);
+    status = boundary_layer_make(
+        network, wall, run.scale.length, run.scale.boundary_layer,
+        &(struct boundary_form){conditions->feet, conditions->layers,
+                                conditions->lumped},
+        &layer, reason);
     if (status) {
         boundary_layer_free(&layer);
         return status;

@@ -16,6 +16,7 @@
 #define CRAQUELURE_DRYING_H
 
 #include "basics/status.h"
+#include "boundary_layer.h"
 #include "network/network.h"
 
 // How the liquid moves between the throats of a cluster.
@@ -39,8 +40,10 @@ struct drying_conditions {
     double molar_mass;          // of the liquid, kg/mol
     double liquid_density;      // kg/m3
     double mass_transfer;       // beta, m/s; the boundary layer is delta/beta thick
-    int layers;          // of the boundary layer; 0: as thick as a throat is long
-    unsigned open_walls; // bits of enum wall; exactly one now
+    int layers;              // of the boundary layer; 0: as thick as a throat is long
+    enum boundary_feet feet; // where its columns stand
+    bool lumped;             // no lattice of layers and columns, only beta
+    unsigned open_walls;     // bits of enum wall; exactly one now
     enum liquid_limit liquid;
     double
         first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends

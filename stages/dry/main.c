@@ -3,6 +3,7 @@
 #include "artifacts/artifact.h"
 #include "basics/status.h"
 #include "drying.h"
+#include "mass_transfer.h"
 #include "network/throat_radius.h"
 
 #include <limits.h>
@@ -10,10 +11,12 @@
 #include <stdlib.h>
 
 enum { RADII_OF_NETWORK }; // the choices that follow are those of enum radius_law
+enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 
 struct dry_parameters {
     struct drying_conditions conditions;
-    int liquid, distribution;
+    struct air_flow air;
+    int liquid, distribution, transfer_law, exchange, feet;
     int64_t layers, seed;
     unsigned open_walls, imposed_empty;
     struct radius_distribution radii;
@@ -69,10 +72,39 @@ static const struct parameter table[] = {
      "of the liquid", AT(conditions.molar_mass)},
     {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2", BOUND_ABOVE, 0, 0, NULL,
      "of the liquid", AT(conditions.liquid_density)},
+    {"boundary_layer.from", PARAMETER_CHOICE, "1", "\"mass_transfer\"", BOUND_NONE, 0,
+     0, "mass_transfer|thickness|sherwood|plate|sphere",
+     "what its thickness is found from: the parameters so named, or air that flows "
+     "along a plate [K 3.6] or around a sphere (Ranz and Marshall)",
+     AT(transfer_law)},
     {"boundary_layer.mass_transfer", PARAMETER_NUMBER, "m s-1", "5.1", BOUND_ABOVE, 0,
      0, NULL,
      "mass transfer coefficient: the layer is diffusivity / this thick [K 3.3.5]",
-     AT(conditions.mass_transfer)},
+     AT(air.coefficient)},
+    {"boundary_layer.thickness", PARAMETER_NUMBER, "m", "5e-6", BOUND_ABOVE, 0, 0, NULL,
+     "thickness", AT(air.thickness)},
+    {"boundary_layer.sherwood", PARAMETER_NUMBER, "1", "2", BOUND_ABOVE, 0, 0, NULL,
+     "Sherwood number: the layer is flow_length / this thick", AT(air.sherwood)},
+    {"boundary_layer.flow_length", PARAMETER_NUMBER, "m", "0", BOUND_MINIMUM, 0, 0,
+     NULL,
+     "sherwood, plate, sphere: length of the body along the flow, or its diameter; 0: "
+     "the longer edge of the open side of the box",
+     AT(air.length)},
+    {"boundary_layer.air_velocity", PARAMETER_NUMBER, "m s-1", "1", BOUND_MINIMUM, 0, 0,
+     NULL, "plate, sphere: of the air", AT(air.velocity)},
+    {"boundary_layer.kinematic_viscosity", PARAMETER_NUMBER, "m2 s-1", "1.53e-5",
+     BOUND_ABOVE, 0, 0, NULL, "plate, sphere: of the air; dry, 293 K, 1 bar",
+     AT(air.kinematic_viscosity)},
+    {"boundary_layer.exchange", PARAMETER_CHOICE, "1", "\"lattice\"", BOUND_NONE, 0, 0,
+     "lattice|lumped",
+     "layers of nodes between which vapour also goes sideways, or none: each node of "
+     "the surface exchanges with the air by the mass transfer coefficient",
+     AT(exchange)},
+    {"boundary_layer.columns", PARAMETER_CHOICE, "1", "\"surface\"", BOUND_NONE, 0, 0,
+     "surface|auxiliary",
+     "nodes it stands on: all of the surface, or those where throats of an auxiliary "
+     "layer of grains begin (pack.extra_layer) [K 3.3.5]",
+     AT(feet)},
     {"boundary_layer.layers", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 10000,
      NULL, "layers of nodes in it; 0: spaced as throats are long", AT(layers)},
     {"first_period_rate", PARAMETER_NUMBER, "1", "0.9", BOUND_BETWEEN, 0.01, 0.999,
@@ -153,20 +185,54 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
     artifact_put_number(artifact, "/summary/residual", history->vapour_residual);
 }
 
+static const char *describe_layer(const struct dry_parameters *parameters,
+                                  const struct drying_history *history, char text[300])
+{
+    const char *feet = parameters->feet == FEET_SURFACE
+                           ? "all nodes of the surface"
+                           : "the nodes of the auxiliary layer";
+    if (parameters->exchange == EXCHANGE_LUMPED)
+        snprintf(text, 300, "lumped, %s exchange with the air one by one", feet);
+    else
+        snprintf(text, 300, "%d layers of columns on %s, lateral diffusion included",
+                 history->boundary_layers, feet);
+    return text;
+}
+
+static const char *describe_flow(const struct dry_parameters *parameters,
+                                 const struct mass_transfer *transfer, char text[200])
+{
+    static const char *const name[] = {"the mass transfer coefficient",
+                                       "the thickness given", "the Sherwood number",
+                                       "laminar flow along a plate [K 3.6]",
+                                       "flow around a sphere [Ranz and Marshall]"};
+    const char *from = name[parameters->transfer_law];
+    if (parameters->transfer_law < TRANSFER_PLATE)
+        snprintf(text, 200, "%s", from);
+    else
+        snprintf(text, 200, "%s: Re = %.6g, Sc = %.6g, Sh = %.6g", from,
+                 transfer->reynolds, transfer->schmidt, transfer->sherwood);
+    return text;
+}
+
 static void write_drying(const struct network *network,
                          const struct drying_history *history,
                          const struct invocation *invocation,
                          const struct artifact *input,
-                         const struct dry_parameters *parameters)
+                         const struct dry_parameters *parameters,
+                         const struct mass_transfer *transfer)
 {
-    char model[900];
+    char model[1400], layer[300], flow[200];
     snprintf(model, sizeof model,
              "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
-             "boundary layer: %d layers over %.17g m, lateral diffusion included\n"
+             "boundary layer: %s\n"
+             "boundary layer: %.17g m thick, from %s\n"
              "liquid: %s\n"
              "left out: viscosity between the two limits, gravity, films, Kelvin and "
              "Knudsen effects, temperature\n",
-             history->boundary_layers, history->boundary_layer_thickness,
+             describe_layer(parameters, history, layer),
+             history->boundary_layer_thickness,
+             describe_flow(parameters, transfer, flow),
              parameters->conditions.liquid == LIQUID_INVISCID
                  ? "negligible viscosity, invasion percolation cluster by cluster"
                  : "immobile, each throat dries by itself");
@@ -188,6 +254,36 @@ static void give_radii(struct network *network, const struct dry_parameters *par
     if (status) die(status, "dry.%s", reason.text);
 }
 
+static double longer_open_edge(const struct packing *packing, int wall)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    return fmax(component(edge, (wall + 2) / 2 % 3),
+                component(edge, (wall + 4) / 2 % 3));
+}
+
+static struct mass_transfer give_mass_transfer(const struct network *network,
+                                               struct dry_parameters *parameters,
+                                               bool quiet)
+{
+    struct drying_conditions *conditions = &parameters->conditions;
+    struct air_flow *air = &parameters->air;
+    struct mass_transfer transfer;
+    struct reason reason;
+    if (!(air->length > 0) && conditions->open_walls)
+        air->length =
+            longer_open_edge(&network->packing, __builtin_ctz(conditions->open_walls));
+    const enum status status =
+        find_mass_transfer((enum transfer_law)parameters->transfer_law, air,
+                           conditions->diffusivity, &transfer, &reason);
+    if (status) die(status, "dry.%s", reason.text);
+    conditions->mass_transfer = transfer.coefficient;
+    if (parameters->transfer_law == TRANSFER_PLATE && transfer.sherwood < 1 && !quiet)
+        report("boundary_layer: Sh = %.3g: thicker than the plate is long, where "
+               "[K 3.6] does not hold (from=sphere does)",
+               transfer.sherwood);
+    return transfer;
+}
+
 int main(int argc, char **argv)
 {
     struct dry_parameters parameters = {0};
@@ -195,14 +291,18 @@ int main(int argc, char **argv)
     parameters.conditions.liquid = (enum liquid_limit)parameters.liquid;
     parameters.conditions.open_walls = parameters.open_walls;
     parameters.conditions.layers = (int)parameters.layers;
+    parameters.conditions.feet = (enum boundary_feet)parameters.feet;
+    parameters.conditions.lumped = parameters.exchange == EXCHANGE_LUMPED;
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_periodic_network(input);
 
+    const struct mass_transfer transfer =
+        give_mass_transfer(&network, &parameters, invocation.quiet);
     give_radii(&network, &parameters);
     impose_empty_throats(&network, parameters.imposed_empty);
     struct drying_history history;
     dry(&network, &parameters, &invocation, input->path, &history);
-    write_drying(&network, &history, &invocation, input, &parameters);
+    write_drying(&network, &history, &invocation, input, &parameters, &transfer);
 
     drying_history_free(&history);
     network_free(&network);

@@ -81,10 +81,9 @@ static void test_impossible_networks(void **state)
     network.packing.periodic[2] = 1;
     check_refused(&network, &conditions, "/domain/periodic");
     network.packing.periodic[2] = 0;
-    const int n_face = network.n_face;
-    network.n_face = 0;
-    check_refused(&network, &conditions, "/faces/particles");
-    network.n_face = n_face;
+    struct drying_conditions without = conditions;
+    without.feet = FEET_AUXILIARY;
+    check_refused(&network, &without, "/throats/kind: no throat of the boundary layer");
     for (int t = 0; t < network.n_throat; t++)
         network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
     check_refused(&network, &conditions, "/throats/kind");
