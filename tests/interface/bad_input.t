@@ -420,8 +420,8 @@ damage("a grain outside the box is refused", "packing",
 damage("two grains in one place are refused", "packing",
        lambda file: value("particles/position", 4, file["particles/position"][3])(file),
        "/particles/position: row 4: has the same centre as row 3")
-make("periodic", "pack", "--set", "method=fcc", "--set", "counts=[2,2,2]",
-     "--set", "periodic=[true,true,true]")
+make("periodic", "pack", "--set", "method=poisson", "--set", "count=60", "--set", "bonds=none",
+     "--set", "upper=[4e-6,4e-6,4e-6]", "--set", "periodic=[true,true,true]")
 make("periodic-network", "tessellate", "periodic")
 refused("a box that repeats has no open wall", BAD_DATA,
         ["dry", "--set", "throat_radius.distribution=normal", "periodic-network"],
