@@ -141,12 +141,22 @@ def tessellate(grains, edge, folder, *options, periodic=(False,) * 3, radius=Non
     return Diagram(at(".h5"))
 
 
+def of_packing(folder, *settings, options=(), name="own"):
+    """The diagram of a packing of pack's own, by the SETTINGS."""
+    path = os.path.join(folder, name)
+    words = [word for s in settings for word in ("--set", s)]
+    run("pack", "-q", *words, "-o", path + "-packing.h5")
+    run("tessellate", "-q", *options, path + "-packing.h5", "-o", path + ".h5")
+    return Diagram(path + ".h5")
+
+
 def has_voro():
     return shutil.which("voro++") is not None
 
 
-def voro(grains, edge, folder, periodic=(False,) * 3, radius=None):
-    """Volume of each cell, and its faces as sorted (other side, area), by voro++."""
+def voro(grains, edge, folder, periodic=(False,) * 3, radius=None, wall=()):
+    """Volume of each cell, and its faces as sorted (other side, area), by voro++, with WALL
+    among its arguments."""
     path = os.path.join(folder, "points")
     columns = [np.arange(len(grains))[:, None], grains]
     if radius is not None:
@@ -154,6 +164,7 @@ def voro(grains, edge, folder, periodic=(False,) * 3, radius=None):
     np.savetxt(path, np.hstack(columns), fmt=["%d"] + ["%.17g"] * (3 + (radius is not None)))
     flags = [f"-p{axis}" for axis, on in zip("xyz", periodic) if on]
     flags += ["-r"] if radius is not None else []
+    flags += map(str, wall)
     box = [str(v) for e in np.broadcast_to(edge, 3) for v in (0, float(e))]
     subprocess.run(["voro++", *flags, "-c", "%i|%v|%n|%f", *box, path], check=True,
                    stdout=subprocess.DEVNULL)

@@ -37,11 +37,8 @@ static struct vector foot_of_face(const struct network *network, int face)
     const struct packing *packing = &network->packing;
     const int i = network->face_particles[face][0],
               j = network->face_particles[face][1];
-    struct vector foot = packing->position[i];
-    if (j < 0) {
-        set_component(&foot, (-1 - j) / 2, wall_position(packing, -1 - j));
-        return foot;
-    }
+    const struct vector foot = packing->position[i];
+    if (j < 0) return nearest_on_wall(packing, -1 - j, foot);
     const struct vector apart = subtract(packing->position[j], foot);
     const double ri = packing->radius[i], rj = packing->radius[j];
     const double share =

@@ -56,7 +56,8 @@ static int count_walls(uint8_t walls)
 
 static bool spans_the_box(uint8_t walls)
 {
-    return (walls & 3) == 3 || (walls & 12) == 12 || (walls & 48) == 48;
+    return (walls & 3) == 3 || (walls & 12) == 12 || (walls & 48) == 48 ||
+           (walls & 192) == 192;
 }
 
 // Moves the node at ROOT to where the union of it and OTHER belongs.
@@ -72,10 +73,10 @@ static void place_union(struct merging *merging, int root, int other)
     merging->position[root] = add(from, scale(b / (a + b), apart));
     merging->weight[root] = a + b;
     merging->walls[root] |= merging->walls[other];
-    for (int wall = 0; wall < WALL_COUNT; wall++)
+    for (int wall = 0; wall <= WALL_INNER; wall++)
         if (merging->walls[root] >> wall & 1)
-            set_component(&merging->position[root], wall / 2,
-                          wall_position(&network->packing, wall));
+            merging->position[root] =
+                nearest_on_wall(&network->packing, wall, merging->position[root]);
 }
 
 // Unites the two nodes of throat T. False when it has to stay. What of its volume no

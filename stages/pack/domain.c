@@ -309,6 +309,31 @@ double domain_volume(const struct domain *domain)
     return volume;
 }
 
+int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES])
+{
+    const bool flat = domain->dimensions == 2;
+    const uint8_t ball = flat ? BODY_DISC : BODY_SPHERE;
+    const struct vector lower = domain->lower, upper = domain->upper;
+    const struct vector inner = {domain->inner_radius, domain->inner_radius, 0};
+    struct vector low = subtract(domain->centre, inner),
+                  high = add(low, scale(2, inner));
+    int n = 0;
+    low.z = lower.z;
+    high.z = upper.z;
+    if (domain->shape == DOMAIN_CYLINDER || domain->shape == DOMAIN_RING)
+        body[n++] = (struct body){BODY_CYLINDER, 1, lower, upper};
+    if (domain->shape == DOMAIN_RING)
+        body[n++] = (struct body){BODY_CYLINDER, 0, low, high};
+    if (domain->shape == DOMAIN_SPHERE)
+        body[n++] = (struct body){ball, 1, lower, upper};
+    const uint8_t shape[] = {
+        [CUT_BOX] = BODY_BOX, [CUT_CYLINDER] = BODY_CYLINDER, [CUT_SPHERE] = ball};
+    if (domain->cut != CUT_NONE)
+        body[n++] =
+            (struct body){shape[domain->cut], 0, domain->cut_lower, domain->cut_upper};
+    return n;
+}
+
 struct vector domain_wrap(const struct domain *domain, struct vector point)
 {
     for (int axis = 0; axis < 3; axis++) {

@@ -5,7 +5,7 @@
 #define CRAQUELURE_PACK_DOMAIN_H
 
 #include "basics/status.h"
-#include "geometry/vector.h"
+#include "geometry/packing.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdbool.h>
@@ -67,6 +67,9 @@ void domain_stretch(struct domain *box, double factor);
 // Whether a grain lies wholly inside; touching the wall is inside, to rounding.
 // Where the box repeats there is no wall.
 bool domain_holds(const struct domain *domain, struct vector centre, double radius);
+
+// The bodies whose surfaces are its walls, and how many; a box without a cut has none.
+int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES]);
 
 // A point evenly distributed where a grain of this radius fits wholly. False when the
 // cut leaves none that could be found.

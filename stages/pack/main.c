@@ -258,6 +258,8 @@ int main(int argc, char **argv)
         make_packing(&invocation, &parameters, inputs, &domain, &reached);
     make_bonds(&packing, &parameters, invocation.quiet);
     if (parameters.extra_layer) make_layer(&domain, &packing);
+    if (parameters.method != METHOD_IMPORT)
+        packing.n_body = domain_bodies(&domain, packing.body);
     write_packing(&packing, &domain, &invocation, inputs, &parameters, &reached);
 
     checkpoint_end(&checkpoint);

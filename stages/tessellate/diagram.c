@@ -3,6 +3,7 @@
 
 #include "assemble.h"
 #include "basics/memory.h"
+#include "cut.h"
 #include "reduce.h"
 
 #include <stdlib.h>
@@ -165,6 +166,10 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     nodes_free(&nodes);
     triangulation_free(&triangulation);
     generators_free(&generators);
+    for (int k = 0; k < packing->n_body && !status; k++) {
+        const struct body body = body_through(packing, k);
+        status = cut_network(network, &body, how->clearance, reason);
+    }
     report->n_cell = packing->n_particle - report->hidden;
     if (!status && how->boundary == BOUNDARY_ELIMINATE)
         report->n_cell = eliminate_cut_cells(network, how->layer);

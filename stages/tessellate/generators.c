@@ -45,13 +45,48 @@ static struct vector scaled(const struct packing *packing, struct vector x, doub
                            from_corner.z / unit};
 }
 
+// The round wall around the grains, which the walls of the box then make way for.
+static void place_walls(const struct packing *packing, struct generators *generators)
+{
+    for (int axis = 0; axis < 3; axis++)
+        generators->walled[axis] = !generators->repeats[axis];
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body *body = &packing->body[k];
+        if (!body->within || body->shape == BODY_BOX) continue;
+        generators->is_round = true;
+        generators->round = *body;
+        generators->round.lower = scaled(packing, body->lower, generators->unit);
+        generators->round.upper = scaled(packing, body->upper, generators->unit);
+        for (int axis = 0; axis < 3; axis++)
+            if (body_is_round(body, axis)) generators->walled[axis] = false;
+    }
+}
+
+static enum status check_within(const struct packing *packing, struct reason *reason)
+{
+    static const char *const name[] = {"box", "cylinder", "sphere", "disc"};
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body body = body_through(packing, k);
+        for (int i = 0; i < packing->n_particle; i++) {
+            const struct vector at = packing->position[i];
+            if (body_holds(&body, at) == body.within) continue;
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/particles/position: row %d: the centre must be %s the %s "
+                          "of /domain/bodies: row %d, is at %g, %g, %g m",
+                          i, body.within ? "in" : "outside", name[body.shape], k, at.x,
+                          at.y, at.z);
+        }
+    }
+    return STATUS_OK;
+}
+
 static enum status check_inside(const struct generators *generators,
                                 struct reason *reason)
 {
     for (int i = 0; i < generators->n_particle; i++)
         for (int axis = 0; axis < 3; axis++) {
             const double at = component(generators->position[i], axis);
-            if (generators->repeats[axis]) continue;
+            if (!generators->walled[axis]) continue;
             if (at > 0 && at < component(generators->box, axis)) continue;
             return refuse(
                 reason, STATUS_BAD_DATA,
@@ -137,12 +172,32 @@ static double depth(const struct generators *generators, int i, int wall)
     return wall % 2 ? component(generators->box, wall / 2) - at : at;
 }
 
+// Reflections in planes tangent to a wall this much larger, in units, stay clear of it.
+static const double round_clearance = 0.25;
+
+static void add_round_reflections(struct generators *generators, double grid)
+{
+    for (int i = 0; i < generators->n_particle && generators->is_round; i++) {
+        const struct vector at = generators->position[i];
+        const struct vector out = body_outward(&generators->round, at);
+        const double far = distance(at, body_nearest(&generators->round, at));
+        if (far > generators->reach) continue;
+        const int added = add_like(generators, i);
+        const struct vector image = add(at, scale(2 * (far + round_clearance), out));
+        generators->position[added] = round_to(grid, image);
+        generators->base[added] = added;
+        generators->wall[added] = WALL_OUTER;
+    }
+}
+
+// Of the grains, and of their images beyond a round wall, which stay such images.
 static void add_reflections(struct generators *generators)
 {
-    for (int i = 0; i < generators->n_particle; i++)
+    const int before = generators->n;
+    for (int i = 0; i < before; i++)
         for (int wall = 0; wall < WALL_COUNT; wall++) {
             const int axis = wall / 2;
-            if (generators->repeats[axis] ||
+            if (!generators->walled[axis] ||
                 depth(generators, i, wall) > generators->reach)
                 continue;
             const double at = wall % 2 ? component(generators->box, axis) : 0;
@@ -151,7 +206,7 @@ static void add_reflections(struct generators *generators)
             set_component(&generators->position[added], axis,
                           2 * at - from); // exact on the grid
             generators->base[added] = added;
-            generators->wall[added] = (int8_t)wall;
+            if (i < generators->n_particle) generators->wall[added] = (int8_t)wall;
         }
 }
 
@@ -210,6 +265,7 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     generators->box = round_to(grid, generators->box);
     for (int axis = 0; axis < 3; axis++)
         generators->repeats[axis] = packing->periodic[axis];
+    place_walls(packing, generators);
     for (int i = 0; i < n; i++) {
         const double radius = packing->radius[i] / unit;
         generators->position[i] = wrapped(
@@ -220,8 +276,10 @@ enum status place_generators(const struct packing *packing, double reach, bool p
         generators->particle[i] = generators->base[i] = i;
         generators->wall[i] = -1;
     }
-    const enum status status = check_inside(generators, reason);
+    enum status status = check_inside(generators, reason);
+    if (!status) status = check_within(packing, reason);
     if (status) return status;
+    add_round_reflections(generators, grid);
     add_reflections(generators);
     generators->n_base = generators->n;
     add_copies(generators);

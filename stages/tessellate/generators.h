@@ -4,8 +4,13 @@
 // Walls are mirrors: a grain reflected in a wall shares with its image exactly that
 // wall as the face between them, so the diagram of the grains and their images, looked
 // at from the grains alone, is the diagram cut by the box (truncation strategy, K
-// 3.3.1), and border throats meet the wall at right angles. Where the box repeats, both
-// grains and reflections are copied beyond its sides (K 3.3.2).
+// 3.3.1). Where the box repeats, both grains and reflections are copied beyond its
+// sides (K 3.3.2).
+//
+// A round wall around the grains takes the place of those of the box that it touches.
+// Each grain is reflected in a plane that is tangent to a slightly larger one: such
+// images own nothing within the wall, and only close the cells beyond it, where
+// cut_network cuts them.
 #ifndef CRAQUELURE_GENERATORS_H
 #define CRAQUELURE_GENERATORS_H
 
@@ -24,10 +29,13 @@ struct generators {
     int32_t *particle;   // the grain itself, or that an image belongs to
     int32_t *base;       // what a copy repeats; itself for a grain and a reflection
     struct image *image; // how many boxes a copy is away from its base
-    int8_t *wall;        // 0..5 the wall it is reflected in; else -1
+    int8_t *wall;        // 0..6 the wall it is reflected in; else -1
     struct vector box;   // upper corner
     bool repeats[3];
-    double reach; // images farther from the box are left out
+    bool walled[3];    // along which the box has two walls
+    bool is_round;     // whether there is a round wall around the grains
+    struct body round; // it
+    double reach;      // images farther from the box are left out
     double largest_weight;
     double unit; // m
 };

@@ -32,9 +32,8 @@ static const struct parameter table[] = {
      offsetof(struct tessellate_parameters, volume)},
     {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"", BOUND_NONE, 0, 0,
      "truncate|eliminate",
-     "what becomes of cells that do not end inside the walls: cut by them, or left "
-     "out, "
-     "as unbounded ones are in K",
+     "what becomes of cells that do not end inside the walls, of the box or of a "
+     "cylinder, ring or sphere: cut by them, or left out, as unbounded ones are in K",
      offsetof(struct tessellate_parameters, boundary)},
     {"dimensions", PARAMETER_INTEGER, "1", "3", BOUND_BETWEEN, 2, 3, NULL,
      "2: the network of one layer of grains, in a plane between it and the next, which "
@@ -59,29 +58,34 @@ static enum status give_void_volumes(const struct tessellation *how,
     if (!how->power)
         return refuse(reason, STATUS_BAD_DATA,
                       "tessellate.throat_volume: void must go with diagram=power");
-    if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->throat_image)
+    if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->throat_image ||
+        network->packing.n_body)
         return refuse(
             reason, STATUS_BAD_DATA,
             "tessellate.throat_volume: void must go with whole cells in a box "
-            "that does not repeat: dimensions=3, boundary=truncate");
+            "that does not repeat, with flat walls: dimensions=3, boundary=truncate");
     return find_void_volumes(network, reason);
 }
 
 // Says what becomes of the diagram at the sides of the box.
 static const char *bounding(const struct packing *packing, enum boundary boundary,
-                            char text[200])
+                            char text[300])
 {
     char along[4] = "";
     int count = 0;
     for (int axis = 0; axis < 3; axis++)
         if (packing->periodic[axis]) along[count++] = "xyz"[axis];
     const bool walls = count < 3;
-    snprintf(text, 200, "%s%s%s%s",
+    const char *bodies = packing->n_body
+                             ? ", ended where throats meet the bodies of /domain/bodies"
+                             : "";
+    snprintf(text, 300, "%s%s%s%s%s",
              !walls ? ""
              : boundary == BOUNDARY_TRUNCATE
                  ? "truncated to the box by reflecting grains in its walls"
-                 : "cells that the box would cut left out",
-             walls && count ? ", " : "", count ? "repeated along " : "", along);
+                 : "cells that the walls would cut left out",
+             boundary == BOUNDARY_TRUNCATE ? bodies : "", walls && count ? ", " : "",
+             count ? "repeated along " : "", along);
     return text;
 }
 
@@ -104,7 +108,7 @@ int main(int argc, char **argv)
         status = give_void_volumes(&how, &network, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[600], bounded[200];
+    char model[700], bounded[300];
     snprintf(model, sizeof model,
              "%s diagram%s, %s\n"
              "throat radius: least clearance over the %s\n"

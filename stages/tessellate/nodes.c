@@ -65,7 +65,7 @@ static uint8_t snap_to_walls(const struct generators *generators,
 {
     uint8_t walls = 0;
     for (int wall = 0; wall < WALL_COUNT; wall++) {
-        if (generators->repeats[wall / 2]) continue;
+        if (!generators->walled[wall / 2]) continue;
         const double at = wall % 2 ? component(generators->box, wall / 2) : 0;
         const double beyond =
             (wall % 2 ? 1 : -1) * (component(*position, wall / 2) - at);

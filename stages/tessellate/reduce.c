@@ -41,8 +41,7 @@ static int compare_ends(const int32_t *first, const int32_t *second)
     return (first[1] > second[1]) - (first[1] < second[1]);
 }
 
-// The first throat whose nodes do not come before these two.
-static int first_throat(const struct network *network, const int32_t ends[2])
+int first_throat(const struct network *network, const int32_t ends[2])
 {
     int low = 0, high = network->n_throat;
     while (low < high) {

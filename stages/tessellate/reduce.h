@@ -20,4 +20,7 @@ int eliminate_cut_cells(struct network *network, bool layer);
 // cells, each with that wall as its second side.
 void reduce_to_plane(struct network *network);
 
+// The first throat whose nodes do not come before these two.
+int first_throat(const struct network *network, const int32_t ends[2]);
+
 #endif

@@ -12,7 +12,7 @@
 // Squares of what is larger would overflow, and so would distances.
 static const double largest_size = 1e150;
 
-enum { MOST_SYMBOLS = 16, MOST_RANK = 3, BLOCK_VALUES = 1 << 16 };
+enum { MOST_SYMBOLS = 24, MOST_RANK = 3, BLOCK_VALUES = 1 << 16 };
 
 // Extents that symbols stand for: n_particle = 250.
 struct symbols {

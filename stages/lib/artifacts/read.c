@@ -188,6 +188,40 @@ double artifact_get_number(const struct artifact *artifact, const char *name)
     return value;
 }
 
+// Those of /domain/bodies, which no one else checks: all four datasets or none.
+static void get_bodies(const struct artifact *artifact, struct packing *packing)
+{
+    static const char *const names[] = {"/domain/bodies/shape", "/domain/bodies/within",
+                                        "/domain/bodies/lower", "/domain/bodies/upper"};
+    int n = 0, given = 0;
+    for (int k = 0; k < 4; k++)
+        given += has_dataset(artifact, names[k]);
+    if (!given) return;
+    for (int k = 0; k < 4; k++)
+        if (!has_dataset(artifact, names[k]))
+            die(STATUS_BAD_DATA, "%s: %s: is missing", input_name(artifact->path),
+                names[k]);
+    uint8_t *shape = artifact_get(artifact, names[0], &n);
+    uint8_t *within = artifact_get(artifact, names[1], NULL);
+    struct vector *lower = artifact_get(artifact, names[2], NULL);
+    struct vector *upper = artifact_get(artifact, names[3], NULL);
+    if (n > MOST_BODIES)
+        die(STATUS_BAD_DATA, "%s: %s: must have at most %d rows, got %d",
+            input_name(artifact->path), names[0], MOST_BODIES, n);
+    for (int k = 0; k < n; k++) {
+        packing->body[k] = (struct body){shape[k], within[k], lower[k], upper[k]};
+        const struct vector edge = subtract(upper[k], lower[k]);
+        if (!(edge.x > 0 && edge.y > 0 && edge.z > 0))
+            die(STATUS_BAD_DATA, "%s: %s: row %d: must be < %s",
+                input_name(artifact->path), names[2], k, names[3]);
+    }
+    packing->n_body = n;
+    free(shape);
+    free(within);
+    free(lower);
+    free(upper);
+}
+
 struct packing artifact_get_packing(const struct artifact *artifact)
 {
     struct packing packing = {0};
@@ -205,6 +239,7 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     free(lower);
     free(upper);
     free(periodic);
+    get_bodies(artifact, &packing);
     return packing;
 }
 

@@ -136,6 +136,24 @@ void artifact_put_number(struct artifact *artifact, const char *name, double val
     H5Sclose(space);
 }
 
+static void put_bodies(struct artifact *artifact, const struct packing *packing)
+{
+    const int n = packing->n_body;
+    uint8_t shape[MOST_BODIES], within[MOST_BODIES];
+    struct vector lower[MOST_BODIES], upper[MOST_BODIES];
+    if (!n) return;
+    for (int k = 0; k < n; k++) {
+        shape[k] = packing->body[k].shape;
+        within[k] = packing->body[k].within;
+        lower[k] = packing->body[k].lower;
+        upper[k] = packing->body[k].upper;
+    }
+    artifact_put(artifact, "/domain/bodies/shape", shape, n);
+    artifact_put(artifact, "/domain/bodies/within", within, n);
+    artifact_put(artifact, "/domain/bodies/lower", lower, n);
+    artifact_put(artifact, "/domain/bodies/upper", upper, n);
+}
+
 void artifact_put_packing(struct artifact *artifact, const struct packing *packing)
 {
     artifact_put(artifact, "/particles/position", packing->position,
@@ -144,6 +162,7 @@ void artifact_put_packing(struct artifact *artifact, const struct packing *packi
     artifact_put(artifact, "/domain/lower", &packing->lower, 3);
     artifact_put(artifact, "/domain/upper", &packing->upper, 3);
     artifact_put(artifact, "/domain/periodic", packing->periodic, 3);
+    put_bodies(artifact, packing);
     artifact_put(artifact, "/bonds/particles", packing->bond, packing->n_bond);
 }
 

@@ -139,7 +139,7 @@ static enum status read_node(json_t *node, int k, struct network *network,
                       "graph.nodes[%d].metadata.node_coordinates: must be numbers x, "
                       "y, z",
                       k);
-    network->node_walls[i] = (uint8_t)(walls & 63);
+    network->node_walls[i] = (uint8_t)(walls & 255);
     return STATUS_OK;
 }
 
@@ -247,7 +247,7 @@ static enum status read_faces(json_t *rest, struct network *network,
         network->face_particles && json_array_size(loops) == (size_t)network->n_face;
     for (int f = 0; f < network->n_face && good; f++)
         for (int side = 0; side < 2; side++)
-            good = good && network->face_particles[f][side] >= -WALL_COUNT * side &&
+            good = good && network->face_particles[f][side] >= -(1 + WALL_INNER) * side &&
                    network->face_particles[f][side] < network->packing.n_particle;
     if (!good)
         return refuse(reason, STATUS_BAD_DATA,

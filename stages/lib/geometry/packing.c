@@ -13,6 +13,39 @@ double wall_position(const struct packing *packing, int wall)
     return component(wall % 2 ? packing->upper : packing->lower, wall / 2);
 }
 
+struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x)
+{
+    if (wall < WALL_COUNT) {
+        set_component(&x, wall / 2, wall_position(packing, wall));
+        return x;
+    }
+    double least = HUGE_VAL;
+    struct vector nearest = x;
+    for (int k = 0; k < packing->n_body; k++) {
+        if (body_wall(&packing->body[k]) != wall) continue;
+        const struct vector on = body_nearest(&packing->body[k], x);
+        if (distance(on, x) < least) nearest = on;
+        least = fmin(least, distance(on, x));
+    }
+    return nearest;
+}
+
+struct body body_through(const struct packing *packing, int k)
+{
+    struct body body = packing->body[k];
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = component(packing->lower, axis);
+        const double high = component(packing->upper, axis), edge = high - low;
+        const double slack = 1e-9 * edge;
+        if (body_is_round(&body, axis)) continue;
+        if (component(body.lower, axis) <= low + slack)
+            set_component(&body.lower, axis, low - 4 * edge);
+        if (component(body.upper, axis) >= high - slack)
+            set_component(&body.upper, axis, high + 4 * edge);
+    }
+    return body;
+}
+
 void packing_free(struct packing *packing)
 {
     free(packing->position);

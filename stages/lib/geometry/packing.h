@@ -4,6 +4,7 @@
 #ifndef CRAQUELURE_PACKING_H
 #define CRAQUELURE_PACKING_H
 
+#include "geometry/body.h"
 #include "geometry/vector.h"
 
 #include <stdbool.h>
@@ -21,6 +22,10 @@ enum wall {
 };
 enum { WALL_COUNT = 6 };
 
+// Two more that need not be flat, numbered after those: around the grains, and around
+// what they lie around.
+enum { WALL_OUTER = 6, WALL_INNER = 7, MOST_BODIES = 3 };
+
 struct packing {
     int n_particle;
     struct vector *position; // (n_particle) m
@@ -28,6 +33,8 @@ struct packing {
     struct vector lower;     // domain box, m
     struct vector upper;
     uint8_t periodic[3]; // 1 where the box repeats along x, y, z
+    int n_body;
+    struct body body[MOST_BODIES]; // what bounds the grains besides the box
     int n_bond;
     int32_t (*bond)[2]; // (n_bond) the two bonded grains, lower index first
 };
@@ -37,6 +44,18 @@ bool is_periodic(const struct packing *packing);
 
 // Where wall 0..5 of the box stands along its axis, wall / 2; m.
 double wall_position(const struct packing *packing, int wall);
+
+// The wall, WALL_OUTER or WALL_INNER, that the surface of BODY is.
+static inline int body_wall(const struct body *body)
+{
+    return body->within ? WALL_OUTER : WALL_INNER;
+}
+
+// The point nearest to X on wall 0..5, WALL_OUTER or WALL_INNER (the nearest body's).
+struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x);
+
+// Body K, going on beyond the sides of the box that it reaches.
+struct body body_through(const struct packing *packing, int k);
 
 // Frees what the packing owns and empties it; safe on an empty one.
 void packing_free(struct packing *packing);

@@ -5,7 +5,7 @@
 #include "geometry/sphere_cut.h"
 
 // What is cut into slices: a sphere, or the lens of a pair of them.
-struct body {
+struct piece {
     struct vector centre; // of the sphere, or the first of the pair
     double radius;
     struct lens lens; // when radius is 0
@@ -70,7 +70,7 @@ double solid_volume(const struct packing *packing, const struct contacts *contac
 }
 
 // The part of BODY from LOW to HIGH, seen from its centre; a lens is to be taken off.
-static double part(const struct body *body, struct vector low, struct vector high)
+static double part(const struct piece *body, struct vector low, struct vector high)
 {
     return body->radius > 0 ? sphere_in_box(body->radius, low, high)
                             : -lens_in_box(&body->lens, low, high);
@@ -78,7 +78,7 @@ static double part(const struct body *body, struct vector low, struct vector hig
 
 // Adds what BODY has in each slice it may reach. Slices beyond a side that repeats are
 // those of the other side.
-static void add_body(struct slices *slices, const struct body *body)
+static void add_body(struct slices *slices, const struct piece *body)
 {
     const uint8_t *periodic = slices->packing->periodic;
     struct vector low = subtract(slices->window->lower, body->centre);
@@ -111,14 +111,14 @@ void slice_porosity(const struct packing *packing, const struct contacts *contac
         porosity[k] = 0;
     for (int i = 0; i < packing->n_particle; i++) {
         const double r = packing->radius[i];
-        add_body(&slices, &(struct body){.centre = packing->position[i],
-                                         .radius = r,
-                                         .low = -r,
-                                         .high = r});
+        add_body(&slices, &(struct piece){.centre = packing->position[i],
+                                          .radius = r,
+                                          .low = -r,
+                                          .high = r});
     }
     for (int k = 0; k < contacts->count; k++) {
         const int i = contacts->pair[k][0], j = contacts->pair[k][1];
-        struct body body = {.centre = packing->position[i]};
+        struct piece body = {.centre = packing->position[i]};
         body.lens = lens_between(packing->radius[i], packing->radius[j],
                                  nearest_image(packing, i, j));
         body.low = body.lens.lower.z;

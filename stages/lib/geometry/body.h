@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Convex bodies that grains lie in or around: what bounds them besides a box.
+#ifndef CRAQUELURE_BODY_H
+#define CRAQUELURE_BODY_H
+
+#include "geometry/vector.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum body_shape { BODY_BOX, BODY_CYLINDER, BODY_SPHERE, BODY_DISC, BODY_SHAPES };
+
+// A cylinder stands along z, a disc (of a layer of grains) along y; both end at lower
+// and upper.
+struct body {
+    uint8_t shape;              // enum body_shape
+    uint8_t within;             // 1 where the grains lie in it, 0 around it
+    struct vector lower, upper; // the box around it, m
+};
+
+// Whether it is round in the plane that AXIS, 0 to 2, lies in.
+bool body_is_round(const struct body *body, int axis);
+
+// Whether X lies in it.
+bool body_holds(const struct body *body, struct vector x);
+
+// The part of the line FROM + t (TO - FROM) that lies in it: from t = SPAN[0] to
+// SPAN[1]. False when the line misses it.
+bool body_span(const struct body *body, struct vector from, struct vector to,
+               double span[2]);
+
+// Away from its axis or centre through X; of a box along its z.
+struct vector body_outward(const struct body *body, struct vector x);
+
+// The point of its surface nearest to X; of a cylinder or disc of its round side.
+struct vector body_nearest(const struct body *body, struct vector x);
+
+#endif

@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cut.h"
+
+#include "basics/memory.h"
+#include "loops.h"
+#include "reduce.h"
+
+#include <stdlib.h>
+
+// Where a loop crosses the wall: not, into what stays, or out of it.
+enum crosses { CROSSES_NOT, CROSSES_IN, CROSSES_OUT };
+
+struct step {
+    struct corner corner;
+    enum crosses crosses;
+};
+
+// A piece of the rim of what a grain has of the wall, seen from that grain.
+struct chord {
+    struct corner from, to;
+};
+
+struct cut {
+    struct network *network;
+    const struct body *body;
+    bool *holds;            // (n_node) whether the body does
+    int32_t (*crossing)[2]; // (n_throat) node where it enters and leaves the body; -1
+    struct image *image;    // (n_crossing) of such a node, seen from the first end
+    int n_whole;            // nodes before any such
+    int node_capacity, image_capacity;
+    struct step *step; // of one loop
+    int n_step, step_capacity;
+    struct corner *path; // what stays of it
+    int n_path, path_capacity;
+    struct row *chord_row; // keys: the grain, the first end, its image; which chord
+    struct chord *chord;
+    int n_chord, chord_row_capacity, chord_capacity;
+    struct loops loops;
+};
+
+static bool stays(const struct cut *cut, int32_t node)
+{
+    return cut->holds[node] == cut->body->within;
+}
+
+// ---- throats ------------------------------------------------------------------------
+
+static struct vector edge_of(const struct cut *cut)
+{
+    return subtract(cut->network->packing.upper, cut->network->packing.lower);
+}
+
+static struct image throat_image(const struct cut *cut, int t)
+{
+    return cut->network->throat_image ? cut->network->throat_image[t]
+                                      : (struct image){0};
+}
+
+static void find_ends(const struct cut *cut, int t, struct vector end[2])
+{
+    const struct network *network = cut->network;
+    const int32_t *node = network->throat_nodes[t];
+    const struct image image = throat_image(cut, t);
+    end[0] = network->node_position[node[0]];
+    end[1] = network->node_position[node[1]];
+    for (int axis = 0; axis < 3; axis++)
+        if (image.along[axis])
+            set_component(&end[1], axis,
+                          component(end[1], axis) +
+                              image.along[axis] * component(edge_of(cut), axis));
+}
+
+// A node at TIME along throat T, moved into the box where it repeats.
+static int32_t add_node(struct cut *cut, int t, const struct vector end[2], double time)
+{
+    struct network *network = cut->network;
+    const int32_t *node = network->throat_nodes[t];
+    const int added = network->n_node - cut->n_whole;
+    const double part = fmin(fmax(time, 0), 1);
+    struct vector at = add(end[0], scale(part, subtract(end[1], end[0])));
+    struct image image = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        if (!network->packing.periodic[axis]) continue;
+        const double edge = component(edge_of(cut), axis), x = component(at, axis);
+        const double boxes =
+            floor((x - component(network->packing.lower, axis)) / edge);
+        image.along[axis] = (int8_t)boxes;
+        set_component(&at, axis, x - boxes * edge);
+    }
+    if (network->n_node == cut->node_capacity) {
+        cut->node_capacity += cut->node_capacity / 2 + 64;
+        const size_t room = (size_t)cut->node_capacity;
+        network->node_position = reallocate(network->node_position, room, sizeof at);
+        network->node_walls = reallocate(network->node_walls, room, 1);
+    }
+    GROW_ARRAY(cut->image, added, cut->image_capacity);
+    cut->image[added] = image;
+    network->node_position[network->n_node] = at;
+    network->node_walls[network->n_node] =
+        (uint8_t)((network->node_walls[node[0]] & network->node_walls[node[1]]) |
+                  1 << body_wall(cut->body));
+    return network->n_node++;
+}
+
+// The body is convex: a throat enters it at most once, and leaves it after that.
+static void cross_throat(struct cut *cut, int t)
+{
+    const int32_t *node = cut->network->throat_nodes[t];
+    const bool first = cut->holds[node[0]], second = cut->holds[node[1]];
+    struct vector end[2];
+    double span[2];
+    cut->crossing[t][0] = cut->crossing[t][1] = -1;
+    if (first && second) return;
+    find_ends(cut, t, end);
+    bool meets = body_span(cut->body, end[0], end[1], span);
+    if (!meets) span[0] = span[1] = first ? 0 : 1; // grazed, if one end is within
+    meets = first || second || (meets && span[0] > 0 && span[1] < 1);
+    if (meets && !first) cut->crossing[t][0] = add_node(cut, t, end, span[0]);
+    if (meets && !second) cut->crossing[t][1] = add_node(cut, t, end, span[1]);
+}
+
+// The throat between two corners of a face; FORWARD when A is its first node.
+static int throat_of(const struct cut *cut, struct corner a, struct corner b,
+                     bool *forward)
+{
+    *forward = a.node < b.node;
+    const int32_t ends[2] = {*forward ? a.node : b.node, *forward ? b.node : a.node};
+    const struct image image = *forward ? image_difference(b.image, a.image)
+                                        : image_difference(a.image, b.image);
+    for (int t = first_throat(cut->network, ends); t < cut->network->n_throat; t++) {
+        const int32_t *node = cut->network->throat_nodes[t];
+        if (node[0] != ends[0] || node[1] != ends[1]) break;
+        if (same_image(throat_image(cut, t), image)) return t;
+    }
+    return -1; // each edge of a face is a throat
+}
+
+// ---- faces --------------------------------------------------------------------------
+
+static void add_step(struct cut *cut, struct corner corner, enum crosses crosses)
+{
+    GROW_ARRAY(cut->step, cut->n_step, cut->step_capacity);
+    cut->step[cut->n_step++] = (struct step){corner, crosses};
+}
+
+static struct corner corner_of(const struct network *network, int64_t k)
+{
+    struct corner corner = {.node = network->face_nodes[k]};
+    if (network->face_node_image) corner.image = network->face_node_image[k];
+    return corner;
+}
+
+// From corner A to B: what of it stays, and where it crosses.
+static void walk_edge(struct cut *cut, struct corner a, struct corner b)
+{
+    bool forward, staying = stays(cut, a.node);
+    const int t = throat_of(cut, a, b, &forward);
+    if (staying) add_step(cut, a, CROSSES_NOT);
+    for (int k = 0; k < 2 && t >= 0; k++) {
+        const int32_t node = cut->crossing[t][forward ? k : 1 - k];
+        if (node < 0) continue;
+        const struct image image =
+            image_sum(forward ? a.image : b.image, cut->image[node - cut->n_whole]);
+        add_step(cut, (struct corner){node, image}, staying ? CROSSES_OUT : CROSSES_IN);
+        staying = !staying;
+    }
+}
+
+static void walk_face(struct cut *cut, int f)
+{
+    const struct network *network = cut->network;
+    const int64_t begin = network->face_offset[f], end = network->face_offset[f + 1];
+    cut->n_step = 0;
+    for (int64_t k = begin; k < end; k++)
+        walk_edge(cut, corner_of(network, k),
+                  corner_of(network, k + 1 < end ? k + 1 : begin));
+}
+
+static void add_chord(struct cut *cut, int32_t grain, struct corner from,
+                      struct corner to)
+{
+    GROW_ARRAY(cut->chord_row, cut->n_chord, cut->chord_row_capacity);
+    GROW_ARRAY(cut->chord, cut->n_chord, cut->chord_capacity);
+    cut->chord_row[cut->n_chord] = (struct row){
+        .key = {grain, from.node, image_number(from.image)}, .item = cut->n_chord};
+    cut->chord[cut->n_chord++] = (struct chord){from, to};
+}
+
+// A face ends in the chord from where it meets the wall to where it comes back; the
+// faces on the wall go the other way.
+static void add_chords(struct cut *cut, int f, struct corner from, struct corner to)
+{
+    const int32_t *side = cut->network->face_particles[f];
+    add_chord(cut, side[0], to, from);
+    if (side[1] < 0) return;
+    if (cut->network->face_image) {
+        const struct image image = cut->network->face_image[f];
+        from.image = image_difference(from.image, image);
+        to.image = image_difference(to.image, image);
+    }
+    add_chord(cut, side[1], from, to);
+}
+
+static void end_path(struct cut *cut, int f)
+{
+    const struct image image =
+        cut->network->face_image ? cut->network->face_image[f] : (struct image){0};
+    loops_append(&cut->loops, cut->network->face_particles[f], image, cut->path,
+                 cut->n_path);
+    cut->n_path = 0;
+}
+
+static void add_to_path(struct cut *cut, struct corner corner)
+{
+    GROW_ARRAY(cut->path, cut->n_path, cut->path_capacity);
+    cut->path[cut->n_path++] = corner;
+}
+
+// What stays of a convex face within a convex body is one piece, and chords join where
+// it leaves to where it comes in next. Around the body it may be several, each with a
+// chord from where it leaves to where it came in.
+static void cut_face(struct cut *cut, int f)
+{
+    walk_face(cut, f);
+    const int n = cut->n_step;
+    int first = 0; // come in there
+    while (first < n && cut->step[first].crosses != CROSSES_IN)
+        first++;
+    if (first == n) first = 0;
+    struct corner in = {0};
+    for (int k = 0; k < n; k++) {
+        const struct step *step = &cut->step[(first + k) % n];
+        add_to_path(cut, step->corner);
+        if (step->crosses == CROSSES_IN) in = step->corner;
+        if (step->crosses != CROSSES_OUT) continue;
+        const struct step *next = &cut->step[(first + k + 1) % n];
+        add_chords(cut, f, step->corner, cut->body->within ? next->corner : in);
+        if (!cut->body->within) end_path(cut, f);
+    }
+    end_path(cut, f);
+}
+
+// ---- the wall -----------------------------------------------------------------------
+
+// The chord of GRAIN, not yet used, that begins at CORNER; -1 if there is none. Chords
+// are sorted by both.
+static int next_chord(const struct cut *cut, int32_t grain, struct corner corner,
+                      const bool *used)
+{
+    const int32_t key[3] = {grain, corner.node, image_number(corner.image)};
+    int low = 0, high = cut->n_chord;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const int32_t *there = cut->chord_row[middle].key;
+        int order = 0;
+        for (int k = 0; k < 3 && !order; k++)
+            order = (there[k] > key[k]) - (there[k] < key[k]);
+        if (order < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (; low < cut->n_chord; low++) {
+        const int32_t *there = cut->chord_row[low].key;
+        if (there[0] != key[0] || there[1] != key[1] || there[2] != key[2]) return -1;
+        if (!used[low]) return low;
+    }
+    return -1;
+}
+
+// The faces on the wall: around each, chord after chord.
+static void close_cells(struct cut *cut)
+{
+    cut->chord_row = sort_rows(cut->chord_row, cut->n_chord);
+    bool *used = NEW_ARRAY(bool, cut->n_chord);
+    for (int k = 0; k < cut->n_chord; k++) {
+        const int32_t grain = cut->chord_row[k].key[0];
+        const int32_t side[2] = {grain, -1 - body_wall(cut->body)};
+        cut->n_path = 0;
+        for (int at = used[k] ? -1 : k; at >= 0;) {
+            const struct chord *chord = &cut->chord[cut->chord_row[at].item];
+            used[at] = true;
+            add_to_path(cut, chord->from);
+            at = next_chord(cut, grain, chord->to, used);
+        }
+        loops_append(&cut->loops, side, (struct image){0}, cut->path, cut->n_path);
+    }
+    free(used);
+}
+
+static enum status check_cut(const struct cut *cut, struct reason *reason)
+{
+    const struct packing *packing = &cut->network->packing;
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis] &&
+            (component(cut->body->lower, axis) > component(packing->lower, axis) ||
+             component(cut->body->upper, axis) < component(packing->upper, axis) ||
+             body_is_round(cut->body, axis)))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/domain/periodic: row %d: a box that repeats where a body "
+                          "of /domain/bodies does not go through is not known",
+                          axis);
+    return STATUS_OK;
+}
+
+static void find_crossings(struct cut *cut)
+{
+    const struct network *network = cut->network;
+    for (int i = 0; i < network->n_node; i++)
+        cut->holds[i] = body_holds(cut->body, network->node_position[i]);
+    for (int t = 0; t < network->n_throat; t++)
+        cross_throat(cut, t);
+}
+
+static void cut_free(struct cut *cut)
+{
+    free(cut->holds);
+    free(cut->crossing);
+    free(cut->image);
+    free(cut->step);
+    free(cut->path);
+    free(cut->chord_row);
+    free(cut->chord);
+}
+
+enum status cut_network(struct network *network, const struct body *body,
+                        enum clearance clearance, struct reason *reason)
+{
+    struct cut cut = {.network = network,
+                      .body = body,
+                      .n_whole = network->n_node,
+                      .node_capacity = network->n_node};
+    enum status status = check_cut(&cut, reason);
+    if (status) return status;
+    cut.holds = NEW_ARRAY(bool, network->n_node);
+    cut.crossing = allocate((size_t)network->n_throat, sizeof *cut.crossing);
+    find_crossings(&cut);
+    // Beyond a wall around the grains lies what belongs to images of theirs.
+    for (int f = 0; f < network->n_face; f++)
+        if (network->face_particles[f][1] != -1 - WALL_OUTER || !body->within)
+            cut_face(&cut, f);
+    close_cells(&cut);
+    loops_to_network(&cut.loops, clearance, network);
+    if (!cut.n_chord)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "/domain/bodies: no throat meets the surface of one: it is too "
+                        "small for the grains around it, or they are too few");
+    cut_free(&cut);
+    return status;
+}
