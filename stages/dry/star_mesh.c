@@ -3,317 +3,353 @@
 
 #include "basics/memory.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct tile_link {
-    int tile, block;
+// On a front larger than this, what eliminations add waits until there are so many, and
+// then passes over the triangle once for all.
+enum { LARGE_FRONT = 96, MOST_WAITING = 16 };
+
+struct membership {
+    int front;
+    int next; // of the site, or of those unused; -1: the last
 };
 
-struct tile {
-    int next_in_region; // -1: the last
-    int n_used;
-    int n_link, capacity;
-    struct tile_link *link; // to itself too
-};
-
-// The site that is eliminated: its conductances to the lanes of each tile beside it.
-struct star {
+struct front {
     int n, capacity;
-    struct arm {
-        int tile;
-        double sum;
-        double conductance[TILE_LANES];
-    } * arm;
+    int *site;        // (n)
+    double *triangle; // link of members i > j at i(i-1)/2 + j
+    size_t triangle_capacity;
+    int n_waiting;
+    double *waiting; // (n_waiting) rows of CAPACITY: what eliminated sites had
+    double factor[MOST_WAITING]; // of the product of two entries of a row
+    int next_unused;
 };
 
-struct star_mesh star_mesh_make(int n_site, int n_region, const int *region)
+static size_t triangle_size(int n)
+{
+    return n > 0 ? (size_t)n * (size_t)(n - 1) / 2 : 0;
+}
+
+static double *waiting_row(const struct front *front, int k)
+{
+    return front->waiting + (size_t)k * (size_t)front->capacity;
+}
+
+struct star_mesh star_mesh_make(int n_site)
 {
     struct star_mesh mesh = {.n_site = n_site,
-                             .region = region,
-                             .slot = NEW_ARRAY(int, n_site),
-                             .first_tile = NEW_ARRAY(int, n_region),
-                             .star = NEW_ARRAY(struct star, 1)};
+                             .air = NEW_ARRAY(double, n_site),
+                             .first = NEW_ARRAY(int, n_site),
+                             .place = NEW_ARRAY(int, n_site),
+                             .unused_membership = -1,
+                             .unused_front = -1};
     for (int i = 0; i < n_site; i++)
-        mesh.slot[i] = -1;
-    for (int r = 0; r < n_region; r++)
-        mesh.first_tile[r] = -1;
+        mesh.first[i] = mesh.place[i] = -1;
     return mesh;
+}
+
+static void empty_front(struct front *front)
+{
+    free(front->site);
+    free(front->triangle);
+    free(front->waiting);
+    *front = (struct front){0};
 }
 
 void star_mesh_free(struct star_mesh *mesh)
 {
-    for (int t = 0; t < mesh->n_tile; t++)
-        free(mesh->tile[t].link);
-    if (mesh->star) free(mesh->star->arm);
-    free(mesh->star);
-    free(mesh->slot);
-    free(mesh->tile);
+    for (int f = 0; f < mesh->n_front; f++)
+        empty_front(&mesh->front[f]);
     free(mesh->air);
-    free(mesh->site);
-    free(mesh->first_tile);
-    free(mesh->place);
-    free(mesh->met);
-    free(mesh->block);
-    free(mesh->unused_block);
+    free(mesh->first);
+    free(mesh->membership);
+    free(mesh->front);
     free(mesh->changed);
+    free(mesh->place);
+    free(mesh->row);
     *mesh = (struct star_mesh){0};
 }
 
-// --- tiles and blocks --------------------------------------------------------------
+// --- who is on which front ---------------------------------------------------------
 
-static int add_tile(struct star_mesh *mesh, int region)
+static int new_front(struct star_mesh *mesh)
 {
-    if (mesh->n_tile == mesh->tile_capacity) {
-        const int capacity = mesh->tile_capacity ? 2 * mesh->tile_capacity : 64;
-        const size_t n = (size_t)capacity;
-        mesh->tile = reallocate(mesh->tile, n, sizeof *mesh->tile);
-        mesh->air = reallocate(mesh->air, n, TILE_LANES * sizeof *mesh->air);
-        mesh->site = reallocate(mesh->site, n, TILE_LANES * sizeof *mesh->site);
-        mesh->place = reallocate(mesh->place, n, sizeof *mesh->place);
-        mesh->met = reallocate(mesh->met, n, sizeof *mesh->met);
-        mesh->tile_capacity = capacity;
+    const int front = mesh->unused_front;
+    if (front >= 0) {
+        mesh->unused_front = mesh->front[front].next_unused;
+        mesh->front[front].next_unused = -1;
+        return front;
     }
-    const int tile = mesh->n_tile++;
-    mesh->tile[tile] = (struct tile){.next_in_region = mesh->first_tile[region]};
-    mesh->first_tile[region] = tile;
-    mesh->place[tile] = mesh->met[tile] = -1;
-    for (int lane = 0; lane < TILE_LANES; lane++) {
-        mesh->air[tile * TILE_LANES + lane] = 0;
-        mesh->site[tile * TILE_LANES + lane] = -1;
-    }
-    return tile;
+    GROW_ARRAY(mesh->front, mesh->n_front, mesh->front_capacity);
+    mesh->front[mesh->n_front] = (struct front){0};
+    return mesh->n_front++;
 }
 
-// The slot of SITE, a new one if it has none.
-static int enter(struct star_mesh *mesh, int site)
+static void end_front(struct star_mesh *mesh, int front)
 {
-    if (mesh->slot[site] >= 0) return mesh->slot[site];
-    int tile = mesh->first_tile[mesh->region[site]];
-    while (tile >= 0 && mesh->tile[tile].n_used == TILE_LANES)
-        tile = mesh->tile[tile].next_in_region;
-    if (tile < 0) tile = add_tile(mesh, mesh->region[site]);
-    int slot = tile * TILE_LANES;
-    while (mesh->site[slot] >= 0)
-        slot++;
-    mesh->site[slot] = site;
-    mesh->air[slot] = 0;
-    mesh->tile[tile].n_used++;
-    return mesh->slot[site] = slot;
+    empty_front(&mesh->front[front]);
+    mesh->front[front].next_unused = mesh->unused_front;
+    mesh->unused_front = front;
 }
 
-static void add_tile_link(struct tile *tile, int other, int block)
+static void join(struct star_mesh *mesh, int site, int front)
 {
-    GROW_ARRAY(tile->link, tile->n_link, tile->capacity);
-    tile->link[tile->n_link++] = (struct tile_link){other, block};
-}
-
-static int add_block(struct star_mesh *mesh, int a, int b)
-{
-    int block;
-    if (mesh->n_unused > 0) {
-        block = mesh->unused_block[--mesh->n_unused];
+    int membership = mesh->unused_membership;
+    if (membership >= 0) {
+        mesh->unused_membership = mesh->membership[membership].next;
     } else {
-        GROW_ARRAY(mesh->block, mesh->n_block, mesh->block_capacity);
-        block = mesh->n_block++;
+        GROW_ARRAY(mesh->membership, mesh->n_membership, mesh->membership_capacity);
+        membership = mesh->n_membership++;
     }
-    memset(mesh->block[block], 0, sizeof mesh->block[block]);
-    add_tile_link(&mesh->tile[a], b, block);
-    if (a != b) add_tile_link(&mesh->tile[b], a, block);
-    return block;
+    mesh->membership[membership] = (struct membership){front, mesh->first[site]};
+    mesh->first[site] = membership;
 }
 
-static int find_block(const struct star_mesh *mesh, int a, int b)
+static void leave(struct star_mesh *mesh, int site, int front)
 {
-    if (mesh->tile[a].n_link > mesh->tile[b].n_link) {
-        const int swap = a;
-        a = b;
-        b = swap;
+    int *link = &mesh->first[site];
+    while (mesh->membership[*link].front != front)
+        link = &mesh->membership[*link].next;
+    const int membership = *link;
+    *link = mesh->membership[membership].next;
+    mesh->membership[membership].next = mesh->unused_membership;
+    mesh->unused_membership = membership;
+}
+
+static void widen(struct front *front)
+{
+    const int capacity = front->capacity ? front->capacity + front->capacity / 2 : 4;
+    front->site = reallocate(front->site, (size_t)capacity, sizeof *front->site);
+    if (front->waiting) {
+        double *waiting = NEW_ARRAY(double, (size_t)MOST_WAITING *(size_t)capacity);
+        for (int k = 0; k < front->n_waiting; k++)
+            memcpy(waiting + (size_t)k * (size_t)capacity, waiting_row(front, k),
+                   (size_t)front->n * sizeof *waiting);
+        free(front->waiting);
+        front->waiting = waiting;
     }
-    for (int k = 0; k < mesh->tile[a].n_link; k++)
-        if (mesh->tile[a].link[k].tile == b) return mesh->tile[a].link[k].block;
-    return -1;
+    front->capacity = capacity;
 }
 
-static void remove_tile_link(struct tile *tile, int other)
+// SITE comes last on the front, without links.
+static void add_member(struct star_mesh *mesh, int front_index, int site)
 {
-    int k = 0;
-    while (tile->link[k].tile != other)
-        k++;
-    tile->link[k] = tile->link[--tile->n_link];
-}
-
-static bool is_zero(const double *block)
-{
-    double sum = 0;
-    for (int k = 0; k < TILE_LANES * TILE_LANES; k++)
-        sum += block[k];
-    return sum == 0;
+    struct front *front = &mesh->front[front_index];
+    join(mesh, site, front_index);
+    if (front->n == front->capacity) widen(front);
+    const size_t before = triangle_size(front->n), after = triangle_size(front->n + 1);
+    if (after > front->triangle_capacity) {
+        front->triangle_capacity = after + after / 2;
+        front->triangle = reallocate(front->triangle, front->triangle_capacity,
+                                     sizeof *front->triangle);
+    }
+    for (size_t k = before; k < after; k++)
+        front->triangle[k] = 0;
+    for (int k = 0; k < front->n_waiting; k++)
+        waiting_row(front, k)[front->n] = 0;
+    front->site[front->n++] = site;
 }
 
 void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance)
 {
-    int i = enter(mesh, a), j = enter(mesh, b);
-    if (i < j) {
-        const int swap = i;
-        i = j;
-        j = swap;
-    }
-    const int high = i / TILE_LANES, low = j / TILE_LANES;
-    int block = find_block(mesh, high, low);
-    if (block < 0) block = add_block(mesh, high, low);
-    double *entry = mesh->block[block];
-    entry[i % TILE_LANES * TILE_LANES + j % TILE_LANES] += conductance;
-    if (high == low) entry[j % TILE_LANES * TILE_LANES + i % TILE_LANES] += conductance;
+    const int front = new_front(mesh);
+    add_member(mesh, front, a);
+    add_member(mesh, front, b);
+    mesh->front[front].triangle[0] = conductance;
 }
 
-static void change_air(struct star_mesh *mesh, int slot, double air)
+static void change_air(struct star_mesh *mesh, int site, double air)
 {
     compensated_add(&mesh->all_air, air);
-    compensated_add(&mesh->all_air, -mesh->air[slot]);
-    mesh->air[slot] = air;
+    compensated_add(&mesh->all_air, -mesh->air[site]);
+    mesh->air[site] = air;
 }
 
 void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
 {
-    const int slot = enter(mesh, site); // may move the array
-    change_air(mesh, slot, mesh->air[slot] + conductance);
+    change_air(mesh, site, mesh->air[site] + conductance);
 }
 
-double star_mesh_air(const struct star_mesh *mesh, int site)
+// --- the triangle ------------------------------------------------------------------
+
+// target += factor sum_k weight[k] source[k], for N entries.
+static void add_rows(double *restrict target, int n, const double *weight,
+                     double *const *source, int n_source)
 {
-    return mesh->slot[site] < 0 ? 0 : mesh->air[mesh->slot[site]];
+    int k = 0;
+    for (; k + 4 <= n_source; k += 4) {
+        const double a = weight[k], b = weight[k + 1], c = weight[k + 2],
+                     d = weight[k + 3];
+        const double *restrict p = source[k], *restrict q = source[k + 1],
+                               *restrict r = source[k + 2], *restrict s = source[k + 3];
+        for (int j = 0; j < n; j++)
+            target[j] += (a * p[j] + b * q[j]) + (c * r[j] + d * s[j]);
+    }
+    for (; k < n_source; k++) {
+        const double a = weight[k];
+        const double *restrict p = source[k];
+        for (int j = 0; j < n; j++)
+            target[j] += a * p[j];
+    }
+}
+
+// What has waited is added to the triangle.
+static void bring_up_to_date(struct front *front)
+{
+    if (front->n_waiting == 0) return;
+    double *source[MOST_WAITING], weight[MOST_WAITING];
+    for (int k = 0; k < front->n_waiting; k++)
+        source[k] = waiting_row(front, k);
+    for (int i = 1; i < front->n; i++) {
+        for (int k = 0; k < front->n_waiting; k++)
+            weight[k] = front->factor[k] * source[k][i];
+        add_rows(front->triangle + triangle_size(i), i, weight, source,
+                 front->n_waiting);
+    }
+    front->n_waiting = 0;
+}
+
+// The links of member P, what waits included.
+static void take_row(const struct front *front, int p, double *row)
+{
+    const int n = front->n;
+    memcpy(row, front->triangle + triangle_size(p), (size_t)p * sizeof *row);
+    row[p] = 0;
+    for (int i = p + 1; i < n; i++)
+        row[i] = front->triangle[triangle_size(i) + (size_t)p];
+    double *source[MOST_WAITING], weight[MOST_WAITING];
+    for (int k = 0; k < front->n_waiting; k++) {
+        source[k] = waiting_row(front, k);
+        weight[k] = front->factor[k] * source[k][p];
+    }
+    add_rows(row, n, weight, source, front->n_waiting);
+    row[p] = 0;
+}
+
+// The last member takes the place of member P.
+static void remove_member(struct star_mesh *mesh, struct front *front, int p)
+{
+    const int last = --front->n;
+    const double *from = front->triangle + triangle_size(last);
+    mesh->row[p] = mesh->row[last];
+    for (int k = 0; k < front->n_waiting; k++)
+        waiting_row(front, k)[p] = waiting_row(front, k)[last];
+    front->site[p] = front->site[last];
+    if (p == last) return;
+    memcpy(front->triangle + triangle_size(p), from, (size_t)p * sizeof *from);
+    for (int i = p + 1; i < last; i++)
+        front->triangle[triangle_size(i) + (size_t)p] = from[i];
+}
+
+// Links all members in proportion to the products of their entries in the row.
+static void add_mesh(struct front *front, const double *row, double factor)
+{
+    const int n = front->n;
+    if (n > LARGE_FRONT) {
+        if (!front->waiting)
+            front->waiting =
+                NEW_ARRAY(double, (size_t)MOST_WAITING *(size_t)front->capacity);
+        front->factor[front->n_waiting] = factor;
+        memcpy(waiting_row(front, front->n_waiting++), row, (size_t)n * sizeof *row);
+        if (front->n_waiting == MOST_WAITING) bring_up_to_date(front);
+        return;
+    }
+    bring_up_to_date(front);
+    for (int i = 1; i < n; i++) {
+        double *restrict to = front->triangle + triangle_size(i);
+        const double share = factor * row[i];
+        for (int j = 0; j < i; j++)
+            to[j] += share * row[j];
+    }
 }
 
 // --- elimination -------------------------------------------------------------------
 
-// Takes the conductances of SLOT out of the mesh into the star. Returns their sum.
-static double take_out(struct star_mesh *mesh, int slot)
+// The members of front OTHER become members of BASE, whose places are known.
+static void merge(struct star_mesh *mesh, int base_index, int other_index)
 {
-    const int tile = slot / TILE_LANES, lane = slot % TILE_LANES;
-    struct tile *here = &mesh->tile[tile];
-    struct star *star = mesh->star;
-    double total = 0;
-    star->n = 0;
-    for (int k = 0; k < here->n_link;) {
-        const int other = here->link[k].tile, block = here->link[k].block;
-        double *entry = mesh->block[block];
-        GROW_ARRAY(star->arm, star->n, star->capacity);
-        struct arm *arm = &star->arm[star->n];
-        const bool by_row = tile >= other;
-        double *first = by_row ? entry + TILE_LANES * lane : entry + lane;
-        const int stride = by_row ? 1 : TILE_LANES;
-        arm->sum = 0;
-        for (int l = 0; l < TILE_LANES; l++) {
-            arm->conductance[l] = first[l * stride];
-            arm->sum += arm->conductance[l];
-            first[l * stride] = 0;
-            if (other == tile) entry[TILE_LANES * l + lane] = 0;
-        }
-        if (arm->sum > 0) {
-            arm->tile = other;
-            total += arm->sum;
-            mesh->place[other] = star->n++;
-        }
-        if (!is_zero(entry)) {
-            k++;
-            continue;
-        }
-        GROW_ARRAY(mesh->unused_block, mesh->n_unused, mesh->unused_capacity);
-        mesh->unused_block[mesh->n_unused++] = block;
-        if (other != tile) remove_tile_link(&mesh->tile[other], tile);
-        here->link[k] = here->link[--here->n_link];
+    bring_up_to_date(&mesh->front[other_index]);
+    for (int i = 0; i < mesh->front[other_index].n; i++) {
+        const int site = mesh->front[other_index].site[i];
+        leave(mesh, site, other_index);
+        if (mesh->place[site] >= 0) continue;
+        mesh->place[site] = mesh->front[base_index].n;
+        add_member(mesh, base_index, site);
     }
-    return total;
-}
-
-// Adds the mesh between two arms to a block.
-static void add_mesh(double *restrict block, const double *restrict high,
-                     const double *restrict low, double factor)
-{
-    for (int r = 0; r < TILE_LANES; r++) {
-        const double share = high[r] * factor;
-        for (int c = 0; c < TILE_LANES; c++)
-            block[TILE_LANES * r + c] += share * low[c];
-    }
-}
-
-static void add_mesh_within(double *block, const double *arm, double factor)
-{
-    add_mesh(block, arm, arm, factor);
-    for (int l = 0; l < TILE_LANES; l++)
-        block[(TILE_LANES + 1) * l] = 0;
-}
-
-static void add_mesh_between(struct star_mesh *mesh, int block, const struct arm *high,
-                             const struct arm *low, double factor)
-{
-    if (high == low)
-        add_mesh_within(mesh->block[block], high->conductance, factor);
-    else
-        add_mesh(mesh->block[block], high->conductance, low->conductance, factor);
-}
-
-// Links the lanes of arm A with those of all arms whose tiles are not numbered higher.
-static void spread_arm(struct star_mesh *mesh, int a, double factor)
-{
-    const struct star *star = mesh->star;
-    const struct arm *high = &star->arm[a];
-    const double enough = mesh->drop / (high->sum * factor);
-    const struct tile *tile = &mesh->tile[high->tile];
-    const int n_link = tile->n_link;
-    for (int k = 0; k < n_link; k++) {
-        const int other = tile->link[k].tile;
-        if (other > high->tile || mesh->place[other] < 0) continue;
-        mesh->met[other] = a;
-        const struct arm *low = &star->arm[mesh->place[other]];
-        if (low->sum >= enough)
-            add_mesh_between(mesh, tile->link[k].block, high, low, factor);
-        else
-            mesh->dropped += high->sum * factor * low->sum;
-    }
-    for (int k = 0; k < star->n; k++) {
-        const struct arm *low = &star->arm[k];
-        if (low->tile > high->tile || mesh->met[low->tile] == a) continue;
-        if (low->sum >= enough)
-            add_mesh_between(mesh, add_block(mesh, high->tile, low->tile), high, low,
-                             factor);
-        else
-            mesh->dropped += high->sum * factor * low->sum;
-    }
-}
-
-// What flowed from the eliminated site flows on to its neighbours.
-static void raise_air(struct star_mesh *mesh, double air)
-{
-    const struct star *star = mesh->star;
-    for (int a = 0; a < star->n; a++)
-        for (int l = 0; l < TILE_LANES; l++) {
-            const int slot = star->arm[a].tile * TILE_LANES + l;
-            if (!(star->arm[a].conductance[l] > 0)) continue;
-            change_air(mesh, slot, mesh->air[slot] + star->arm[a].conductance[l] * air);
-            GROW_ARRAY(mesh->changed, mesh->n_changed, mesh->changed_capacity);
-            mesh->changed[mesh->n_changed++] = mesh->site[slot];
+    const struct front *other = &mesh->front[other_index];
+    struct front *base = &mesh->front[base_index];
+    const double *from = other->triangle;
+    for (int i = 1; i < other->n; i++) {
+        const int p = mesh->place[other->site[i]];
+        for (int j = 0; j < i; j++) {
+            const int q = mesh->place[other->site[j]];
+            const int high = p > q ? p : q, low = p > q ? q : p;
+            base->triangle[triangle_size(high) + (size_t)low] += *from++;
         }
+    }
+    end_front(mesh, other_index);
+}
+
+// All fronts that SITE is on, as one: the largest with what the others add.
+static int merge_fronts(struct star_mesh *mesh, int site)
+{
+    int largest = -1;
+    for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
+        const int front = mesh->membership[k].front;
+        if (largest < 0 || mesh->front[front].n > mesh->front[largest].n)
+            largest = front;
+    }
+    if (largest < 0) return -1;
+    for (int i = 0; i < mesh->front[largest].n; i++)
+        mesh->place[mesh->front[largest].site[i]] = i;
+    for (int k = mesh->first[site]; k >= 0;) {
+        const int front = mesh->membership[k].front;
+        k = mesh->membership[k].next;
+        if (front != largest) merge(mesh, largest, front);
+    }
+    return largest;
+}
+
+// What flowed to the eliminated site flows on into the air.
+static void raise_air(struct star_mesh *mesh, const struct front *front, double share)
+{
+    for (int i = 0; i < front->n; i++) {
+        if (!(mesh->row[i] > 0)) continue;
+        const int site = front->site[i];
+        change_air(mesh, site, mesh->air[site] + mesh->row[i] * share);
+        GROW_ARRAY(mesh->changed, mesh->n_changed, mesh->changed_capacity);
+        mesh->changed[mesh->n_changed++] = site;
+    }
 }
 
 void star_mesh_eliminate(struct star_mesh *mesh, int site)
 {
     mesh->n_changed = 0;
-    const int slot = mesh->slot[site];
-    if (slot < 0) return;
-    const double air = mesh->air[slot];
-    const double total = take_out(mesh, slot) + air;
-    mesh->tile[slot / TILE_LANES].n_used--;
-    mesh->site[slot] = mesh->slot[site] = -1;
-    change_air(mesh, slot, 0);
-    const struct star *star = mesh->star;
+    const double air = mesh->air[site];
+    change_air(mesh, site, 0);
+    const int front_index = merge_fronts(mesh, site);
+    if (front_index < 0) return;
+    struct front *front = &mesh->front[front_index];
+    while (mesh->row_capacity < front->n)
+        GROW_ARRAY(mesh->row, mesh->row_capacity, mesh->row_capacity);
+
+    const int place = mesh->place[site];
+    take_row(front, place, mesh->row);
+    for (int i = 0; i < front->n; i++)
+        mesh->place[front->site[i]] = -1;
+    leave(mesh, site, front_index);
+    remove_member(mesh, front, place);
+    double total = air;
+    for (int i = 0; i < front->n; i++)
+        total += mesh->row[i];
     if (total > 0) {
-        for (int a = 0; a < star->n; a++)
-            spread_arm(mesh, a, 1 / total);
-        if (air > 0) raise_air(mesh, air / total);
+        add_mesh(front, mesh->row, 1 / total);
+        if (air > 0) raise_air(mesh, front, air / total);
     }
-    for (int a = 0; a < star->n; a++)
-        mesh->place[star->arm[a].tile] = mesh->met[star->arm[a].tile] = -1;
+    if (front->n == 1) { // a dead end
+        leave(mesh, front->site[0], front_index);
+        front->n = 0;
+    }
+    if (front->n == 0) end_front(mesh, front_index);
 }

@@ -6,58 +6,48 @@
 // every conductance keeps its digits over any range (Grassmann, Taksar and Heyman
 // 1985).
 //
-// Sites are kept in tiles of eight, and conductances in blocks between tiles. Sites of
-// one region, which should be near each other, share tiles.
+// All sites beside one connected piece of eliminated ones are linked with each other;
+// such a front is kept as a dense triangle. A site may be on several fronts, which
+// become one when it is eliminated (the multifrontal method, in an order that is given
+// as it goes).
 #ifndef CRAQUELURE_STAR_MESH_H
 #define CRAQUELURE_STAR_MESH_H
 
 #include "compensated.h"
 
-enum { TILE_LANES = 8 };
-
-struct tile;
+struct front;
+struct membership; // a site's being on a front
 
 struct star_mesh {
     int n_site;
-    const int *region; // (n_site)
-    int *slot;         // (n_site) lane of a tile, -1 where the site is not in the mesh
-
-    struct tile *tile;
-    int n_tile, tile_capacity;
-    double *air;                // (n_tile TILE_LANES) conductance to the air
+    double *air;                // (n_site) conductance to the air
     struct compensated all_air; // its sum
-    int *site;                  // (n_tile TILE_LANES) -1 where free
-    int *first_tile;            // (n_region) -1: none
-    int *place;          // (n_tile) among the neighbours of the site eliminated, -1
-    int *met;            // (n_tile) workspace, -1 between calls
-    double (*block)[64]; // by lanes of the tile numbered higher, then lower
-    int n_block, block_capacity;
-    int *unused_block;
-    int n_unused, unused_capacity;
+    int *first;                 // (n_site) its memberships, -1: none
 
-    // New links below DROP are left out; DROPPED is their sum. No flow is then wrong by
-    // more than that times the largest fall of the potential (Rayleigh).
-    double drop, dropped;
+    struct membership *membership;
+    int n_membership, membership_capacity, unused_membership;
+    struct front *front;
+    int n_front, front_capacity, unused_front;
 
     // What the last elimination changed.
     int n_changed, changed_capacity;
     int *changed; // (n_changed) sites whose conductance to the air has grown
 
-    struct star *star; // workspace
+    int *place;  // (n_site) on the front at hand, -1 between calls
+    double *row; // of the site that is eliminated
+    int row_capacity;
 };
 
-// No site is in it. REGION (0..N_REGION-1) is kept and must live as long.
-struct star_mesh star_mesh_make(int n_site, int n_region, const int *region);
+// No links yet.
+struct star_mesh star_mesh_make(int n_site);
 
-// Adds to the conductance between A and B, which enter the mesh if they were not there.
+// Adds to the conductance between A and B, of which none has been eliminated, or
+// between SITE and the air.
 void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance);
 void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
 
-// SITE leaves the mesh. O(neighbours^2).
+// SITE leaves the mesh. O(n^2) for a front of n sites.
 void star_mesh_eliminate(struct star_mesh *mesh, int site);
-
-// Conductance between SITE and the air; 0 if it is not in the mesh.
-double star_mesh_air(const struct star_mesh *mesh, int site);
 
 void star_mesh_free(struct star_mesh *mesh);
 

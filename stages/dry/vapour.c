@@ -5,55 +5,11 @@
 
 #include <stdlib.h>
 
-// Sites that share tiles of the mesh: about as many as have eight wet ones among them.
-enum { REGION_SITES = 24 };
-
 static double throat_conductance(const struct network *network, int throat,
                                  double length)
 {
     const double radius = network->throat_radius[throat] / length;
     return M_PI * radius * radius / (network->throat_length[throat] / length);
-}
-
-// --- regions -----------------------------------------------------------------------
-
-// The network's nodes in connected groups, searched breadth first.
-static int group_nodes(const struct network *network, int *region)
-{
-    struct incidence incidence = network_incidence(network);
-    int *queue = NEW_ARRAY(int, network->n_node);
-    int n_region = 0;
-    for (int i = 0; i < network->n_node; i++)
-        region[i] = -1;
-    for (int seed = 0; seed < network->n_node; seed++) {
-        if (region[seed] >= 0) continue;
-        int n = 0;
-        queue[n++] = seed;
-        region[seed] = n_region;
-        for (int next = 0; next < n; next++)
-            for (int k = incidence.offset[queue[next]];
-                 k < incidence.offset[queue[next] + 1] && n < REGION_SITES; k++) {
-                const int32_t *ends = network->throat_nodes[incidence.throat[k]];
-                const int other = ends[0] == queue[next] ? ends[1] : ends[0];
-                if (region[other] >= 0) continue;
-                region[other] = n_region;
-                queue[n++] = other;
-            }
-        n_region++;
-    }
-    free(queue);
-    incidence_free(&incidence);
-    return n_region;
-}
-
-// Those of the boundary layer, which are gone before drying begins, in groups of eight.
-static int group_sites(struct vapour *vapour, const struct network *network)
-{
-    vapour->region = NEW_ARRAY(int, vapour->n_site);
-    const int n_region = group_nodes(network, vapour->region);
-    for (int i = network->n_node; i < vapour->n_site; i++)
-        vapour->region[i] = n_region + (i - network->n_node) / TILE_LANES;
-    return n_region + (vapour->n_site - network->n_node) / TILE_LANES + 1;
 }
 
 // --- the boundary layer ------------------------------------------------------------
@@ -104,8 +60,7 @@ struct vapour vapour_make(const struct network *network, double length,
     for (int t = 0; t < network->n_throat; t++)
         if (network->throat_kind[t] == THROAT_NETWORK)
             vapour.conductance[t] = throat_conductance(network, t, length);
-    const int n_region = group_sites(&vapour, network);
-    vapour.mesh = star_mesh_make(vapour.n_site, n_region, vapour.region);
+    vapour.mesh = star_mesh_make(vapour.n_site);
     add_boundary_layer(&vapour, layer, network->n_node);
     return vapour;
 }
@@ -114,7 +69,6 @@ void vapour_free(struct vapour *vapour)
 {
     star_mesh_free(&vapour->mesh);
     free(vapour->conductance);
-    free(vapour->region);
     *vapour = (struct vapour){0};
 }
 
@@ -128,9 +82,6 @@ void vapour_open_throat(struct vapour *vapour, int throat, int a, int b)
 void vapour_dry_node(struct vapour *vapour, int node)
 {
     star_mesh_eliminate(&vapour->mesh, node);
-    const double rate = vapour_rate(vapour);
-    const double bound = vapour->mesh.dropped / rate;
-    if (rate > 0 && bound > vapour->residual) vapour->residual = bound;
 }
 
 double vapour_rate(const struct vapour *vapour)
@@ -140,7 +91,7 @@ double vapour_rate(const struct vapour *vapour)
 
 double vapour_evaporation(const struct vapour *vapour, int node)
 {
-    return star_mesh_air(&vapour->mesh, node);
+    return vapour->mesh.air[node];
 }
 
 enum status vapour_check(const struct vapour *vapour, struct reason *reason)

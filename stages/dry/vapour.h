@@ -21,7 +21,6 @@ struct vapour {
     // Sites are the network's nodes, then the boundary layer's nodes level by level.
     int n_site;
     double *conductance; // (n_throat) area over length
-    int *region;         // (n_site) sites near each other
     struct star_mesh mesh;
     double residual; // bound of the largest error so far, of the rate
 };
