@@ -25,6 +25,33 @@ static enum status check_positive(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+static enum status check_liquid(const struct drying_conditions *conditions,
+                                struct reason *reason)
+{
+    if ((unsigned)conditions->liquid > LIQUID_VISCOUS)
+        return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
+                      (int)conditions->liquid);
+    if (conditions->liquid != LIQUID_VISCOUS) return STATUS_OK;
+    if (!(conditions->viscosity > 0) || !isfinite(conditions->viscosity))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "viscosity: must be above 0 in viscous liquid, is %g",
+                      conditions->viscosity);
+    if (!(conditions->surface_tension > 0) || !isfinite(conditions->surface_tension))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "surface_tension: must be above 0, is %g",
+                      conditions->surface_tension);
+    if (!(conditions->contact_angle >= 0 && conditions->contact_angle < 90))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "contact_angle: must be from 0 to below 90 degrees, is %g: gas "
+                      "would enter without being sucked in",
+                      conditions->contact_angle);
+    if (!(conditions->saturation_step > 0 && conditions->saturation_step <= 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "saturation_step: must be above 0 and at most 1, is %g",
+                      conditions->saturation_step);
+    return STATUS_OK;
+}
+
 enum status check_conditions(const struct drying_conditions *conditions,
                              struct reason *reason)
 {
@@ -62,10 +89,7 @@ enum status check_conditions(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "first_period_rate_fraction: must be between 0 and 1, is %g",
                       conditions->first_period_rate_fraction);
-    if (conditions->liquid != LIQUID_INVISCID && conditions->liquid != LIQUID_IMMOBILE)
-        return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
-                      (int)conditions->liquid);
-    return STATUS_OK;
+    return check_liquid(conditions, reason);
 }
 
 enum status check_throats(const struct network *network, struct reason *reason)

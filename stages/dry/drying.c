@@ -20,6 +20,7 @@ struct run {
     struct drying_scale scale;
     struct phases phases;
     struct losses losses;
+    struct liquid_flow flow; // empty unless the liquid is viscous
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
 };
@@ -51,25 +52,34 @@ static void record_state(struct run *run)
                       run->phases.clusters.count);
 }
 
-// When the first throat empties.
+// When the first throat has emptied or filled, or changed by saturation_step.
 static double time_to_first(const struct run *run)
 {
     double shortest = INFINITY;
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
+        const double volume = run->phases.volume[loss->throat];
         const double left = compensated_value(run->phases.liquid[loss->throat]);
-        shortest = fmin(shortest, left / loss->rate);
+        shortest = fmin(shortest, loss->rate > 0 ? left / loss->rate
+                                                 : (volume - left) / -loss->rate);
+        if (run->conditions->liquid == LIQUID_VISCOUS)
+            shortest = fmin(shortest, run->conditions->saturation_step * volume /
+                                          fabs(loss->rate));
     }
     return shortest;
 }
 
 // THROAT loses AMOUNT, or all it has if that is all but TIE of its volume: then it ties
-// with the first.
+// with the first. Likewise one that fills.
 static void lose(struct phases *phases, int throat, double amount)
 {
     struct compensated *liquid = &phases->liquid[throat];
     const double before = compensated_value(*liquid);
-    if (before - amount > TIE * phases->volume[throat]) {
+    const double volume = phases->volume[throat];
+    if (amount < 0 && before - amount > volume * (1 - TIE)) {
+        *liquid = (struct compensated){.value = volume};
+        compensated_add(&phases->total_liquid, volume - before);
+    } else if (before - amount > TIE * volume) {
         compensated_add(liquid, -amount);
         compensated_add(&phases->total_liquid, -amount);
     } else {
@@ -99,17 +109,28 @@ static void advance(struct run *run, double duration)
     }
 }
 
+static void note_refills(struct run *run, double time)
+{
+    const struct phases *phases = &run->phases;
+    for (int k = 0; k < run->losses.n; k++) {
+        const struct loss *loss = &run->losses.loss[k];
+        if (loss->rate < 0 && throat_saturation(phases, loss->throat) == 1)
+            recorder_add_event(&run->recorder, time, loss->throat, EVENT_REFILLED);
+    }
+}
+
 // Gas fills what has emptied [K 3.4.2, step 6].
 static void empty_throats(struct run *run)
 {
     struct phases *phases = &run->phases;
     const bool breakthrough_before = phases->breakthrough;
     const double time = compensated_value(run->time) * run->scale.time;
+    note_refills(run, time);
     for (int k = 0; k < run->losses.n; k++) {
         const int throat = run->losses.loss[k].throat;
         if (phases->liquid[throat].value != 0) continue;
         phases_empty_throat(phases, throat);
-        recorder_add_event(&run->recorder, time, throat);
+        recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
     }
     if (phases->breakthrough && !breakthrough_before)
         run->recorder.history->breakthrough_saturation = network_saturation(run);
@@ -118,7 +139,9 @@ static void empty_throats(struct run *run)
 static enum status dry_step(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
-    losses_find(&run->losses, phases, run->conditions->liquid);
+    enum status status =
+        losses_find(&run->losses, phases, run->conditions->liquid, &run->flow, reason);
+    if (status) return status;
     if (run->losses.n == 0)
         return refuse(
             reason, STATUS_NOT_CONVERGED,
@@ -127,7 +150,7 @@ static enum status dry_step(struct run *run, struct reason *reason)
             phases->n_full);
     advance(run, time_to_first(run));
     empty_throats(run);
-    const enum status status = vapour_check(&phases->vapour, reason);
+    status = vapour_check(&phases->vapour, reason);
     record_state(run);
     return status;
 }
@@ -159,6 +182,9 @@ static void summarise(const struct run *run, struct drying_history *history)
     history->initial_liquid = run->phases.initial_liquid * run->scale.mass;
     history->evaporated = compensated_value(run->evaporated) * run->scale.mass;
     history->vapour_residual = run->phases.vapour.residual;
+    history->liquid_residual = run->flow.residual;
+    history->flow_solutions = run->flow.solutions;
+    history->flow_rounds = run->flow.rounds;
 }
 
 enum status dry_network(const struct network *network,
@@ -186,12 +212,16 @@ enum status dry_network(const struct network *network,
         return status;
     }
 
-    const bool gas_parts = conditions->liquid == LIQUID_INVISCID;
+    const bool gas_parts = conditions->liquid != LIQUID_IMMOBILE;
+    if (conditions->liquid == LIQUID_VISCOUS)
+        run.flow = liquid_flow_make(network, run.scale.length,
+                                    menisci_make(network, conditions, &run.scale));
     run.losses = losses_make(network->n_throat);
     status = phases_make(network, wall, run.scale.length, gas_parts, layer, &run.phases,
                          reason);
     if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);
+    liquid_flow_free(&run.flow);
     losses_free(&run.losses);
     phases_free(&run.phases);
     return status;

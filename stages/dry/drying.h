@@ -25,7 +25,10 @@ enum liquid_limit {
     // throat, that of lowest capillary pressure [K 3.4.2, steps 1-6].
     LIQUID_INVISCID = 0,
     // Viscosity suppresses all flow: each throat loses what it evaporates itself.
-    LIQUID_IMMOBILE = 1
+    LIQUID_IMMOBILE = 1,
+    // Poiseuille flow within each cluster [K 3.10]: between the two limits, which it
+    // reaches as the viscosity goes to 0 and to infinity.
+    LIQUID_VISCOUS = 2
 };
 
 // Molar gas constant, J/(mol K): exact in the SI; [K Table 3.1] rounds it to 8.3145.
@@ -39,7 +42,14 @@ struct drying_conditions {
     double diffusivity;         // delta of vapour in the gas, m2/s
     double molar_mass;          // of the liquid, kg/mol
     double liquid_density;      // kg/m3
-    double mass_transfer;       // beta, m/s; the boundary layer is delta/beta thick
+    double viscosity;       // kinematic, of the liquid, m2/s; above 0 if it is viscous
+    double surface_tension; // N/m; above 0 if the liquid is viscous
+    double contact_angle;   // degrees, from 0 to below 90
+    double gravity;         // towards -z, m/s2; 0: none
+    // Viscous: conductances are renewed when a throat's saturation has changed by this,
+    // in (0,1]; 1: only when a throat has emptied or filled, as K does.
+    double saturation_step;
+    double mass_transfer;    // beta, m/s; the boundary layer is delta/beta thick
     int layers;              // of the boundary layer; 0: as thick as a throat is long
     enum boundary_feet feet; // where its columns stand
     bool lumped;             // no lattice of layers and columns, only beta
@@ -49,10 +59,17 @@ struct drying_conditions {
         first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends
 };
 
+enum event_kind {
+    EVENT_EMPTIED = 0, // completely
+    EVENT_REFILLED = 1 // by flow from its cluster, after it was partly empty
+};
+
 // What happened, from the full network to the dry one. Step 0 is the initial state;
 // each later step is the moment at which a throat has just emptied, or several that tie
-// to rounding (as all do that recede at one speed from one node). Between two steps
-// every throat's saturation is linear in time, and the rate is constant.
+// to rounding (as all do that recede at one speed from one node). In viscous liquid it
+// may also be that of a throat that has filled again, or of a change of
+// saturation_step. Between two steps every throat's saturation is linear in time, and
+// the rate is constant.
 struct drying_history {
     int n_step;
     double *time;       // (n_step) s, increasing (as far as its digits reach) from 0
@@ -61,10 +78,10 @@ struct drying_history {
                         // the last is 0
     int32_t *clusters;  // (n_step) connected pieces of liquid
 
-    int n_event;           // one for each throat of kind THROAT_NETWORK
-    double *event_time;    // (n_event) s
+    int n_event;        // one for each throat of kind THROAT_NETWORK, and the refills
+    double *event_time; // (n_event) s
     int32_t *event_throat; // (n_event) index in the network
-    uint8_t *event_kind;   // (n_event) 0: the throat has emptied completely
+    uint8_t *event_kind;   // (n_event) enum event_kind
 
     // Throats whose saturation at step k differs from that at step k-1, ascending
     // within a step: entries change_offset[k] .. change_offset[k+1]-1. None at step 0,
@@ -86,6 +103,9 @@ struct drying_history {
     double initial_liquid;  // kg: what the throats lose in all, since all end empty
     double evaporated;      // kg: integral of the rate into the drying air
     double vapour_residual; // largest over the run, of the rate
+    double
+        liquid_residual; // of the liquid's balances, of the largest flow in a cluster
+    int64_t flow_solutions, flow_rounds; // clusters solved, and rounds to find menisci
 };
 
 // Told now and then how far the run is, as the fraction of all throats that is empty.

@@ -23,7 +23,8 @@ void recorder_add_change(struct recorder *recorder, int throat, double saturatio
     recorder->n_change++;
 }
 
-void recorder_add_event(struct recorder *recorder, double time, int throat)
+void recorder_add_event(struct recorder *recorder, double time, int throat,
+                        enum event_kind kind)
 {
     struct drying_history *history = recorder->history;
     if (history->n_event == recorder->event_capacity) {
@@ -37,7 +38,7 @@ void recorder_add_event(struct recorder *recorder, double time, int throat)
     }
     history->event_time[history->n_event] = time;
     history->event_throat[history->n_event] = throat;
-    history->event_kind[history->n_event] = 0;
+    history->event_kind[history->n_event] = (uint8_t)kind;
     history->n_event++;
 }
 

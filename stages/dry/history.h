@@ -18,7 +18,8 @@ struct recorder recorder_make(struct drying_history *history);
 
 // A step's changes come before the step itself, ascending in throats.
 void recorder_add_change(struct recorder *recorder, int throat, double saturation);
-void recorder_add_event(struct recorder *recorder, double time, int throat);
+void recorder_add_event(struct recorder *recorder, double time, int throat,
+                        enum event_kind kind);
 void recorder_add_step(struct recorder *recorder, double time, double saturation,
                        double rate, int clusters);
 

@@ -79,13 +79,19 @@ static int compare_losses(const void *a, const void *b)
     return (l->throat > m->throat) - (l->throat < m->throat);
 }
 
-void losses_find(struct losses *losses, struct phases *phases, enum liquid_limit limit)
+enum status losses_find(struct losses *losses, struct phases *phases,
+                        enum liquid_limit limit, struct liquid_flow *flow,
+                        struct reason *reason)
 {
+    enum status status = STATUS_OK;
     losses->n = 0;
     losses->n_charged = 0;
     for (int k = 0; k < phases->n_wet; k++)
         charge_throats(losses, phases, phases->wet[k]);
-    if (limit == LIQUID_IMMOBILE)
+    if (limit == LIQUID_VISCOUS)
+        status = liquid_flow_find(flow, phases, losses->charge, losses->loss,
+                                  &losses->n, reason);
+    else if (limit == LIQUID_IMMOBILE)
         lose_immobile(losses);
     else
         lose_inviscid(losses, phases);
@@ -93,4 +99,5 @@ void losses_find(struct losses *losses, struct phases *phases, enum liquid_limit
         losses->charge[losses->charged[k]] = 0;
     if (losses->n > 0)
         qsort(losses->loss, (size_t)losses->n, sizeof *losses->loss, compare_losses);
+    return status;
 }

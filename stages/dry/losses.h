@@ -6,10 +6,11 @@
 
 #include "drying.h"
 #include "phases.h"
+#include "viscous.h"
 
 struct loss {
     int throat;
-    double rate; // of scaled volume
+    double rate; // of scaled volume; below 0: it fills
 };
 
 struct losses {
@@ -25,8 +26,11 @@ struct losses {
 struct losses losses_make(int n_throat);
 
 // Shares what the wet nodes evaporate among the throats with liquid beside them, in
-// proportion to their cross-sections, and finds by LIMIT which throats it empties.
-void losses_find(struct losses *losses, struct phases *phases, enum liquid_limit limit);
+// proportion to their cross-sections, and finds by LIMIT which throats it empties. FLOW
+// is used where the liquid is viscous; only then can it fail.
+enum status losses_find(struct losses *losses, struct phases *phases,
+                        enum liquid_limit limit, struct liquid_flow *flow,
+                        struct reason *reason);
 
 void losses_free(struct losses *losses);
 

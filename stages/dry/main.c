@@ -27,10 +27,22 @@ struct dry_parameters {
 
 static const struct parameter table[] = {
     {"liquid", PARAMETER_CHOICE, "1", "\"inviscid\"", BOUND_NONE, 0, 0,
-     "inviscid|immobile",
-     "liquid of negligible viscosity (very slow drying), or immobile (very fast) [K "
-     "5.4]",
+     "inviscid|immobile|viscous",
+     "liquid of negligible viscosity (very slow drying), immobile (very fast) [K 5.4], "
+     "or between the two, as viscosity says [K 3.10]",
      AT(liquid)},
+    {"viscosity", PARAMETER_NUMBER, "m2 s-1", "1e-6", BOUND_ABOVE, 0, 0, NULL,
+     "kinematic, of viscous liquid [K Table 3.1]", AT(conditions.viscosity)},
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid; of no effect in inviscid liquid without gravity [K Table 3.1]",
+     AT(conditions.surface_tension)},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
+     "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) / r",
+     AT(conditions.contact_angle)},
+    {"saturation_step", PARAMETER_NUMBER, "1", "1", BOUND_BETWEEN, 1e-6, 1, NULL,
+     "viscous: flow is solved anew when a throat's saturation has changed by this; 1: "
+     "when one has emptied or filled",
+     AT(conditions.saturation_step)},
     {"open", PARAMETER_CHOICES, "1", "[\"+z\"]", BOUND_NONE, 0, 0, WALLS,
      "the wall that is open to the drying air", AT(open_walls)},
     {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0, WALLS,
@@ -183,6 +195,30 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
                         fabs(history->evaporated - history->initial_liquid) /
                             history->initial_liquid);
     artifact_put_number(artifact, "/summary/residual", history->vapour_residual);
+    artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
+}
+
+static void describe_liquid(const struct drying_conditions *conditions,
+                            const struct drying_history *history, char *text,
+                            size_t size)
+{
+    switch (conditions->liquid) {
+    case LIQUID_INVISCID:
+        snprintf(text, size,
+                 "negligible viscosity, invasion percolation cluster by cluster");
+        break;
+    case LIQUID_IMMOBILE:
+        snprintf(text, size, "immobile, each throat dries by itself");
+        break;
+    case LIQUID_VISCOUS:
+        snprintf(text, size,
+                 "viscous, Poiseuille flow at %.17g m2/s between moving and stationary "
+                 "menisci [K 3.10], contact angle %.17g degrees; %lld clusters solved "
+                 "in %lld rounds",
+                 conditions->viscosity, conditions->contact_angle,
+                 (long long)history->flow_solutions, (long long)history->flow_rounds);
+        break;
+    }
 }
 
 static const char *describe_layer(const struct dry_parameters *parameters,
@@ -222,20 +258,17 @@ static void write_drying(const struct network *network,
                          const struct dry_parameters *parameters,
                          const struct mass_transfer *transfer)
 {
-    char model[1400], layer[300], flow[200];
+    char model[1600], layer[300], flow[200], liquid[300];
+    describe_liquid(&parameters->conditions, history, liquid, sizeof liquid);
     snprintf(model, sizeof model,
              "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
              "boundary layer: %s\n"
              "boundary layer: %.17g m thick, from %s\n"
              "liquid: %s\n"
-             "left out: viscosity between the two limits, gravity, films, Kelvin and "
-             "Knudsen effects, temperature\n",
+             "left out: gravity, films, Kelvin and Knudsen effects, temperature\n",
              describe_layer(parameters, history, layer),
              history->boundary_layer_thickness,
-             describe_flow(parameters, transfer, flow),
-             parameters->conditions.liquid == LIQUID_INVISCID
-                 ? "negligible viscosity, invasion percolation cluster by cluster"
-                 : "immobile, each throat dries by itself");
+             describe_flow(parameters, transfer, flow), liquid);
     struct artifact *artifact = artifact_create("drying");
     artifact_put_network(artifact, network);
     put_history(artifact, history);

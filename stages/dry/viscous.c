@@ -1,0 +1,494 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viscous.h"
+
+#include "basics/memory.h"
+#include "losses.h"
+
+#include <cholmod.h>
+#include <stdlib.h>
+
+// Rounds in which menisci are found; from the second on none can come back, so this is
+// far more than any network needs.
+enum { MOST_ROUNDS = 200, REFINEMENTS = 10 };
+
+// Largest error of a node's balance, relative to the largest flow in its cluster.
+#define FLOW_TOLERANCE 1e-11
+static const double AIM = 1e-14;
+
+// One cluster of liquid. Its unknowns are the potentials at nodes that liquid fills.
+struct piece {
+    const int *throat; // (n_throat)
+    int n_throat;
+    int n_unknown;
+    int reference;      // throat that gas enters most easily: potentials are above its
+    double evaporation; // of all its throats
+    double flow;        // scale of the flows in it
+};
+
+struct flow_solver {
+    cholmod_common common;
+    int *throat, *offset; // throats by clusters: those of c from offset[c] on
+    int offset_capacity;
+    int *unknown; // (n_node) -1: gas, or in no cluster now
+    int *node;    // (n_unknown)
+    // In two parts: across a wide throat potentials differ by less than the last digit.
+    struct compensated *potential;
+    double *lack;
+    const struct phases *phases;
+    const double *charge;
+};
+
+struct liquid_flow liquid_flow_make(const struct network *network, double length,
+                                    struct menisci menisci)
+{
+    struct flow_solver *solver = NEW_ARRAY(struct flow_solver, 1);
+    struct liquid_flow flow = {.network = network,
+                               .menisci = menisci,
+                               .conductance = NEW_ARRAY(double, network->n_throat),
+                               .moving = NEW_ARRAY(bool, network->n_throat),
+                               .pressure = NEW_ARRAY(double, network->n_node),
+                               .solver = solver};
+    for (int t = 0; t < network->n_throat; t++) {
+        const double r = network->throat_radius[t] / length;
+        if (network->throat_kind[t] == THROAT_NETWORK)
+            flow.conductance[t] =
+                M_PI * (r * r) * (r * r) / (8 * (network->throat_length[t] / length));
+    }
+    solver->throat = NEW_ARRAY(int, network->n_throat);
+    solver->unknown = NEW_ARRAY(int, network->n_node);
+    solver->node = NEW_ARRAY(int, network->n_node);
+    solver->potential = NEW_ARRAY(struct compensated, network->n_node);
+    solver->lack = NEW_ARRAY(double, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        solver->unknown[i] = -1;
+    cholmod_start(&solver->common);
+    solver->common.print = 0;
+    solver->common.supernodal =
+        CHOLMOD_SIMPLICIAL; // no BLAS: the same bytes everywhere
+    solver->common.nmethods = 1;
+    solver->common.method[0].ordering = CHOLMOD_AMD;
+    return flow;
+}
+
+void liquid_flow_free(struct liquid_flow *flow)
+{
+    struct flow_solver *solver = flow->solver;
+    if (solver) {
+        cholmod_finish(&solver->common);
+        free(solver->throat);
+        free(solver->offset);
+        free(solver->unknown);
+        free(solver->node);
+        free(solver->potential);
+        free(solver->lack);
+        free(solver);
+    }
+    menisci_free(&flow->menisci);
+    free(flow->conductance);
+    free(flow->moving);
+    free(flow->pressure);
+    *flow = (struct liquid_flow){0};
+}
+
+// --- one throat ----------------------------------------------------------------------
+
+static double saturation_of(const struct flow_solver *solver, int throat)
+{
+    return compensated_value(solver->phases->liquid[throat]) /
+           solver->phases->volume[throat];
+}
+
+static bool is_full(const struct flow_solver *solver, int throat)
+{
+    return !(saturation_of(solver, throat) < 1);
+}
+
+static bool has_meniscus(const struct flow_solver *solver, int throat)
+{
+    return solver->phases->clusters.meniscus[throat];
+}
+
+// The unknowns at a throat's liquid ends; returns how many there are.
+static int liquid_ends(const struct liquid_flow *flow, int throat, int end[2])
+{
+    int n = 0;
+    for (int k = 0; k < 2; k++) {
+        const int unknown =
+            flow->solver->unknown[flow->network->throat_nodes[throat][k]];
+        if (unknown >= 0) end[n++] = unknown;
+    }
+    return n;
+}
+
+// From the meniscus of THROAT to each of its N liquid ends.
+static double arm(const struct liquid_flow *flow, int throat, int n)
+{
+    return n * flow->conductance[throat] / saturation_of(flow->solver, throat);
+}
+
+// Potential at which the meniscus of THROAT moves.
+static double entry(const struct liquid_flow *flow, const struct piece *piece,
+                    int throat)
+{
+    return menisci_potential(&flow->menisci, throat, piece->reference);
+}
+
+static double above(struct compensated potential, double level)
+{
+    return (potential.value - level) + potential.lost;
+}
+
+static double fall(struct compensated from, struct compensated to)
+{
+    return (from.value - to.value) + (from.lost - to.lost);
+}
+
+// What flows from the liquid ends to a moving meniscus.
+static double flow_to_meniscus(const struct liquid_flow *flow,
+                               const struct piece *piece, int throat)
+{
+    int end[2];
+    const int n = liquid_ends(flow, throat, end);
+    double sum = 0;
+    for (int k = 0; k < n; k++)
+        sum += above(flow->solver->potential[end[k]], entry(flow, piece, throat));
+    return n > 0 ? arm(flow, throat, n) * sum : 0;
+}
+
+// Potential behind a meniscus to which as much flows as evaporates.
+static double potential_at_mouth(const struct liquid_flow *flow, int throat)
+{
+    int end[2];
+    const int n = liquid_ends(flow, throat, end);
+    double mean = 0;
+    for (int k = 0; k < n; k++)
+        mean += compensated_value(flow->solver->potential[end[k]]) / n;
+    return mean - flow->solver->charge[throat] / (n * arm(flow, throat, n));
+}
+
+// --- the balances --------------------------------------------------------------------
+
+// What the balances of all nodes lack. Moved liquid is added to the piece's scale.
+static void find_lack(const struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    double *lack = solver->lack;
+    for (int k = 0; k < piece->n_unknown; k++)
+        lack[k] = 0;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        int end[2];
+        const int n = liquid_ends(flow, throat, end);
+        if (flow->moving[throat]) {
+            for (int e = 0; e < n; e++)
+                lack[end[e]] -=
+                    arm(flow, throat, n) *
+                    above(solver->potential[end[e]], entry(flow, piece, throat));
+            continue;
+        }
+        for (int e = 0; e < n; e++)
+            lack[end[e]] -= solver->charge[throat] / n;
+        if (n < 2) continue;
+        const double through =
+            flow->conductance[throat] *
+            fall(solver->potential[end[1]], solver->potential[end[0]]);
+        lack[end[0]] += through;
+        lack[end[1]] -= through;
+    }
+}
+
+static void add_entry(cholmod_triplet *entries, int row, int column, double value)
+{
+    ((int *)entries->i)[entries->nnz] = row > column ? row : column;
+    ((int *)entries->j)[entries->nnz] = row > column ? column : row;
+    ((double *)entries->x)[entries->nnz] = value;
+    entries->nnz++;
+}
+
+// Lower triangle.
+static cholmod_sparse *assemble(const struct liquid_flow *flow,
+                                const struct piece *piece)
+{
+    cholmod_common *common = &flow->solver->common;
+    const size_t n_unknown = (size_t)piece->n_unknown;
+    cholmod_triplet *entries = cholmod_allocate_triplet(
+        n_unknown, n_unknown, 3 * (size_t)piece->n_throat, -1, CHOLMOD_REAL, common);
+    if (!entries) return NULL;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        int end[2];
+        const int n = liquid_ends(flow, throat, end);
+        const bool moving = flow->moving[throat];
+        if (!moving && n < 2) continue;
+        const double value = moving ? arm(flow, throat, n) : flow->conductance[throat];
+        for (int e = 0; e < n; e++)
+            add_entry(entries, end[e], end[e], value);
+        if (!moving) add_entry(entries, end[0], end[1], -value);
+    }
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, entries->nnz, common);
+    cholmod_free_triplet(&entries, common);
+    return matrix;
+}
+
+static double largest_lack(const struct flow_solver *solver, const struct piece *piece)
+{
+    double largest = 0;
+    for (int k = 0; k < piece->n_unknown; k++)
+        largest = fmax(largest, fabs(solver->lack[k]));
+    return largest;
+}
+
+// The largest flow to or from a moving meniscus, or what evaporates.
+static double flow_scale(const struct liquid_flow *flow, const struct piece *piece)
+{
+    double scale = piece->evaporation;
+    for (int k = 0; k < piece->n_throat; k++)
+        if (flow->moving[piece->throat[k]])
+            scale = fmax(scale, fabs(flow_to_meniscus(flow, piece, piece->throat[k])));
+    return scale;
+}
+
+static bool correct(const struct liquid_flow *flow, const struct piece *piece,
+                    cholmod_factor *factor)
+{
+    struct flow_solver *solver = flow->solver;
+    cholmod_dense lack = {.nrow = (size_t)piece->n_unknown,
+                          .ncol = 1,
+                          .nzmax = (size_t)piece->n_unknown,
+                          .d = (size_t)piece->n_unknown,
+                          .x = solver->lack,
+                          .xtype = CHOLMOD_REAL,
+                          .dtype = CHOLMOD_DOUBLE};
+    cholmod_dense *correction =
+        cholmod_solve(CHOLMOD_A, factor, &lack, &solver->common);
+    if (!correction) return false;
+    for (int k = 0; k < piece->n_unknown; k++)
+        compensated_add(&solver->potential[k], ((const double *)correction->x)[k]);
+    cholmod_free_dense(&correction, &solver->common);
+    return true;
+}
+
+// Potentials for the menisci as they are.
+static enum status solve_potentials(struct liquid_flow *flow, const struct piece *piece,
+                                    struct reason *reason)
+{
+    struct flow_solver *solver = flow->solver;
+    cholmod_common *common = &solver->common;
+    for (int k = 0; k < piece->n_unknown; k++)
+        solver->potential[k] = (struct compensated){0};
+    cholmod_sparse *matrix = assemble(flow, piece);
+    cholmod_factor *factor = matrix ? cholmod_analyze(matrix, common) : NULL;
+    bool solved = factor && cholmod_factorize(matrix, factor, common) &&
+                  common->status == CHOLMOD_OK;
+    double residual = INFINITY;
+    find_lack(flow, piece);
+    for (int k = 0; solved && residual > AIM && k < REFINEMENTS; k++) {
+        solved = correct(flow, piece, factor);
+        find_lack(flow, piece);
+        residual = largest_lack(solver, piece) / flow_scale(flow, piece);
+    }
+    cholmod_free_factor(&factor, common);
+    cholmod_free_sparse(&matrix, common);
+    if (!solved || !(residual < FLOW_TOLERANCE))
+        return refuse(reason, STATUS_NOT_CONVERGED,
+                      "the liquid's balance closes to %.3g of its largest flow only, "
+                      "needed is %g (%d unknowns, CHOLMOD status %d)",
+                      residual, FLOW_TOLERANCE, piece->n_unknown, common->status);
+    flow->residual = fmax(flow->residual, residual);
+    return STATUS_OK;
+}
+
+// --- the menisci ---------------------------------------------------------------------
+
+// Whether the meniscus of THROAT must move by the potentials as they are.
+static bool must_move(const struct liquid_flow *flow, const struct piece *piece,
+                      int throat)
+{
+    const struct flow_solver *solver = flow->solver;
+    if (!has_meniscus(solver, throat)) return false;
+    if (!is_full(solver, throat)) return true;
+    // What would flow back to a full throat for rounding alone does not stop it.
+    const double charge = solver->charge[throat];
+    if (flow->moving[throat])
+        return charge - flow_to_meniscus(flow, piece, throat) >= -AIM * piece->flow;
+    return potential_at_mouth(flow, throat) < entry(flow, piece, throat);
+}
+
+// Menisci as they were, those in throats partly empty, and if that is none, that which
+// gas enters most easily.
+static void start_menisci(struct liquid_flow *flow, const struct piece *piece)
+{
+    bool any = false;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        flow->moving[throat] = has_meniscus(flow->solver, throat) &&
+                               (flow->moving[throat] || !is_full(flow->solver, throat));
+        any |= flow->moving[throat];
+    }
+    if (!any) flow->moving[piece->reference] = true;
+}
+
+static int revise_menisci(struct liquid_flow *flow, const struct piece *piece)
+{
+    int n = 0;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        const bool moves = must_move(flow, piece, throat);
+        n += moves != flow->moving[throat];
+        flow->moving[throat] = moves;
+    }
+    return n;
+}
+
+static enum status find_menisci(struct liquid_flow *flow, struct piece *piece,
+                                struct reason *reason)
+{
+    start_menisci(flow, piece);
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        const enum status status = solve_potentials(flow, piece, reason);
+        if (status) return status;
+        flow->rounds++;
+        piece->flow = flow_scale(flow, piece);
+        if (revise_menisci(flow, piece) == 0) return STATUS_OK;
+    }
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "no consistent menisci after %d rounds in a cluster of %d throats",
+                  MOST_ROUNDS, piece->n_throat);
+}
+
+// --- one cluster ---------------------------------------------------------------------
+
+static void add_loss(struct loss *loss, int *n_loss, int throat, double rate)
+{
+    if (rate != 0) loss[(*n_loss)++] = (struct loss){throat, rate};
+}
+
+// What each moving meniscus loses. The error of the balances is left to the largest.
+static void collect_losses(const struct liquid_flow *flow, const struct piece *piece,
+                           struct loss *loss, int *n_loss)
+{
+    const int first = *n_loss;
+    int largest = first;
+    double sum = 0;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        if (!flow->moving[throat]) continue;
+        double rate =
+            flow->solver->charge[throat] - flow_to_meniscus(flow, piece, throat);
+        if (is_full(flow->solver, throat)) rate = fmax(rate, 0);
+        add_loss(loss, n_loss, throat, rate);
+        sum += rate;
+    }
+    for (int k = first; k < *n_loss; k++)
+        if (fabs(loss[k].rate) > fabs(loss[largest].rate)) largest = k;
+    if (*n_loss > first) loss[largest].rate += piece->evaporation - sum;
+}
+
+static void write_pressures(struct liquid_flow *flow, const struct piece *piece)
+{
+    const struct menisci *menisci = &flow->menisci;
+    const double reference = -menisci->tension / menisci->radius[piece->reference];
+    for (int k = 0; k < piece->n_unknown; k++)
+        flow->pressure[flow->solver->node[k]] =
+            reference + compensated_value(flow->solver->potential[k]);
+}
+
+// Whether liquid goes from throat to throat at NODE.
+static bool passes_on(const struct phases *phases, int node)
+{
+    return phases->clusters.joins[node] && phases->liquid_beside[node] > 1;
+}
+
+static void number_unknowns(struct liquid_flow *flow, struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    for (int k = 0; k < piece->n_throat; k++)
+        for (int end = 0; end < 2; end++) {
+            const int node = flow->network->throat_nodes[piece->throat[k]][end];
+            if (!passes_on(solver->phases, node) || solver->unknown[node] >= 0)
+                continue;
+            solver->unknown[node] = piece->n_unknown;
+            solver->node[piece->n_unknown++] = node;
+        }
+}
+
+static void forget_unknowns(struct flow_solver *solver, const struct piece *piece)
+{
+    for (int k = 0; k < piece->n_unknown; k++)
+        solver->unknown[solver->node[k]] = -1;
+}
+
+// Counts the menisci, and those of throats partly empty.
+static void survey(const struct liquid_flow *flow, struct piece *piece, int *n_meniscus,
+                   int *n_partial)
+{
+    const struct flow_solver *solver = flow->solver;
+    *n_meniscus = *n_partial = 0;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        if (!has_meniscus(solver, throat)) continue;
+        if (*n_meniscus == 0 || entry(flow, piece, throat) > 0)
+            piece->reference = throat;
+        (*n_meniscus)++;
+        *n_partial += !is_full(solver, throat);
+        piece->evaporation += solver->charge[throat];
+    }
+}
+
+static enum status find_losses(struct liquid_flow *flow, struct piece *piece,
+                               struct loss *loss, int *n_loss, struct reason *reason)
+{
+    int n_meniscus, n_partial;
+    survey(flow, piece, &n_meniscus, &n_partial);
+    if (!(piece->evaporation > 0) && n_partial < 2) return STATUS_OK;
+    if (n_meniscus == 1) {
+        flow->moving[piece->reference] = true;
+        add_loss(loss, n_loss, piece->reference, piece->evaporation);
+        return STATUS_OK;
+    }
+    number_unknowns(flow, piece);
+    const enum status status = find_menisci(flow, piece, reason);
+    if (!status) {
+        collect_losses(flow, piece, loss, n_loss);
+        write_pressures(flow, piece);
+        flow->solutions++;
+    }
+    forget_unknowns(flow->solver, piece);
+    return status;
+}
+
+// Throats in the order of their clusters.
+static void sort_throats(struct flow_solver *solver, int n_throat)
+{
+    const struct clusters *clusters = &solver->phases->clusters;
+    while (solver->offset_capacity < clusters->n_id + 2)
+        GROW_ARRAY(solver->offset, solver->offset_capacity, solver->offset_capacity);
+    int *offset = solver->offset;
+    for (int c = 0; c < clusters->n_id + 2; c++)
+        offset[c] = 0;
+    for (int t = 0; t < n_throat; t++)
+        if (clusters->of_throat[t] >= 0) offset[clusters->of_throat[t] + 2]++;
+    for (int c = 0; c < clusters->n_id; c++)
+        offset[c + 2] += offset[c + 1];
+    for (int t = 0; t < n_throat; t++)
+        if (clusters->of_throat[t] >= 0)
+            solver->throat[offset[clusters->of_throat[t] + 1]++] = t;
+}
+
+enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phases,
+                             const double *charge, struct loss *loss, int *n_loss,
+                             struct reason *reason)
+{
+    struct flow_solver *solver = flow->solver;
+    solver->phases = phases;
+    solver->charge = charge;
+    sort_throats(solver, flow->network->n_throat);
+    enum status status = STATUS_OK;
+    for (int c = 0; !status && c < phases->clusters.n_id; c++) {
+        struct piece piece = {.throat = solver->throat + solver->offset[c],
+                              .n_throat = solver->offset[c + 1] - solver->offset[c]};
+        if (piece.n_throat > 0)
+            status = find_losses(flow, &piece, loss, n_loss, reason);
+    }
+    return status;
+}

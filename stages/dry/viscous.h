@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Flow of viscous liquid inside its clusters [K 3.10], with its menisci.
+//
+// Poiseuille's law holds in every throat (K 3.10 lost its 8): mass flow is
+// pi r^4 / (8 nu L) times the fall of pressure, over the part of L that is filled. A
+// throat with gas at one end has its meniscus there. At the open surface gas touches
+// nodes that are liquid still, and pass liquid on, until a throat at them has emptied:
+// a throat with such nodes at both ends empties from its middle.
+//
+// A throat that is partly empty has a moving meniscus, held at the throat's capillary
+// pressure. In a full one the meniscus stays at the mouth while the pressure behind it
+// is above that, and liquid flows to it as fast as it evaporates; otherwise it recedes,
+// losing more than flows in. Which do is an obstacle problem with a symmetric M-matrix:
+// it has one solution, and changing the menisci that break their condition, all at
+// once, reaches it in a few rounds because pressures only rise from the first round on
+// (Hintermueller, Ito and Kunisch 2002).
+#ifndef CRAQUELURE_VISCOUS_H
+#define CRAQUELURE_VISCOUS_H
+
+#include "meniscus.h"
+#include "phases.h"
+
+struct loss;
+struct flow_solver; // the factorised matrix and room to solve in
+
+struct liquid_flow {
+    const struct network *network;
+    struct menisci menisci;
+    double *conductance; // (n_throat) of a full throat, scaled
+    bool *moving;        // (n_throat) its meniscus, when last solved for
+    double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit
+    double residual;  // largest so far, of what flows
+    int64_t rounds, solutions; // in which menisci were found; clusters solved
+    struct flow_solver *solver;
+};
+
+// For a network full of liquid. Takes over MENISCI. The caller frees it with
+// liquid_flow_free.
+struct liquid_flow liquid_flow_make(const struct network *network, double length,
+                                    struct menisci menisci);
+
+// Finds which throats lose liquid, or gain it (a negative rate), when each evaporates
+// CHARGE[throat]: LOSS, with room for one entry a throat, and their number N_LOSS, in
+// no order. The losses of a cluster add up to what it evaporates.
+//
+// STATUS_NOT_CONVERGED if menisci are not found or the balance does not close.
+enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phases,
+                             const double *charge, struct loss *loss, int *n_loss,
+                             struct reason *reason);
+
+void liquid_flow_free(struct liquid_flow *flow);
+
+#endif

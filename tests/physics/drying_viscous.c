@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Viscous liquid between its menisci [K 3.10]: two tubes in closed form, and both
+// limits.
+#include "support_lattice.h"
+
+#include "basics/memory.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double spacing = 5e-7;
+enum { DEPTH = 6 };
+
+// Two tubes from the surface, over columns 0 and 1 of the lattice, joined at the
+// bottom. The second is narrower by RATIO.
+static struct network two_tubes(double ratio)
+{
+    struct network network = lattice_network(2, 2, DEPTH + 1, spacing);
+    for (int t = 0; t < network.n_throat; t++) {
+        const int32_t *node = network.throat_nodes[t];
+        const bool tube = node[1] - node[0] == 4 && node[0] % 4 < 2;
+        const bool bridge = node[0] == 0 && node[1] == 1;
+        if (!tube && !bridge) network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
+        if (node[0] % 4 == 1) network.throat_radius[t] *= ratio;
+    }
+    return network;
+}
+
+static double resistance(const struct network *network, int throat, double viscosity)
+{
+    const double r = network->throat_radius[throat];
+    return 8 * viscosity * network->throat_length[throat] / (M_PI * r * r * r * r);
+}
+
+// All the liquid's way from one meniscus to the other, Pa s / kg.
+static double total_resistance(const struct network *network, double viscosity)
+{
+    double sum = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        if (network->throat_kind[t] == THROAT_NETWORK)
+            sum += resistance(network, t, viscosity);
+    return sum;
+}
+
+// Mass a throat loses in the first step.
+static double first_loss(const struct network *network,
+                         const struct drying_history *history, int throat)
+{
+    for (int64_t c = history->change_offset[1]; c < history->change_offset[2]; c++)
+        if (history->change_throat[c] == throat)
+            return (1 - history->change_saturation[c]) *
+                   throat_volume(network, throat) * 998.2;
+    return 0;
+}
+
+// The narrow tube's meniscus stays as long as the difference of capillary pressures
+// drives through all the throats what evaporates from it; beyond, it recedes at the
+// rest.
+static void test_two_tubes(void **state)
+{
+    (void)state;
+    struct network network = two_tubes(0.8);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+    const int wide = lattice_throat(&network, 4 * (DEPTH - 1), 2);
+    const int narrow = lattice_throat(&network, 4 * (DEPTH - 1) + 1, 2);
+    const double suction = 2 * 0.07274 / network.throat_radius[narrow] -
+                           2 * 0.07274 / network.throat_radius[wide];
+    struct drying_history history = dry_and_check(&network, &conditions);
+    const double evaporation = history.rate[0] / 2; // of either tube
+    drying_history_free(&history);
+    const double critical = suction / (evaporation * total_resistance(&network, 1));
+    const double factors[] = {1e-9, 0.5, 0.999, 1.001, 2, 1e9};
+    for (int k = 0; k < 6; k++) {
+        conditions.viscosity = factors[k] * critical;
+        history = dry_and_check(&network, &conditions);
+        const double flow = fmin(
+            evaporation, suction / total_resistance(&network, conditions.viscosity));
+        const double time = history.time[1];
+        const double loss = first_loss(&network, &history, narrow);
+        assert_int_equal(history.event_throat[0], k < 5 ? wide : narrow);
+        assert_true(fabs(first_loss(&network, &history, wide) / time -
+                         (evaporation + flow)) < 1e-11 * evaporation);
+        assert_true(fabs(loss / time - (evaporation - flow)) < 1e-11 * evaporation);
+        assert_int_equal(loss > 0, factors[k] > 1);
+        drying_history_free(&history);
+    }
+    network_free(&network);
+}
+
+// As conductances are renewed more often, the time at which the first throat has
+// emptied goes to a limit with the first power of the step.
+static void test_step_converges(void **state)
+{
+    (void)state;
+    struct network network = two_tubes(0.8);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+    conditions.viscosity = 3e-3;
+    double saturation[5];
+    for (int k = 0; k < 5; k++) {
+        conditions.saturation_step = 1 / pow(2, k + 2);
+        struct drying_history history;
+        struct reason reason;
+        assert_int_equal(dry_network(&network, &conditions, NULL, &history, &reason),
+                         STATUS_OK);
+        int step = 0;
+        while (history.time[step] < history.event_time[0])
+            step++;
+        saturation[k] = history.saturation[step];
+        assert_true(fabs(history.evaporated / history.initial_liquid - 1) < 1e-12);
+        drying_history_free(&history);
+    }
+    for (int k = 0; k < 3; k++) {
+        const double ratio = (saturation[k] - saturation[k + 1]) /
+                             (saturation[k + 1] - saturation[k + 2]);
+        assert_true(ratio > 1.6 && ratio < 2.5);
+    }
+    network_free(&network);
+}
+
+// Order of emptying; the times to TOLERANCE.
+static void check_limit(enum liquid_limit limit, double viscosity, double tolerance)
+{
+    struct network network = lattice_network(6, 5, 6, spacing);
+    randomise_radii(&network, spacing, 0.3, 11);
+    struct drying_conditions conditions = kharaghani_conditions(limit);
+    struct drying_history expected = dry_and_check(&network, &conditions);
+    conditions.liquid = LIQUID_VISCOUS;
+    conditions.viscosity = viscosity;
+    struct drying_history history = dry_and_check(&network, &conditions);
+    int n = 0;
+    for (int k = 0; k < history.n_event; k++) {
+        if (history.event_kind[k] == EVENT_REFILLED) continue;
+        assert_int_equal(history.event_throat[k], expected.event_throat[n]);
+
+        assert_true(fabs(history.event_time[k] / expected.event_time[n] - 1) <
+                    tolerance);
+        n++;
+    }
+    assert_int_equal(n, expected.n_event);
+    drying_history_free(&expected);
+    drying_history_free(&history);
+    network_free(&network);
+}
+
+static void test_vanishing_viscosity_is_inviscid(void **state)
+{
+    (void)state;
+    check_limit(LIQUID_INVISCID, 1e-18, 1e-12);
+}
+
+static void test_great_viscosity_is_immobile(void **state)
+{
+    (void)state;
+    // At a million times that of water, flow is still a hundredth of evaporation.
+    check_limit(LIQUID_IMMOBILE, 1e4, 1e-5);
+    check_limit(LIQUID_IMMOBILE, 1e7, 1e-8);
+}
+
+// Between them, decade by decade, everything balances, and throats refill.
+static void test_eighteen_decades(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(4, 4, 6, spacing);
+    randomise_radii(&network, spacing, 0.5, 5);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+    int n_refill = 0;
+    for (int k = -18; k <= 0; k++) {
+        conditions.viscosity = pow(10, k);
+        struct drying_history history = dry_and_check(&network, &conditions);
+        assert_true(history.liquid_residual < 1e-12);
+        for (int e = 0; e < history.n_event; e++)
+            n_refill += history.event_kind[e] == EVENT_REFILLED;
+        drying_history_free(&history);
+    }
+    assert_true(n_refill > 0);
+    network_free(&network);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_two_tubes), cmocka_unit_test(test_step_converges),
+        cmocka_unit_test(test_vanishing_viscosity_is_inviscid),
+        cmocka_unit_test(test_great_viscosity_is_immobile),
+        cmocka_unit_test(test_eighteen_decades)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
