@@ -393,7 +393,9 @@ static bool has_json_type(const json_t *value, const char *type)
     case JSON_ARRAY:
         return !strncmp(type, "array", 5);
     case JSON_INTEGER:
-        return !strncmp(type, "integer", 7);
+        return !strncmp(type, "integer", 7) || !strncmp(type, "number", 6);
+    case JSON_REAL:
+        return !strncmp(type, "number", 6);
     default:
         return false;
     }

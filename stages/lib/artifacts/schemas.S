@@ -15,5 +15,6 @@
     schema schema_response, "schemas/response.json"
     schema schema_crackstats, "schemas/crackstats.json"
     schema schema_restart, "schemas/restart.json"
+    schema schema_bridge, "schemas/bridge.json"
 
     .section .note.GNU-stack, "", @progbits

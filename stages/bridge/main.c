@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// bridge: the capillary force of a liquid bridge against separation.
+#include "artifacts/artifact.h"
+#include "basics/memory.h"
+#include "curve.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct bridge_parameters {
+    double radius, other_radius, contact_angle, other_contact_angle;
+    double surface_tension, volume, from, to;
+    int64_t points, profile;
+    struct number_list separations;
+    int model;
+    bool plane;
+};
+
+#define AT(field) offsetof(struct bridge_parameters, field)
+static const struct parameter table[] = {
+    {"model", PARAMETER_CHOICE, "1", "\"exact\"", BOUND_NONE, 0, 0,
+     BRIDGE_MODEL_CHOICES,
+     "exact: Young and Laplace's equation; the others are approximations [G 2]",
+     AT(model)},
+    {"radius", PARAMETER_NUMBER, "m", NULL, BOUND_ABOVE, 0, 0, NULL,
+     "of the first sphere", AT(radius)},
+    {"other_radius", PARAMETER_NUMBER, "m", "null", BOUND_ABOVE, 0, 0, NULL,
+     "of the second; null: as the first", AT(other_radius)},
+    {"plane", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "the second body is a plane", AT(plane)},
+    {"volume", PARAMETER_NUMBER, "m3", NULL, BOUND_ABOVE, 0, 0, NULL, "of the liquid",
+     AT(volume)},
+    {"surface_tension", PARAMETER_NUMBER, "N/m", "0.0728", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid; default: water at 20 degrees Celsius", AT(surface_tension)},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 170, NULL,
+     "of the liquid on the first body", AT(contact_angle)},
+    {"other_contact_angle", PARAMETER_NUMBER, "degree", "null", BOUND_BETWEEN, 0, 170,
+     NULL, "on the second; null: as on the first", AT(other_contact_angle)},
+    {"points", PARAMETER_INTEGER, "1", "101", BOUND_BETWEEN, 2, 1000000, NULL,
+     "separations on the curve, evenly spaced", AT(points)},
+    {"from", PARAMETER_NUMBER, "1", "0", BOUND_NONE, 0, 0, NULL,
+     "first separation over the rupture distance of the model; negative: overlap",
+     AT(from)},
+    {"to", PARAMETER_NUMBER, "1", "1", BOUND_NONE, 0, 0, NULL,
+     "last separation over the rupture distance of the model", AT(to)},
+    {"separations", PARAMETER_LIST, "m", "[]", BOUND_NONE, 0, 0, NULL,
+     "separations to use in place of points, from and to", AT(separations)},
+    {"profile", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 100000, NULL,
+     "places on the meridian of each exact bridge; 0: none", AT(profile)},
+    {0}};
+
+static const struct stage stage = {
+    .name = "bridge",
+    .version = STAGE_VERSION,
+    .summary = "bridge -- force against separation of a capillary bridge",
+    .writes = "bridge",
+    .most_inputs = 0,
+    .parameters = table,
+    .notes = "G: Gladkyy and Schwarze (2014). Forces that pull are positive. Where a "
+             "model is used outside its validity, `flags` says so."};
+
+static struct bridge bridge_of(const struct bridge_parameters *given)
+{
+    const double degree = M_PI / 180;
+    const double other =
+        isnan(given->other_radius) ? given->radius : given->other_radius;
+    const double angle = isnan(given->other_contact_angle) ? given->contact_angle
+                                                           : given->other_contact_angle;
+    return (struct bridge){
+        .radius = {given->radius, given->plane ? INFINITY : other},
+        .contact_angle = {given->contact_angle * degree, angle * degree},
+        .surface_tension = given->surface_tension,
+        .volume = given->volume};
+}
+
+static double rupture_distance(const struct bridge *bridge, enum bridge_model model)
+{
+    if (model != BRIDGE_EXACT) return bridge_rupture_distance(bridge);
+    struct bridge_state state;
+    struct reason reason;
+    const enum status status = bridge_solve_rupture(bridge, &state, &reason);
+    if (status) die(status, "%s", reason.text);
+    return state.separation;
+}
+
+// Those asked for; the caller frees them.
+static double *separations_of(const struct bridge_parameters *given, double rupture,
+                              int *count)
+{
+    const struct number_list *list = &given->separations;
+    *count = list->count ? list->count : (int)given->points;
+    double *separation = NEW_ARRAY(double, *count);
+    for (int k = 0; k < *count; k++) {
+        const double share = (double)k / (*count - 1);
+        separation[k] = list->count
+                            ? list->value[k]
+                            : rupture * ((1 - share) * given->from + share * given->to);
+    }
+    return separation;
+}
+
+static void check(const struct bridge_parameters *given)
+{
+    if (given->plane && !isnan(given->other_radius))
+        die(STATUS_BAD_DATA, "bridge.other_radius: a plane has none");
+    if (given->profile == 1)
+        die(STATUS_BAD_DATA, "bridge.profile: must be 0, or from 2 on, got 1");
+    if (given->profile && given->model != BRIDGE_EXACT)
+        die(STATUS_BAD_DATA, "bridge.profile: only the exact model has one");
+}
+
+int main(int argc, char **argv)
+{
+    struct bridge_parameters parameters;
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    check(&parameters);
+    const struct bridge bridge = bridge_of(&parameters);
+    const double rupture = rupture_distance(&bridge, parameters.model);
+    struct curve_request request = {.profile = (int)parameters.profile};
+    double *separation = separations_of(&parameters, rupture, &request.count);
+    request.separation = separation;
+
+    json_t *report = json_pack(
+        "{s:s,s:f,s:f,s:f}", "schema", "craquelure/bridge/1", "effective_radius",
+        bridge_effective_radius(&bridge), "dimensionless_volume",
+        bridge_dimensionless_volume(&bridge), "rupture_distance", rupture);
+    struct reason reason;
+    const enum status status =
+        put_curve(report, &bridge, parameters.model, &request, &reason);
+    if (status) die(status, "%s", reason.text);
+    finish_json(report, &invocation, json_array(),
+                "axisymmetric liquid bridge at rest, contact lines free to move\n"
+                "left out: gravity, viscosity, contact-angle hysteresis, roughness, "
+                "evaporation\n");
+    free(separation);
+    invocation_free(&invocation);
+    return STATUS_OK;
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Capillary bridges between two spheres, or a sphere and a plane: the force by the
+// exact solution of Young and Laplace's equation and by the models of [G 2]. Forces are
+// positive when they pull the bodies together. Lengths in m, angles in rad, forces in
+// N; everything is scale-free.
+#ifndef CRAQUELURE_BRIDGES_H
+#define CRAQUELURE_BRIDGES_H
+
+#include "basics/status.h"
+#include "bridges/meridian.h"
+
+struct bridge {
+    double radius[2];        // m; INFINITY for a plane, at most one of them
+    double contact_angle[2]; // rad, from 0 to less than pi
+    double surface_tension;  // N/m
+    double volume;           // m3, of the liquid
+};
+
+enum bridge_model {
+    BRIDGE_EXACT,
+    BRIDGE_WEIGERT,            // [G A1-A7]
+    BRIDGE_WILLETT_FULL,       // [G B1-B4]
+    BRIDGE_WILLETT_REDUCED,    // [G 8]
+    BRIDGE_RABINOVICH,         // [G 11]
+    BRIDGE_RABINOVICH_LAMBERT, // [G 12]
+    BRIDGE_SOULIE,             // Soulie et al. (2006), as Yade has it
+    BRIDGE_MODELS
+};
+// "exact", "table", ...: in the order above, as choices are spelled for parameters.
+#define BRIDGE_MODEL_CHOICES                                                           \
+    "exact|weigert|willett-full|willett-reduced|rabinovich|rabinovich-lambert|"        \
+    "soulie"
+
+// What a force is not good for. It is finite all the same, and continuous but for
+// rupture.
+enum bridge_flag {
+    BRIDGE_RUPTURED = 1,        // beyond the rupture distance of the model
+    BRIDGE_OVERLAPS = 2,        // bodies overlap
+    BRIDGE_ANGLE = 4,           // contact angle beyond what the model was made for
+    BRIDGE_VOLUME = 8,          // volume beyond what the model was made for
+    BRIDGE_UNEQUAL_ANGLES = 16, // the model has one contact angle: their mean cosine
+    BRIDGE_UNSOLVED = 32        // no force: the exact solution was not found (NaN)
+};
+
+// 2 R1 R2/(R1 + R2) [G 1].
+double bridge_effective_radius(const struct bridge *bridge);
+
+// Volume over the cube of the effective radius.
+double bridge_dimensionless_volume(const struct bridge *bridge);
+
+// [G 2]; with the mean cosine of two contact angles.
+double bridge_rupture_distance(const struct bridge *bridge);
+
+// The force of a model other than BRIDGE_EXACT at SEPARATION (m;
+// negative: overlap, where the models keep their value at contact). Beyond rupture it
+// goes on with the model's formula. FLAGS may be NULL.
+double bridge_model_force(const struct bridge *bridge, enum bridge_model model,
+                          double separation, unsigned *flags);
+
+// ---- the exact solution ------------------------------------------------------------
+
+struct bridge_state {
+    double separation;            // m
+    double force;                 // N
+    double suction;               // Pa: of the gas over the liquid
+    double neck_radius;           // m, the least
+    double half_filling_angle[2]; // rad; 0 on a plane
+    double contact_radius[2];     // m
+    double wetted_area[2];        // m2
+    double free_area;             // m2, of the meniscus
+    double energy;  // J: surface tension times (free area - cos theta wetted area)
+    struct arc arc; // in effective radii
+    int steps;      // of Newton's method
+};
+
+// The stable axisymmetric bridge without gravity at SEPARATION, to about 1e-12.
+// Returns STATUS_OK, STATUS_NO beyond rupture, STATUS_NOT_CONVERGED, or STATUS_BAD_DATA
+// when the bridge is none.
+//
+// Overlapping bodies are taken as their union: the liquid lies around it and does not
+// press where they share their space, so that the force stays -dE/da there.
+enum status bridge_solve(const struct bridge *bridge, double separation,
+                         struct bridge_state *state, struct reason *reason);
+
+// The widest stable bridge.
+enum status bridge_solve_rupture(const struct bridge *bridge,
+                                 struct bridge_state *state, struct reason *reason);
+
+// Its meridian: height above the pole of the first body and radius (m) at COUNT places,
+// at least 2, evenly along it.
+void bridge_profile(const struct bridge *bridge, const struct bridge_state *state,
+                    int count, double *height, double *radius);
+
+#endif

@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bridges/equilibrium.h"
+
+#include <math.h>
+#include <string.h>
+
+// Newton's method on four unknowns: the logarithms of both reaches and of the length,
+// and the turn. Three of the four equations are always the same (slope and radius at
+// the second body, volume); the fourth gives the gap, or how far to go along a
+// direction from a known bridge. At rupture two bridges of one gap meet: there the
+// first is singular, the second is not.
+struct unknowns {
+    double at[ARC_NUMBERS];
+};
+
+struct problem {
+    const struct bodies *bodies;
+    double volume; // of the liquid
+    double shared; // by overlapping bodies: the arc spans so much less
+    double gap;
+    bool symmetric; // of two equal bodies only bridges with equal ends are looked for
+    const struct unknowns *from; // NULL: the gap is given
+    const double *direction;     // of length 1
+    double distance;
+};
+
+// Along the branch, in the unknowns: some two from contact to rupture.
+static const double longest_stride = 0.5, shortest_stride = 1e-10;
+
+enum { MOST_STEPS = 25, HALVINGS = 4 };
+static const double converged = 1e-8; // last step; the next would be of its square
+static const double rounding = 1e-9;  // residuals that may be rounding alone
+static const double longest = 0.7;    // of a step
+
+static struct arc arc_of(const struct unknowns *unknowns)
+{
+    const double *at = unknowns->at;
+    return (struct arc){
+        {exp(at[ARC_FIRST]), exp(at[ARC_SECOND])}, exp(at[ARC_LENGTH]), at[ARC_TURN]};
+}
+
+struct system {
+    double residual[ARC_NUMBERS], slope[ARC_NUMBERS][ARC_NUMBERS];
+};
+
+static struct system system_at(const struct problem *problem,
+                               const struct unknowns *unknowns)
+{
+    const struct arc arc = arc_of(unknowns);
+    const struct span span = span_of(problem->bodies, &arc);
+    const double scale = 1 / arc.length, share = 1 / problem->volume;
+    struct system is = {.residual = {span.miss[0] * scale, span.miss[1] * scale,
+                                     (span.volume + problem->shared) * share - 1,
+                                     (span.gap - problem->gap) * scale}};
+    if (problem->from) is.residual[3] = -problem->distance;
+    if (problem->symmetric) is.residual[0] = unknowns->at[0] - unknowns->at[1];
+    for (int n = 0; n < ARC_NUMBERS; n++) {
+        is.slope[0][n] =
+            problem->symmetric ? (n == 0) - (n == 1) : span.miss_slope[0][n] * scale;
+        is.slope[1][n] = span.miss_slope[1][n] * scale;
+        is.slope[2][n] = span.volume_slope[n] * share;
+        is.slope[3][n] = span.gap_slope[n] * scale;
+        if (!problem->from) continue;
+        is.slope[3][n] = problem->direction[n];
+        is.residual[3] +=
+            problem->direction[n] * (unknowns->at[n] - problem->from->at[n]);
+    }
+    return is;
+}
+
+static double size_of(const double residual[ARC_NUMBERS])
+{
+    double sum = 0;
+    for (int k = 0; k < ARC_NUMBERS; k++)
+        sum += residual[k] * residual[k];
+    return sum;
+}
+
+// Gauss' elimination: RIGHT becomes the solution. Returns the determinant; 0: singular.
+static double eliminate(double matrix[ARC_NUMBERS][ARC_NUMBERS],
+                        double right[ARC_NUMBERS])
+{
+    enum { N = ARC_NUMBERS };
+    double determinant = 1;
+    for (int k = 0; k < N; k++) {
+        int pivot = k;
+        for (int row = k + 1; row < N; row++)
+            if (fabs(matrix[row][k]) > fabs(matrix[pivot][k])) pivot = row;
+        if (!(fabs(matrix[pivot][k]) > 0)) return 0;
+        if (pivot != k) {
+            determinant = -determinant;
+            for (int n = 0; n < N; n++) {
+                const double kept = matrix[k][n];
+                matrix[k][n] = matrix[pivot][n];
+                matrix[pivot][n] = kept;
+            }
+            const double kept = right[k];
+            right[k] = right[pivot];
+            right[pivot] = kept;
+        }
+        determinant *= matrix[k][k];
+        for (int row = k + 1; row < N; row++) {
+            const double factor = matrix[row][k] / matrix[k][k];
+            for (int n = k; n < N; n++)
+                matrix[row][n] -= factor * matrix[k][n];
+            right[row] -= factor * right[k];
+        }
+    }
+    for (int k = N - 1; k >= 0; k--) {
+        for (int n = k + 1; n < N; n++)
+            right[k] -= matrix[k][n] * right[n];
+        right[k] /= matrix[k][k];
+    }
+    return determinant;
+}
+
+static struct unknowns moved(const struct unknowns *from,
+                             const double step[ARC_NUMBERS], double share)
+{
+    struct unknowns to;
+    for (int k = 0; k < ARC_NUMBERS; k++)
+        to.at[k] = from->at[k] + share * step[k];
+    return to;
+}
+
+static bool sensible(const struct bodies *bodies, const struct unknowns *unknowns)
+{
+    const struct arc arc = arc_of(unknowns);
+    for (int k = 0; k < 2; k++)
+        if (!(bodies->curvature[k] * arc.reach[k] < M_PI)) return false;
+    return fabs(arc.turn) < 2 * M_PI && isfinite(arc.length);
+}
+
+static double longest_of(const double step[ARC_NUMBERS])
+{
+    double most = 0;
+    for (int k = 0; k < ARC_NUMBERS; k++)
+        most = fmax(most, fabs(step[k]));
+    return most;
+}
+
+// Newton's method, damped. Returns whether it converged; COUNT grows by its steps.
+static bool converge(const struct problem *problem, struct unknowns *unknowns,
+                     int *count)
+{
+    struct system is = system_at(problem, unknowns);
+    for (int k = 0; k < MOST_STEPS; k++) {
+        double step[ARC_NUMBERS];
+        for (int n = 0; n < ARC_NUMBERS; n++)
+            step[n] = -is.residual[n];
+        if (eliminate(is.slope, step) == 0) return false;
+        const double size = longest_of(step), before = size_of(is.residual);
+        if (!isfinite(size)) return false;
+        (*count)++;
+        if (size < converged) {
+            *unknowns = moved(unknowns, step, 1);
+            return true;
+        }
+        double share = fmin(1, longest / size);
+        struct unknowns next = moved(unknowns, step, share);
+        for (int h = 0;; h++) {
+            if (sensible(problem->bodies, &next)) {
+                is = system_at(problem, &next);
+                if (size_of(is.residual) < before) break;
+            }
+            // Rounding may keep a converged residual from falling.
+            if (h == HALVINGS) return before < rounding * rounding;
+            share *= 0.5;
+            next = moved(unknowns, step, share);
+        }
+        *unknowns = next;
+    }
+    return false;
+}
+
+// A bridge found, and the direction of the branch there: that in which the gap widens
+// where the branch begins. The bridge is stable while the gap does widen, at the RATE,
+// and while the SYMMETRY determinant (of the three equations and that direction) has
+// the sign that it has for the thinnest torus: the first ends in a turning point, the
+// second where symmetry breaks.
+struct state {
+    struct unknowns unknowns;
+    double direction[ARC_NUMBERS];
+    double gap, rate, symmetry;
+    int steps;
+};
+
+static double stability(const struct state *state)
+{
+    return fmin(state->rate, state->symmetry);
+}
+
+static double dot(const double a[ARC_NUMBERS], const double b[ARC_NUMBERS])
+{
+    double sum = 0;
+    for (int k = 0; k < ARC_NUMBERS; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+// Fills all but the unknowns of STATE. PREVIOUS is the direction of a bridge nearby, or
+// NULL: then the rate is positive and the determinant tells.
+static bool judge(const struct problem *problem, const double *previous,
+                  struct state *state)
+{
+    struct problem at = *problem;
+    at.from = NULL;
+    at.gap = 0;
+    struct system is = system_at(&at, &state->unknowns);
+    double widening[ARC_NUMBERS], tangent[ARC_NUMBERS] = {0, 0, 0, 1};
+    state->gap = is.residual[3] * exp(state->unknowns.at[ARC_LENGTH]);
+    memcpy(widening, is.slope[3], sizeof widening);
+    struct system turned = is;
+    if (previous) memcpy(turned.slope[3], previous, sizeof widening);
+    if (eliminate(turned.slope, tangent) == 0) return false;
+    const double size = sqrt(dot(tangent, tangent));
+    for (int n = 0; n < ARC_NUMBERS; n++)
+        state->direction[n] = tangent[n] / size;
+    state->rate = dot(widening, state->direction);
+
+    at.symmetric = false;
+    is = system_at(&at, &state->unknowns);
+    memcpy(is.slope[3], state->direction, sizeof widening);
+    state->symmetry = eliminate(is.slope, is.residual);
+    return isfinite(size);
+}
+
+// ---- where to begin ----------------------------------------------------------------
+
+// The torus: an arc of a circle across the gap at the contact lines, whose volume is
+// about pi r^2 (gap + r^2/2). Good when the bridge is thin and the gap short.
+static struct arc torus(const struct bodies *bodies, double volume, double gap)
+{
+    const double apart = fmax(gap, 0); // overlapping bodies fill the rest
+    const double radius2 = sqrt(apart * apart + 2 * volume / M_PI) - gap;
+    struct arc arc;
+    double turned[2], open = gap;
+    for (int k = 0; k < 2; k++) {
+        const double curvature = bodies->curvature[k];
+        const double sine = fmin(curvature * sqrt(radius2), 0.9);
+        arc.reach[k] = curvature > 1e-8 ? asin(sine) / curvature : sqrt(radius2);
+        const struct contact_line line = contact_line(bodies, k, arc.reach[k]);
+        turned[k] = line.angle + bodies->contact_angle[k];
+        open += line.sagitta;
+    }
+    arc.turn = 0.5 * (M_PI - turned[0] - turned[1]);
+    const double bend = fabs(arc.turn) < 1e-6 ? 1 : arc.turn / sin(arc.turn);
+    arc.length = open * bend / fmax(cos(0.5 * (turned[0] - turned[1])), 0.1);
+    return arc;
+}
+
+static struct unknowns unknowns_of(const struct arc *arc)
+{
+    return (struct unknowns){
+        {log(arc->reach[0]), log(arc->reach[1]), log(arc->length), arc->turn}};
+}
+
+static bool equal(const double of[2])
+{
+    return !(of[0] < of[1] || of[0] > of[1]);
+}
+
+static struct problem problem_at(const struct bodies *bodies, double volume, double gap)
+{
+    return (struct problem){.bodies = bodies,
+                            .volume = volume,
+                            .shared = overlap_of(bodies, gap).volume,
+                            .gap = gap,
+                            .symmetric = equal(bodies->curvature) &&
+                                         equal(bodies->contact_angle)};
+}
+
+static bool settle(const struct problem *problem, struct state *state)
+{
+    if (!converge(problem, &state->unknowns, &state->steps)) return false;
+    return judge(problem, NULL, state) && stability(state) > 0;
+}
+
+// At GAP straight from the torus; false when that does not lead to a stable bridge.
+static bool jump(const struct bodies *bodies, double volume, double gap,
+                 struct state *state)
+{
+    const struct problem problem = problem_at(bodies, volume, gap);
+    const struct arc arc = torus(bodies, volume, gap);
+    state->unknowns = unknowns_of(&arc);
+    return settle(&problem, state);
+}
+
+// At GAP (zero or less), if need be through ever larger volumes.
+static bool grow(const struct bodies *bodies, double volume, double gap,
+                 struct state *state)
+{
+    double reached = volume, factor = 2;
+    while (!jump(bodies, reached, gap, state)) {
+        reached *= 0.1;
+        if (reached < 1e-8 * volume) return false;
+    }
+    while (reached < volume) {
+        const double next = fmin(reached * factor, volume);
+        const struct problem problem = problem_at(bodies, next, gap);
+        struct state larger = *state;
+        if (settle(&problem, &larger)) {
+            *state = larger;
+            reached = next;
+        } else if ((factor = sqrt(factor)) < 1.001)
+            return false;
+    }
+    return true;
+}
+
+// ---- along the branch --------------------------------------------------------------
+
+// DISTANCE along the branch's direction at FROM. Returns whether there is a bridge.
+static bool reach(const struct problem *problem, double distance,
+                  const struct state *from, struct state *to)
+{
+    struct problem at = *problem;
+    at.from = &from->unknowns;
+    at.direction = from->direction;
+    at.distance = distance;
+    *to = *from;
+    to->unknowns = moved(&from->unknowns, from->direction, distance);
+    return sensible(problem->bodies, &to->unknowns) &&
+           converge(&at, &to->unknowns, &to->steps) && judge(&at, from->direction, to);
+}
+
+// What is positive before the place looked for: GAP, or the end of stability
+// (INFINITY).
+static double ahead(const struct state *state, double gap)
+{
+    return isfinite(gap) ? gap - state->gap : stability(state);
+}
+
+// Between FROM and the bridge BEYOND at DISTANCE from it: the place where `ahead` falls
+// to zero, by regula falsi (Illinois), from the near side, into LAST at *DISTANCE.
+static bool close_in(const struct problem *problem, double gap,
+                     const struct state *from, const struct state *beyond,
+                     double *distance, struct state *last)
+{
+    double near = 0, far = *distance;
+    double low = ahead(from, gap), high = ahead(beyond, gap);
+    int steps = beyond->steps;
+    *last = *from;
+    for (int k = 0, side = 0; k < 60 && far - near > 1e-12; k++) {
+        const double at = (low * far - high * near) / (low - high);
+        struct state middle;
+        if (!(at > near && at < far)) break;
+        if (!reach(problem, at, from, &middle)) return false;
+        steps += middle.steps - from->steps;
+        const double value = ahead(&middle, gap), move = fmin(at - near, far - at);
+        if (value > 0) {
+            *last = middle;
+            near = at;
+            low = value;
+            if (side == 1) high *= 0.5;
+            side = 1;
+        } else {
+            far = at;
+            high = value;
+            if (side == -1) low *= 0.5;
+            side = -1;
+        }
+        if (move < 1e-13) break;
+    }
+    *distance = near;
+    last->steps = steps;
+    return true;
+}
+
+// Along the branch to GAP, or to rupture where that comes first. Turns STATE into the
+// bridge there; RUPTURED says which it is.
+static enum status advance(const struct problem *problem, double gap,
+                           struct state *state, bool *ruptured)
+{
+    double step = longest_stride;
+    for (*ruptured = false; step > shortest_stride;) {
+        struct state next, last;
+        double stride = step;
+        const bool reached = reach(problem, step, state, &next);
+        const bool stable = reached && stability(&next) > 0;
+        if (stable && next.gap < gap) {
+            *state = next;
+            step = fmin(1.5 * step, longest_stride);
+            continue;
+        }
+        bool found = stable || (reached && step < 0.6 * longest_stride);
+        if (found && !stable) {
+            found = close_in(problem, INFINITY, state, &next, &stride, &last);
+            *ruptured = last.gap < gap * (1 - 1e-12); // the distance itself is none
+            next = last;
+        }
+        if (found && next.gap > gap)
+            found = close_in(problem, gap, state, &next, &stride, &last);
+        if (found) {
+            *state = last;
+            return STATUS_OK;
+        }
+        *ruptured = false;
+        step *= 0.5;
+    }
+    *ruptured = stability(state) < rounding;
+    return *ruptured ? STATUS_OK : STATUS_NOT_CONVERGED;
+}
+
+static struct equilibrium equilibrium_of(const struct state *state)
+{
+    return (struct equilibrium){.arc = arc_of(&state->unknowns),
+                                .gap = state->gap,
+                                .stability = stability(state),
+                                .steps = state->steps};
+}
+
+enum status find_rupture(const struct bodies *bodies, double volume,
+                         struct equilibrium *found)
+{
+    struct state state = {0};
+    bool ruptured;
+    const struct problem problem = problem_at(bodies, volume, 0);
+    if (!grow(bodies, volume, 0, &state)) return STATUS_NOT_CONVERGED;
+    const enum status status = advance(&problem, INFINITY, &state, &ruptured);
+    *found = equilibrium_of(&state);
+    return status;
+}
+
+// Along the branch from a shorter gap, if need be from touching bodies.
+static enum status approach(const struct bodies *bodies, double volume, double gap,
+                            struct state *state)
+{
+    bool ruptured;
+    const struct problem problem = problem_at(bodies, volume, gap);
+    if (!jump(bodies, volume, 0.6 * gap, state) && !grow(bodies, volume, 0, state))
+        return STATUS_NOT_CONVERGED;
+    const enum status status = advance(&problem, gap, state, &ruptured);
+    if (status || ruptured) return status ? status : STATUS_NO;
+    struct state exact = *state; // fails only next to rupture, where it adds nothing
+    if (settle(&problem, &exact)) *state = exact;
+    return STATUS_OK;
+}
+
+enum status find_equilibrium(const struct bodies *bodies, double volume, double gap,
+                             struct equilibrium *found)
+{
+    struct state state = {0};
+    enum status status = STATUS_OK;
+    if (gap <= 0)
+        status = grow(bodies, volume, gap, &state) ? STATUS_OK : STATUS_NOT_CONVERGED;
+    else if (!jump(bodies, volume, gap, &state))
+        status = approach(bodies, volume, gap, &state);
+    *found = equilibrium_of(&state);
+    return status;
+}

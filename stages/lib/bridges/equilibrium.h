@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium of a bridge: the arc that meets both bodies at their contact angles with
+// a given volume. All lengths over the effective radius [G 1].
+#ifndef CRAQUELURE_EQUILIBRIUM_H
+#define CRAQUELURE_EQUILIBRIUM_H
+
+#include "basics/status.h"
+#include "bridges/meridian.h"
+
+struct equilibrium {
+    struct arc arc;
+    double gap;
+    // Positive on the stable branch. Zero where the bridge ruptures, in a turning point
+    // of the gap or, between equal bodies, where the symmetric bridge gives way to
+    // others.
+    double stability;
+    int steps; // of Newton's method, in all
+};
+
+// The stable bridge at GAP. Returns STATUS_OK, STATUS_NO when the bodies are too far
+// apart for one, or STATUS_NOT_CONVERGED.
+enum status find_equilibrium(const struct bodies *bodies, double volume, double gap,
+                             struct equilibrium *found);
+
+// The stable bridge with the widest gap, at which it ruptures: a turning point of the
+// gap, or where symmetry breaks.
+enum status find_rupture(const struct bodies *bodies, double volume,
+                         struct equilibrium *found);
+
+// Follows the stable branch from touching bodies to rupture: COUNT bridges (at least 2)
+// at gaps from 0 to the widest, the K-th at widest times SHARE[K], in rising order.
+enum status follow_branch(const struct bodies *bodies, double volume, int count,
+                          const double *share, struct equilibrium *found);
+
+#endif

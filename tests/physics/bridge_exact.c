@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact bridge: against shapes known in closed form, against energy, and against
+// symmetries.
+#include "bridges/bridges.h"
+#include "bridges/equilibrium.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+static void close_to(double value, double reference, double tolerance, const char *what)
+{
+    if (!(fabs(value - reference) <= tolerance * fabs(reference)))
+        fail_msg("%s: %.15g, not %.15g", what, value, reference);
+}
+
+static struct bridge_state solved(const struct bridge *bridge, double separation)
+{
+    struct bridge_state state;
+    struct reason reason = {""};
+    if (bridge_solve(bridge, separation, &state, &reason)) fail_msg("%s", reason.text);
+    return state;
+}
+
+static double sagitta(double radius, double angle)
+{
+    return 2 * radius * sin(0.5 * angle) * sin(0.5 * angle);
+}
+
+static double cap_volume(double radius, double angle)
+{
+    const double h = sagitta(radius, angle);
+    return M_PI * h * h * (3 * radius - h) / 3;
+}
+
+// Two equal spheres with a meridian of HEIGHT and revolved VOLUME over both caps, seen
+// under ANGLE: the bridge that has it.
+static struct bridge between(double radius, double angle, double contact_angle,
+                             double revolved)
+{
+    return (struct bridge){{radius, radius},
+                           {contact_angle, contact_angle},
+                           0.05,
+                           revolved - 2 * cap_volume(radius, angle)};
+}
+
+// ---- closed forms ------------------------------------------------------------------
+
+// y = c cosh(x/c): no suction, and the force is 2 pi c times the tension.
+static void test_catenoid(void **state)
+{
+    (void)state;
+    const double radius = 2e-3;
+    for (double filling = 0.1; filling < 0.7; filling += 0.1)
+        for (double angle = 0.3; angle < 0.9; angle += 0.2) {
+            const double y = radius * sin(filling), c = y * sin(filling + angle);
+            const double x = c * acosh(y / c);
+            const double revolved = M_PI * c * c * (x + 0.5 * c * sinh(2 * x / c));
+            const struct bridge bridge = between(radius, filling, angle, revolved);
+            const double gap = 2 * (x - sagitta(radius, filling));
+            if (!(bridge.volume > 0)) continue;
+            struct bridge_state widest;
+            struct reason reason;
+            assert_int_equal(bridge_solve_rupture(&bridge, &widest, &reason), 0);
+            if (gap > 0.999 * widest.separation) continue; // may be the unstable one
+            const struct bridge_state is = solved(&bridge, gap);
+            if (fabs(is.half_filling_angle[0] - filling) > 1e-3) continue;
+            close_to(is.force, 2 * M_PI * c * 0.05, 1e-10, "force of a catenoid");
+            close_to(is.neck_radius, c, 1e-10, "neck of a catenoid");
+            assert_true(fabs(is.suction) < 1e-9 * 0.05 / c);
+        }
+}
+
+// Contact lines at which the surface is vertical, at any length up to Rayleigh's.
+static void test_cylinder(void **state)
+{
+    (void)state;
+    const double radius = 3e-6;
+    for (double filling = 0.2; filling < 1.3; filling += 0.2)
+        for (double share = 0.1; share < 0.8; share += 0.2) {
+            const double y = radius * sin(filling);
+            const double gap = share * y, height = gap + 2 * sagitta(radius, filling);
+            if (height > 2 * y) continue;
+            const struct bridge bridge =
+                between(radius, filling, M_PI / 2 - filling, M_PI * y * y * height);
+            const struct bridge_state is = solved(&bridge, gap);
+            close_to(is.force, M_PI * y * 0.05, 1e-10, "force of a cylinder");
+            close_to(is.suction, -0.05 / y, 1e-10, "suction of a cylinder");
+            close_to(is.free_area, 2 * M_PI * y * height, 1e-10, "area of a cylinder");
+        }
+}
+
+// A ball of liquid pierced by both spheres does not pull.
+static void test_sphere(void **state)
+{
+    (void)state;
+    const double radius = 1, filling = 0.5;
+    for (double slope = 0.2; slope < 1.2; slope += 0.2) {
+        const double ball = radius * sin(filling) / cos(slope);
+        const double x = ball * sin(slope);
+        const double revolved = 2 * M_PI * x * (ball * ball - x * x / 3);
+        const double gap = 2 * (x - sagitta(radius, filling));
+        const struct bridge bridge =
+            between(radius, filling, M_PI / 2 - filling + slope, revolved);
+        if (!(bridge.volume > 0) || gap < 0) continue;
+        const struct bridge_state is = solved(&bridge, gap);
+        assert_true(fabs(is.force) < 1e-10 * 0.05 * radius);
+        close_to(is.suction, -2 * 0.05 / ball, 1e-10, "suction of a ball");
+    }
+}
+
+// At contact the force tends to 2 pi R gamma cos(theta) as the volume vanishes, with
+// the root of the volume.
+static void test_vanishing_volume(void **state)
+{
+    (void)state;
+    for (int degrees = 0; degrees <= 80; degrees += 20) {
+        const double angle = degrees * M_PI / 180;
+        double last = INFINITY;
+        for (double volume = 1e-4; volume > 1e-17; volume *= 1e-4) {
+            const struct bridge bridge = {{1, 1}, {angle, angle}, 1, volume};
+            const double force = solved(&bridge, 0).force;
+            const double error = fabs(force / (2 * M_PI * cos(angle)) - 1);
+            assert_true(error < 10 * pow(volume, 0.25));
+            assert_true(error < 0.5 * last);
+            last = error;
+        }
+    }
+}
+
+// ---- energy ------------------------------------------------------------------------
+
+// dE/da at constant volume by central differences of sixth order.
+static double energy_slope(const struct bridge *bridge, double separation, double h)
+{
+    static const double weight[3] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
+    double slope = 0;
+    for (int k = 1; k <= 3; k++)
+        slope += weight[k - 1] * (solved(bridge, separation + k * h).energy -
+                                  solved(bridge, separation - k * h).energy);
+    return slope / h;
+}
+
+static void test_force_is_slope_of_energy(void **state)
+{
+    (void)state;
+    static const double shapes[][4] = {
+        // other radius, two angles, volume
+        {1, 0, 0, 1e-3},       {1, 0.6, 0.6, 1e-1},
+        {0.3, 0.4, 0.4, 1e-3}, {INFINITY, 0.2, 1.2, 1e-2},
+        {0.1, 1.5, 0.3, 1e-4}, {1, 1.8, 1.8, 1e-2}};
+    double worst = 0;
+    for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) {
+        const struct bridge bridge = {
+            {1, shapes[k][0]}, {shapes[k][1], shapes[k][2]}, 1, shapes[k][3]};
+        struct bridge_state widest;
+        struct reason reason;
+        assert_int_equal(bridge_solve_rupture(&bridge, &widest, &reason), 0);
+        for (double share = -0.3; share < 0.9; share += 0.2) {
+            const double gap = share * widest.separation;
+            const struct bridge_state is = solved(&bridge, gap);
+            const double slope = energy_slope(&bridge, gap, 4e-3 * widest.separation);
+            const double scale =
+                fabs(is.force) + bridge_effective_radius(&bridge) * cbrt(shapes[k][3]);
+            worst = fmax(worst, fabs(is.force - slope) / scale);
+        }
+    }
+    print_message("# force and slope of energy differ by at most %.1e\n", worst);
+    assert_true(worst < 1e-8);
+}
+
+// ---- symmetries --------------------------------------------------------------------
+
+static void test_scale_free(void **state)
+{
+    (void)state;
+    const struct bridge small = {{2e-9, 5e-9}, {0.3, 0.9}, 0.07, 1e-29};
+    struct bridge large = small;
+    for (int k = 0; k < 2; k++)
+        large.radius[k] *= 1e12;
+    large.volume *= 1e36;
+    const struct bridge_state near = solved(&small, 1.5e-10), far = solved(&large, 150);
+    close_to(far.force, 1e12 * near.force, 1e-12, "force in another scale");
+    close_to(far.energy, 1e24 * near.energy, 1e-12, "energy in another scale");
+    close_to(far.suction, 1e-12 * near.suction, 1e-12, "suction in another scale");
+}
+
+static void test_exchange_of_bodies(void **state)
+{
+    (void)state;
+    const struct bridge one = {{1, 0.2}, {0.1, 1.0}, 1, 1e-4};
+    const struct bridge other = {{0.2, 1}, {1.0, 0.1}, 1, 1e-4};
+    const struct bridge_state a = solved(&one, 0.02), b = solved(&other, 0.02);
+    close_to(a.force, b.force, 1e-11, "force of bodies exchanged");
+    close_to(a.half_filling_angle[0], b.half_filling_angle[1], 1e-11, "filling angle");
+}
+
+static void test_plane_is_a_large_sphere(void **state)
+{
+    (void)state;
+    const struct bridge plane = {{1, INFINITY}, {0.2, 0.5}, 1, 1e-3};
+    const double force = solved(&plane, 0.05).force;
+    for (double radius = 1e2; radius < 1e9; radius *= 1e2) {
+        const struct bridge large = {{1, radius}, {0.2, 0.5}, 1, 1e-3};
+        close_to(solved(&large, 0.05).force, force, 3 / radius, "force on a plane");
+    }
+}
+
+static void test_continuous_at_contact(void **state)
+{
+    (void)state;
+    const struct bridge bridge = {{1, 0.5}, {0.2, 0.2}, 1, 1e-3};
+    const double force = solved(&bridge, 0).force;
+    for (double gap = 1e-4; gap > 1e-13; gap *= 0.1) {
+        close_to(solved(&bridge, gap).force, force, 100 * gap, "force before contact");
+        close_to(solved(&bridge, -gap).force, force, 100 * gap, "force in overlap");
+    }
+}
+
+static void test_ruptures_from_below(void **state)
+{
+    (void)state;
+    const struct bridge bridge = {{1, 0.5}, {0.2, 0.2}, 1, 1e-3};
+    struct bridge_state widest, is;
+    struct reason reason;
+    assert_int_equal(bridge_solve_rupture(&bridge, &widest, &reason), STATUS_OK);
+    double last = solved(&bridge, 0.9 * widest.separation).force - widest.force;
+    // The force falls to that at rupture with the root of the distance from it.
+    for (double short_of = 1e-3; short_of > 1e-11; short_of *= 0.01) {
+        const double more =
+            solved(&bridge, (1 - short_of) * widest.separation).force - widest.force;
+        assert_true(more > 0 && more < 0.5 * last);
+        last = more;
+    }
+    assert_int_equal(bridge_solve(&bridge, widest.separation, &is, &reason), STATUS_OK);
+    assert_int_equal(
+        bridge_solve(&bridge, (1 + 1e-9) * widest.separation, &is, &reason), STATUS_NO);
+}
+
+// The whole range of volumes, angles and ratios: a stable bridge at contact, and a
+// rupture, everywhere.
+static void test_whole_range(void **state)
+{
+    (void)state;
+    static const double ratios[] = {1, 0.5, 0.01, 1e-4, 0};
+    for (int r = 0; r < 5; r++)
+        for (int degrees = 0; degrees <= 120; degrees += 15)
+            for (double volume = 1e-9; volume < 2; volume *= 10) {
+                const double angle = degrees * M_PI / 180;
+                const double larger = 2 / (1 + ratios[r]);
+                const struct bodies bodies = {{larger, larger * ratios[r]},
+                                              {angle, angle}};
+                struct equilibrium is;
+                if (find_equilibrium(&bodies, volume, 0, &is) || !(is.stability > 0))
+                    fail_msg("none at contact: %g %d %g", ratios[r], degrees, volume);
+                if (find_rupture(&bodies, volume, &is) || !(is.gap > 0))
+                    fail_msg("no rupture: %g %d %g", ratios[r], degrees, volume);
+                const double widest = is.gap;
+                if (find_equilibrium(&bodies, volume, 0.99 * widest, &is))
+                    fail_msg("none before rupture: %g %d %g", ratios[r], degrees,
+                             volume);
+                const struct span span = span_of(&bodies, &is.arc);
+                close_to(span.gap, 0.99 * widest, 1e-10, "gap");
+                close_to(span.volume, volume, 1e-10, "volume");
+            }
+}
+
+static void test_no_bridge(void **state)
+{
+    (void)state;
+    static const struct bridge none[] = {{{1, 0}, {0, 0}, 1, 1e-3},
+                                         {{1, 1}, {0, 4}, 1, 1e-3},
+                                         {{INFINITY, INFINITY}, {0, 0}, 1, 1e-3},
+                                         {{1, 1}, {0, 0}, 1, 0},
+                                         {{1, NAN}, {0, 0}, 1, 1e-3}};
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++) {
+        struct bridge_state is;
+        struct reason reason;
+        assert_int_equal(bridge_solve(&none[k], 0, &is, &reason), STATUS_BAD_DATA);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_catenoid),
+                                       cmocka_unit_test(test_cylinder),
+                                       cmocka_unit_test(test_sphere),
+                                       cmocka_unit_test(test_vanishing_volume),
+                                       cmocka_unit_test(test_force_is_slope_of_energy),
+                                       cmocka_unit_test(test_scale_free),
+                                       cmocka_unit_test(test_exchange_of_bodies),
+                                       cmocka_unit_test(test_plane_is_a_large_sphere),
+                                       cmocka_unit_test(test_continuous_at_contact),
+                                       cmocka_unit_test(test_ruptures_from_below),
+                                       cmocka_unit_test(test_whole_range),
+                                       cmocka_unit_test(test_no_bridge)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
