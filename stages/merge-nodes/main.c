@@ -82,6 +82,22 @@ static void merge(struct network *network, const struct merge_parameters *parame
     census_free(&after);
 }
 
+// What an artifact can say of images.
+static void check_images(const struct network *network, const char *path)
+{
+    bool far = false;
+    for (int t = 0; network->throat_image && t < network->n_throat; t++)
+        far |= is_far(network->throat_image[t]);
+    for (int64_t k = 0;
+         network->throat_image && k < network->face_offset[network->n_face]; k++)
+        far |= is_far(network->face_node_image[k]);
+    if (far)
+        die(STATUS_BAD_DATA,
+            "%s: /domain/upper: the box is too narrow for merging so much: nodes would "
+            "meet that are more than %d boxes apart",
+            input_name(path), FARTHEST_IMAGE);
+}
+
 int main(int argc, char **argv)
 {
     struct merge_parameters parameters;
@@ -92,10 +108,11 @@ int main(int argc, char **argv)
             "fraction, got %g",
             parameters.threshold);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
-    struct network network = artifact_get_network(input);
+    struct network network = artifact_get_periodic_network(input);
 
     struct merge_report report;
     merge(&network, &parameters, invocation.report, &report);
+    check_images(&network, input->path);
 
     char model[500];
     snprintf(model, sizeof model,

@@ -60,44 +60,62 @@ static bool spans_the_box(uint8_t walls)
            (walls & 192) == 192;
 }
 
-// Moves the node at ROOT to where the union of it and OTHER belongs.
-static void place_union(struct merging *merging, int root, int other)
+// Moves the node at ROOT, where the box repeats, into the box.
+static void wrap(struct merging *merging, int root)
 {
-    const struct network *network = merging->network;
+    const struct packing *packing = &merging->network->packing;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!packing->periodic[axis]) continue;
+        const double lower = component(packing->lower, axis);
+        const double edge = component(packing->upper, axis) - lower;
+        const double at = component(merging->position[root], axis);
+        const double boxes = floor((at - lower) / edge);
+        set_component(&merging->position[root], axis, at - boxes * edge);
+        merging->image[root].along[axis] += (int8_t)boxes;
+    }
+}
+
+// Moves the first node of ENDS to where the union of both belongs; the second one is
+// part of it from now on.
+static void unite(struct merging *merging, struct merging_ends ends)
+{
+    const int root = ends.node[0], other = ends.node[1];
     const int difference =
         count_walls(merging->walls[root]) - count_walls(merging->walls[other]);
     const double a = difference < 0 ? 0 : merging->weight[root];
     const double b = difference > 0 ? 0 : merging->weight[other];
-    const struct vector from = merging->position[root];
-    const struct vector apart = subtract(merging->position[other], from);
-    merging->position[root] = add(from, scale(b / (a + b), apart));
+    const struct vector apart = merging_along(merging, ends);
+    merging->position[root] = add(merging->position[root], scale(b / (a + b), apart));
     merging->weight[root] = a + b;
     merging->walls[root] |= merging->walls[other];
+    merging->parent[other] = root;
+    merging->image[other] = image_difference(
+        image_difference(merging->image[other], ends.image), merging->image[root]);
+    wrap(merging, root);
     for (int wall = 0; wall <= WALL_INNER; wall++)
         if (merging->walls[root] >> wall & 1)
-            merging->position[root] =
-                nearest_on_wall(&network->packing, wall, merging->position[root]);
+            merging->position[root] = nearest_on_wall(&merging->network->packing, wall,
+                                                      merging->position[root]);
 }
 
 // Unites the two nodes of throat T. False when it has to stay. What of its volume no
 // throat was there to take is added to LOST.
 static bool merge_ends(struct merging *merging, int t, double *lost)
 {
-    int a = merging_node(merging, merging->network->throat_nodes[t][0]);
-    int b = merging_node(merging, merging->network->throat_nodes[t][1]);
-    if (spans_the_box(merging->walls[a] | merging->walls[b])) return false;
-    if (merging->row[a].count < merging->row[b].count) { // the shorter list moves
-        const int kept = a;
-        a = b;
-        b = kept;
-    }
-    const struct vector before = merging->position[a];
-    place_union(merging, a, b);
-    merging->parent[b] = a;
+    struct merging_ends ends = merging_ends(merging, t);
+    if (ends.node[0] == ends.node[1]) return false; // around a box that repeats
+    if (spans_the_box(merging->walls[ends.node[0]] | merging->walls[ends.node[1]]))
+        return false;
+    if (merging->row[ends.node[0]].count < merging->row[ends.node[1]].count)
+        ends = merging_turned(ends); // the shorter list moves
+    const int root = ends.node[0];
+    const struct vector before = merging->position[root];
+    unite(merging, ends);
     merging_remove(merging, t);
-    merging_move_throats(merging, a, b, distance(before, merging->position[a]) > 0);
+    merging_move_throats(merging, root, ends.node[1],
+                         distance(before, merging->position[root]) > 0);
     const double *volume = merging->network->throat_volume;
-    if (volume) *lost += merging_share(merging, a, volume[t]);
+    if (volume) *lost += merging_share(merging, root, volume[t]);
     return true;
 }
 

@@ -16,7 +16,8 @@ struct merge_report {
     int nodes_before, throats_before;
     int merged; // throats whose two nodes became one
     int fused;  // throats that had become parallel to another and were united with it
-    int kept;   // short throats that had to stay: from wall to opposite wall
+    int kept;   // short throats that had to stay: from wall to opposite wall, or around
+                // a box that repeats
     double lost_volume; // m3, where no throat was left to take it
 };
 
@@ -29,7 +30,8 @@ struct merge_report {
 // alone counting, and exactly on all their walls. Throats that become parallel (between
 // the same two nodes) are one: they were the same opening, seen twice; the wider radius
 // stays. Lengths follow the nodes; radii are those from before. Faces stay closed
-// loops; one left with fewer than three nodes is gone.
+// loops; one left with fewer than three nodes is gone. Where the box repeats, throats
+// between the same nodes are parallel only if they lead to the same image.
 //
 // Where throats have volumes, their sum stays: those of parallel throats add up, and
 // that of a throat merged away goes to the throats at the merged node, in proportion to

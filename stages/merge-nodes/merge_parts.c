@@ -60,19 +60,66 @@ bool merging_shortest(struct merging *merging, int *throat, double *length)
 
 // ---- nodes and throats --------------------------------------------------------------
 
-int merging_node(struct merging *merging, int node)
+// The node that NODE is part of now, and in which repetition.
+static int root_of(struct merging *merging, int node, struct image *image)
 {
     int *parent = merging->parent;
-    while (parent[node] != node)
-        node = parent[node] = parent[parent[node]];
+    struct image *within = merging->image;
+    *image = within[node];
+    while (parent[node] != node) {
+        const int above = parent[node];
+        if (parent[above] != above) {
+            within[node] = image_sum(within[node], within[above]);
+            parent[node] = parent[above];
+        }
+        *image = image_sum(*image, within[above]);
+        node = above;
+    }
     return node;
 }
 
-static int other_end(struct merging *merging, int throat, int root)
+struct merging_ends merging_ends(struct merging *merging, int throat)
 {
-    const int a = merging_node(merging, merging->network->throat_nodes[throat][0]);
-    return a != root ? a
-                     : merging_node(merging, merging->network->throat_nodes[throat][1]);
+    const struct network *network = merging->network;
+    struct merging_ends ends;
+    struct image image[2];
+    for (int end = 0; end < 2; end++)
+        ends.node[end] =
+            root_of(merging, network->throat_nodes[throat][end], &image[end]);
+    ends.image = image_difference(image[1], image[0]);
+    if (network->throat_image)
+        ends.image = image_sum(ends.image, network->throat_image[throat]);
+    return ends;
+}
+
+struct merging_ends merging_turned(struct merging_ends ends)
+{
+    return (struct merging_ends){{ends.node[1], ends.node[0]},
+                                 image_opposite(ends.image)};
+}
+
+// Seen from ROOT, one of the two.
+static struct merging_ends ends_from(struct merging *merging, int root, int throat)
+{
+    const struct merging_ends ends = merging_ends(merging, throat);
+    return ends.node[0] == root ? ends : merging_turned(ends);
+}
+
+static bool same_way(struct merging_ends a, struct merging_ends b)
+{
+    return a.node[0] == b.node[0] && a.node[1] == b.node[1] &&
+           same_image(a.image, b.image);
+}
+
+static bool parallel(struct merging_ends a, struct merging_ends b)
+{
+    return same_way(a, b) || same_way(a, merging_turned(b));
+}
+
+struct vector merging_along(const struct merging *merging, struct merging_ends ends)
+{
+    return image_apart(&merging->network->packing, merging->position[ends.node[0]],
+                       merging->position[ends.node[1]], ends.image);
 }
 
 static void append(struct throat_row *row, int throat)
@@ -113,23 +160,15 @@ double merging_share(struct merging *merging, int root, double volume)
 static void fuse_parallel(struct merging *merging)
 {
     for (int t = 0; t < merging->network->n_throat; t++) {
-        const int32_t *ends = merging->network->throat_nodes[t];
-        const struct throat_row *row = &merging->row[ends[0]];
+        const struct merging_ends ends = merging_ends(merging, t);
+        const struct throat_row *row = &merging->row[ends.node[0]];
         for (int k = 0; k < row->count && !merging->gone[t]; k++) {
             const int other = row->throat[k];
             if (other > t && !merging->gone[other] &&
-                other_end(merging, other, ends[0]) == ends[1])
+                parallel(ends, merging_ends(merging, other)))
                 fuse(merging, t, other);
         }
     }
-}
-
-// As merging_finish will write it: a length from elsewhere may differ in its last
-// digit, and so fall on the other side of a threshold when merged again.
-static double node_distance(const struct network *network, int throat)
-{
-    const int32_t *nodes = network->throat_nodes[throat];
-    return distance(network->node_position[nodes[0]], network->node_position[nodes[1]]);
 }
 
 struct merging merging_begin(struct network *network)
@@ -138,6 +177,7 @@ struct merging merging_begin(struct network *network)
     struct merging merging = {
         .network = network,
         .parent = NEW_ARRAY(int, n_node),
+        .image = NEW_ARRAY(struct image, n_node),
         .position = duplicate(network->node_position, n_node, sizeof(struct vector)),
         .weight = NEW_ARRAY(double, n_node),
         .walls = duplicate(network->node_walls, n_node, 1),
@@ -149,18 +189,20 @@ struct merging merging_begin(struct network *network)
         merging.weight[i] = 1;
     }
     for (int t = 0; t < network->n_throat; t++) {
-        append(&merging.row[network->throat_nodes[t][0]], t);
-        append(&merging.row[network->throat_nodes[t][1]], t);
-        push(&merging, t, node_distance(network, t));
+        const int32_t *ends = network->throat_nodes[t];
+        append(&merging.row[ends[0]], t);
+        if (ends[1] != ends[0]) append(&merging.row[ends[1]], t);
+        // As merging_finish will write it: a length from elsewhere may differ in its
+        // last digit, and so fall on the other side of a threshold when merged again.
+        push(&merging, t, norm(along_throat(network, t)));
     }
     fuse_parallel(&merging);
     return merging;
 }
 
-static void measure_again(struct merging *merging, int root, int throat)
+static void measure_again(struct merging *merging, int throat)
 {
-    const int other = other_end(merging, throat, root);
-    const double length = distance(merging->position[root], merging->position[other]);
+    const double length = norm(merging_along(merging, merging_ends(merging, throat)));
     merging->network->throat_length[throat] = length;
     merging->stamp[throat]++;
     push(merging, throat, length);
@@ -174,16 +216,25 @@ static void drop_gone(struct merging *merging, struct throat_row *row)
     row->count = kept;
 }
 
-// The throat of ROW that ends at NODE as THROAT does, or -1. Nodes have a handful of
-// throats, so looking through them costs less than any index.
+// The throat of ROW parallel to THROAT, or -1. Nodes have a handful of throats, so
+// looking through them costs less than any index.
 static int parallel_to(struct merging *merging, const struct throat_row *row, int root,
                        int throat)
 {
-    const int end = other_end(merging, throat, root);
+    const struct merging_ends ends = ends_from(merging, root, throat);
     for (int k = 0; k < row->count; k++)
-        if (row->throat[k] != throat && other_end(merging, row->throat[k], root) == end)
+        if (row->throat[k] != throat && !merging->gone[row->throat[k]] &&
+            parallel(ends, ends_from(merging, root, row->throat[k])))
             return row->throat[k];
     return -1;
+}
+
+// Where the box repeats, two nodes may have been joined on both sides.
+static bool holds(const struct throat_row *row, int throat)
+{
+    for (int k = 0; k < row->count; k++)
+        if (row->throat[k] == throat) return true;
+    return false;
 }
 
 void merging_move_throats(struct merging *merging, int root, int other, bool moved)
@@ -194,39 +245,41 @@ void merging_move_throats(struct merging *merging, int root, int other, bool mov
     const int before = row->count;
     for (int k = 0; k < from->count; k++) {
         const int throat = from->throat[k];
-        if (other_end(merging, throat, root) == root) { // parallel to the merged one
-            merging_remove(merging, throat);
-            continue;
-        }
+        if (merging->gone[throat]) continue;
         const int twin = parallel_to(merging, row, root, throat);
         if (twin >= 0) {
             fuse(merging, twin < throat ? twin : throat, twin < throat ? throat : twin);
             if (twin < throat) continue;
         }
-        append(row, throat);
-        measure_again(merging, root, throat);
+        if (!holds(row, throat)) append(row, throat);
+        measure_again(merging, throat);
     }
     drop_gone(merging, row);
     for (int k = 0; moved && k < row->count && k < before; k++)
-        measure_again(merging, root, row->throat[k]);
+        measure_again(merging, row->throat[k]);
     free(from->throat);
     *from = (struct throat_row){0};
 }
 
 // ---- writing back -------------------------------------------------------------------
 
+// Gives every node its new NUMBER, and in MERGING->image the repetition in which it is.
 static int renumber_nodes(struct merging *merging, int *number)
 {
-    struct network *network = merging->network;
+    const int n_node = merging->network->n_node;
+    struct image *image = NEW_ARRAY(struct image, n_node);
     int kept = 0;
-    for (int i = 0; i < network->n_node; i++)
+    for (int i = 0; i < n_node; i++)
         number[i] = -1;
-    for (int i = 0; i < network->n_node; i++) { // by the first of the nodes merged
-        const int root = merging_node(merging, i);
+    for (int i = 0; i < n_node; i++) { // by the first of the nodes merged
+        const int root = root_of(merging, i, &image[i]);
         if (number[root] < 0) number[root] = kept++;
     }
-    for (int i = 0; i < network->n_node; i++)
-        number[i] = number[merging_node(merging, i)];
+    struct image unused;
+    for (int i = 0; i < n_node; i++)
+        number[i] = number[root_of(merging, i, &unused)];
+    free(merging->image);
+    merging->image = image;
     return kept;
 }
 
@@ -241,60 +294,102 @@ static void write_nodes(struct merging *merging, const int *number, int kept)
     network->n_node = kept;
 }
 
+// The lower node first; of a throat from a node to its own image the way that leads up.
+static void write_ends(struct merging *merging, const int *number, int throat, int kept)
+{
+    struct network *network = merging->network;
+    const int32_t *ends = network->throat_nodes[throat];
+    const int a = number[ends[0]], b = number[ends[1]];
+    bool turn = a > b;
+    if (network->throat_image) {
+        struct image image = image_sum(
+            network->throat_image[throat],
+            image_difference(merging->image[ends[1]], merging->image[ends[0]]));
+        turn |= a == b && image_number(image) < 0;
+        network->throat_image[kept] = turn ? image_opposite(image) : image;
+    }
+    network->throat_nodes[kept][0] = turn ? b : a;
+    network->throat_nodes[kept][1] = turn ? a : b;
+}
+
 static void write_throats(struct merging *merging, const int *number)
 {
     struct network *network = merging->network;
     int kept = 0;
     for (int t = 0; t < network->n_throat; t++) {
         if (merging->gone[t]) continue;
-        const int a = number[network->throat_nodes[t][0]];
-        const int b = number[network->throat_nodes[t][1]];
-        network->throat_nodes[kept][0] = a < b ? a : b;
-        network->throat_nodes[kept][1] = a < b ? b : a;
+        write_ends(merging, number, t, kept);
         network->throat_radius[kept] = network->throat_radius[t];
         if (network->throat_volume)
             network->throat_volume[kept] = network->throat_volume[t];
-        network->throat_length[kept] =
-            distance(network->node_position[a], network->node_position[b]);
+        network->throat_length[kept] = norm(along_throat(network, kept));
         network->throat_kind[kept++] = network->throat_kind[t];
     }
     network->n_throat = kept;
 }
 
-// A loop without repeats and without spikes (there and back again); returns its length.
-static int clean_loop(int32_t *loop, int count)
+// A closed way along nodes, and where the box repeats the image of each; else NULL.
+struct loop {
+    int32_t *node;
+    struct image *image;
+    int count;
+};
+
+static bool same_corner(const struct loop *loop, int a, int b)
 {
-    for (bool changed = true; changed && count > 0;) {
+    return loop->node[a] == loop->node[b] &&
+           (!loop->image || same_image(loop->image[a], loop->image[b]));
+}
+
+// Takes out repeats, and spikes (there and back again).
+static void clean_loop(struct loop *loop)
+{
+    for (bool changed = true; changed && loop->count > 0;) {
         changed = false;
-        for (int k = 0; k < count && count > 1; k++) {
-            const int next = (k + 1) % count;
-            const bool spike = loop[(k + count - 1) % count] == loop[next];
-            if (loop[k] != loop[next] && !spike) continue;
-            for (int m = k; m + 1 < count; m++)
-                loop[m] = loop[m + 1];
-            count--;
+        for (int k = 0; k < loop->count && loop->count > 1; k++) {
+            const int next = (k + 1) % loop->count;
+            const int last = (k + loop->count - 1) % loop->count;
+            if (!same_corner(loop, k, next) && !same_corner(loop, last, next)) continue;
+            for (int m = k; m + 1 < loop->count; m++) {
+                loop->node[m] = loop->node[m + 1];
+                if (loop->image) loop->image[m] = loop->image[m + 1];
+            }
+            loop->count--;
             changed = true;
         }
     }
-    return count;
 }
 
-static void write_faces(struct network *network, const int *number)
+// The loop of the face that began at BEGIN, moved to END (which never overtakes what is
+// still read).
+static struct loop move_loop(struct merging *merging, const int *number, int64_t begin,
+                             int64_t end, int count)
 {
+    struct network *network = merging->network;
+    struct image *image = network->face_node_image;
+    for (int k = 0; k < count; k++) {
+        const int32_t node = network->face_nodes[begin + k];
+        network->face_nodes[end + k] = number[node];
+        if (image) image[end + k] = image_sum(image[begin + k], merging->image[node]);
+    }
+    return (struct loop){network->face_nodes + end, image ? image + end : NULL, count};
+}
+
+static void write_faces(struct merging *merging, const int *number)
+{
+    struct network *network = merging->network;
     int kept = 0;
     int64_t end = 0, begin = 0;
     for (int f = 0; f < network->n_face; f++) {
         const int64_t next = network->face_offset[f + 1];
-        const int count = (int)(next - begin);
-        for (int k = 0; k < count;
-             k++) // end <= begin: never overtakes what is still read
-            network->face_nodes[end + k] = number[network->face_nodes[begin + k]];
+        struct loop loop = move_loop(merging, number, begin, end, (int)(next - begin));
         begin = next;
-        const int left = clean_loop(&network->face_nodes[end], count);
-        if (left < 3) continue;
-        end += left;
+        clean_loop(&loop);
+        if (loop.count < 3) continue;
+        end += loop.count;
         for (int side = 0; side < 2; side++)
             network->face_particles[kept][side] = network->face_particles[f][side];
+        if (network->face_image) network->face_image[kept] = network->face_image[f];
         network->face_offset[++kept] = end;
     }
     network->n_face = kept;
@@ -307,11 +402,12 @@ void merging_finish(struct merging *merging)
     const int kept = renumber_nodes(merging, number);
     write_nodes(merging, number, kept);
     write_throats(merging, number);
-    write_faces(merging->network, number);
+    write_faces(merging, number);
     for (int i = 0; i < n_node; i++)
         free(merging->row[i].throat);
     free(number);
     free(merging->parent);
+    free(merging->image);
     free(merging->position);
     free(merging->weight);
     free(merging->walls);

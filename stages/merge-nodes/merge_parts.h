@@ -23,7 +23,10 @@ struct queued {
 
 struct merging {
     struct network *network;
-    int *parent;             // (n_node) union-find
+    int *parent; // (n_node) union-find
+    // (n_node) Where the box repeats: in which repetition of its parent a node is; of
+    // roots, in which repetition of what POSITION says.
+    struct image *image;
     struct vector *position; // (n_node) of roots
     double *weight; // (n_node) of roots: how many nodes its place is the mean of
     uint8_t *walls; // (n_node) of roots
@@ -37,8 +40,19 @@ struct merging {
 
 struct merging merging_begin(struct network *network);
 
-// The node that NODE is part of now.
-int merging_node(struct merging *merging, int node);
+// The two nodes that a throat joins now, and where the box repeats the second as seen
+// from the first.
+struct merging_ends {
+    int node[2];
+    struct image image;
+};
+struct merging_ends merging_ends(struct merging *merging, int throat);
+
+// The same, seen from the second.
+struct merging_ends merging_turned(struct merging_ends ends);
+
+// From the first of ENDS to the second.
+struct vector merging_along(const struct merging *merging, struct merging_ends ends);
 
 // Takes the shortest throat left off the queue. False when none is left.
 bool merging_shortest(struct merging *merging, int *throat, double *length);

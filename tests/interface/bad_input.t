@@ -303,6 +303,9 @@ damage("a negative overlap in the summary is refused", "packing",
 damage("a throat to a node that is not there is refused", "network",
        value("throats/nodes", (10, 1), 36),
        r"/throats/nodes: row 10: must be < 36 \(n_node\), got 36")
+damage("a throat from a node to itself is refused", "network",
+       value("throats/nodes", 10, (5, 5)),
+       "/throats/nodes: row 10: the lower index must come first, got 5, 5")
 damage("a negative throat radius is refused", "network", value("throats/radius", 3, -1),
        "/throats/radius: row 3: must be >= 0, got -1")
 damage("an unknown kind of throat is refused", "network", value("throats/kind", 9, 3),
@@ -426,6 +429,15 @@ make("periodic-network", "tessellate", "periodic")
 refused("a box that repeats has no open wall", BAD_DATA,
         ["dry", "--set", "throat_radius.distribution=normal", "periodic-network"],
         r"periodic-network: /domain/periodic: the open wall cannot be on an axis .*")
+make("one-cell", "pack", "--set", "method=cubic", "--set", "counts=[1,1,3]",
+     "--set", "periodic=[true,true,false]")
+make("one-cell-network", "tessellate", "one-cell")
+make("one-cell-merged", "merge-nodes", "one-cell-network")
+refused("dry refuses boxes that repeat after one node", BAD_DATA, ["dry", "one-cell-merged"],
+        r"one-cell-merged: /throats/nodes: row \d+: both ends are node 0")
+refused("a box too narrow to be merged away", BAD_DATA,
+        ["merge-nodes", "--set", "measure=absolute", "--set", "threshold=1", "periodic-network"],
+        r"periodic-network: /domain/upper: the box is too narrow for merging so much.*")
 refused("dry sends throats of no length to merge-nodes", BAD_DATA, ["dry", "degenerate"],
         r"degenerate: /throats/length: row \d+: must be above 0, is [\de.-]+ "
         r"\(merge-nodes removes short throats\)")

@@ -18,14 +18,11 @@ with scratch() as folder:
         run("merge-nodes", "-p", scene, "-o", network,
             input=run("tessellate", "-p", scene, input=run("pack", "-p", scene)))
         file = h5py.File(network)
-        nodes, kind = file["nodes/position"][:], file["nodes/kind"][:]
+        nodes = file["nodes/position"][:]
         ends = file["throats/nodes"][:]
         depth = np.minimum(nodes - file["domain/lower"][:], file["domain/upper"][:] - nodes)
         deep = depth > 2.1 * file["particles/radius"][0]
-        if name.startswith("2d") and kind.any() and (kind & 4).any():
-            # one layer in three dimensions: the network is there in each of the walls it fills
-            ends = ends[(kind[ends] & 4).all(axis=1)]
-            deep[:, 1] = (kind & 4) > 0
+        deep[:, 1] |= name.startswith("2d")
         count = np.bincount(ends.ravel(), minlength=len(nodes))[deep.all(axis=1)]
         ok(len(count) > 20 and (count == wanted).all(), f"{name}: {wanted} throats a node",
            np.bincount(count))

@@ -207,9 +207,10 @@ static enum status check_order(const struct subject *subject, const double *bloc
     const bool increasing = has(subject, "increasing");
     const bool nondecreasing =
         has(subject, "nondecreasing") || has(subject, "offset_into");
-    if (has(subject, "ascending_rows"))
+    const bool ascending = has(subject, "ascending_rows");
+    if (ascending || has(subject, "sorted_rows"))
         for (hsize_t k = 0; k + 1 < count; k += 2)
-            if (block[k] >= block[k + 1])
+            if (ascending ? block[k] >= block[k + 1] : block[k] > block[k + 1])
                 return refuse(
                     reason, STATUS_BAD_DATA,
                     "%s: row %llu: the lower index must come first, got %g, %g",

@@ -253,6 +253,21 @@ struct network artifact_get_network(const struct artifact *artifact)
     return artifact_get_periodic_network(artifact);
 }
 
+// A throat may join a node to its own image.
+static void check_throats_lead_away(const struct artifact *artifact,
+                                    const struct network *network)
+{
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *ends = network->throat_nodes[t];
+        const struct image *image = network->throat_image;
+        if (ends[0] != ends[1] || (image && !same_image(image[t], (struct image){0})))
+            continue;
+        die(STATUS_BAD_DATA,
+            "%s: /throats/nodes: row %d: the lower index must come first, got %d, %d",
+            input_name(artifact->path), t, ends[0], ends[1]);
+    }
+}
+
 struct network artifact_get_periodic_network(const struct artifact *artifact)
 {
     const struct schema *schema = artifact->schema;
@@ -275,9 +290,11 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
         network.unmerged_length =
             artifact_get_number(artifact, "/summary/unmerged_length");
     }
-    if (!has_dataset(artifact, "/throats/image")) return network;
-    network.throat_image = artifact_get(artifact, "/throats/image", NULL);
-    network.face_image = artifact_get(artifact, "/faces/image", NULL);
-    network.face_node_image = artifact_get(artifact, "/faces/node_image", NULL);
+    if (has_dataset(artifact, "/throats/image")) {
+        network.throat_image = artifact_get(artifact, "/throats/image", NULL);
+        network.face_image = artifact_get(artifact, "/faces/image", NULL);
+        network.face_node_image = artifact_get(artifact, "/faces/node_image", NULL);
+    }
+    check_throats_lead_away(artifact, &network);
     return network;
 }

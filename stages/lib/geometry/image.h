@@ -26,6 +26,11 @@ static inline struct image image_difference(struct image a, struct image b)
     return a;
 }
 
+static inline struct image image_opposite(struct image a)
+{
+    return image_difference((struct image){0}, a);
+}
+
 static inline bool same_image(struct image a, struct image b)
 {
     return a.along[0] == b.along[0] && a.along[1] == b.along[1] &&

@@ -46,6 +46,19 @@ struct body body_through(const struct packing *packing, int k)
     return body;
 }
 
+struct vector image_offset(const struct packing *packing, struct image image)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    return (struct vector){image.along[0] * edge.x, image.along[1] * edge.y,
+                           image.along[2] * edge.z};
+}
+
+struct vector image_apart(const struct packing *packing, struct vector from,
+                          struct vector to, struct image image)
+{
+    return add(subtract(to, from), image_offset(packing, image));
+}
+
 void packing_free(struct packing *packing)
 {
     free(packing->position);

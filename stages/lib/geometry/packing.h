@@ -5,6 +5,7 @@
 #define CRAQUELURE_PACKING_H
 
 #include "geometry/body.h"
+#include "geometry/image.h"
 #include "geometry/vector.h"
 
 #include <stdbool.h>
@@ -56,6 +57,13 @@ struct vector nearest_on_wall(const struct packing *packing, int wall, struct ve
 
 // Body K, going on beyond the sides of the box that it reaches.
 struct body body_through(const struct packing *packing, int k);
+
+// From something in the box to what it repeats IMAGE boxes away; m.
+struct vector image_offset(const struct packing *packing, struct image image);
+
+// From FROM to what TO repeats IMAGE boxes away; exactly opposite when seen from there.
+struct vector image_apart(const struct packing *packing, struct vector from,
+                          struct vector to, struct image image);
 
 // Frees what the packing owns and empties it; safe on an empty one.
 void packing_free(struct packing *packing);

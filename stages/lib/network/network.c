@@ -31,37 +31,30 @@ bool is_layer(const struct network *network)
     return network->n_face > 0;
 }
 
-static struct vector image_offset(const struct network *network,
-                                  const struct image *image)
+static struct image image_at(const struct image *image, int64_t k)
 {
-    if (!image) return (struct vector){0};
-    const struct vector edge = subtract(network->packing.upper, network->packing.lower);
-    return (struct vector){image->along[0] * edge.x, image->along[1] * edge.y,
-                           image->along[2] * edge.z};
+    return image ? image[k] : (struct image){0};
 }
 
-// Exactly opposite when seen from the other end: the difference comes first.
 struct vector along_throat(const struct network *network, int throat)
 {
     const int32_t *ends = network->throat_nodes[throat];
-    const struct image *image = network->throat_image;
-    return add(
-        subtract(network->node_position[ends[1]], network->node_position[ends[0]]),
-        image_offset(network, image ? &image[throat] : NULL));
+    return image_apart(&network->packing, network->node_position[ends[0]],
+                       network->node_position[ends[1]],
+                       image_at(network->throat_image, throat));
 }
 
 struct vector face_corner(const struct network *network, int64_t corner)
 {
-    const struct image *image = network->face_node_image;
-    return add(network->node_position[network->face_nodes[corner]],
-               image_offset(network, image ? &image[corner] : NULL));
+    return add(
+        network->node_position[network->face_nodes[corner]],
+        image_offset(&network->packing, image_at(network->face_node_image, corner)));
 }
 
 struct vector second_grain(const struct network *network, int face)
 {
-    const struct image *image = network->face_image;
     return add(network->packing.position[network->face_particles[face][1]],
-               image_offset(network, image ? &image[face] : NULL));
+               image_offset(&network->packing, image_at(network->face_image, face)));
 }
 
 struct incidence network_incidence(const struct network *network)

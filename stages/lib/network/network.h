@@ -26,7 +26,8 @@ struct network {
     uint8_t *node_walls; // (n_node) /nodes/kind: walls it lies on, bits of enum wall
 
     int n_throat;
-    int32_t (*throat_nodes)[2]; // (n_throat) lower node first
+    // (n_throat) Lower node first; one node twice only around a box that repeats.
+    int32_t (*throat_nodes)[2];
     double *throat_radius;      // (n_throat) m
     double *throat_length;      // (n_throat) m
     uint8_t *throat_kind;       // (n_throat) enum throat_kind
