@@ -83,9 +83,8 @@ static struct planar place_of(const struct view *view, int node)
 
 // ---- the feet of the columns --------------------------------------------------------
 
-// Marks the nodes of the network that have a column if nothing lies before them.
-static void mark_feet(const struct network *network, int wall, enum boundary_feet feet,
-                      bool *foot)
+void boundary_feet_mark(const struct network *network, int wall,
+                        enum boundary_feet feet, bool *foot)
 {
     enum { IN_NETWORK = 1, IN_LAYER = 2 };
     uint8_t *throats = NEW_ARRAY(uint8_t, network->n_node);
@@ -151,7 +150,7 @@ static enum status find_feet(const struct view *view, enum boundary_feet feet,
 {
     const struct network *network = view->network;
     bool *foot = NEW_ARRAY(bool, network->n_node);
-    mark_feet(network, view->wall, feet, foot);
+    boundary_feet_mark(network, view->wall, feet, foot);
     int n_marked = 0;
     for (int i = 0; i < network->n_node; i++)
         n_marked += foot[i];

@@ -41,6 +41,10 @@ struct boundary_layer {
     double *lateral_conductance; // (n_lateral) area over length; half of it at level 0
 };
 
+// FOOT (n_node) becomes true for the nodes that have a column if none lies before them.
+void boundary_feet_mark(const struct network *network, int wall,
+                        enum boundary_feet feet, bool *foot);
+
 // Only nodes with a throat of kind THROAT_NETWORK have columns; of several that lie one
 // behind the other, the outermost. The open face is the rectangle that these throats
 // span: the wall itself, where cells are cut by it. It repeats where the box does;

@@ -3,6 +3,7 @@
 #include "artifacts/artifact.h"
 #include "basics/status.h"
 #include "drying.h"
+#include "enclosed.h"
 #include "mass_transfer.h"
 #include "network/throat_radius.h"
 
@@ -17,6 +18,7 @@ struct dry_parameters {
     struct drying_conditions conditions;
     struct air_flow air;
     int liquid, distribution, transfer_law, exchange, feet;
+    int enclosed; // throats that others imposed empty have shut in
     int64_t layers, seed;
     unsigned open_walls, imposed_empty;
     struct radius_distribution radii;
@@ -265,10 +267,11 @@ static void write_drying(const struct network *network,
              "boundary layer: %s\n"
              "boundary layer: %.17g m thick, from %s\n"
              "liquid: %s\n"
+             "throats shut in by those imposed empty, and empty as well: %d\n"
              "left out: gravity, films, Kelvin and Knudsen effects, temperature\n",
              describe_layer(parameters, history, layer),
              history->boundary_layer_thickness,
-             describe_flow(parameters, transfer, flow), liquid);
+             describe_flow(parameters, transfer, flow), liquid, parameters->enclosed);
     struct artifact *artifact = artifact_create("drying");
     artifact_put_network(artifact, network);
     put_history(artifact, history);
@@ -333,6 +336,9 @@ int main(int argc, char **argv)
         give_mass_transfer(&network, &parameters, invocation.quiet);
     give_radii(&network, &parameters);
     impose_empty_throats(&network, parameters.imposed_empty);
+    if (parameters.imposed_empty && __builtin_popcount(parameters.open_walls) == 1)
+        parameters.enclosed = empty_enclosed_throats(
+            &network, __builtin_ctz(parameters.open_walls), parameters.conditions.feet);
     struct drying_history history;
     dry(&network, &parameters, &invocation, input->path, &history);
     write_drying(&network, &history, &invocation, input, &parameters, &transfer);

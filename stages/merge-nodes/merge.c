@@ -60,6 +60,14 @@ static bool spans_the_box(uint8_t walls)
            (walls & 192) == 192;
 }
 
+// Nodes may also face a wall from afar: then there is nowhere to move them to.
+static bool is_on_wall(const struct network *network, int wall, struct vector at)
+{
+    const struct packing *packing = &network->packing;
+    return distance(at, nearest_on_wall(packing, wall, at)) <=
+           1e-9 * distance(packing->lower, packing->upper);
+}
+
 // Moves the node at ROOT, where the box repeats, into the box.
 static void wrap(struct merging *merging, int root)
 {
@@ -84,8 +92,10 @@ static void unite(struct merging *merging, struct merging_ends ends)
         count_walls(merging->walls[root]) - count_walls(merging->walls[other]);
     const double a = difference < 0 ? 0 : merging->weight[root];
     const double b = difference > 0 ? 0 : merging->weight[other];
+    const struct network *network = merging->network;
+    const struct vector from = merging->position[root];
     const struct vector apart = merging_along(merging, ends);
-    merging->position[root] = add(merging->position[root], scale(b / (a + b), apart));
+    merging->position[root] = add(from, scale(b / (a + b), apart));
     merging->weight[root] = a + b;
     merging->walls[root] |= merging->walls[other];
     merging->parent[other] = root;
@@ -93,9 +103,11 @@ static void unite(struct merging *merging, struct merging_ends ends)
         image_difference(merging->image[other], ends.image), merging->image[root]);
     wrap(merging, root);
     for (int wall = 0; wall <= WALL_INNER; wall++)
-        if (merging->walls[root] >> wall & 1)
-            merging->position[root] = nearest_on_wall(&merging->network->packing, wall,
-                                                      merging->position[root]);
+        if (merging->walls[root] >> wall & 1 &&
+            (is_on_wall(network, wall, from) ||
+             is_on_wall(network, wall, merging->position[other])))
+            merging->position[root] =
+                nearest_on_wall(&network->packing, wall, merging->position[root]);
 }
 
 // Unites the two nodes of throat T. False when it has to stay. What of its volume no

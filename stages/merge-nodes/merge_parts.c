@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 // ---- the queue: a binary heap, shortest first, then lowest nodes --------------------
+// Throats of the boundary layer hold nothing and stay.
 
 static bool comes_before(const struct queued *a, const struct queued *b)
 {
@@ -18,6 +19,7 @@ static bool comes_before(const struct queued *a, const struct queued *b)
 
 static void push(struct merging *merging, int throat, double length)
 {
+    if (merging->network->throat_kind[throat] == THROAT_BOUNDARY_LAYER) return;
     const int32_t *nodes = merging->network->throat_nodes[throat];
     const struct queued item = {
         length, {nodes[0], nodes[1]}, throat, merging->stamp[throat]};

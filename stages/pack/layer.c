@@ -3,6 +3,7 @@
 #include "pack.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // The mean as the first radius and what the others differ by: exact for equal grains.
 static double mean_radius(const struct packing *packing)
@@ -54,6 +55,8 @@ enum status add_layer(const struct domain *domain, struct packing *packing,
     const size_t most = (size_t)packing->n_particle + (size_t)(across * deep);
     packing->position = reallocate(packing->position, most, sizeof *packing->position);
     packing->radius = reallocate(packing->radius, most, sizeof *packing->radius);
+    packing->kind = reallocate(packing->kind, most, sizeof *packing->kind);
+    memset(packing->kind, GRAIN_SOLID, (size_t)packing->n_particle);
     for (int x = 0; x < across; x++)
         for (int y = 0; y < deep; y++) {
             const struct vector place = {packing->lower.x + edge.x * (x + 0.5) / across,
@@ -62,7 +65,8 @@ enum status add_layer(const struct domain *domain, struct packing *packing,
             if (domain->shape != DOMAIN_BOX && !within_sides(domain, place, radius))
                 continue;
             packing->position[packing->n_particle] = place;
-            packing->radius[packing->n_particle++] = radius;
+            packing->radius[packing->n_particle] = radius;
+            packing->kind[packing->n_particle++] = GRAIN_AUXILIARY;
         }
     packing->upper.z = top + 2 * radius;
     return STATUS_OK;

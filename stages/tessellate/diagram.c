@@ -5,6 +5,7 @@
 #include "basics/memory.h"
 #include "cut.h"
 #include "reduce.h"
+#include "surface.h"
 
 #include <stdlib.h>
 
@@ -105,6 +106,7 @@ static void copy_packing(const struct packing *from, struct packing *to)
     to->position =
         duplicate(from->position, (size_t)from->n_particle, sizeof *to->position);
     to->radius = duplicate(from->radius, (size_t)from->n_particle, sizeof *to->radius);
+    if (from->kind) to->kind = duplicate(from->kind, (size_t)from->n_particle, 1);
     to->bond = duplicate(from->bond, (size_t)from->n_bond, sizeof *to->bond);
     move_inside(to);
 }
@@ -171,6 +173,7 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
         status = cut_network(network, &body, how->clearance, reason);
     }
     report->n_cell = packing->n_particle - report->hidden;
+    if (!status) mark_boundary_layer(network, how->layer);
     if (!status && how->boundary == BOUNDARY_ELIMINATE)
         report->n_cell = eliminate_cut_cells(network, how->layer);
     if (!status && !report->n_cell)

@@ -2,6 +2,7 @@
 #include "reduce.h"
 
 #include "basics/memory.h"
+#include "surface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +31,7 @@ static int choose_grains(const struct network *network, bool layer, bool *stays)
     }
     int count = 0;
     for (int i = 0; i < network->packing.n_particle; i++)
-        count += stays[i] = stays[i] && !cut[i];
+        count += stays[i] = stays[i] && !cut[i] && !is_auxiliary(&network->packing, i);
     free(cut);
     return count;
 }
@@ -71,6 +72,20 @@ static void keep_throats(const struct network *network, int64_t from, int64_t to
     }
 }
 
+bool *throats_beside(const struct network *network, const bool *grains)
+{
+    bool *beside = NEW_ARRAY(bool, network->n_throat);
+    for (int f = 0; f < network->n_face; f++) {
+        const int32_t *side = network->face_particles[f];
+        if (!grains[side[0]] && (side[1] < 0 || !grains[side[1]])) continue;
+        const int64_t begin = network->face_offset[f],
+                      end = network->face_offset[f + 1];
+        for (int64_t k = begin; k < end; k++)
+            keep_throats(network, k, k + 1 < end ? k + 1 : begin, beside);
+    }
+    return beside;
+}
+
 static void choose_rest(const struct network *network, struct staying *stays)
 {
     for (int f = 0; f < network->n_face; f++) {
@@ -78,13 +93,24 @@ static void choose_rest(const struct network *network, struct staying *stays)
         stays->face[f] =
             stays->grain[side[0]] || (side[1] >= 0 && stays->grain[side[1]]);
         if (!stays->face[f]) continue;
-        const int64_t begin = network->face_offset[f],
-                      end = network->face_offset[f + 1];
-        for (int64_t k = begin; k < end; k++) {
+        for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
             stays->node[network->face_nodes[k]] = 0;
-            keep_throats(network, k, k + 1 < end ? k + 1 : begin, stays->throat);
-        }
     }
+    free(stays->throat);
+    stays->throat = throats_beside(network, stays->grain);
+}
+
+// The throats of the boundary layer that begin at what stays.
+static void keep_feet(const struct network *network, struct staying *stays)
+{
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *ends = network->throat_nodes[t];
+        stays->throat[t] |= network->throat_kind[t] == THROAT_BOUNDARY_LAYER &&
+                            (stays->node[ends[0]] >= 0 || stays->node[ends[1]] >= 0);
+    }
+    for (int t = 0; t < network->n_throat; t++)
+        for (int end = 0; end < 2 && stays->throat[t]; end++)
+            stays->node[network->throat_nodes[t][end]] = 0;
 }
 
 static void pack_nodes(struct network *network, int *number)
@@ -165,7 +191,9 @@ int eliminate_cut_cells(struct network *network, bool layer)
 {
     struct staying stays = nothing_stays(network);
     const int count = choose_grains(network, layer, stays.grain);
+    face_walls(network, stays.grain, layer);
     choose_rest(network, &stays);
+    keep_feet(network, &stays);
     leave(network, &stays);
     return count;
 }

@@ -5,12 +5,17 @@
 
 #include "network/network.h"
 
+// (n_throat) whether one of GRAINS, (n_particle), is beside the throat. In a network
+// whose throats are in the order of tessellate. The caller frees it.
+bool *throats_beside(const struct network *network, const bool *grains);
+
 // Elimination strategy [K 3.3.3, 3.7]: takes from a network truncated to its box the
 // cells that the box cuts, and what belongs to no other cell: faces, throats and nodes.
 // A cell is cut when it has a face on a wall, be it unbounded or only larger than the
 // box. The cells that stay are whole; all grains stay in the packing, for those taken
-// away are beside the outer throats. In a layer of grains the walls y do not count.
-// Returns how many cells stay.
+// away are beside the outer throats. Auxiliary grains do not stay, but throats of the
+// boundary layer that begin at what stays do. Nodes at cut cells face the walls that
+// cut them. In a layer of grains the walls y do not count. Returns how many cells stay.
 int eliminate_cut_cells(struct network *network, bool layer);
 
 // The network of a layer of grains, all with their centres in one plane y [K 3.3.6]:

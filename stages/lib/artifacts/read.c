@@ -228,6 +228,8 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     packing.position =
         artifact_get(artifact, "/particles/position", &packing.n_particle);
     packing.radius = artifact_get(artifact, "/particles/radius", NULL);
+    if (has_dataset(artifact, "/particles/kind"))
+        packing.kind = artifact_get(artifact, "/particles/kind", NULL);
     packing.bond = artifact_get(artifact, "/bonds/particles", &packing.n_bond);
 
     struct vector *lower = artifact_get(artifact, "/domain/lower", NULL);

@@ -159,6 +159,8 @@ void artifact_put_packing(struct artifact *artifact, const struct packing *packi
     artifact_put(artifact, "/particles/position", packing->position,
                  packing->n_particle);
     artifact_put(artifact, "/particles/radius", packing->radius, packing->n_particle);
+    if (packing->kind)
+        artifact_put(artifact, "/particles/kind", packing->kind, packing->n_particle);
     artifact_put(artifact, "/domain/lower", &packing->lower, 3);
     artifact_put(artifact, "/domain/upper", &packing->upper, 3);
     artifact_put(artifact, "/domain/periodic", packing->periodic, 3);

@@ -8,6 +8,11 @@ bool is_periodic(const struct packing *packing)
     return packing->periodic[0] || packing->periodic[1] || packing->periodic[2];
 }
 
+bool is_auxiliary(const struct packing *packing, int grain)
+{
+    return packing->kind && packing->kind[grain] == GRAIN_AUXILIARY;
+}
+
 double wall_position(const struct packing *packing, int wall)
 {
     return component(wall % 2 ? packing->upper : packing->lower, wall / 2);
@@ -63,6 +68,7 @@ void packing_free(struct packing *packing)
 {
     free(packing->position);
     free(packing->radius);
+    free(packing->kind);
     free(packing->bond);
     *packing = (struct packing){0};
 }

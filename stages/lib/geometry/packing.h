@@ -27,10 +27,16 @@ enum { WALL_COUNT = 6 };
 // what they lie around.
 enum { WALL_OUTER = 6, WALL_INNER = 7, MOST_BODIES = 3 };
 
+enum grain_kind {
+    GRAIN_SOLID = 0,
+    GRAIN_AUXILIARY = 1 // not there: only gives the boundary layer its nodes [K 3.3.5]
+};
+
 struct packing {
     int n_particle;
     struct vector *position; // (n_particle) m
     double *radius;          // (n_particle) m
+    uint8_t *kind;           // (n_particle) enum grain_kind; NULL: all are solid
     struct vector lower;     // domain box, m
     struct vector upper;
     uint8_t periodic[3]; // 1 where the box repeats along x, y, z
@@ -42,6 +48,8 @@ struct packing {
 
 // Whether the box repeats along any direction.
 bool is_periodic(const struct packing *packing);
+
+bool is_auxiliary(const struct packing *packing, int grain);
 
 // Where wall 0..5 of the box stands along its axis, wall / 2; m.
 double wall_position(const struct packing *packing, int wall);

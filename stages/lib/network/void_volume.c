@@ -33,7 +33,7 @@ static double void_beside(const struct network *network, int face, struct vector
     double volume = 0;
     for (int side = 0; side < 2; side++) {
         const int grain = network->face_particles[face][side];
-        if (grain < 0) continue;
+        if (grain < 0 || is_auxiliary(&network->packing, grain)) continue;
         const struct vector centre = network->packing.position[grain];
         const struct vector to_middle = subtract(middle, centre);
         const struct vector to_a = subtract(network->node_position[a], centre);

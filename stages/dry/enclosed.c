@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "enclosed.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+static void spread(const struct network *network, const struct incidence *incidence,
+                   bool *reached, int *queue, int n)
+{
+    for (int k = 0; k < n; k++)
+        for (int i = incidence->offset[queue[k]]; i < incidence->offset[queue[k] + 1];
+             i++) {
+            const int t = incidence->throat[i];
+            if (network->throat_kind[t] != THROAT_NETWORK) continue;
+            const int32_t *ends = network->throat_nodes[t];
+            const int other = ends[ends[0] == queue[k]];
+            if (reached[other]) continue;
+            reached[other] = true;
+            queue[n++] = other;
+        }
+}
+
+int empty_enclosed_throats(struct network *network, int wall, enum boundary_feet feet)
+{
+    bool *reached = NEW_ARRAY(bool, network->n_node);
+    int *queue = NEW_ARRAY(int, network->n_node);
+    boundary_feet_mark(network, wall, feet, reached);
+    int n = 0;
+    for (int i = 0; i < network->n_node; i++)
+        if (reached[i]) queue[n++] = i;
+    struct incidence incidence = network_incidence(network);
+    spread(network, &incidence, reached, queue, n);
+    incidence_free(&incidence);
+
+    int enclosed = 0;
+    for (int t = 0; t < network->n_throat && n > 0; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK ||
+            reached[network->throat_nodes[t][0]])
+            continue;
+        network->throat_kind[t] = THROAT_IMPOSED_EMPTY;
+        enclosed++;
+    }
+    free(queue);
+    free(reached);
+    return enclosed;
+}
