@@ -142,6 +142,8 @@ static void found_cluster(struct clusters *clusters, int root, int old)
         for (int k = 0; k < search->n; k++) {
             const int throat = search->throat[k];
             clusters->of_throat[throat] = cluster;
+            GROW_ARRAY(clusters->moved, clusters->n_moved, clusters->moved_capacity);
+            clusters->moved[clusters->n_moved++] = throat;
             if (clusters->meniscus[throat])
                 heap_push(&clusters->heap[cluster], clusters->rank[throat]);
         }
@@ -191,6 +193,7 @@ void clusters_empty_throat(struct clusters *clusters, int throat)
     const int32_t *node = clusters->network->throat_nodes[throat];
     const int old = clusters->of_throat[throat];
     clusters->of_throat[throat] = -1;
+    clusters->n_moved = 0;
     if (--clusters->size[old] == 0) {
         end_cluster(clusters, old);
         return;
@@ -314,6 +317,7 @@ void clusters_free(struct clusters *clusters)
     free(clusters->unused);
     free(clusters->rank);
     free(clusters->throat_at_rank);
+    free(clusters->moved);
     free(clusters->found_by);
     free(clusters->search);
     *clusters = (struct clusters){0};

@@ -38,6 +38,9 @@ struct clusters {
     int *rank;           // (n_throat) place by radius, widest first; ties by index
     int *throat_at_rank; // (n_throat)
 
+    int n_moved, moved_capacity;
+    int *moved; // (n_moved) throats that have changed cluster, at the last that emptied
+
     int *found_by; // (n_throat) search that has been there, -1: none
     struct search *search;
     int n_search, search_capacity;

@@ -23,4 +23,10 @@ static inline double compensated_value(struct compensated sum)
     return sum.value + sum.lost;
 }
 
+// A - B, without a loss of digits however near they are.
+static inline double compensated_difference(struct compensated a, struct compensated b)
+{
+    return (a.value - b.value) + (a.lost - b.lost);
+}
+
 #endif

@@ -84,6 +84,10 @@ enum status check_conditions(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "open walls: must be exactly one, are %d",
                       __builtin_popcount(conditions->open_walls));
+    if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "step_interval: must be from 0 to 1, is %g",
+                      conditions->step_interval);
     if (!(conditions->first_period_rate_fraction > 0 &&
           conditions->first_period_rate_fraction < 1))
         return refuse(reason, STATUS_BAD_DATA,

@@ -2,7 +2,9 @@
 // The run itself [K 3.4.2]: vapour, losses, the throat that empties first, and again.
 #include "drying.h"
 
+#include "basics/memory.h"
 #include "boundary_layer.h"
+#include "clocks.h"
 #include "compensated.h"
 #include "conditions.h"
 #include "history.h"
@@ -19,10 +21,20 @@ struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
     struct phases phases;
-    struct losses losses;
-    struct liquid_flow flow; // empty unless the liquid is viscous
+    struct clocks clocks;    // empty if the liquid is viscous
+    struct losses losses;    // empty unless it is
+    struct liquid_flow flow; // empty unless it is
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
+    double imbalance;                    // largest at a step
+
+    // Since the last step was recorded.
+    double step_saturation;
+    struct compensated step_time, step_evaporated;
+    int n_skipped;      // events
+    int n_ended;        // throats that have emptied
+    int *ended;         // (n_ended)
+    double *saturation; // (n_throat) at that step
 };
 
 int impose_empty_throats(struct network *network, unsigned walls)
@@ -44,13 +56,108 @@ static double network_saturation(const struct run *run)
     return fmin(1, fmax(0, liquid / run->phases.initial_liquid));
 }
 
+static double rate_now(const struct run *run)
+{
+    return run->phases.n_full > 0 ? vapour_rate(&run->phases.vapour) : 0;
+}
+
 static void record_state(struct run *run)
 {
-    const double rate = run->phases.n_full > 0 ? vapour_rate(&run->phases.vapour) : 0;
+    const double rate = rate_now(run);
     recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
                       network_saturation(run), rate * run->scale.rate,
                       run->phases.clusters.count);
 }
+
+static void note_breakthrough(struct run *run)
+{
+    struct drying_history *history = run->recorder.history;
+    if (run->phases.breakthrough && history->breakthrough_saturation == 0)
+        history->breakthrough_saturation = network_saturation(run);
+}
+
+// --- clocks: liquid without viscosity, or immobile ---------------------------------
+
+static void record_change(struct run *run, int throat)
+{
+    const double saturation = clocks_saturation(&run->clocks, throat);
+    if (!(saturation < run->saturation[throat])) return; // too little to show
+    recorder_add_change(&run->recorder, throat, saturation);
+    run->saturation[throat] = saturation;
+}
+
+static int compare_throats(const void *a, const void *b)
+{
+    const int *t = a, *s = b;
+    return (*t > *s) - (*t < *s);
+}
+
+// Of all throats that lose or have lost since the last step, in ascending order.
+static void record_changes(struct run *run)
+{
+    const struct clocks *clocks = &run->clocks;
+    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, compare_throats);
+    int k = 0;
+    for (int l = 0; l < clocks->n_losing; l++) {
+        for (; k < run->n_ended && run->ended[k] < clocks->losing[l]; k++)
+            record_change(run, run->ended[k]);
+        record_change(run, clocks->losing[l]);
+    }
+    for (; k < run->n_ended; k++)
+        record_change(run, run->ended[k]);
+    run->n_ended = 0;
+}
+
+// A step if it is time for one. Where events were passed over, the rate of the last
+// step becomes the mean until this.
+static void record_step(struct run *run)
+{
+    const double saturation = network_saturation(run);
+    const double fallen = run->step_saturation - saturation;
+    if (fallen < run->conditions->step_interval && run->phases.n_full > 0) {
+        run->n_skipped++;
+        return;
+    }
+    if (run->n_skipped > 0) {
+        const double evaporated =
+            compensated_difference(run->evaporated, run->step_evaporated);
+        const double time = compensated_difference(run->time, run->step_time);
+        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
+    }
+    record_changes(run);
+    record_state(run);
+    run->imbalance = fmax(run->imbalance, fabs(clocks_imbalance(&run->clocks)));
+    run->n_skipped = 0;
+    run->step_saturation = saturation;
+    run->step_time = run->time;
+    run->step_evaporated = run->evaporated;
+}
+
+static enum status dry_to_next_end(struct run *run, struct reason *reason)
+{
+    struct clocks *clocks = &run->clocks;
+    const double rate = rate_now(run);
+    const double duration = clocks_advance(clocks);
+    if (duration < 0)
+        return refuse(
+            reason, STATUS_NOT_CONVERGED,
+            "nothing evaporates any more with %d throats still wet (rates too "
+            "small for the arithmetic)",
+            run->phases.n_full);
+    compensated_add(&run->time, duration);
+    compensated_add(&run->evaporated, rate * duration);
+    const double time = compensated_value(run->time) * run->scale.time;
+    for (int k = 0; k < clocks->n_ended; k++) {
+        recorder_add_event(&run->recorder, time, clocks->ended[k], EVENT_EMPTIED);
+        run->ended[run->n_ended++] = clocks->ended[k];
+    }
+    clocks_empty_ended(clocks);
+    note_breakthrough(run);
+    record_step(run);
+    return STATUS_OK;
+}
+
+// --- steps: viscous liquid ---------------------------------------------------------
 
 // When the first throat has emptied or filled, or changed by saturation_step.
 static double time_to_first(const struct run *run)
@@ -123,7 +230,6 @@ static void note_refills(struct run *run, double time)
 static void empty_throats(struct run *run)
 {
     struct phases *phases = &run->phases;
-    const bool breakthrough_before = phases->breakthrough;
     const double time = compensated_value(run->time) * run->scale.time;
     note_refills(run, time);
     for (int k = 0; k < run->losses.n; k++) {
@@ -132,15 +238,13 @@ static void empty_throats(struct run *run)
         phases_empty_throat(phases, throat);
         recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
     }
-    if (phases->breakthrough && !breakthrough_before)
-        run->recorder.history->breakthrough_saturation = network_saturation(run);
+    note_breakthrough(run);
 }
 
 static enum status dry_step(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
-    enum status status =
-        losses_find(&run->losses, phases, run->conditions->liquid, &run->flow, reason);
+    enum status status = losses_find(&run->losses, phases, &run->flow, reason);
     if (status) return status;
     if (run->losses.n == 0)
         return refuse(
@@ -150,19 +254,33 @@ static enum status dry_step(struct run *run, struct reason *reason)
             phases->n_full);
     advance(run, time_to_first(run));
     empty_throats(run);
-    status = vapour_check(&phases->vapour, reason);
     record_state(run);
-    return status;
+    return STATUS_OK;
+}
+
+// --- the whole run -----------------------------------------------------------------
+
+static void note_first_period(struct run *run, double first_rate)
+{
+    struct drying_history *history = run->recorder.history;
+    const double fraction = run->conditions->first_period_rate_fraction;
+    if (history->first_period_end_saturation == 0 &&
+        rate_now(run) < fraction * first_rate)
+        history->first_period_end_saturation = network_saturation(run);
 }
 
 static enum status dry_all(struct run *run, const struct drying_progress *progress,
                            struct reason *reason)
 {
     const int n = run->phases.n_full;
+    const double first_rate = rate_now(run);
     enum status status = STATUS_OK;
     record_state(run);
     while (!status && run->phases.n_full > 0) {
-        status = dry_step(run, reason);
+        status = run->conditions->liquid == LIQUID_VISCOUS
+                     ? dry_step(run, reason)
+                     : dry_to_next_end(run, reason);
+        note_first_period(run, first_rate);
         if (progress && progress->report)
             progress->report(progress->context, 1 - (double)run->phases.n_full / n);
     }
@@ -171,20 +289,33 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
 
 static void summarise(const struct run *run, struct drying_history *history)
 {
-    const double fraction = run->conditions->first_period_rate_fraction;
-    for (int k = 0; k < history->n_step; k++)
-        if (history->rate[k] < fraction * history->rate[0]) {
-            history->first_period_end_saturation = history->saturation[k];
-            break;
-        }
     history->boundary_layer_thickness = run->scale.boundary_layer * run->scale.length;
     history->boundary_layers = run->phases.layer.layers;
     history->initial_liquid = run->phases.initial_liquid * run->scale.mass;
     history->evaporated = compensated_value(run->evaporated) * run->scale.mass;
-    history->vapour_residual = run->phases.vapour.residual;
+    history->vapour_residual = run->imbalance;
     history->liquid_residual = run->flow.residual;
     history->flow_solutions = run->flow.solutions;
     history->flow_rounds = run->flow.rounds;
+}
+
+// What the liquid needs.
+static void prepare(struct run *run)
+{
+    const struct network *network = run->phases.network;
+    if (run->conditions->liquid == LIQUID_VISCOUS) {
+        run->flow =
+            liquid_flow_make(network, run->scale.length,
+                             menisci_make(network, run->conditions, &run->scale));
+        run->losses = losses_make(network->n_throat);
+        return;
+    }
+    run->clocks = clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
+    run->step_saturation = 1;
+    run->ended = NEW_ARRAY(int, network->n_throat);
+    run->saturation = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        run->saturation[t] = 1;
 }
 
 enum status dry_network(const struct network *network,
@@ -213,16 +344,18 @@ enum status dry_network(const struct network *network,
     }
 
     const bool gas_parts = conditions->liquid != LIQUID_IMMOBILE;
-    if (conditions->liquid == LIQUID_VISCOUS)
-        run.flow = liquid_flow_make(network, run.scale.length,
-                                    menisci_make(network, conditions, &run.scale));
-    run.losses = losses_make(network->n_throat);
     status = phases_make(network, wall, run.scale.length, gas_parts, layer, &run.phases,
                          reason);
-    if (!status) status = dry_all(&run, progress, reason);
+    if (!status) {
+        prepare(&run);
+        status = dry_all(&run, progress, reason);
+    }
     if (!status) summarise(&run, history);
     liquid_flow_free(&run.flow);
     losses_free(&run.losses);
+    clocks_free(&run.clocks);
+    free(run.ended);
+    free(run.saturation);
     phases_free(&run.phases);
     return status;
 }

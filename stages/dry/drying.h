@@ -55,6 +55,9 @@ struct drying_conditions {
     bool lumped;             // no lattice of layers and columns, only beta
     unsigned open_walls;     // bits of enum wall; exactly one now
     enum liquid_limit liquid;
+    // Fall of the network's saturation from one recorded step to the next; 0: each
+    // event is a step. Not where the liquid is viscous.
+    double step_interval;
     double
         first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends
 };
@@ -100,9 +103,10 @@ struct drying_history {
 
     double boundary_layer_thickness; // m
     int boundary_layers;
-    double initial_liquid;  // kg: what the throats lose in all, since all end empty
-    double evaporated;      // kg: integral of the rate into the drying air
-    double vapour_residual; // largest over the run, of the rate
+    double initial_liquid; // kg: what the throats lose in all, since all end empty
+    double evaporated;     // kg: integral of the rate into the drying air
+    double
+        vapour_residual; // |what throats lose less what reaches the air|, of the rate
     double
         liquid_residual; // of the liquid's balances, of the largest flow in a cluster
     int64_t flow_solutions, flow_rounds; // clusters solved, and rounds to find menisci
@@ -127,10 +131,10 @@ int impose_empty_throats(struct network *network, unsigned walls);
 // STATUS_BAD_DATA: conditions under which nothing would dry or that are not positive;
 // not exactly one open wall; a throat of zero length or radius (merge-nodes removes the
 // first); no throat reaches the open wall; liquid without a way to it.
-// STATUS_NOT_CONVERGED: evaporation may be wrong by more than VAPOUR_TOLERANCE.
+// STATUS_NOT_CONVERGED: rates too small for the arithmetic to dry anything.
 //
 // Cost of an event: the square of the wet nodes that see each other through the gas, at
-// most; the rest as many operations as there are wet throats.
+// most; the rest goes with those it changes, and with what is recorded.
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,

@@ -65,6 +65,11 @@ void recorder_add_step(struct recorder *recorder, double time, double saturation
     history->change_offset[step + 1] = recorder->n_change;
 }
 
+void recorder_set_last_rate(struct recorder *recorder, double rate)
+{
+    recorder->history->rate[recorder->history->n_step - 1] = rate;
+}
+
 void drying_history_free(struct drying_history *history)
 {
     free(history->time);

@@ -23,4 +23,7 @@ void recorder_add_event(struct recorder *recorder, double time, int throat,
 void recorder_add_step(struct recorder *recorder, double time, double saturation,
                        double rate, int clusters);
 
+// Of the step added last.
+void recorder_set_last_rate(struct recorder *recorder, double rate);
+
 #endif

@@ -9,8 +9,7 @@ struct losses losses_make(int n_throat)
 {
     return (struct losses){.loss = NEW_ARRAY(struct loss, n_throat),
                            .charge = NEW_ARRAY(double, n_throat),
-                           .charged = NEW_ARRAY(int, n_throat),
-                           .cluster_rate = NEW_ARRAY(double, n_throat)};
+                           .charged = NEW_ARRAY(int, n_throat)};
 }
 
 void losses_free(struct losses *losses)
@@ -18,7 +17,6 @@ void losses_free(struct losses *losses)
     free(losses->loss);
     free(losses->charge);
     free(losses->charged);
-    free(losses->cluster_rate);
     *losses = (struct losses){0};
 }
 
@@ -47,32 +45,6 @@ static void charge_throats(struct losses *losses, const struct phases *phases, i
     }
 }
 
-// Viscosity keeps the liquid where it is: each throat loses its own.
-static void lose_immobile(struct losses *losses)
-{
-    for (int k = 0; k < losses->n_charged; k++)
-        losses->loss[losses->n++] =
-            (struct loss){losses->charged[k], losses->charge[losses->charged[k]]};
-}
-
-// Without viscosity, capillarity takes all a cluster evaporates from the throat of its
-// lowest capillary pressure [K 3.4.2, steps 2 to 4].
-static void lose_inviscid(struct losses *losses, struct phases *phases)
-{
-    const int *of_throat = phases->clusters.of_throat;
-    for (int k = 0; k < losses->n_charged; k++)
-        losses->cluster_rate[of_throat[losses->charged[k]]] +=
-            losses->charge[losses->charged[k]];
-    for (int k = 0; k < losses->n_charged; k++) {
-        const int cluster = of_throat[losses->charged[k]];
-        if (losses->cluster_rate[cluster] == 0) continue; // has had its turn
-        losses->loss[losses->n++] =
-            (struct loss){clusters_invasion_throat(&phases->clusters, cluster),
-                          losses->cluster_rate[cluster]};
-        losses->cluster_rate[cluster] = 0;
-    }
-}
-
 static int compare_losses(const void *a, const void *b)
 {
     const struct loss *l = a, *m = b;
@@ -80,21 +52,14 @@ static int compare_losses(const void *a, const void *b)
 }
 
 enum status losses_find(struct losses *losses, struct phases *phases,
-                        enum liquid_limit limit, struct liquid_flow *flow,
-                        struct reason *reason)
+                        struct liquid_flow *flow, struct reason *reason)
 {
-    enum status status = STATUS_OK;
     losses->n = 0;
     losses->n_charged = 0;
     for (int k = 0; k < phases->n_wet; k++)
         charge_throats(losses, phases, phases->wet[k]);
-    if (limit == LIQUID_VISCOUS)
-        status = liquid_flow_find(flow, phases, losses->charge, losses->loss,
-                                  &losses->n, reason);
-    else if (limit == LIQUID_IMMOBILE)
-        lose_immobile(losses);
-    else
-        lose_inviscid(losses, phases);
+    const enum status status = liquid_flow_find(flow, phases, losses->charge,
+                                                losses->loss, &losses->n, reason);
     for (int k = 0; k < losses->n_charged; k++)
         losses->charge[losses->charged[k]] = 0;
     if (losses->n > 0)

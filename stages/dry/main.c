@@ -121,6 +121,11 @@ static const struct parameter table[] = {
      AT(feet)},
     {"boundary_layer.layers", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 10000,
      NULL, "layers of nodes in it; 0: spaced as throats are long", AT(layers)},
+    {"step_interval", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
+     "fall of the saturation from one recorded step to the next, for large networks; "
+     "0: "
+     "every event is a step; of no effect in viscous liquid",
+     AT(conditions.step_interval)},
     {"first_period_rate", PARAMETER_NUMBER, "1", "0.9", BOUND_BETWEEN, 0.01, 0.999,
      NULL,
      "the first drying period ends when the rate falls below this share of its start",

@@ -42,6 +42,8 @@ struct star_mesh star_mesh_make(int n_site)
                              .air = NEW_ARRAY(double, n_site),
                              .first = NEW_ARRAY(int, n_site),
                              .place = NEW_ARRAY(int, n_site),
+                             .changed = NEW_ARRAY(int, n_site),
+                             .is_changed = NEW_ARRAY(bool, n_site),
                              .unused_membership = -1,
                              .unused_front = -1};
     for (int i = 0; i < n_site; i++)
@@ -66,6 +68,7 @@ void star_mesh_free(struct star_mesh *mesh)
     free(mesh->membership);
     free(mesh->front);
     free(mesh->changed);
+    free(mesh->is_changed);
     free(mesh->place);
     free(mesh->row);
     *mesh = (struct star_mesh){0};
@@ -318,14 +321,13 @@ static void raise_air(struct star_mesh *mesh, const struct front *front, double 
         if (!(mesh->row[i] > 0)) continue;
         const int site = front->site[i];
         change_air(mesh, site, mesh->air[site] + mesh->row[i] * share);
-        GROW_ARRAY(mesh->changed, mesh->n_changed, mesh->changed_capacity);
-        mesh->changed[mesh->n_changed++] = site;
+        if (!mesh->is_changed[site]) mesh->changed[mesh->n_changed++] = site;
+        mesh->is_changed[site] = true;
     }
 }
 
 void star_mesh_eliminate(struct star_mesh *mesh, int site)
 {
-    mesh->n_changed = 0;
     const double air = mesh->air[site];
     change_air(mesh, site, 0);
     const int front_index = merge_fronts(mesh, site);
@@ -352,4 +354,11 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
         front->n = 0;
     }
     if (front->n == 0) end_front(mesh, front_index);
+}
+
+void star_mesh_forget_changes(struct star_mesh *mesh)
+{
+    for (int k = 0; k < mesh->n_changed; k++)
+        mesh->is_changed[mesh->changed[k]] = false;
+    mesh->n_changed = 0;
 }

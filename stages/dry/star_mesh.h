@@ -15,6 +15,8 @@
 
 #include "compensated.h"
 
+#include <stdbool.h>
+
 struct front;
 struct membership; // a site's being on a front
 
@@ -29,9 +31,11 @@ struct star_mesh {
     struct front *front;
     int n_front, front_capacity, unused_front;
 
-    // What the last elimination changed.
-    int n_changed, changed_capacity;
-    int *changed; // (n_changed) sites whose conductance to the air has grown
+    // Sites whose conductance to the air eliminations have raised since the changes
+    // were last forgotten, each once; some may have been eliminated themselves.
+    int n_changed;
+    int *changed;     // (n_changed)
+    bool *is_changed; // (n_site)
 
     int *place;  // (n_site) on the front at hand, -1 between calls
     double *row; // of the site that is eliminated
@@ -48,6 +52,8 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
 
 // SITE leaves the mesh. O(n^2) for a front of n sites.
 void star_mesh_eliminate(struct star_mesh *mesh, int site);
+
+void star_mesh_forget_changes(struct star_mesh *mesh);
 
 void star_mesh_free(struct star_mesh *mesh);
 

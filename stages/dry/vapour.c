@@ -49,6 +49,7 @@ static void add_boundary_layer(struct vapour *vapour,
         for (int i = 0; level + 1 < layer->layers && i < layer->n_exposed; i++)
             star_mesh_eliminate(&vapour->mesh, level_site(layer, n_node, level + 1, i));
     }
+    star_mesh_forget_changes(&vapour->mesh);
 }
 
 struct vapour vapour_make(const struct network *network, double length,
@@ -92,13 +93,4 @@ double vapour_rate(const struct vapour *vapour)
 double vapour_evaporation(const struct vapour *vapour, int node)
 {
     return vapour->mesh.air[node];
-}
-
-enum status vapour_check(const struct vapour *vapour, struct reason *reason)
-{
-    if (vapour->residual < VAPOUR_TOLERANCE) return STATUS_OK;
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "the evaporation of wet nodes may be off by %.3g of the drying rate, "
-                  "allowed is %g",
-                  vapour->residual, VAPOUR_TOLERANCE);
 }

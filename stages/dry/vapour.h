@@ -14,15 +14,11 @@
 #include "compensated.h"
 #include "star_mesh.h"
 
-// Largest error of what wet nodes evaporate, all together, relative to the drying rate.
-#define VAPOUR_TOLERANCE 1e-12
-
 struct vapour {
     // Sites are the network's nodes, then the boundary layer's nodes level by level.
     int n_site;
     double *conductance; // (n_throat) area over length
     struct star_mesh mesh;
-    double residual; // bound of the largest error so far, of the rate
 };
 
 // For a network that is full of liquid. Lengths are in units of LENGTH (m),
@@ -34,9 +30,6 @@ struct vapour vapour_make(const struct network *network, double length,
 // more; the nodes that then evaporate more are the mesh's changed ones.
 void vapour_open_throat(struct vapour *vapour, int throat, int a, int b);
 void vapour_dry_node(struct vapour *vapour, int node);
-
-// STATUS_NOT_CONVERGED if the error may be larger than VAPOUR_TOLERANCE.
-enum status vapour_check(const struct vapour *vapour, struct reason *reason);
 
 // Into the drying air.
 double vapour_rate(const struct vapour *vapour);
