@@ -5,9 +5,9 @@
 
 #include <stdlib.h>
 
-enum { GRID_BITS = 40, SAFE_BITS = 50 };
+enum { GRID_BITS = 42, SAFE_BITS = 50 };
 
-// A power of two: 2^-40 mean diameters, or coarser where the box is so large that sums
+// A power of two: 2^-42 mean diameters, or coarser where the box is so large that sums
 // on the grid would not be exact; in units.
 static double grid_for(double diameter, struct vector box)
 {
@@ -111,12 +111,17 @@ static int compare_places(const void *a, const void *b, void *positions)
 
 enum status check_distinct(const struct generators *generators, struct reason *reason)
 {
-    const struct vector *at = generators->position;
     const int n = generators->n_particle;
+    struct vector *at = duplicate(generators->position, (size_t)n, sizeof *at);
     int32_t *order = NEW_ARRAY(int32_t, n);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         order[i] = i;
-    qsort_r(order, (size_t)n, sizeof *order, compare_places, generators->position);
+        for (int axis = 0; axis < 3; axis++) // an upper side that repeats is the lower
+            if (generators->repeats[axis] &&
+                component(at[i], axis) == component(generators->box, axis))
+                set_component(&at[i], axis, 0);
+    }
+    qsort_r(order, (size_t)n, sizeof *order, compare_places, at);
     enum status status = STATUS_OK;
     for (int k = 1; k < n && !status; k++)
         if (norm(subtract(at[order[k]], at[order[k - 1]])) == 0)
@@ -125,6 +130,7 @@ enum status check_distinct(const struct generators *generators, struct reason *r
                        "/particles/position: row %d: has the same centre as row %d",
                        order[k], order[k - 1]);
     free(order);
+    free(at);
     return status;
 }
 
@@ -232,14 +238,15 @@ static void add_copies(struct generators *generators)
     }
 }
 
-// Into the box where it repeats.
-static struct vector wrapped(const struct generators *generators, struct vector at)
+// Into the box where it repeats; in m, so that grains one box apart come to one place.
+static struct vector wrapped(const struct packing *packing, struct vector at)
 {
     for (int axis = 0; axis < 3; axis++) {
-        if (!generators->repeats[axis]) continue;
-        const double edge = component(generators->box, axis);
+        if (!packing->periodic[axis]) continue;
+        const double lower = component(packing->lower, axis);
+        const double edge = component(packing->upper, axis) - lower;
         const double x = component(at, axis);
-        set_component(&at, axis, x - edge * floor(x / edge));
+        set_component(&at, axis, x - edge * floor((x - lower) / edge));
     }
     return at;
 }
@@ -268,8 +275,8 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     place_walls(packing, generators);
     for (int i = 0; i < n; i++) {
         const double radius = packing->radius[i] / unit;
-        generators->position[i] = wrapped(
-            generators, round_to(grid, scaled(packing, packing->position[i], unit)));
+        generators->position[i] = round_to(
+            grid, scaled(packing, wrapped(packing, packing->position[i]), unit));
         generators->weight[i] = power ? radius * radius : 0;
         generators->largest_weight =
             fmax(generators->largest_weight, generators->weight[i]);

@@ -41,7 +41,7 @@ struct generators {
 };
 
 // Grains, and images of those within REACH (in units) of a side. Positions and box are
-// rounded to 2^-40 of the mean diameter: what is degenerate but for rounding errors (a
+// rounded to 2^-42 of the mean diameter: what is degenerate but for rounding errors (a
 // lattice) becomes exactly so, the exact predicates then make no slivers of the noise,
 // and copies are exact. A grain outside the box along a direction that repeats is moved
 // into it. STATUS_BAD_DATA when a grain's centre is outside the box or on a wall.

@@ -30,8 +30,9 @@ static struct vector power_centre(const struct generators *generators,
     double right[3];
     for (int k = 0; k < 3; k++) {
         row[k] = subtract(generators->position[corner[k + 1]], origin);
-        right[k] = 0.5 * (dot(row[k], row[k]) - generators->weight[corner[k + 1]] +
-                          generators->weight[corner[0]]);
+        // Weights first: those of a grain and its image cancel, however close they are.
+        right[k] = 0.5 * (dot(row[k], row[k]) + (generators->weight[corner[0]] -
+                                                 generators->weight[corner[k + 1]]));
     }
     const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
                                      cross(row[0], row[1])};
