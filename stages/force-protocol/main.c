@@ -131,7 +131,7 @@ int main(int argc, char **argv)
     struct force_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
-    struct network network = artifact_get_network(input);
+    struct network network = artifact_get_periodic_network(input);
     struct drying_record record = read_record(input, (double)parameters.steps);
 
     struct patch *patches;

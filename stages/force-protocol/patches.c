@@ -39,48 +39,80 @@ static struct vector foot_of_face(const struct network *network, int face)
               j = network->face_particles[face][1];
     const struct vector foot = packing->position[i];
     if (j < 0) return nearest_on_wall(packing, -1 - j, foot);
-    const struct vector apart = subtract(packing->position[j], foot);
+    const struct vector apart = subtract(second_grain(network, face), foot);
     const double ri = packing->radius[i], rj = packing->radius[j];
     const double share =
         0.5 + 0.5 * (ri - rj) * (ri + rj) / dot(apart, apart); // [K 3.2]
     return add(foot, scale(share, apart));
 }
 
-// From GRAIN towards what lies behind the face. Not towards the foot: a grain whose
-// centre another one has engulfed lies beyond its own face.
-static struct vector outwards(const struct network *network, int face, int grain)
+// The grain on SIDE of the face, in the repetition of the box where the first one is.
+static struct vector centre_of(const struct network *network, int face, int side)
 {
-    const struct vector centre = network->packing.position[grain];
-    const int32_t *sides = network->face_particles[face];
-    const int other = sides[sides[0] == grain];
-    return subtract(other < 0 ? foot_of_face(network, face)
-                              : network->packing.position[other],
-                    centre);
+    return side ? second_grain(network, face)
+                : network->packing.position[network->face_particles[face][0]];
 }
 
-// The patches one face gives one of its grains, a triangle a throat, written to
-// PATCHES. Turned around when the loop runs clockwise seen from that grain's outside.
-// False when the grain's centre is on the face: there is no direction to it.
-static bool fan(const struct network *network, int face, int grain, const int *throats,
+// From the grain on SIDE towards what lies behind the face. Not towards the foot: a
+// grain whose centre another one has engulfed lies beyond its own face.
+static struct vector outwards(const struct network *network, int face, int side)
+{
+    const bool is_wall = network->face_particles[face][1] < 0;
+    return subtract(is_wall ? foot_of_face(network, face)
+                            : centre_of(network, face, !side),
+                    centre_of(network, face, side));
+}
+
+// The patches one face gives the grain on one of its sides, a triangle a throat,
+// written to PATCHES. Turned around when the loop runs clockwise seen from that grain's
+// outside. False when the grain's centre is on the face: there is no direction to it.
+static bool fan(const struct network *network, int face, int side, const int *throats,
                 struct patch *patches)
 {
-    const int32_t *loop = network->face_nodes + network->face_offset[face];
-    const int count =
-        (int)(network->face_offset[face + 1] - network->face_offset[face]);
-    const struct vector centre = network->packing.position[grain];
+    const int64_t begin = network->face_offset[face];
+    const int count = (int)(network->face_offset[face + 1] - begin);
+    const int grain = network->face_particles[face][side];
+    const struct vector centre = centre_of(network, face, side);
     const struct vector foot = direction(centre, foot_of_face(network, face));
     struct vector sum = {0};
     for (int k = 0; k < count; k++) {
-        const struct vector a = direction(centre, network->node_position[loop[k]]);
+        const struct vector a = direction(centre, face_corner(network, begin + k));
         const struct vector b =
-            direction(centre, network->node_position[loop[(k + 1) % count]]);
+            direction(centre, face_corner(network, begin + (k + 1) % count));
         patches[k] = (struct patch){throats[k], grain, triangle_normal(foot, a, b)};
         sum = add(sum, patches[k].normal);
     }
-    const double sign = dot(sum, outwards(network, face, grain)) < 0 ? -1 : 1;
+    const double sign = dot(sum, outwards(network, face, side)) < 0 ? -1 : 1;
     for (int k = 0; k < count; k++)
         patches[k].normal = scale(sign, patches[k].normal);
     return isfinite(dot(sum, foot));
+}
+
+// The patches of a grain of a layer, whose cell FACE is: lunes between the half planes
+// through its axis, along y, and the two ends of each throat [K 3.21]. The arc from A
+// to B in the plane has the integral (B - A) turned by a right angle, and across the
+// plane a sphere adds a factor of pi/2.
+static bool slice(const struct network *network, int face, const int *throats,
+                  struct patch *patches)
+{
+    const int64_t begin = network->face_offset[face];
+    const int count = (int)(network->face_offset[face + 1] - begin);
+    struct vector centre = centre_of(network, face, 0);
+    centre.y = network->node_position[network->face_nodes[begin]].y; // staggered
+    double area = 0;
+    for (int k = 0; k < count; k++) {
+        const struct vector from = face_corner(network, begin + k);
+        const struct vector to = face_corner(network, begin + (k + 1) % count);
+        const struct vector apart =
+            subtract(direction(centre, to), direction(centre, from));
+        area += cross(subtract(from, centre), subtract(to, centre)).y;
+        patches[k] =
+            (struct patch){throats[k], network->face_particles[face][0],
+                           scale(M_PI / 2, cross(apart, (struct vector){.y = 1}))};
+    }
+    for (int k = 0; k < count && area < 0; k++)
+        patches[k].normal = scale(-1, patches[k].normal);
+    return isfinite(patches[0].normal.x) && area != 0;
 }
 
 static int compare_patches(const void *a, const void *b)
@@ -119,7 +151,7 @@ static enum status find_throats(const struct network *network,
             network->face_particles[face][0]);
     for (int k = 0; k < count; k++) {
         const int next = (k + 1) % count;
-        throats[k] = throat_between(network, incidence, loop[k], loop[next]);
+        throats[k] = face_throat(network, incidence, face, k);
         if (throats[k] < 0)
             return refuse(reason, STATUS_BAD_DATA,
                           "/faces/nodes: face %d: no throat between nodes %d and %d",
@@ -139,7 +171,7 @@ enum status check_closed(const struct patch *patches, int count, struct reason *
         if (norm(sum) > rounding)
             return refuse(reason, STATUS_BAD_DATA,
                           "/faces/particles: the cell of grain %d is open: tessellate "
-                          "with boundary=truncate and dimensions=3",
+                          "with boundary=truncate",
                           grain);
         sum = (struct vector){0};
     }
@@ -152,6 +184,7 @@ enum status find_patches(const struct network *network, struct patch **patches,
     const size_t n_face_node = (size_t)network->face_offset[network->n_face];
     struct incidence incidence = network_incidence(network);
     int *throats = NEW_ARRAY(int, n_face_node);
+    const bool layer = is_layer(network);
     enum status status = STATUS_OK;
     *patches = NEW_ARRAY(struct patch, 2 * n_face_node);
     *count = 0;
@@ -160,7 +193,8 @@ enum status find_patches(const struct network *network, struct patch **patches,
         for (int side = 0; side < 2 && !status; side++) {
             const int grain = network->face_particles[face][side];
             if (grain < 0) continue;
-            if (!fan(network, face, grain, throats, *patches + *count))
+            if (!(layer ? slice(network, face, throats, *patches + *count)
+                        : fan(network, face, side, throats, *patches + *count)))
                 status = refuse(reason, STATUS_BAD_DATA,
                                 "/faces/nodes: face %d: meets the centre of grain %d",
                                 face, grain);

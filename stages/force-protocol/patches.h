@@ -19,14 +19,15 @@ struct patch {
 // Every patch, by grain, then by throat. Each face of a grain's cell is fanned from
 // where the line between the two grains crosses it (for a wall: the grain's foot on
 // it); the triangles are projected on the sphere, and the two on both sides of a throat
-// are its patch. STATUS_BAD_DATA when two neighbours in a face's loop are not joined by
-// a throat. The caller frees *PATCHES.
+// are its patch. In a layer of grains it is the lune of the sphere between the two ends
+// of the throat, which is K's form times pi/2. STATUS_BAD_DATA when two neighbours in a
+// face's loop are not joined by a throat. The caller frees *PATCHES.
 enum status find_patches(const struct network *network, struct patch **patches,
                          int *count, struct reason *reason);
 
 // The normals of a closed cell add up to nothing. STATUS_BAD_DATA when a grain has a
-// cell that the tessellation left open (boundary=eliminate, dimensions=2): it would be
-// pulled by liquid all around it.
+// cell that the tessellation left open (boundary=eliminate): it would be pulled
+// by liquid all around it.
 enum status check_closed(const struct patch *patches, int count, struct reason *reason);
 
 // Takes out the patches of throats that lie in one of WALLS (bits of enum wall);

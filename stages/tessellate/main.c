@@ -58,12 +58,10 @@ static enum status give_void_volumes(const struct tessellation *how,
     if (!how->power)
         return refuse(reason, STATUS_BAD_DATA,
                       "tessellate.throat_volume: void must go with diagram=power");
-    if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->throat_image ||
-        network->packing.n_body)
-        return refuse(
-            reason, STATUS_BAD_DATA,
-            "tessellate.throat_volume: void must go with whole cells in a box "
-            "that does not repeat, with flat walls: dimensions=3, boundary=truncate");
+    if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->packing.n_body)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "tessellate.throat_volume: void must go with whole cells and flat "
+                      "walls: dimensions=3, boundary=truncate");
     return find_void_volumes(network, reason);
 }
 

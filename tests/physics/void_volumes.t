@@ -31,6 +31,9 @@ with scratch() as folder:
     for name, void in [("cubic", 1 - np.pi / 6), ("bcc", None), ("fcc", None)]:
         got, expected = shares(tessellate(f"method={name}", "counts=[3,3,3]"))
         ok(abs(got / (void or expected) - 1) < 1e-13, f"{name} lattice", got / expected - 1)
+    for periodic in "[true,true,true]", "[true,false,true]":
+        got, expected = shares(tessellate("method=fcc", "counts=[2,2,2]", f"periodic={periodic}"))
+        ok(abs(got / expected - 1) < 1e-13, f"fcc lattice that repeats, {periodic}", got / expected - 1)
     for unit in "250e-9", "1e3":
         edge = 20 * float(unit)
         got, expected = shares(tessellate(

@@ -83,14 +83,23 @@ void incidence_free(struct incidence *incidence)
     *incidence = (struct incidence){0};
 }
 
-int throat_between(const struct network *network, const struct incidence *incidence,
-                   int a, int b)
+int face_throat(const struct network *network, const struct incidence *incidence,
+                int face, int k)
 {
-    const int lower = a < b ? a : b, upper = a < b ? b : a;
-    for (int k = incidence->offset[lower]; k < incidence->offset[lower + 1]; k++) {
-        const int t = incidence->throat[k];
-        if (network->throat_nodes[t][0] == lower &&
-            network->throat_nodes[t][1] == upper)
+    const int64_t from = network->face_offset[face] + k;
+    const int64_t to = from + 1 < network->face_offset[face + 1]
+                           ? from + 1
+                           : network->face_offset[face];
+    const int a = network->face_nodes[from], b = network->face_nodes[to];
+    const struct image apart =
+        image_difference(image_at(network->face_node_image, to),
+                         image_at(network->face_node_image, from));
+    for (int i = incidence->offset[a]; i < incidence->offset[a + 1]; i++) {
+        const int t = incidence->throat[i];
+        const int32_t *ends = network->throat_nodes[t];
+        const struct image image = image_at(network->throat_image, t);
+        if ((ends[0] == a && ends[1] == b && same_image(image, apart)) ||
+            (ends[0] == b && ends[1] == a && same_image(image, image_opposite(apart))))
             return t;
     }
     return -1;

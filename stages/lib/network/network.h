@@ -75,9 +75,9 @@ struct incidence {
 struct incidence network_incidence(const struct network *network);
 void incidence_free(struct incidence *incidence);
 
-// The throat between nodes A and B, in any order, or -1.
-int throat_between(const struct network *network, const struct incidence *incidence,
-                   int a, int b);
+// The throat from corner K (0 and up) of FACE to the next one in its loop, or -1.
+int face_throat(const struct network *network, const struct incidence *incidence,
+                int face, int k);
 
 // Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L
 // [K 3.3.4].

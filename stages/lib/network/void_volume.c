@@ -11,12 +11,12 @@ static struct vector middle_of(const struct network *network, int face)
 {
     const int64_t begin = network->face_offset[face],
                   end = network->face_offset[face + 1];
-    const struct vector origin = network->node_position[network->face_nodes[begin]];
+    const struct vector origin = face_corner(network, begin);
     struct vector sum = {0}, from = {0};
     double rim = 0;
     for (int64_t k = begin; k < end; k++) {
-        const int next = network->face_nodes[k + 1 < end ? k + 1 : begin];
-        const struct vector to = subtract(network->node_position[next], origin);
+        const struct vector to =
+            subtract(face_corner(network, k + 1 < end ? k + 1 : begin), origin);
         const double length = distance(from, to);
         sum = add(sum, scale(length / 2, add(from, to)));
         rim += length;
@@ -28,16 +28,16 @@ static struct vector middle_of(const struct network *network, int face)
 // On both sides of the face where there is a grain; the loop runs counter-clockwise
 // seen from the second.
 static double void_beside(const struct network *network, int face, struct vector middle,
-                          int a, int b)
+                          struct vector a, struct vector b)
 {
     double volume = 0;
     for (int side = 0; side < 2; side++) {
         const int grain = network->face_particles[face][side];
         if (grain < 0 || is_auxiliary(&network->packing, grain)) continue;
-        const struct vector centre = network->packing.position[grain];
+        const struct vector centre =
+            side ? second_grain(network, face) : network->packing.position[grain];
         const struct vector to_middle = subtract(middle, centre);
-        const struct vector to_a = subtract(network->node_position[a], centre);
-        const struct vector to_b = subtract(network->node_position[b], centre);
+        const struct vector to_a = subtract(a, centre), to_b = subtract(b, centre);
         volume += tetrahedron_outside_ball(network->packing.radius[grain], to_middle,
                                            side ? to_b : to_a, side ? to_a : to_b);
     }
@@ -48,18 +48,18 @@ static enum status add_face(const struct network *network,
                             const struct incidence *incidence, int face, double *volume,
                             struct reason *reason)
 {
-    const int32_t *loop = network->face_nodes + network->face_offset[face];
-    const int count =
-        (int)(network->face_offset[face + 1] - network->face_offset[face]);
+    const int64_t begin = network->face_offset[face];
+    const int count = (int)(network->face_offset[face + 1] - begin);
     const struct vector middle = middle_of(network, face);
     for (int k = 0; k < count; k++) {
-        const int a = loop[k], b = loop[(k + 1) % count];
-        const int throat = throat_between(network, incidence, a, b);
+        const int64_t a = begin + k, b = begin + (k + 1) % count;
+        const int throat = face_throat(network, incidence, face, k);
         if (throat < 0)
             return refuse(reason, STATUS_BAD_DATA,
                           "/faces/nodes: face %d: no throat between nodes %d and %d",
-                          face, a, b);
-        volume[throat] += void_beside(network, face, middle, a, b);
+                          face, network->face_nodes[a], network->face_nodes[b]);
+        volume[throat] += void_beside(network, face, middle, face_corner(network, a),
+                                      face_corner(network, b));
     }
     return STATUS_OK;
 }
