@@ -41,6 +41,7 @@ static struct arc arc_of(const struct unknowns *unknowns)
 
 struct system {
     double residual[ARC_NUMBERS], slope[ARC_NUMBERS][ARC_NUMBERS];
+    double waist_slope[ARC_NUMBERS];
 };
 
 static struct system system_at(const struct problem *problem,
@@ -199,7 +200,8 @@ static double dot(const double a[ARC_NUMBERS], const double b[ARC_NUMBERS])
 }
 
 // Fills all but the unknowns of STATE. PREVIOUS is the direction of a bridge nearby, or
-// NULL: then the rate is positive and the determinant tells.
+// NULL: then the direction is that in which the waist gets thinner, as it does all
+// along from contact to rupture and beyond.
 static bool judge(const struct problem *problem, const double *previous,
                   struct state *state)
 {
@@ -213,7 +215,8 @@ static bool judge(const struct problem *problem, const double *previous,
     struct system turned = is;
     if (previous) memcpy(turned.slope[3], previous, sizeof widening);
     if (eliminate(turned.slope, tangent) == 0) return false;
-    const double size = sqrt(dot(tangent, tangent));
+    const bool thickens = !previous && dot(is.waist_slope, tangent) > 0;
+    const double size = (thickens ? -1 : 1) * sqrt(dot(tangent, tangent));
     for (int n = 0; n < ARC_NUMBERS; n++)
         state->direction[n] = tangent[n] / size;
     state->rate = dot(widening, state->direction);
@@ -276,14 +279,32 @@ static bool settle(const struct problem *problem, struct state *state)
     return judge(problem, NULL, state) && stability(state) > 0;
 }
 
+// Whether both contact lines lie near where they were expected, and the arc is less
+// than a period: arcs with a bulge between thin necks, or more of them, pass every
+// other test.
+static bool near(const struct unknowns *one, const struct unknowns *other)
+{
+    return fabs(one->at[ARC_TURN]) < 0.95 * M_PI &&
+           fabs(one->at[ARC_FIRST] - other->at[ARC_FIRST]) < 1.2 &&
+           fabs(one->at[ARC_SECOND] - other->at[ARC_SECOND]) < 1.2;
+}
+
+// The force of the stable branch is least at rupture, some 0.3 times the edge of the
+// liquid's cube up to 90 degrees. Of bridges that pull less some are two instabilities
+// further on, which no determinant tells; from contact on there is no mistaking.
+static const double least_pull = 0.16;
+
 // At GAP straight from the torus; false when that does not lead to a stable bridge.
 static bool jump(const struct bodies *bodies, double volume, double gap,
                  struct state *state)
 {
     const struct problem problem = problem_at(bodies, volume, gap);
     const struct arc arc = torus(bodies, volume, gap);
-    state->unknowns = unknowns_of(&arc);
-    return settle(&problem, state);
+    const struct unknowns guess = unknowns_of(&arc);
+    state->unknowns = guess;
+    if (!settle(&problem, state) || !near(&state->unknowns, &guess)) return false;
+    const struct arc found = arc_of(&state->unknowns);
+    return gap <= 0 || arc_force(bodies, &found) > least_pull * cbrt(volume);
 }
 
 // At GAP (zero or less), if need be through ever larger volumes.
@@ -386,7 +407,7 @@ static enum status advance(const struct problem *problem, double gap,
         bool found = stable || (reached && step < 0.6 * longest_stride);
         if (found && !stable) {
             found = close_in(problem, INFINITY, state, &next, &stride, &last);
-            *ruptured = last.gap < gap * (1 - 1e-12); // the distance itself is none
+            *ruptured = last.gap < gap * (1 - 1e-8); // so well it is known
             next = last;
         }
         if (found && next.gap > gap)
@@ -433,7 +454,8 @@ static enum status approach(const struct bodies *bodies, double volume, double g
     const enum status status = advance(&problem, gap, state, &ruptured);
     if (status || ruptured) return status ? status : STATUS_NO;
     struct state exact = *state; // fails only next to rupture, where it adds nothing
-    if (settle(&problem, &exact)) *state = exact;
+    if (settle(&problem, &exact) && near(&exact.unknowns, &state->unknowns))
+        *state = exact;
     return STATUS_OK;
 }
 

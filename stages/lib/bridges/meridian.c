@@ -212,6 +212,15 @@ static void integrate(const struct beginning *begin, double end_radius,
     span->volume_slope[ARC_LENGTH] += span->volume;
 }
 
+static void find_waist(const struct beginning *begin, const struct arc *arc,
+                       struct span *span)
+{
+    const struct place middle = place_at(begin, arc, 0.5);
+    for (int k = 0; k < ARC_NUMBERS; k++)
+        span->waist_slope[k] =
+            middle.z.re * middle.change[k].re + middle.z.im * middle.change[k].im;
+}
+
 struct span span_of(const struct bodies *bodies, const struct arc *arc)
 {
     struct span span = {0};
@@ -219,6 +228,7 @@ struct span span_of(const struct bodies *bodies, const struct arc *arc)
                                  foot_of(bodies, 1, arc->reach[1])};
     find_miss(foot, arc, &span);
     const struct beginning begin = beginning_of(&foot[0]);
+    find_waist(&begin, arc, &span);
     integrate(&begin, foot[1].line.radius, arc, &span);
 
     span.volume *= M_PI;

@@ -41,6 +41,7 @@ struct span {
     double area;   // of the free surface
     double miss_slope[2][ARC_NUMBERS], gap_slope[ARC_NUMBERS],
         volume_slope[ARC_NUMBERS];
+    double waist_slope[ARC_NUMBERS]; // of half the squared radius in the arc's middle
 };
 
 // The contact line of body WHICH: where a cap of the body ends.
