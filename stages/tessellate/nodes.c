@@ -2,6 +2,7 @@
 #include "nodes.h"
 
 #include "basics/memory.h"
+#include "geometry/exact.h"
 #include "rows.h"
 
 #include <stdbool.h>

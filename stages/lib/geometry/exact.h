@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What rounding must not decide: CGAL's exact arithmetic behind a C interface.
+#ifndef CRAQUELURE_EXACT_H
+#define CRAQUELURE_EXACT_H
+
+#include "geometry/vector.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct weighted_point {
+    struct vector at;
+    double weight; // radius squared
+};
+
+bool exact_collinear(const struct vector *a, const struct vector *b,
+                     const struct vector *c);
+
+// The sign of (p1 - p0) . ((p2 - p0) x (p3 - p0)): 1 for a positively oriented
+// tetrahedron, 0 for a flat one.
+int exact_orientation(const struct weighted_point *const p[4]);
+
+// 1 when P[4] has less power to the point of equal power to the others, a positively
+// oriented tetrahedron, than they have; -1 when more, 0 when the same.
+int exact_power_side(const struct weighted_point *const p[5]);
+
+// The point of equal power to the four points CORNER, in rational arithmetic: for flat
+// tetrahedra, where rounding could put it anywhere.
+struct vector exact_power_centre(const struct vector *points, const double *weights,
+                                 const int32_t corner[4]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
