@@ -2,84 +2,12 @@
 #include "boundary_layer.h"
 
 #include "basics/memory.h"
+#include "open_face.h"
 #include "planar_cells.h"
 
 #include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-// The open face, seen along the columns.
-struct view {
-    const struct network *network;
-    int wall;
-    double unit;          // m
-    struct planar corner; // lower, m
-    struct rectangle face;
-};
-
-// ---- the open face ------------------------------------------------------------------
-
-static int lateral_axis(int wall, int k)
-{
-    return (wall / 2 + 1 + k) % 3;
-}
-
-// What of the box the network spans along AXIS; all of it where it repeats, or where
-// the network is flat.
-static void find_span(const struct network *network, int axis, double *lower,
-                      double *size)
-{
-    const struct packing *packing = &network->packing;
-    double least = INFINITY, most = -INFINITY;
-    for (int t = 0; t < network->n_throat; t++)
-        for (int end = 0; end < 2; end++) {
-            if (network->throat_kind[t] == THROAT_BOUNDARY_LAYER) continue;
-            const double at =
-                component(network->node_position[network->throat_nodes[t][end]], axis);
-            least = fmin(least, at);
-            most = fmax(most, at);
-        }
-    const double from = component(packing->lower, axis);
-    const double box = component(packing->upper, axis) - from;
-    const bool flat = !(most - least > 1e-9 * box);
-    const bool whole = packing->periodic[axis] || flat;
-    *lower = whole ? from : least;
-    *size = whole ? box : most - least;
-}
-
-static struct view view_of(const struct network *network, int wall, double unit)
-{
-    struct view view = {.network = network, .wall = wall, .unit = unit};
-    const uint8_t *periodic = network->packing.periodic;
-    struct planar size;
-    find_span(network, lateral_axis(wall, 0), &view.corner.x, &size.x);
-    find_span(network, lateral_axis(wall, 1), &view.corner.y, &size.y);
-    view.face = (struct rectangle){
-        .size = {size.x / unit, size.y / unit},
-        .periodic_x = periodic[lateral_axis(wall, 0)],
-        .periodic_y = periodic[lateral_axis(wall, 1)],
-    };
-    return view;
-}
-
-// In a flat network, at the near side of the box all along: the same as in its middle.
-static double across(double at, double corner, double unit, double size, bool periodic)
-{
-    const double x = (at - corner) / unit;
-    if (periodic) return x - size * floor(x / size);
-    return fmin(fmax(x, 0), size);
-}
-
-static struct planar place_of(const struct view *view, int node)
-{
-    const struct vector at = view->network->node_position[node];
-    const struct rectangle *face = &view->face;
-    return (struct planar){
-        across(component(at, lateral_axis(view->wall, 0)), view->corner.x, view->unit,
-               face->size.x, face->periodic_x),
-        across(component(at, lateral_axis(view->wall, 1)), view->corner.y, view->unit,
-               face->size.y, face->periodic_y)};
-}
 
 // ---- the feet of the columns --------------------------------------------------------
 
@@ -124,20 +52,20 @@ static bool same_spot(const struct spot *s, const struct spot *t)
 }
 
 // Takes off the marks of nodes right behind another.
-static void keep_outermost(const struct view *view, int n_marked, bool *foot)
+static void keep_outermost(const struct open_face *face, int n_marked, bool *foot)
 {
-    const struct network *network = view->network;
-    const struct planar size = view->face.size;
+    const struct network *network = face->network;
+    const struct planar size = face->region.rectangle.size;
     const double step = 1e-9 * sqrt(size.x * size.y / n_marked);
-    const double outwards = view->wall % 2 ? 1 : -1;
+    const double outwards = face->wall % 2 ? 1 : -1;
     struct spot *spot = NEW_ARRAY(struct spot, n_marked);
     int n = 0;
     for (int i = 0; i < network->n_node; i++) {
         if (!foot[i]) continue;
-        const struct planar at = place_of(view, i);
+        const struct planar at = place_on_face(face, i);
         spot[n++] = (struct spot){
             llround(at.x / step), llround(at.y / step),
-            -outwards * component(network->node_position[i], view->wall / 2), i};
+            -outwards * component(network->node_position[i], face->wall / 2), i};
     }
     qsort(spot, (size_t)n, sizeof *spot, compare_spots);
     for (int k = 1; k < n; k++)
@@ -145,17 +73,17 @@ static void keep_outermost(const struct view *view, int n_marked, bool *foot)
     free(spot);
 }
 
-static enum status find_feet(const struct view *view, enum boundary_feet feet,
+static enum status find_feet(const struct open_face *face, enum boundary_feet feet,
                              struct boundary_layer *layer, struct reason *reason)
 {
-    const struct network *network = view->network;
+    const struct network *network = face->network;
     bool *foot = NEW_ARRAY(bool, network->n_node);
-    boundary_feet_mark(network, view->wall, feet, foot);
+    boundary_feet_mark(network, face->wall, feet, foot);
     int n_marked = 0;
     for (int i = 0; i < network->n_node; i++)
         n_marked += foot[i];
     layer->exposed = NEW_ARRAY(int, n_marked);
-    if (n_marked) keep_outermost(view, n_marked, foot);
+    if (n_marked) keep_outermost(face, n_marked, foot);
     for (int i = 0; i < network->n_node; i++)
         if (foot[i]) layer->exposed[layer->n_exposed++] = i;
     free(foot);
@@ -192,13 +120,41 @@ static enum status choose_layers(double thickness, int layers, int n_node,
     return STATUS_OK;
 }
 
-static void find_areas(const struct view *view, bool lateral,
-                       struct boundary_layer *layer)
+static struct planar_cells cells_of(const struct open_face *face,
+                                    const struct boundary_layer *layer)
 {
     struct planar *place = NEW_ARRAY(struct planar, layer->n_exposed);
     for (int i = 0; i < layer->n_exposed; i++)
-        place[i] = place_of(view, layer->exposed[i]);
-    struct planar_cells cells = planar_cells_make(place, layer->n_exposed, &view->face);
+        place[i] = place_on_face(face, layer->exposed[i]);
+    const struct planar_cells cells =
+        planar_cells_make(place, layer->n_exposed, &face->region);
+    free(place);
+    return cells;
+}
+
+// Takes away the columns without area, over holes in the face. Returns how many.
+static int drop_empty(const double *area, struct boundary_layer *layer)
+{
+    double total = 0;
+    for (int i = 0; i < layer->n_exposed; i++)
+        total += area[i];
+    int kept = 0;
+    const int before = layer->n_exposed;
+    for (int i = 0; i < before; i++)
+        if (area[i] > 1e-12 * total / before)
+            layer->exposed[kept++] = layer->exposed[i];
+    layer->n_exposed = kept;
+    return before - kept;
+}
+
+static void find_areas(const struct open_face *face, bool lateral,
+                       struct boundary_layer *layer)
+{
+    struct planar_cells cells = cells_of(face, layer);
+    while (drop_empty(cells.area, layer)) {
+        planar_cells_free(&cells);
+        cells = cells_of(face, layer);
+    }
     layer->area = cells.area;
     cells.area = NULL;
     layer->n_lateral = lateral ? cells.n_edge : 0;
@@ -211,7 +167,6 @@ static void find_areas(const struct view *view, bool lateral,
         layer->lateral_conductance[k] = edge->width * layer->spacing / edge->distance;
     }
     planar_cells_free(&cells);
-    free(place);
 }
 
 enum status boundary_layer_make(const struct network *network, int wall, double length,
@@ -225,12 +180,13 @@ enum status boundary_layer_make(const struct network *network, int wall, double 
             "/domain/periodic: the open wall cannot be on an axis along which "
             "the box repeats");
 
-    const struct view view = view_of(network, wall, length);
-    enum status status = find_feet(&view, form->feet, layer, reason);
+    struct open_face face = open_face_of(network, wall, length);
+    enum status status = find_feet(&face, form->feet, layer, reason);
     if (!status)
         status = choose_layers(thickness, form->lumped ? 1 : form->layers,
                                network->n_node, layer, reason);
-    if (!status) find_areas(&view, !form->lumped, layer);
+    if (!status) find_areas(&face, !form->lumped, layer);
+    open_face_free(&face);
     return status;
 }
 

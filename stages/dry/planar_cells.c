@@ -32,6 +32,7 @@ struct polygon {
 
 struct cutting {
     const struct planar *point;
+    const struct planar_region *region;
     const struct rectangle *rectangle;
     struct bins bins;
     struct polygon cell;
@@ -204,27 +205,33 @@ static void cut_cell(struct cutting *cutting, int i)
         }
 }
 
-static double area_of(const struct polygon *cell)
+// Of the finished cell, in the region where that ENDS within it.
+static double area_of(const struct cutting *cutting, int i, bool ends)
 {
-    double twice = 0;
-    for (int k = 0; k < cell->n; k++) {
-        const struct planar a = cell->corner[k].at;
-        const struct planar b = cell->corner[(k + 1) % cell->n].at;
-        twice += a.x * b.y - a.y * b.x;
-    }
-    return twice / 2;
+    static const struct planar_region whole = {0};
+    const struct polygon *cell = &cutting->cell;
+    struct planar *corner = NEW_ARRAY(struct planar, cell->n);
+    for (int k = 0; k < cell->n; k++)
+        corner[k] = cell->corner[k].at;
+    const double area = area_in_region(ends ? cutting->region : &whole,
+                                       cutting->point[i], corner, cell->n);
+    free(corner);
+    return area;
 }
 
 // Those of the finished cell to higher points: the others have been told from there.
-static void add_edges(struct cutting *cutting, int i)
+static void add_edges(struct cutting *cutting, int i, bool ends)
 {
     struct planar_cells *cells = cutting->cells;
     const struct polygon *cell = &cutting->cell;
     for (int k = 0; k < cell->n; k++) {
         const struct corner *from = &cell->corner[k];
         const struct corner *to = &cell->corner[(k + 1) % cell->n];
-        const double width = hypot(to->at.x - from->at.x, to->at.y - from->at.y);
-        if (from->neighbour <= i || width <= LEAST_WIDTH * from->distance) continue;
+        if (from->neighbour <= i) continue;
+        const double width = ends ? length_in_region(cutting->region, cutting->point[i],
+                                                     from->at, to->at)
+                                  : hypot(to->at.x - from->at.x, to->at.y - from->at.y);
+        if (width <= LEAST_WIDTH * from->distance) continue;
         GROW_ARRAY(cells->edge, cells->n_edge, cutting->edge_capacity);
         cells->edge[cells->n_edge++] = (struct planar_edge){
             .point = {i, from->neighbour}, .width = width, .distance = from->distance};
@@ -242,21 +249,24 @@ static int compare_edges(const void *a, const void *b)
 }
 
 struct planar_cells planar_cells_make(const struct planar *point, int n,
-                                      const struct rectangle *rectangle)
+                                      const struct planar_region *region)
 {
     struct planar_cells cells = {.area = NEW_ARRAY(double, n)};
     if (n == 0) return cells;
     struct cutting cutting = {.point = point,
-                              .rectangle = rectangle,
-                              .bins = sort_into_bins(point, n, rectangle->size),
+                              .region = region,
+                              .rectangle = &region->rectangle,
+                              .bins = sort_into_bins(point, n, region->rectangle.size),
                               .cell = {.capacity = 16},
                               .cells = &cells};
     cutting.cell.corner = NEW_ARRAY(struct corner, cutting.cell.capacity);
     cutting.cell.before = NEW_ARRAY(struct corner, cutting.cell.capacity);
     for (int i = 0; i < n; i++) {
         cut_cell(&cutting, i);
-        cells.area[i] = area_of(&cutting.cell);
-        add_edges(&cutting, i);
+        const bool ends =
+            !region_holds(region, point[i], farthest_corner(&cutting.cell));
+        cells.area[i] = area_of(&cutting, i, ends);
+        add_edges(&cutting, i, ends);
     }
     if (cells.n_edge > 0)
         qsort(cells.edge, (size_t)cells.n_edge, sizeof *cells.edge, compare_edges);

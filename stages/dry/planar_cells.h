@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Voronoi diagram of points in a rectangle: what part of it is nearest to each, and
-// along which line each two neighbours share it.
+// The Voronoi diagram of points in a region of a rectangle: what part of it is nearest
+// to each, and along which line each two neighbours share it.
 #ifndef CRAQUELURE_PLANAR_CELLS_H
 #define CRAQUELURE_PLANAR_CELLS_H
 
-#include <stdbool.h>
-
-struct planar {
-    double x, y;
-};
-
-// From 0 to SIZE; repeated along an axis where it is periodic, else ended there.
-struct rectangle {
-    struct planar size;
-    bool periodic_x, periodic_y;
-};
+#include "planar_region.h"
 
 // The edge between the cells of two points. Two cells may share several where the
 // rectangle repeats.
@@ -25,7 +15,7 @@ struct planar_edge {
 };
 
 struct planar_cells {
-    double *area; // (n) they sum to the area of the rectangle
+    double *area; // (n) they sum to the area of the region
     int n_edge;
     struct planar_edge *edge; // (n_edge) by points, ascending
 };
@@ -34,7 +24,7 @@ struct planar_cells {
 // allow. Edges too narrow to tell from rounding are left out. Near O(n) where points
 // are spread evenly, also along one line. The caller frees it with planar_cells_free.
 struct planar_cells planar_cells_make(const struct planar *point, int n,
-                                      const struct rectangle *rectangle);
+                                      const struct planar_region *region);
 
 void planar_cells_free(struct planar_cells *cells);
 

@@ -95,6 +95,24 @@ with scratch() as folder:
                 ok(abs(network.face(2) / (box[0] * box[1]) - 1) < 1e-14,
                    f"{label}: which is the side of the box")
 
+    # ---- bodies that are not boxes: what the faces in the wall cover ---------------------
+    hole = ["domain.cut.shape=box", "domain.cut.lower=[1e-6,1e-6,0]",
+            "domain.cut.upper=[2.5e-6,2e-6,4e-6]",
+            "upper=[4e-6,4e-6,4e-6]"]
+    round = ["domain.height=4e-6", "domain.radius=2.5e-6"]
+    for label, shape in [("a cylinder", ["domain.shape=cylinder", *round]),
+                         ("a ring", ["domain.shape=ring", *round, "domain.inner_radius=1e-6"]),
+                         ("a box with a hole", hole)]:
+        network = make("n", ["method=random_sequential", "count=200", "radius=2e-7", *shape])
+        area = 0
+        for k in np.flatnonzero(network.sides[:, 1] == -6):
+            x = network.node[network.loops[k]]
+            area += np.cross(x - x[0], np.roll(x - x[0], -1, 0)).sum(0)[2] / 2
+        rate = dry("n")["rate"][0] / one_dimension(area, DIFFUSIVITY / 5.1)
+        ok(abs(rate - 1) < 1e-12 and area < 0.98 * network.face(2),
+           f"{label}: the first rate is that of its open face",
+           (rate - 1, area / network.face(2)))
+
     # ---- cut cells left out: nodes know the walls they face ----------------------------
     cut = make("n", settled, threshold=0)
     cuts = np.zeros((len(cut.grain), 6), bool)

@@ -212,6 +212,69 @@ static void test_linear_fields_are_exact(void **state)
     network_free(&network);
 }
 
+// Takes from the network the faces on WALL whose grains DROP marks.
+static void drop_faces(struct network *network, int wall, const bool *drop)
+{
+    int n = 0;
+    for (int f = 0; f < network->n_face; f++) {
+        const int32_t *side = network->face_particles[f];
+        if (side[1] == -1 - wall && drop[side[0]]) continue;
+        for (int k = 0; k < 4; k++)
+            network->face_nodes[4 * n + k] = network->face_nodes[4 * f + k];
+        for (int k = 0; k < 2; k++)
+            network->face_particles[n][k] = side[k];
+        n++;
+        network->face_offset[n] = 4 * n;
+    }
+    network->n_face = n;
+}
+
+// Where something is cut out, the open face is what the wall's faces cover.
+static void test_holes_have_no_area(void **state)
+{
+    (void)state;
+    for (int wall = 4; wall < 6; wall++) { // seen from inside and from outside
+        struct network network = lattice_network(6, 6, 3, spacing);
+        const int floor = wall == 4 ? 0 : 25; // 5 by 5 grains each
+        bool drop[50] = {0};
+        drop[floor + 12] = drop[floor + 4] = true; // the middle square and a corner
+        drop_faces(&network, wall, drop);
+        struct boundary_layer layer =
+            make(&network, wall, &(struct boundary_form){.layers = 0});
+        double total = 0;
+        for (int i = 0; i < layer.n_exposed; i++)
+            total += layer.area[i];
+        assert_int_equal(layer.n_exposed, 35); // without the corner's own node
+        assert_true(fabs(total - 23) < 1e-13);
+        // About the middle square three quarters each, and half of each link.
+        for (int k = 0; k < 4; k++)
+            assert_true(fabs(layer.area[(int[]){13, 14, 19, 20}[k]] - 0.75) < 1e-14);
+        for (int k = 0; k < layer.n_lateral; k++) {
+            const int *link = layer.lateral[k];
+            const bool beside = link[0] == 13 && (link[1] == 14 || link[1] == 19);
+            if (beside) assert_true(fabs(layer.lateral_conductance[k] - 0.5) < 1e-14);
+        }
+        boundary_layer_free(&layer);
+        network_free(&network);
+    }
+}
+
+static void test_holes_in_a_face_that_repeats(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(6, 6, 3, spacing);
+    network.packing.periodic[0] = 1;
+    network.packing.periodic[1] = 1;
+    bool drop[50] = {[25 + 11] = true, [25 + 12] = true};
+    drop_faces(&network, 5, drop);
+    struct boundary_layer layer =
+        make(&network, 5, &(struct boundary_form){.layers = 0});
+    assert_int_equal(layer.n_exposed, 25);
+    assert_true(fabs(total_area(&layer) - 23) < 1e-13);
+    boundary_layer_free(&layer);
+    network_free(&network);
+}
+
 // Nodes without liquid throats have no column, and their area goes to those nearest.
 static void test_only_nodes_with_liquid_have_columns(void **state)
 {
@@ -346,6 +409,8 @@ int main(void)
         cmocka_unit_test(test_areas_sum_to_the_face),
         cmocka_unit_test(test_areas_are_those_nearest),
         cmocka_unit_test(test_linear_fields_are_exact),
+        cmocka_unit_test(test_holes_have_no_area),
+        cmocka_unit_test(test_holes_in_a_face_that_repeats),
         cmocka_unit_test(test_only_nodes_with_liquid_have_columns),
         cmocka_unit_test(test_outermost_of_nodes_in_one_column),
         cmocka_unit_test(test_auxiliary_feet),

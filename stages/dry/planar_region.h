@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A part of a rectangle, bounded by straight sides: how much of a polygon or a line
+// lies in it.
+#ifndef CRAQUELURE_PLANAR_REGION_H
+#define CRAQUELURE_PLANAR_REGION_H
+
+#include <stdbool.h>
+
+struct planar {
+    double x, y;
+};
+
+// From 0 to SIZE; repeated along an axis where it is periodic, else ended there.
+struct rectangle {
+    struct planar size;
+    bool periodic_x, periodic_y;
+};
+
+// The region lies to the left of its sides. These form closed loops: where the
+// rectangle repeats, around what is missing of it; else around what is there.
+struct planar_region {
+    int n_side; // 0: all of the rectangle
+    struct planar (*side)[2];
+    struct rectangle rectangle;
+};
+
+// Of the convex polygon of N corners, counter-clockwise and seen from ORIGIN, near it.
+// To rounding, so it may be a little below 0.
+double area_in_region(const struct planar_region *region, struct planar origin,
+                      const struct planar *corner, int n);
+
+// Of the line between two points seen from ORIGIN.
+double length_in_region(const struct planar_region *region, struct planar origin,
+                        struct planar from, struct planar to);
+
+// Whether all that is nearer than DISTANCE to the origin is in the region.
+bool region_holds(const struct planar_region *region, struct planar origin,
+                  double distance);
+
+void planar_region_free(struct planar_region *region);
+
+#endif
