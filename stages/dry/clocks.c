@@ -151,13 +151,6 @@ static void set_charge(struct clocks *clocks, int throat, int end, double charge
     *old = charge;
 }
 
-// Proportional to the cross-section of a throat that holds liquid.
-static double liquid_section(const struct phases *phases, int throat)
-{
-    if (phases->clusters.of_throat[throat] < 0) return 0;
-    return phases->volume[throat] / phases->network->throat_length[throat];
-}
-
 static void charge_throats(struct clocks *clocks, int node)
 {
     const struct phases *phases = clocks->phases;
@@ -166,14 +159,21 @@ static void charge_throats(struct clocks *clocks, int node)
     const int end = phases->incidence.offset[node + 1];
     double section = 0;
     for (int k = begin; k < end; k++)
-        section += liquid_section(phases, phases->incidence.throat[k]);
+        section += clocks->section[phases->incidence.throat[k]];
     for (int k = begin; k < end; k++) {
         const int throat = phases->incidence.throat[k];
-        if (phases->clusters.of_throat[throat] < 0) continue;
+        const double share = clocks->section[throat];
+        if (share == 0) continue;
         const int side = phases->network->throat_nodes[throat][1] == node;
-        set_charge(clocks, throat, side,
-                   evaporation * (liquid_section(phases, throat) / section));
+        set_charge(clocks, throat, side, evaporation * (share / section));
     }
+}
+
+static int throat_of(const struct clocks *clocks, int owner)
+{
+    struct clusters *clusters = &clocks->phases->clusters;
+    if (clocks->by_throat) return clusters->of_throat[owner] < 0 ? -1 : owner;
+    return clusters->size[owner] > 0 ? clusters_invasion_throat(clusters, owner) : -1;
 }
 
 // Sets the clock of OWNER for the throat it empties now and the rate it has now.
@@ -182,10 +182,8 @@ static void set_clock(struct clocks *clocks, int owner)
     struct clock *clock = &clocks->clock[owner];
     const int old = clock->throat;
     clock->touched = false;
-    clock->throat = clocks->by_throat ? owner
-                    : clocks->phases->clusters.size[owner] > 0
-                        ? clusters_invasion_throat(&clocks->phases->clusters, owner)
-                        : -1;
+    if (old < 0 || owner_of(clocks, old) != owner)
+        clock->throat = throat_of(clocks, owner);
     const double rate = compensated_value(clock->rate);
     if (clock->place >= 0 && (clock->throat != old || !(rate > 0)))
         remove_losing(clocks, old);
@@ -214,8 +212,12 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
     struct clocks clocks = {.phases = phases,
                             .by_throat = by_throat,
                             .charge = allocate((size_t)n, sizeof *clocks.charge),
+                            .section = NEW_ARRAY(double, n),
                             .heap = NEW_ARRAY(int, n),
                             .touched = NEW_ARRAY(int, n)};
+    for (int t = 0; t < n; t++)
+        if (phases->clusters.of_throat[t] >= 0)
+            clocks.section[t] = phases->volume[t] / phases->network->throat_length[t];
     for (int k = 0; k < phases->n_wet; k++)
         charge_throats(&clocks, phases->wet[k]);
     set_touched(&clocks);
@@ -225,6 +227,7 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
 void clocks_free(struct clocks *clocks)
 {
     free(clocks->charge);
+    free(clocks->section);
     free(clocks->clock);
     free(clocks->heap);
     free(clocks->touched);
@@ -324,6 +327,7 @@ void clocks_empty_ended(struct clocks *clocks)
         const int throat = clocks->ended[k], owner = owner_of(clocks, throat);
         for (int end = 0; end < 2; end++)
             set_charge(clocks, throat, end, 0);
+        clocks->section[throat] = 0;
         phases_empty_throat(phases, throat);
         if (!clocks->by_throat) move_charges(clocks, owner);
         for (int end = 0; end < 2; end++)

@@ -18,6 +18,7 @@ struct clocks {
     bool by_throat;         // a clock for each throat; else for each cluster
     struct compensated now; // scaled
     double (*charge)[2];    // (n_throat) from each end
+    double *section; // (n_throat) of those that hold liquid, of the rest 0; any scale
 
     struct clock *clock; // by throat or cluster
     int n_clock, clock_capacity;

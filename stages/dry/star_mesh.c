@@ -8,7 +8,7 @@
 
 // On a front larger than this, what eliminations add waits until there are so many, and
 // then passes over the triangle once for all.
-enum { LARGE_FRONT = 96, MOST_WAITING = 16 };
+enum { LARGE_FRONT = 96, MOST_WAITING = 32, BLOCK_COLUMNS = 128 };
 
 struct membership {
     int front;
@@ -176,40 +176,85 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
 
 // --- the triangle ------------------------------------------------------------------
 
-// target += factor sum_k weight[k] source[k], for N entries.
-static void add_rows(double *restrict target, int n, const double *weight,
-                     double *const *source, int n_source)
+// Adds to N entries of TARGET the rows SOURCE times their weights. Whatever N, each
+// entry sums in the same order.
+static void add_rows(double *restrict target, int n, int n_source,
+                     const double *restrict weight,
+                     const double *restrict const *source, int first)
 {
     int k = 0;
     for (; k + 4 <= n_source; k += 4) {
-        const double a = weight[k], b = weight[k + 1], c = weight[k + 2],
-                     d = weight[k + 3];
-        const double *restrict p = source[k], *restrict q = source[k + 1],
-                               *restrict r = source[k + 2], *restrict s = source[k + 3];
+        const double a = weight[k], b = weight[k + 1];
+        const double c = weight[k + 2], d = weight[k + 3];
+        const double *restrict p = source[k] + first, *restrict q =
+                                                          source[k + 1] + first;
+        const double *restrict r = source[k + 2] + first, *restrict s =
+                                                              source[k + 3] + first;
         for (int j = 0; j < n; j++)
             target[j] += (a * p[j] + b * q[j]) + (c * r[j] + d * s[j]);
     }
-    for (; k < n_source; k++) {
-        const double a = weight[k];
-        const double *restrict p = source[k];
+    for (; k < n_source; k++)
         for (int j = 0; j < n; j++)
-            target[j] += a * p[j];
+            target[j] += weight[k] * source[k][first + j];
+}
+
+// The same for two rows of N entries at once, which halves what is loaded.
+static void add_rows_twice(double *restrict target, double *restrict other, int n,
+                           int n_source, const double *restrict weight,
+                           const double *restrict more,
+                           const double *restrict const *source, int first)
+{
+    int k = 0;
+    for (; k + 4 <= n_source; k += 4) {
+        const double *restrict p = source[k] + first, *restrict q =
+                                                          source[k + 1] + first;
+        const double *restrict r = source[k + 2] + first, *restrict s =
+                                                              source[k + 3] + first;
+        for (int j = 0; j < n; j++) {
+            target[j] += (weight[k] * p[j] + weight[k + 1] * q[j]) +
+                         (weight[k + 2] * r[j] + weight[k + 3] * s[j]);
+            other[j] += (more[k] * p[j] + more[k + 1] * q[j]) +
+                        (more[k + 2] * r[j] + more[k + 3] * s[j]);
+        }
+    }
+    for (; k < n_source; k++)
+        for (int j = 0; j < n; j++) {
+            target[j] += weight[k] * source[k][first + j];
+            other[j] += more[k] * source[k][first + j];
+        }
+}
+
+// COLUMNS columns of the triangle from FIRST.
+static void add_block(struct front *front, const double *const *source, int first,
+                      int columns)
+{
+    double weight[2][MOST_WAITING];
+    for (int i = first + 1; i < front->n; i++) {
+        const bool whole = i >= first + columns && i + 1 < front->n;
+        for (int k = 0; k < front->n_waiting; k++)
+            for (int row = 0; row <= whole; row++)
+                weight[row][k] = front->factor[k] * source[k][i + row];
+        double *target = front->triangle + triangle_size(i) + first;
+        if (whole)
+            add_rows_twice(target, front->triangle + triangle_size(i + 1) + first,
+                           columns, front->n_waiting, weight[0], weight[1], source,
+                           first);
+        else
+            add_rows(target, i - first < columns ? i - first : columns,
+                     front->n_waiting, weight[0], source, first);
+        i += whole;
     }
 }
 
-// What has waited is added to the triangle.
+// What has waited is added to the triangle, in blocks of columns that stay in cache.
 static void bring_up_to_date(struct front *front)
 {
     if (front->n_waiting == 0) return;
-    double *source[MOST_WAITING], weight[MOST_WAITING];
+    const double *source[MOST_WAITING];
     for (int k = 0; k < front->n_waiting; k++)
         source[k] = waiting_row(front, k);
-    for (int i = 1; i < front->n; i++) {
-        for (int k = 0; k < front->n_waiting; k++)
-            weight[k] = front->factor[k] * source[k][i];
-        add_rows(front->triangle + triangle_size(i), i, weight, source,
-                 front->n_waiting);
-    }
+    for (int first = 0; first + 1 < front->n; first += BLOCK_COLUMNS)
+        add_block(front, source, first, BLOCK_COLUMNS);
     front->n_waiting = 0;
 }
 
@@ -221,12 +266,13 @@ static void take_row(const struct front *front, int p, double *row)
     row[p] = 0;
     for (int i = p + 1; i < n; i++)
         row[i] = front->triangle[triangle_size(i) + (size_t)p];
-    double *source[MOST_WAITING], weight[MOST_WAITING];
+    const double *source[MOST_WAITING];
+    double weight[MOST_WAITING];
     for (int k = 0; k < front->n_waiting; k++) {
         source[k] = waiting_row(front, k);
         weight[k] = front->factor[k] * source[k][p];
     }
-    add_rows(row, n, weight, source, front->n_waiting);
+    add_rows(row, n, front->n_waiting, weight, source, 0);
     row[p] = 0;
 }
 

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Times drying on cubic lattices of nodes with random radii, without reading or
+// writing.
+//
+//     bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]
+//
+// prints throats, seconds, throats a second, and what rounding leaves of the balances.
+#include "dry/drying.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double next_random(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+static double seconds(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+// Spacing 1, radii evenly distributed from 0.1 to 0.3.
+static struct network lattice(const int n[3])
+{
+    const int n_node = n[0] * n[1] * n[2], stride[3] = {1, n[0], n[0] * n[1]};
+    const size_t most = 3 * (size_t)n_node;
+    struct network network = {.n_node = n_node,
+                              .node_position = NEW_ARRAY(struct vector, n_node),
+                              .node_walls = NEW_ARRAY(uint8_t, n_node),
+                              .throat_nodes =
+                                  allocate(most, sizeof *network.throat_nodes),
+                              .throat_radius = NEW_ARRAY(double, most),
+                              .throat_length = NEW_ARRAY(double, most),
+                              .throat_kind = NEW_ARRAY(uint8_t, most)};
+    network.packing.upper = (struct vector){n[0] - 1, n[1] - 1, n[2] - 1};
+    uint64_t random = 1;
+    for (int node = 0; node < n_node; node++) {
+        const int at[3] = {node % n[0], node / n[0] % n[1], node / n[0] / n[1]};
+        network.node_position[node] = (struct vector){at[0], at[1], at[2]};
+        for (int axis = 0; axis < 3; axis++) {
+            if (at[axis] == 0) network.node_walls[node] |= (uint8_t)(1 << 2 * axis);
+            if (at[axis] == n[axis] - 1) {
+                network.node_walls[node] |= (uint8_t)(2 << 2 * axis);
+                continue;
+            }
+            const int t = network.n_throat++;
+            network.throat_nodes[t][0] = node;
+            network.throat_nodes[t][1] = node + stride[axis];
+            network.throat_radius[t] = 0.1 + 0.2 * next_random(&random);
+            network.throat_length[t] = 1;
+        }
+    }
+    return network;
+}
+
+// [K Table 3.1] under a boundary layer ten throats thick.
+static struct drying_conditions conditions(const char *liquid, double step_interval)
+{
+    return (struct drying_conditions){
+        .temperature = 293.15,
+        .gas_pressure = 1e5,
+        .saturation_pressure = 2339,
+        .diffusivity = 2.5685e-5,
+        .molar_mass = 18.02e-3,
+        .liquid_density = 998.2,
+        .mass_transfer = 2.5685e-6,
+        .open_walls = WALL_Z_UPPER,
+        .liquid = strcmp(liquid, "immobile") == 0 ? LIQUID_IMMOBILE : LIQUID_INVISCID,
+        .step_interval = step_interval,
+        .first_period_rate_fraction = 0.9};
+}
+
+static int dry(const int n[3], const char *liquid, double step_interval)
+{
+    struct network network = lattice(n);
+    const struct drying_conditions c = conditions(liquid, step_interval);
+    struct drying_history history;
+    struct reason reason;
+    const double start = seconds();
+    const enum status status = dry_network(&network, &c, NULL, &history, &reason);
+    const double time = seconds() - start;
+    if (status) {
+        fprintf(stderr, "bench_dry: %s\n", reason.text);
+        return status;
+    }
+    printf("%d %.4f %.0f %.1e %.1e\n", network.n_throat, time, network.n_throat / time,
+           fabs(history.evaporated / history.initial_liquid - 1),
+           history.vapour_residual);
+    drying_history_free(&history);
+    network_free(&network);
+    return STATUS_OK;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 6 || strcmp(argv[1], "dry") != 0) {
+        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]\n");
+        return STATUS_USAGE;
+    }
+    const int n[3] = {atoi(argv[2]), atoi(argv[3]), atoi(argv[4])};
+    return dry(n, argv[5], argc > 6 ? strtod(argv[6], NULL) : 1e-3);
+}

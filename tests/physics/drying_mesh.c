@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sites eliminated one by one against Gaussian elimination in long double, over twelve
+// decades of conductance.
+#include "dry/star_mesh.h"
+#include "support_lattice.h"
+
+#include "basics/memory.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+enum { SITES = 150, AIR = SITES, LINKS = 450 };
+
+// What flows from each site held at 0 into the air at 1 while those that are free
+// balance: by elimination of the free ones from the whole matrix.
+static void evaporation(long double matrix[SITES + 1][SITES + 1], const bool *free_site,
+                        long double *flow)
+{
+    static long double left[SITES + 1][SITES + 1];
+    for (int i = 0; i <= SITES; i++)
+        for (int j = 0; j <= SITES; j++)
+            left[i][j] = matrix[i][j];
+    for (int k = 0; k < SITES; k++) {
+        long double total = 0;
+        for (int j = 0; j <= SITES; j++)
+            total += left[k][j];
+        if (!free_site[k] || total == 0) continue;
+        for (int i = 0; i <= SITES; i++)
+            for (int j = 0; j <= SITES; j++)
+                if (i != j && i != k && j != k)
+                    left[i][j] += left[i][k] * left[k][j] / total;
+        for (int i = 0; i <= SITES; i++)
+            left[i][k] = left[k][i] = 0;
+    }
+    for (int i = 0; i < SITES; i++)
+        flow[i] = left[i][AIR];
+}
+
+static void link_random(struct star_mesh *mesh,
+                        long double matrix[SITES + 1][SITES + 1], double decades,
+                        uint64_t *seed)
+{
+    const int a = (int)(next_random(seed) * SITES);
+    const int b = (a + 1 + (int)(next_random(seed) * (SITES - 1))) % SITES;
+    const double conductance = pow(10, decades * (next_random(seed) - 0.5));
+    if (next_random(seed) < 0.05) {
+        star_mesh_link_air(mesh, a, conductance);
+        matrix[a][AIR] += conductance;
+        matrix[AIR][a] += conductance;
+    } else {
+        star_mesh_link(mesh, a, b, conductance);
+        matrix[a][b] += conductance;
+        matrix[b][a] += conductance;
+    }
+}
+
+static void check_elimination(double decades, uint64_t seed)
+{
+    static long double matrix[SITES + 1][SITES + 1];
+    for (int i = 0; i <= SITES; i++)
+        for (int j = 0; j <= SITES; j++)
+            matrix[i][j] = 0;
+    struct star_mesh mesh = star_mesh_make(SITES);
+    for (int k = 0; k < LINKS; k++)
+        link_random(&mesh, matrix, decades, &seed);
+    bool free_site[SITES] = {false};
+    for (int n = 0; n < SITES - 5; n++) {
+        int site = (int)(next_random(&seed) * SITES);
+        while (free_site[site])
+            site = (site + 1) % SITES;
+        free_site[site] = true;
+        star_mesh_eliminate(&mesh, site);
+        if (n % 8 != 0) continue;
+        long double flow[SITES], sum = 0;
+        evaporation(matrix, free_site, flow);
+        for (int i = 0; i < SITES; i++) {
+            sum += flow[i];
+            if (free_site[i])
+                assert_true(mesh.air[i] == 0);
+            else
+                assert_true(fabsl(mesh.air[i] - flow[i]) <= 1e-14L * flow[i]);
+        }
+        const double all = compensated_value(mesh.all_air);
+        assert_true(fabsl(all - sum) <= 1e-14L * sum);
+    }
+    star_mesh_free(&mesh);
+}
+
+static void test_every_digit_over_twelve_decades(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 5; seed++)
+        check_elimination(12, seed);
+}
+
+static void test_every_digit_where_conductances_are_alike(void **state)
+{
+    (void)state;
+    check_elimination(0, 7);
+    check_elimination(1, 8);
+}
+
+// Gas that is shut in between wet sites brings nothing to the air: exactly.
+static void test_shut_in_is_exactly_zero(void **state)
+{
+    (void)state;
+    struct star_mesh mesh = star_mesh_make(4);
+    star_mesh_link(&mesh, 0, 1, 1);
+    star_mesh_link(&mesh, 1, 2, 1);
+    star_mesh_link_air(&mesh, 3, 1);
+    star_mesh_link(&mesh, 2, 3, 1);
+    star_mesh_eliminate(&mesh, 1);
+    assert_true(mesh.air[0] == 0 && mesh.air[2] == 0 && mesh.air[3] == 1);
+    star_mesh_eliminate(&mesh, 3);
+    assert_true(mesh.air[0] == 0 && mesh.air[2] == 0.5);
+    star_mesh_eliminate(&mesh, 2);
+    assert_true(fabs(mesh.air[0] - 0.25) < 1e-16); // three links and the air in series
+    star_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_digit_over_twelve_decades),
+        cmocka_unit_test(test_every_digit_where_conductances_are_alike),
+        cmocka_unit_test(test_shut_in_is_exactly_zero)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
