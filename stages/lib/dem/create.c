@@ -150,6 +150,7 @@ static void new_grains(struct dem *dem, int n)
     dem->pair_offset = NEW_ARRAY(int, n + 1);
     dem->is_late = NEW_ARRAY(uint8_t, n);
     dem->late = NEW_ARRAY(int32_t, n);
+    dem->late_row = NEW_ARRAY(int32_t, n + 1);
     dem->first_group = NEW_ARRAY(int, n);
     dem->last_group = NEW_ARRAY(int, n);
     dem->place_at_search = NEW_ARRAY(struct vector, n);

@@ -10,18 +10,38 @@
 void dem_free(struct dem *dem)
 {
     if (!dem) return;
-    void *const owned[] = {
-        dem->material,    dem->pair_friction,    dem->pair_restitution,
-        dem->identity,    dem->number,           dem->start,
-        dem->place,       dem->motion,           dem->external,
-        dem->applied,     dem->mobility,         dem->mass,
-        dem->weight,      dem->material_of,      dem->bond_particle,
-        dem->bond_radius, dem->bond_strength[0], dem->bond_strength[1],
-        dem->wall,        dem->wall_pair,        dem->wall_offset,
-        dem->pair_offset, dem->pair_of,          dem->is_late,
-        dem->late,        dem->first_group,      dem->last_group,
-        dem->sum,         dem->place_at_search,  dem->grain_books,
-        dem->crack};
+    void *const owned[] = {dem->material,
+                           dem->pair_friction,
+                           dem->pair_restitution,
+                           dem->identity,
+                           dem->number,
+                           dem->start,
+                           dem->place,
+                           dem->motion,
+                           dem->external,
+                           dem->applied,
+                           dem->mobility,
+                           dem->mass,
+                           dem->weight,
+                           dem->material_of,
+                           dem->bond_particle,
+                           dem->bond_radius,
+                           dem->bond_strength[0],
+                           dem->bond_strength[1],
+                           dem->wall,
+                           dem->wall_pair,
+                           dem->wall_offset,
+                           dem->pair_offset,
+                           dem->pair_of,
+                           dem->is_late,
+                           dem->late,
+                           dem->first_group,
+                           dem->last_group,
+                           dem->late_row,
+                           dem->sum,
+                           dem->place_at_search,
+                           dem->grain_books,
+                           dem->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free_pairs(&dem->pairs);

@@ -9,9 +9,9 @@
 // sum and clears that, while everything is still in the cache.
 //
 // Each thread does so with its share of the groups. Grains that another thread's pairs
-// have to do with too are late: the loads of their pairs are kept (struct load_group),
-// and when all threads are done their sums are made of those, in the same order. So the
-// order of every sum is fixed, whoever makes it.
+// have to do with too are late: each of their pairs has a row of its own, and when all
+// threads are done their sums are made of those, in the same order. So the order of
+// every sum is fixed, whoever makes it.
 //
 // Grains of large scenes are numbered along a space-filling curve (order.c), so that
 // the partners of a grain are near it in memory too. `identity` tells their names.
@@ -127,9 +127,9 @@ struct pair_list {
     struct pair_group *group; // (n_group)
     struct sum_group *sum;    // (n_group)
     struct load_group *load;  // (n_group)
-    // (n_group) with a late grain, or one that is not there: loads are kept in every
-    // cycle, and `sum` says where they are added up; otherwise at the grains' numbers.
-    uint8_t *kept;
+    // (n_group) with a late grain: `sum` says where loads are added up; otherwise at
+    // the grains' numbers.
+    uint8_t *elsewhere;
     uint8_t *idle; // (n_group) no pair touches or is bonded, and all loads kept are 0
     // (n_group) or NULL where not needed
     struct moment_group *moment;
@@ -241,9 +241,10 @@ struct dem {
     int n_share;                 // of the groups, for as many threads
     uint8_t *is_late;            // (n_particle)
     int n_late;
-    int32_t *late; // (n_late)
-    // (n_particle + n_share) rows of 4 or, if grains turn, 8: force and moment; 0
-    // between cycles. The last n_share take what is of no use, one for each share.
+    int32_t *late;     // (n_late)
+    int32_t *late_row; // (n_late+1) of `sum`, the first of each
+    // Rows of 4 or, if grains turn, 8: force and moment; 0 between cycles. One for each
+    // grain and for the one that is not there, then one for each pair of a late grain.
     double *sum;
     bool keeps_loads; // of all pairs, in this cycle
 
@@ -352,8 +353,7 @@ struct pace {
 struct pace move_grains(struct dem *dem, int begin, int end);
 struct pace move_late_grains(struct dem *dem, int begin, int end);
 
-// Force and moment on a grain in the last cycle, from outside too; of grains that are
-// not late only if loads were kept.
+// Force and moment on a grain in the last cycle, from outside too, if loads were kept.
 struct motion load_on_grain(const struct dem *dem, int particle);
 
 // The largest stable time step [stability.c]: of all pairs in the list, or if NOW only

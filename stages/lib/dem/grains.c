@@ -61,6 +61,22 @@ INLINE struct load take_sum(struct dem *dem, int particle, bool turns)
     return with_walls(dem, particle, sum, turns);
 }
 
+// From the rows of its pairs, in their order.
+INLINE struct load take_late_sum(struct dem *dem, int late, bool turns)
+{
+    const quad zero = {0};
+    struct load sum = {zero, zero};
+    for (int k = dem->late_row[late]; k < dem->late_row[late + 1]; k++) {
+        quad *row = (quad *)(dem->sum + (turns ? 8 : 4) * (size_t)k);
+        sum.force += row[0];
+        row[0] = zero;
+        if (!turns) continue;
+        sum.moment += row[1];
+        row[1] = zero;
+    }
+    return with_walls(dem, dem->late[late], sum, turns);
+}
+
 struct motion load_on_grain(const struct dem *dem, int particle)
 {
     const struct load sum = add_up(dem, particle, dem->features & FEATURE_TURN);
@@ -108,7 +124,8 @@ INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool tur
     for (int k = begin; k < end; k++) {
         const int i = late ? dem->late[k] : k;
         if (!late && dem->is_late[i]) continue;
-        const struct load sum = late ? add_up(dem, i, turns) : take_sum(dem, i, turns);
+        const struct load sum =
+            late ? take_late_sum(dem, k, turns) : take_sum(dem, i, turns);
         const double *mobility = dem->mobility[dem->moves_alike ? 0 : i];
         quad *velocity = (quad *)dem->motion[i].linear;
         quad *spin = (quad *)dem->motion[i].angular;

@@ -267,13 +267,39 @@ static void find_late_grains(struct dem *dem)
     }
 }
 
-// Each grain has the row of its number, those that are late or not there the spare row
-// of the share.
-static int32_t sum_of(const struct dem *dem, int particle, int group)
+// Late grains get a row for each of their pairs, behind the others; how many rows there
+// are in all.
+static int number_late_rows(struct dem *dem)
 {
-    if (particle < dem->n_particle && !dem->is_late[particle]) return particle;
-    dem->pairs.kept[group] = true;
-    return dem->n_particle + group / groups_in_share(dem);
+    int row = dem->n_particle + 1;
+    for (int k = 0; k < dem->n_late; k++) {
+        const int i = dem->late[k];
+        dem->late_row[k] = row;
+        row += dem->pair_offset[i + 1] - dem->pair_offset[i];
+    }
+    dem->late_row[dem->n_late] = row;
+    return row;
+}
+
+static void assign_rows(struct dem *dem)
+{
+    int32_t *row = NEW_ARRAY(int32_t, dem->n_particle + 1);
+    for (int i = 0; i <= dem->n_particle; i++)
+        row[i] = i;
+    for (int k = 0; k < dem->n_late; k++)
+        row[dem->late[k]] = dem->late_row[k];
+    for (int k = 0; k < dem->pairs.n_group; k++)
+        for (int at = 0; at < PAIRS_IN_GROUP; at++)
+            for (int end = 0; end < 2; end++) {
+                const struct pair_group *group = &dem->pairs.group[k];
+                struct sum_group *sum = &dem->pairs.sum[k];
+                const int i = (end ? group->second : group->first)[at];
+                (end ? sum->second : sum->first)[at] = row[i];
+                if (row[i] == i) continue;
+                dem->pairs.elsewhere[k] = true;
+                row[i]++;
+            }
+    free(row);
 }
 
 static void assign_sums(struct dem *dem)
@@ -281,16 +307,9 @@ static void assign_sums(struct dem *dem)
     const bool is_large = dem->pairs.n_pair > LEAST_TO_SHARE;
     dem->n_share = is_large ? dem->threads : 1;
     find_late_grains(dem);
-    for (int k = 0; k < dem->pairs.n_group; k++) {
-        const struct pair_group *group = &dem->pairs.group[k];
-        struct sum_group *sum = &dem->pairs.sum[k];
-        for (int at = 0; at < PAIRS_IN_GROUP; at++) {
-            sum->first[at] = sum_of(dem, group->first[at], k);
-            sum->second[at] = sum_of(dem, group->second[at], k);
-        }
-    }
+    const size_t rows = (size_t)number_late_rows(dem);
+    assign_rows(dem);
     free(dem->sum);
-    const size_t rows = (size_t)dem->n_particle + (size_t)dem->n_share;
     dem->sum = allocate_aligned(rows * (dem->features & FEATURE_TURN ? 8 : 4),
                                 sizeof *dem->sum);
 }
@@ -325,7 +344,7 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
                                 .group = allocate_aligned(n, sizeof *pairs->group),
                                 .sum = allocate_aligned(n, sizeof *pairs->sum),
                                 .load = allocate_aligned(n, sizeof *pairs->load),
-                                .kept = NEW_ARRAY(uint8_t, n),
+                                .elsewhere = NEW_ARRAY(uint8_t, n),
                                 .idle = NEW_ARRAY(uint8_t, n)};
     if (dem->features & FEATURE_TURN) {
         pairs->moment = allocate_aligned(n, sizeof *pairs->moment);
@@ -345,7 +364,7 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->group);
     free(pairs->sum);
     free(pairs->load);
-    free(pairs->kept);
+    free(pairs->elsewhere);
     free(pairs->idle);
     free(pairs->moment);
     free(pairs->shear);

@@ -735,7 +735,7 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
     const struct lanes3 n = m->turning.normal;
     const struct pair_group *g = dem->pairs.group + k;
     const struct sum_group *sum = dem->pairs.sum + k;
-    const bool elsewhere = dem->pairs.kept[k];
+    const bool elsewhere = dem->pairs.elsewhere[k];
     const int32_t *first = (elsewhere ? sum->first : g->first) + at;
     const int32_t *second = (elsewhere ? sum->second : g->second) + at;
     const bool turns = features & FEATURE_TURN;
@@ -774,7 +774,7 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *l
     mask held = (mask)zero;
     if (features & FEATURE_BOND)
         held = load(dem->pairs.bonds[k].normal_strength + at) >= 0.0;
-    const bool keep = dem->keeps_loads || dem->pairs.kept[k];
+    const bool keep = dem->keeps_loads;
     if (!any(touch | held) && dem->pairs.idle[k] && !keep) return 0;
 
     *busy |= any(touch | held);
