@@ -231,23 +231,23 @@ int clusters_invasion_throat(struct clusters *clusters, int cluster)
 }
 
 struct ranked {
-    double radius;
+    double ease;
     int throat;
 };
 
 static int compare_ranked(const void *a, const void *b)
 {
     const struct ranked *r = a, *s = b;
-    if (r->radius != s->radius) return r->radius > s->radius ? -1 : 1;
+    if (r->ease != s->ease) return r->ease > s->ease ? -1 : 1;
     return (r->throat > s->throat) - (r->throat < s->throat);
 }
 
-static void rank_throats(struct clusters *clusters)
+static void rank_throats(struct clusters *clusters, const double *ease)
 {
     const int n = clusters->network->n_throat;
     struct ranked *ranked = NEW_ARRAY(struct ranked, n);
     for (int t = 0; t < n; t++)
-        ranked[t] = (struct ranked){clusters->network->throat_radius[t], t};
+        ranked[t] = (struct ranked){ease[t], t};
     if (n > 0) qsort(ranked, (size_t)n, sizeof *ranked, compare_ranked);
     for (int k = 0; k < n; k++) {
         clusters->throat_at_rank[k] = ranked[k].throat;
@@ -285,7 +285,8 @@ static void find_clusters(struct clusters *clusters)
 }
 
 struct clusters clusters_make(const struct network *network,
-                              const struct incidence *incidence, bool gas_parts)
+                              const struct incidence *incidence, const double *ease,
+                              bool gas_parts)
 {
     struct clusters clusters = {.network = network,
                                 .incidence = incidence,
@@ -298,7 +299,7 @@ struct clusters clusters_make(const struct network *network,
                                 .found_by = NEW_ARRAY(int, network->n_throat)};
     for (int i = 0; i < network->n_node; i++)
         clusters.joins[i] = true;
-    rank_throats(&clusters);
+    rank_throats(&clusters, ease ? ease : network->throat_radius);
     find_clusters(&clusters);
     return clusters;
 }

@@ -35,7 +35,7 @@ struct clusters {
     int *unused;            // identities to give out again
     int n_unused, capacity, unused_capacity;
 
-    int *rank;           // (n_throat) place by radius, widest first; ties by index
+    int *rank;           // (n_throat) place by ease, largest first; ties by index
     int *throat_at_rank; // (n_throat)
 
     int n_moved, moved_capacity;
@@ -46,10 +46,12 @@ struct clusters {
     int n_search, search_capacity;
 };
 
-// All throats of kind THROAT_NETWORK hold liquid, all nodes join, no menisci yet. Keeps
-// NETWORK and INCIDENCE, which must live as long. O(n log n).
+// All throats of kind THROAT_NETWORK hold liquid, all nodes join, no menisci yet. Gas
+// enters the throat of largest EASE (n_throat) first; NULL: the widest. Keeps NETWORK
+// and INCIDENCE, which must live as long. O(n log n).
 struct clusters clusters_make(const struct network *network,
-                              const struct incidence *incidence, bool gas_parts);
+                              const struct incidence *incidence, const double *ease,
+                              bool gas_parts);
 
 // Gas has come to NODE from outside: its liquid throats have menisci there, and the
 // liquid is connected through it as before.
@@ -58,8 +60,8 @@ void clusters_add_menisci(struct clusters *clusters, int node);
 // THROAT has emptied and gas fills both its nodes.
 void clusters_empty_throat(struct clusters *clusters, int throat);
 
-// The widest meniscus throat of CLUSTER, the lowest index among equals; -1 if no gas
-// touches the cluster.
+// The meniscus throat of CLUSTER that gas enters most easily, the lowest index among
+// equals; -1 if no gas touches the cluster.
 int clusters_invasion_throat(struct clusters *clusters, int cluster);
 
 void clusters_free(struct clusters *clusters);

@@ -25,17 +25,9 @@ static enum status check_positive(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
-static enum status check_liquid(const struct drying_conditions *conditions,
-                                struct reason *reason)
+static enum status check_menisci(const struct drying_conditions *conditions,
+                                 struct reason *reason)
 {
-    if ((unsigned)conditions->liquid > LIQUID_VISCOUS)
-        return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
-                      (int)conditions->liquid);
-    if (conditions->liquid != LIQUID_VISCOUS) return STATUS_OK;
-    if (!(conditions->viscosity > 0) || !isfinite(conditions->viscosity))
-        return refuse(reason, STATUS_BAD_DATA,
-                      "viscosity: must be above 0 in viscous liquid, is %g",
-                      conditions->viscosity);
     if (!(conditions->surface_tension > 0) || !isfinite(conditions->surface_tension))
         return refuse(reason, STATUS_BAD_DATA,
                       "surface_tension: must be above 0, is %g",
@@ -45,6 +37,26 @@ static enum status check_liquid(const struct drying_conditions *conditions,
                       "contact_angle: must be from 0 to below 90 degrees, is %g: gas "
                       "would enter without being sucked in",
                       conditions->contact_angle);
+    if (!(conditions->gravity >= 0) || !isfinite(conditions->gravity))
+        return refuse(reason, STATUS_BAD_DATA, "gravity: must not be below 0, is %g",
+                      conditions->gravity);
+    return STATUS_OK;
+}
+
+static enum status check_liquid(const struct drying_conditions *conditions,
+                                struct reason *reason)
+{
+    if ((unsigned)conditions->liquid > LIQUID_VISCOUS)
+        return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
+                      (int)conditions->liquid);
+    if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0)
+        return STATUS_OK;
+    const enum status status = check_menisci(conditions, reason);
+    if (status || conditions->liquid != LIQUID_VISCOUS) return status;
+    if (!(conditions->viscosity > 0) || !isfinite(conditions->viscosity))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "viscosity: must be above 0 in viscous liquid, is %g",
+                      conditions->viscosity);
     if (!(conditions->saturation_step > 0 && conditions->saturation_step <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "saturation_step: must be above 0 and at most 1, is %g",
@@ -94,6 +106,15 @@ enum status check_conditions(const struct drying_conditions *conditions,
                       "first_period_rate_fraction: must be between 0 and 1, is %g",
                       conditions->first_period_rate_fraction);
     return check_liquid(conditions, reason);
+}
+
+enum status check_gravity(const struct drying_conditions *conditions,
+                          const struct network *network, struct reason *reason)
+{
+    if (conditions->gravity == 0 || !network->packing.periodic[2]) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "gravity: must be 0 in a box that repeats along z, is %g",
+                  conditions->gravity);
 }
 
 enum status check_throats(const struct network *network, struct reason *reason)
@@ -171,4 +192,12 @@ struct drying_scale drying_scale(const struct network *network,
 int open_wall(const struct drying_conditions *conditions)
 {
     return __builtin_ctz(conditions->open_walls);
+}
+
+double knudsen_radius(const struct drying_conditions *conditions)
+{
+    if (!conditions->knudsen) return 0;
+    const double speed = sqrt(8 * GAS_CONSTANT * conditions->temperature /
+                              (M_PI * conditions->molar_mass));
+    return 1.5 * conditions->diffusivity / speed;
 }

@@ -20,6 +20,10 @@ struct drying_scale {
 enum status check_conditions(const struct drying_conditions *conditions,
                              struct reason *reason);
 
+// STATUS_BAD_DATA if there is gravity along an axis on which the box repeats.
+enum status check_gravity(const struct drying_conditions *conditions,
+                          const struct network *network, struct reason *reason);
+
 // STATUS_BAD_DATA with the dataset, the row, the rule and the value if a throat that
 // takes part has no length, no radius, or both its ends on one node, or if none takes
 // part.
@@ -28,6 +32,11 @@ enum status check_throats(const struct network *network, struct reason *reason);
 // Both arguments must have passed their checks.
 struct drying_scale drying_scale(const struct network *network,
                                  const struct drying_conditions *conditions);
+
+// Radius of the throat, in m, in which a molecule of vapour is held up as much by the
+// wall as by the gas: D_K = (2/3) r sqrt(8 R T / (pi M)) is the diffusivity. 0 without
+// the Knudsen effect.
+double knudsen_radius(const struct drying_conditions *conditions);
 
 // Bit and number (0..5) of the one open wall.
 int open_wall(const struct drying_conditions *conditions);

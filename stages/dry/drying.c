@@ -318,6 +318,18 @@ static void prepare(struct run *run)
         run->saturation[t] = 1;
 }
 
+// How easily gas enters each throat against gravity. The caller frees it.
+static double *find_ease(const struct network *network,
+                         const struct drying_conditions *conditions,
+                         const struct drying_scale *scale)
+{
+    struct menisci menisci = menisci_make(network, conditions, scale);
+    double *ease = NEW_ARRAY(double, network->n_throat);
+    menisci_ease(&menisci, ease);
+    menisci_free(&menisci);
+    return ease;
+}
+
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,
@@ -325,6 +337,7 @@ enum status dry_network(const struct network *network,
 {
     *history = (struct drying_history){0};
     enum status status = check_conditions(conditions, reason);
+    if (!status) status = check_gravity(conditions, network, reason);
     if (!status) status = check_throats(network, reason);
     if (status) return status;
 
@@ -343,9 +356,14 @@ enum status dry_network(const struct network *network,
         return status;
     }
 
-    const bool gas_parts = conditions->liquid != LIQUID_IMMOBILE;
-    status = phases_make(network, wall, run.scale.length, gas_parts, layer, &run.phases,
-                         reason);
+    double *ease = conditions->gravity != 0 ? find_ease(network, conditions, &run.scale)
+                                            : NULL; // by radius
+    const struct phases_form form = {.length = run.scale.length,
+                                     .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
+                                     .ease = ease,
+                                     .knudsen_radius = knudsen_radius(conditions)};
+    status = phases_make(network, wall, &form, layer, &run.phases, reason);
+    free(ease);
     if (!status) {
         prepare(&run);
         status = dry_all(&run, progress, reason);

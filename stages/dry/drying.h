@@ -46,6 +46,7 @@ struct drying_conditions {
     double surface_tension; // N/m; above 0 if the liquid is viscous
     double contact_angle;   // degrees, from 0 to below 90
     double gravity;         // towards -z, m/s2; 0: none
+    bool knudsen;           // molecules meet the walls of narrow throats
     // Viscous: conductances are renewed when a throat's saturation has changed by this,
     // in (0,1]; 1: only when a throat has emptied or filled, as K does.
     double saturation_step;

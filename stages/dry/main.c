@@ -2,6 +2,7 @@
 // dry: which throat empties when.
 #include "artifacts/artifact.h"
 #include "basics/status.h"
+#include "describe.h"
 #include "drying.h"
 #include "enclosed.h"
 #include "mass_transfer.h"
@@ -41,6 +42,13 @@ static const struct parameter table[] = {
     {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
      "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) / r",
      AT(conditions.contact_angle)},
+    {"gravity", PARAMETER_NUMBER, "m s-2", "0", BOUND_MINIMUM, 0, 0, NULL,
+     "towards -z: liquid higher up gives way to gas more easily; 0: none",
+     AT(conditions.gravity)},
+    {"knudsen", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "vapour is held up by the walls of narrow throats too: 1/D + 1/D_K, D_K = (2/3) r "
+     "sqrt(8 R T / (pi M))",
+     AT(conditions.knudsen)},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", BOUND_BETWEEN, 1e-6, 1, NULL,
      "viscous: flow is solved anew when a throat's saturation has changed by this; 1: "
      "when one has emptied or filled",
@@ -205,29 +213,6 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
     artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
 }
 
-static void describe_liquid(const struct drying_conditions *conditions,
-                            const struct drying_history *history, char *text,
-                            size_t size)
-{
-    switch (conditions->liquid) {
-    case LIQUID_INVISCID:
-        snprintf(text, size,
-                 "negligible viscosity, invasion percolation cluster by cluster");
-        break;
-    case LIQUID_IMMOBILE:
-        snprintf(text, size, "immobile, each throat dries by itself");
-        break;
-    case LIQUID_VISCOUS:
-        snprintf(text, size,
-                 "viscous, Poiseuille flow at %.17g m2/s between moving and stationary "
-                 "menisci [K 3.10], contact angle %.17g degrees; %lld clusters solved "
-                 "in %lld rounds",
-                 conditions->viscosity, conditions->contact_angle,
-                 (long long)history->flow_solutions, (long long)history->flow_rounds);
-        break;
-    }
-}
-
 static const char *describe_layer(const struct dry_parameters *parameters,
                                   const struct drying_history *history, char text[300])
 {
@@ -265,18 +250,20 @@ static void write_drying(const struct network *network,
                          const struct dry_parameters *parameters,
                          const struct mass_transfer *transfer)
 {
-    char model[1600], layer[300], flow[200], liquid[300];
-    describe_liquid(&parameters->conditions, history, liquid, sizeof liquid);
-    snprintf(model, sizeof model,
-             "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
-             "boundary layer: %s\n"
-             "boundary layer: %.17g m thick, from %s\n"
-             "liquid: %s\n"
-             "throats shut in by those imposed empty, and empty as well: %d\n"
-             "left out: gravity, films, Kelvin and Knudsen effects, temperature\n",
-             describe_layer(parameters, history, layer),
-             history->boundary_layer_thickness,
-             describe_flow(parameters, transfer, flow), liquid, parameters->enclosed);
+    const struct drying_conditions *conditions = &parameters->conditions;
+    char model[2000], layer[300], flow[200], liquid[300], switches[500];
+    snprintf(
+        model, sizeof model,
+        "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
+        "boundary layer: %s\n"
+        "boundary layer: %.17g m thick, from %s\n"
+        "liquid: %s\n"
+        "throats shut in by those imposed empty, and empty as well: %d\n"
+        "%s\n",
+        describe_layer(parameters, history, layer), history->boundary_layer_thickness,
+        describe_flow(parameters, transfer, flow),
+        describe_liquid(conditions, history, liquid, sizeof liquid),
+        parameters->enclosed, describe_switches(conditions, switches, sizeof switches));
     struct artifact *artifact = artifact_create("drying");
     artifact_put_network(artifact, network);
     put_history(artifact, history);

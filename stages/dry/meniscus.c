@@ -6,14 +6,18 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The middle of a throat, in lengths of LENGTH above the floor of the box.
-static double height_of(const struct network *network, int throat, double length)
+// In scaled lengths above the floor of the box.
+static double height_of_node(const struct menisci *menisci, int node)
 {
-    const int32_t *node = network->throat_nodes[throat];
-    const double floor = network->packing.lower.z;
-    const double first = network->node_position[node[0]].z - floor;
-    const double second = network->node_position[node[1]].z - floor;
-    return (first + second) / 2 / length;
+    const struct network *network = menisci->network;
+    return (network->node_position[node].z - network->packing.lower.z) /
+           menisci->length;
+}
+
+static double height_of_middle(const struct menisci *menisci, int throat)
+{
+    const int32_t *node = menisci->network->throat_nodes[throat];
+    return (height_of_node(menisci, node[0]) + height_of_node(menisci, node[1])) / 2;
 }
 
 struct menisci menisci_make(const struct network *network,
@@ -27,7 +31,8 @@ struct menisci menisci_make(const struct network *network,
         conditions->liquid == LIQUID_VISCOUS
             ? conditions->viscosity * scale->rate / (length * length * length)
             : 2 * conditions->surface_tension / length;
-    struct menisci menisci = {.n_throat = network->n_throat,
+    struct menisci menisci = {.network = network,
+                              .length = length,
                               .tension = tension / length / pressure,
                               .weight = conditions->liquid_density *
                                         conditions->gravity * length / pressure,
@@ -36,7 +41,7 @@ struct menisci menisci_make(const struct network *network,
     if (menisci.weight != 0) menisci.height = NEW_ARRAY(double, network->n_throat);
     for (int t = 0; t < network->n_throat; t++) {
         menisci.radius[t] = network->throat_radius[t] / length;
-        if (menisci.height) menisci.height[t] = height_of(network, t, length);
+        if (menisci.height) menisci.height[t] = height_of_middle(&menisci, t);
     }
     return menisci;
 }
@@ -49,6 +54,19 @@ double menisci_potential(const struct menisci *menisci, int throat, int referenc
         potential +=
             menisci->weight * (menisci->height[throat] - menisci->height[reference]);
     return potential;
+}
+
+double menisci_weight(const struct menisci *menisci, int throat, int node)
+{
+    if (!menisci->height) return 0;
+    return menisci->weight * (menisci->height[throat] - height_of_node(menisci, node));
+}
+
+void menisci_ease(const struct menisci *menisci, double *ease)
+{
+    for (int t = 0; t < menisci->network->n_throat; t++)
+        ease[t] = (menisci->height ? menisci->weight * menisci->height[t] : 0) -
+                  menisci->tension / menisci->radius[t];
 }
 
 void menisci_free(struct menisci *menisci)

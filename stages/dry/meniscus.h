@@ -9,7 +9,8 @@
 // In scaled units (conditions.h), pressures in the unit at which viscosity drops out of
 // Poiseuille's law: flow = pi r^4 / (8 L) times the fall of pressure.
 struct menisci {
-    int n_throat;
+    const struct network *network;
+    double length;   // m, the unit
     double tension;  // 2 sigma cos(theta), in pressure times length
     double weight;   // rho g, in pressure over length; 0: no gravity
     double *radius;  // (n_throat)
@@ -28,6 +29,12 @@ struct menisci menisci_make(const struct network *network,
 // REFERENCE. Exactly 0 for equal radii at one height; no digits are lost for radii that
 // are nearly equal.
 double menisci_potential(const struct menisci *menisci, int throat, int reference);
+
+// Pressure at NODE, above that at the middle of THROAT, of liquid at rest.
+double menisci_weight(const struct menisci *menisci, int throat, int node);
+
+// EASE (n_throat): the potentials at which gas enters the throats, for clusters_make.
+void menisci_ease(const struct menisci *menisci, double *ease);
 
 void menisci_free(struct menisci *menisci);
 

@@ -60,8 +60,8 @@ static enum status expose_surface(struct phases *phases, struct reason *reason)
     return STATUS_OK;
 }
 
-enum status phases_make(const struct network *network, int wall, double length,
-                        bool gas_parts, struct boundary_layer layer,
+enum status phases_make(const struct network *network, int wall,
+                        const struct phases_form *form, struct boundary_layer layer,
                         struct phases *phases, struct reason *reason)
 {
     *phases = (struct phases){.network = network,
@@ -73,9 +73,11 @@ enum status phases_make(const struct network *network, int wall, double length,
                               .wet_place = NEW_ARRAY(int, network->n_node)};
     for (int i = 0; i < network->n_node; i++)
         phases->wet_place[i] = -1;
-    fill_throats(phases, length);
-    phases->vapour = vapour_make(network, length, &phases->layer);
-    phases->clusters = clusters_make(network, &phases->incidence, gas_parts);
+    fill_throats(phases, form->length);
+    phases->vapour =
+        vapour_make(network, form->length, form->knudsen_radius, &phases->layer);
+    phases->clusters =
+        clusters_make(network, &phases->incidence, form->ease, form->gas_parts);
     return expose_surface(phases, reason);
 }
 

@@ -31,13 +31,20 @@ struct phases {
     bool breakthrough; // gas has reached the wall opposite the open one
 };
 
+struct phases_form {
+    double length;         // m, the unit
+    bool gas_parts;        // as in struct clusters
+    const double *ease;    // (n_throat) as clusters_make takes it
+    double knudsen_radius; // m, as vapour_make takes it
+};
+
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and
-// wet. LENGTH (m) is the unit. Takes over LAYER. The caller frees PHASES with
+// wet. Takes over LAYER. The caller frees PHASES with
 // phases_free, also after a failure.
 //
 // STATUS_BAD_DATA if a piece of the network has no way to the open wall.
-enum status phases_make(const struct network *network, int wall, double length,
-                        bool gas_parts, struct boundary_layer layer,
+enum status phases_make(const struct network *network, int wall,
+                        const struct phases_form *form, struct boundary_layer layer,
                         struct phases *phases, struct reason *reason);
 
 // THROAT has lost its last liquid: gas fills it and both its nodes.

@@ -5,11 +5,14 @@
 
 #include <stdlib.h>
 
+// Diffusion in the gas and at the wall in series (Bosanquet): 1/D + 1/D_K, where D_K
+// grows with the radius.
 static double throat_conductance(const struct network *network, int throat,
-                                 double length)
+                                 double length, double knudsen_radius)
 {
     const double radius = network->throat_radius[throat] / length;
-    return M_PI * radius * radius / (network->throat_length[throat] / length);
+    const double slowed = 1 + knudsen_radius / network->throat_radius[throat];
+    return M_PI * radius * radius / (network->throat_length[throat] / length) / slowed;
 }
 
 // --- the boundary layer ------------------------------------------------------------
@@ -53,14 +56,15 @@ static void add_boundary_layer(struct vapour *vapour,
 }
 
 struct vapour vapour_make(const struct network *network, double length,
-                          const struct boundary_layer *layer)
+                          double knudsen_radius, const struct boundary_layer *layer)
 {
     struct vapour vapour = {.n_site = network->n_node +
                                       (layer->layers - 1) * layer->n_exposed,
                             .conductance = NEW_ARRAY(double, network->n_throat)};
     for (int t = 0; t < network->n_throat; t++)
         if (network->throat_kind[t] == THROAT_NETWORK)
-            vapour.conductance[t] = throat_conductance(network, t, length);
+            vapour.conductance[t] =
+                throat_conductance(network, t, length, knudsen_radius);
     vapour.mesh = star_mesh_make(vapour.n_site);
     add_boundary_layer(&vapour, layer, network->n_node);
     return vapour;

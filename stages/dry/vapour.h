@@ -22,9 +22,10 @@ struct vapour {
 };
 
 // For a network that is full of liquid. Lengths are in units of LENGTH (m),
-// conductances area over length in the same.
+// conductances area over length in the same. Where molecules meet the wall of a throat
+// as often as each other, at KNUDSEN_RADIUS (m), the diffusivity is halved; 0: nowhere.
 struct vapour vapour_make(const struct network *network, double length,
-                          const struct boundary_layer *layer);
+                          double knudsen_radius, const struct boundary_layer *layer);
 
 // THROAT, from node A to node B, has emptied. NODE has gas and no liquid beside it any
 // more; the nodes that then evaporate more are the mesh's changed ones.

@@ -388,9 +388,12 @@ static void write_pressures(struct liquid_flow *flow, const struct piece *piece)
 {
     const struct menisci *menisci = &flow->menisci;
     const double reference = -menisci->tension / menisci->radius[piece->reference];
-    for (int k = 0; k < piece->n_unknown; k++)
-        flow->pressure[flow->solver->node[k]] =
-            reference + compensated_value(flow->solver->potential[k]);
+    for (int k = 0; k < piece->n_unknown; k++) {
+        const int node = flow->solver->node[k];
+        flow->pressure[node] = reference +
+                               compensated_value(flow->solver->potential[k]) +
+                               menisci_weight(menisci, piece->reference, node);
+    }
 }
 
 // Whether liquid goes from throat to throat at NODE.

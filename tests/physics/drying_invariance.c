@@ -154,7 +154,7 @@ static struct kin *kin_when_emptied(const struct network *network,
 {
     struct kin *kin = NEW_ARRAY(struct kin, network->n_throat);
     struct incidence incidence = network_incidence(network);
-    struct clusters clusters = clusters_make(network, &incidence, true);
+    struct clusters clusters = clusters_make(network, &incidence, NULL, true);
     for (int k = 0; k < history->n_event; k++) {
         const int throat = history->event_throat[k];
         const int cluster = clusters.of_throat[throat];

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "describe.h"
+
+#include "conditions.h"
+
+#include <stdio.h>
+#include <string.h>
+
+const char *describe_liquid(const struct drying_conditions *conditions,
+                            const struct drying_history *history, char *text,
+                            size_t size)
+{
+    switch (conditions->liquid) {
+    case LIQUID_INVISCID:
+        snprintf(text, size,
+                 "negligible viscosity, invasion percolation cluster by cluster");
+        break;
+    case LIQUID_IMMOBILE:
+        snprintf(text, size, "immobile, each throat dries by itself");
+        break;
+    case LIQUID_VISCOUS:
+        snprintf(text, size,
+                 "viscous, Poiseuille flow at %.17g m2/s between moving and stationary "
+                 "menisci [K 3.10], contact angle %.17g degrees; %lld clusters solved "
+                 "in %lld rounds",
+                 conditions->viscosity, conditions->contact_angle,
+                 (long long)history->flow_solutions, (long long)history->flow_rounds);
+        break;
+    }
+    return text;
+}
+
+static void append(char *text, size_t size, const char *more)
+{
+    const size_t length = strlen(text);
+    snprintf(text + length, size - length, "%s", more);
+}
+
+const char *describe_switches(const struct drying_conditions *conditions, char *text,
+                              size_t size)
+{
+    const bool gravity = conditions->gravity != 0;
+    text[0] = '\0';
+    if (gravity && conditions->liquid != LIQUID_IMMOBILE)
+        snprintf(text, size,
+                 "gravity: %.17g m/s2, contact angle %.17g degrees; menisci at the "
+                 "height of their throat's middle\n",
+                 conditions->gravity, conditions->contact_angle);
+    if (conditions->knudsen) {
+        char line[160];
+        snprintf(line, sizeof line,
+                 "Knudsen effect: diffusivity halved in throats of %.6g m\n",
+                 knudsen_radius(conditions));
+        append(text, size, line);
+    }
+    append(text, size, "left out: ");
+    if (!gravity) append(text, size, "gravity, ");
+    if (!conditions->knudsen) append(text, size, "Knudsen effect, ");
+    append(text, size, "films, Kelvin effect, temperature");
+    return text;
+}

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was modelled of the liquid and the menisci, in words: lines of `model`.
+#ifndef CRAQUELURE_DRY_DESCRIBE_H
+#define CRAQUELURE_DRY_DESCRIBE_H
+
+#include "drying.h"
+
+#include <stddef.h>
+
+// Both write at most SIZE bytes to TEXT, without the last line's end, and return it.
+const char *describe_liquid(const struct drying_conditions *conditions,
+                            const struct drying_history *history, char *text,
+                            size_t size);
+
+// A line each for what is switched on, and one for all that is left out.
+const char *describe_switches(const struct drying_conditions *conditions, char *text,
+                              size_t size);
+
+#endif
