@@ -233,7 +233,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-.PHONY: check hard bench bench-dem bench-impact bench-network sanitize check-c
+.PHONY: check hard bench bench-dem bench-impact bench-network bench-walls sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
 	@tests/hard/run
@@ -256,6 +256,8 @@ bench-dem: all $(BENCHES) ## the discrete elements beside LAMMPS, LIGGGHTS and Y
 	@tests/bench/dem
 bench-impact: all $(BENCHES) ## error of the contact laws against cost, over time steps
 	@tests/bench/impact
+bench-walls: all ## the tessellation in a cylinder and of grains on a sphere, next to voro++
+	@tests/bench/walls
 bench-network: all ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
 

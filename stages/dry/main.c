@@ -55,8 +55,10 @@ static const struct parameter table[] = {
      AT(conditions.saturation_step)},
     {"open", PARAMETER_CHOICES, "1", "[\"+z\"]", BOUND_NONE, 0, 0, WALLS,
      "the wall that is open to the drying air", AT(open_walls)},
-    {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0, WALLS,
-     "walls whose throats hold no liquid and let nothing through [K 5.4]",
+    {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0,
+     WALLS "|outer|inner",
+     "walls whose throats hold no liquid and let nothing through [K 5.4]; outer and "
+     "inner: those of a cylinder or sphere around the grains, and of what is cut out",
      AT(imposed_empty)},
     {"throat_radius.distribution", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0,
      0, "network|normal|lognormal|uniform|two_mode",

@@ -13,9 +13,14 @@ enum clearance {
     CLEARANCE_LINE     // [K 3.7]: least distance from the infinite line through it
 };
 
+// How far the surface of a grain is from the throat between END [K 3.7, 3.8]; below 0
+// where they overlap.
+double clearance_of(struct vector centre, double radius, const struct vector end[2],
+                    enum clearance how);
+
 enum boundary {
-    BOUNDARY_TRUNCATE, // the box cuts the cells [K 3.3.1]
-    BOUNDARY_ELIMINATE // cells that the box would cut are left out [K 3.3.3, 3.7]
+    BOUNDARY_TRUNCATE, // the walls cut the cells [K 3.3.1]
+    BOUNDARY_ELIMINATE // cells that walls would cut are left out [K 3.3.3, 3.7]
 };
 
 struct tessellation {
@@ -32,10 +37,10 @@ struct tessellation_report {
     int n_cell;   // cells in the network
 };
 
-// The network of PACKING in its box. On success *NETWORK is the caller's; the
-// packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside the box, two
-// grains at one place, a box that repeats and is too narrow, or
-// no cell left.
+// The network of PACKING in its box, cut by its bodies. On success *NETWORK is the
+// caller's; the packing is copied into it. STATUS_BAD_DATA: no grains, a grain outside
+// the box, two grains at one place, a box that repeats and is too narrow, or no cell
+// left.
 //
 // Nodes come in the order of the grains they lie between, so that their order says
 // where they are, not how the triangulation was built. Wall nodes that coincide (an

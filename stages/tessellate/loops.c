@@ -46,18 +46,6 @@ static struct vector place(const struct network *network, struct vector at,
     return at;
 }
 
-// [K 3.7, 3.8]
-static double clearance_of(struct vector centre, double radius,
-                           const struct vector end[2], enum clearance how)
-{
-    const struct vector along = subtract(end[1], end[0]);
-    const struct vector to = subtract(centre, end[0]);
-    const double length2 = dot(along, along);
-    double t = length2 > 0 ? dot(to, along) / length2 : 0;
-    if (how == CLEARANCE_SEGMENT) t = fmin(fmax(t, 0), 1);
-    return norm(subtract(to, scale(t, along))) - radius;
-}
-
 static void append_edge(struct edges *edges, struct corner a, struct corner b,
                         double clearance)
 {

@@ -16,16 +16,15 @@ struct candidates {
     int count, capacity;
 };
 
-static double clearance(const struct assembly *assembly, const struct vector end[2],
-                        int32_t point)
+double clearance_of(struct vector centre, double radius, const struct vector end[2],
+                    enum clearance how)
 {
     const struct vector along = subtract(end[1], end[0]);
-    const struct vector to = subtract(assembly->generators->position[point], end[0]);
+    const struct vector to = subtract(centre, end[0]);
     const double length2 = dot(along, along);
     double t = length2 > 0 ? dot(to, along) / length2 : 0;
-    if (assembly->clearance == CLEARANCE_SEGMENT) t = fmin(fmax(t, 0), 1);
-    return norm(subtract(to, scale(t, along))) -
-           assembly->radius[assembly->generators->particle[point]]; // [K 3.7, 3.8]
+    if (how == CLEARANCE_SEGMENT) t = fmin(fmax(t, 0), 1);
+    return norm(subtract(to, scale(t, along))) - radius;
 }
 
 // The least clearance to the grains of the facet opposite corner K of CELL.
@@ -36,7 +35,10 @@ static double facet_clearance(const struct assembly *assembly, int cell, int k,
     for (int m = 0; m < 4; m++) {
         const int32_t point = assembly->triangulation->cell[cell].vertex[m];
         if (m == k || assembly->generators->wall[point] >= 0) continue;
-        least = fmin(least, clearance(assembly, end, point));
+        const int32_t grain = assembly->generators->particle[point];
+        least = fmin(least,
+                     clearance_of(assembly->generators->position[point],
+                                  assembly->radius[grain], end, assembly->clearance));
     }
     return least;
 }

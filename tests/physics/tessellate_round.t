@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 
+import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
@@ -184,7 +185,6 @@ def check_right_angles(folder):
     at *= np.repeat([0.45, 0.3], 200)[:, None] / np.linalg.norm(at, axis=1)[:, None]
     path = os.path.join(folder, "shells")
     cells = of_packing(folder, *loose(400, *SPHERE))
-    import h5py
     with h5py.File(os.path.join(folder, "own-packing.h5"), "r+") as file:
         file["particles/position"][...] = at + 0.5
         file["particles/radius"][...] = 1e-3
@@ -233,7 +233,8 @@ def check_elimination(folder):
 
 
 def check_chain(folder):
-    """Merged nodes stay on their walls; and the rest of the chain takes such networks."""
+    """Merged nodes stay on their walls, the rest of the chain takes such networks, and they come
+    back from the JSON graph as they were."""
     at = lambda name: os.path.join(folder, name + ".h5")
     of_packing(folder, *loose(200, *RING), "bonds=touching", "touching_gap=0.5")
     for stage, source, target in (("merge-nodes", "own", "merged"), ("dry", "merged", "dried"),
@@ -242,6 +243,12 @@ def check_chain(folder):
     merged = Diagram(at("merged"))
     off = max(off_wall(merged, OUTER, 0.5, 2), off_wall(merged, INNER, 0.25, 2))
     ok(off < 1e-12 and merged.volumes()[1].max() < 1e-11, "merged nodes on their walls", off)
+    run("inspect", "--openpnm", os.path.join(folder, "graph.json"), at("merged"))
+    run("import-network", os.path.join(folder, "graph.json"), "-o", at("back"))
+    with h5py.File(at("merged")) as one, h5py.File(at("back")) as other:
+        names = ["domain/bodies/shape", "domain/bodies/within", "domain/bodies/lower",
+                 "domain/bodies/upper", "nodes/kind", "faces/particles", "throats/nodes"]
+        ok(all(np.array_equal(one[n][()], other[n][()]) for n in names), "exported and imported")
 
 
 def refused(title, pattern, folder, *settings, grains=None):
@@ -249,7 +256,6 @@ def refused(title, pattern, folder, *settings, grains=None):
     words = [word for s in settings for word in ("--set", s)]
     run("pack", "-q", *words, "-o", path)
     if grains is not None:
-        import h5py
         with h5py.File(path, "r+") as file:
             file["particles/position"][: len(grains)] = grains
     ended = subprocess.run([f"{BIN}/tessellate", path, "-o", path + "-"], capture_output=True,

@@ -210,8 +210,7 @@ static void get_bodies(const struct artifact *artifact, struct packing *packing)
             input_name(artifact->path), names[0], MOST_BODIES, n);
     for (int k = 0; k < n; k++) {
         packing->body[k] = (struct body){shape[k], within[k], lower[k], upper[k]};
-        const struct vector edge = subtract(upper[k], lower[k]);
-        if (!(edge.x > 0 && edge.y > 0 && edge.z > 0))
+        if (!body_is_one(&packing->body[k]))
             die(STATUS_BAD_DATA, "%s: %s: row %d: must be < %s",
                 input_name(artifact->path), names[2], k, names[3]);
     }

@@ -80,6 +80,19 @@ static json_t *faces_json(const struct network *network)
         pairs_json((const int32_t(*)[2])network->face_particles, network->n_face));
 }
 
+static json_t *bodies_json(const struct packing *packing)
+{
+    json_t *bodies = json_array();
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body *body = &packing->body[k];
+        json_array_append_new(bodies, json_pack("{s:i,s:b,s:o,s:o}", "shape",
+                                                body->shape, "within", body->within,
+                                                "lower", vector_json(body->lower),
+                                                "upper", vector_json(body->upper)));
+    }
+    return bodies;
+}
+
 static json_t *rest_json(const struct network *network)
 {
     const struct packing *packing = &network->packing;
@@ -88,7 +101,7 @@ static json_t *rest_json(const struct network *network)
         json_array_append_new(position, vector_json(packing->position[i]));
         json_array_append_new(radius, json_real(packing->radius[i]));
     }
-    return json_pack(
+    json_t *rest = json_pack(
         "{s:o,s:o,s:[i,i,i],s:{s:o,s:o},s:o,s:o,s:i,s:f}", "lower",
         vector_json(packing->lower), "upper", vector_json(packing->upper), "periodic",
         packing->periodic[0], packing->periodic[1], packing->periodic[2], "particles",
@@ -96,6 +109,8 @@ static json_t *rest_json(const struct network *network)
         pairs_json((const int32_t(*)[2])packing->bond, packing->n_bond), "faces",
         faces_json(network), "unmerged_throats", network->unmerged_throats,
         "unmerged_length", network->unmerged_length);
+    if (packing->n_body) json_object_set_new(rest, "bodies", bodies_json(packing));
+    return rest;
 }
 
 json_t *jsongraph_from_network(const struct network *network)
@@ -247,13 +262,39 @@ static enum status read_faces(json_t *rest, struct network *network,
         network->face_particles && json_array_size(loops) == (size_t)network->n_face;
     for (int f = 0; f < network->n_face && good; f++)
         for (int side = 0; side < 2; side++)
-            good = good && network->face_particles[f][side] >= -(1 + WALL_INNER) * side &&
+            good = good &&
+                   network->face_particles[f][side] >= -(1 + WALL_INNER) * side &&
                    network->face_particles[f][side] < network->packing.n_particle;
     if (!good)
         return refuse(reason, STATUS_BAD_DATA,
                       "graph.metadata.craquelure.faces.particles: must be a grain, and "
                       "a grain or wall, for each face");
     return read_loops(loops, network, reason);
+}
+
+static enum status read_bodies(const json_t *bodies, struct packing *packing,
+                               struct reason *reason)
+{
+    const size_t count = json_array_size(bodies); // 0 when there are none
+    bool good = count <= MOST_BODIES;
+    for (size_t k = 0; k < count && good; k++) {
+        json_t *item = json_array_get(bodies, k);
+        struct body body = {0};
+        int shape = -1, within = 0;
+        good = !json_unpack(item, "{s:i,s:b}", "shape", &shape, "within", &within) &&
+               shape >= 0 && shape < BODY_SHAPES &&
+               get_vector(json_object_get(item, "lower"), &body.lower) &&
+               get_vector(json_object_get(item, "upper"), &body.upper);
+        body.shape = (uint8_t)shape;
+        body.within = (uint8_t)within;
+        good = good && body_is_one(&body);
+        packing->body[packing->n_body++] = body;
+    }
+    if (good) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "graph.metadata.craquelure.bodies: must be at most %d, each with "
+                  "shape, within, and lower below upper",
+                  MOST_BODIES);
 }
 
 static enum status read_rest(json_t *rest, struct network *network,
@@ -274,7 +315,8 @@ static enum status read_rest(json_t *rest, struct network *network,
     if (!good)
         return refuse(reason, STATUS_BAD_DATA,
                       "graph.metadata.craquelure: must have a box, lower below upper");
-    enum status status = read_particles(rest, packing, reason);
+    enum status status = read_bodies(json_object_get(rest, "bodies"), packing, reason);
+    if (!status) status = read_particles(rest, packing, reason);
     if (status) return status;
     free(packing->bond);
     packing->bond = read_pairs(json_object_get(rest, "bonds"), &packing->n_bond);

@@ -18,6 +18,13 @@ struct body {
     struct vector lower, upper; // the box around it, m
 };
 
+// Whether lower is below upper.
+static inline bool body_is_one(const struct body *body)
+{
+    const struct vector edge = subtract(body->upper, body->lower);
+    return edge.x > 0 && edge.y > 0 && edge.z > 0;
+}
+
 // Whether it is round in the plane that AXIS, 0 to 2, lies in.
 bool body_is_round(const struct body *body, int axis);
 
