@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "conditions.h"
 
-#include "compensated.h"
+#include "basics/compensated.h"
 
 #include <stddef.h>
 

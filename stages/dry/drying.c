@@ -2,10 +2,10 @@
 // The run itself [K 3.4.2]: vapour, losses, the throat that empties first, and again.
 #include "drying.h"
 
+#include "basics/compensated.h"
 #include "basics/memory.h"
 #include "boundary_layer.h"
 #include "clocks.h"
-#include "compensated.h"
 #include "conditions.h"
 #include "history.h"
 #include "losses.h"

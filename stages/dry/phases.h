@@ -6,7 +6,7 @@
 
 #include "boundary_layer.h"
 #include "clusters.h"
-#include "compensated.h"
+#include "basics/compensated.h"
 #include "vapour.h"
 
 struct phases {

@@ -13,7 +13,7 @@
 #ifndef CRAQUELURE_STAR_MESH_H
 #define CRAQUELURE_STAR_MESH_H
 
-#include "compensated.h"
+#include "basics/compensated.h"
 
 #include <stdbool.h>
 

@@ -11,7 +11,7 @@
 #define CRAQUELURE_VAPOUR_H
 
 #include "boundary_layer.h"
-#include "compensated.h"
+#include "basics/compensated.h"
 #include "star_mesh.h"
 
 struct vapour {

@@ -858,7 +858,7 @@ setting("a tolerance that is not met is reported", UNSTABLE, "tolerance=1e-12",
 # ---- the command line -------------------------------------------------------------------
 
 for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
-                "crackstats", "bridge", "inspect"]:
+                "crackstats", "bridge", "flow", "inspect"]:
     refused_in_shell(f"{program} refuses an unknown option", USAGE,
                      f"$BIN/{program} --nonsense", ".*: unrecognized option '--nonsense'")
 refused_in_shell("an option without its argument is refused", USAGE, "$BIN/pack --set",

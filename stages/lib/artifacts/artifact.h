@@ -38,6 +38,9 @@ struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
 // The caller frees it.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
 
+// Whether an optional dataset is there.
+bool artifact_has_dataset(const struct artifact *artifact, const char *name);
+
 // A number from an attribute, "/summary/porosity".
 double artifact_get_number(const struct artifact *artifact, const char *name);
 

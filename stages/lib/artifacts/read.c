@@ -169,7 +169,7 @@ static bool artifact_has(const struct artifact *artifact, const json_t *entry)
     return entry && has_entry(artifact->file, entry);
 }
 
-static bool has_dataset(const struct artifact *artifact, const char *name)
+bool artifact_has_dataset(const struct artifact *artifact, const char *name)
 {
     return artifact_has(artifact, schema_dataset(artifact->schema, name));
 }
@@ -195,10 +195,10 @@ static void get_bodies(const struct artifact *artifact, struct packing *packing)
                                         "/domain/bodies/lower", "/domain/bodies/upper"};
     int n = 0, given = 0;
     for (int k = 0; k < 4; k++)
-        given += has_dataset(artifact, names[k]);
+        given += artifact_has_dataset(artifact, names[k]);
     if (!given) return;
     for (int k = 0; k < 4; k++)
-        if (!has_dataset(artifact, names[k]))
+        if (!artifact_has_dataset(artifact, names[k]))
             die(STATUS_BAD_DATA, "%s: %s: is missing", input_name(artifact->path),
                 names[k]);
     uint8_t *shape = artifact_get(artifact, names[0], &n);
@@ -227,7 +227,7 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     packing.position =
         artifact_get(artifact, "/particles/position", &packing.n_particle);
     packing.radius = artifact_get(artifact, "/particles/radius", NULL);
-    if (has_dataset(artifact, "/particles/kind"))
+    if (artifact_has_dataset(artifact, "/particles/kind"))
         packing.kind = artifact_get(artifact, "/particles/kind", NULL);
     packing.bond = artifact_get(artifact, "/bonds/particles", &packing.n_bond);
 
@@ -246,7 +246,7 @@ struct packing artifact_get_packing(const struct artifact *artifact)
 
 struct network artifact_get_network(const struct artifact *artifact)
 {
-    if (has_dataset(artifact, "/throats/image"))
+    if (artifact_has_dataset(artifact, "/throats/image"))
         die(STATUS_BAD_DATA,
             "%s: /domain/periodic: this stage knows no networks in boxes that repeat "
             "yet; pack with periodic=[false,false,false]",
@@ -283,7 +283,7 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     network.face_nodes = artifact_get(artifact, "/faces/nodes", NULL);
     network.face_particles =
         artifact_get(artifact, "/faces/particles", &network.n_face);
-    if (has_dataset(artifact, "/throats/volume"))
+    if (artifact_has_dataset(artifact, "/throats/volume"))
         network.throat_volume = artifact_get(artifact, "/throats/volume", NULL);
     if (artifact_has(artifact, schema_attribute(schema, "/summary/unmerged_throats"))) {
         network.unmerged_throats =
@@ -291,7 +291,7 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
         network.unmerged_length =
             artifact_get_number(artifact, "/summary/unmerged_length");
     }
-    if (has_dataset(artifact, "/throats/image")) {
+    if (artifact_has_dataset(artifact, "/throats/image")) {
         network.throat_image = artifact_get(artifact, "/throats/image", NULL);
         network.face_image = artifact_get(artifact, "/faces/image", NULL);
         network.face_node_image = artifact_get(artifact, "/faces/node_image", NULL);

@@ -16,5 +16,6 @@
     schema schema_crackstats, "schemas/crackstats.json"
     schema schema_restart, "schemas/restart.json"
     schema schema_bridge, "schemas/bridge.json"
+    schema schema_flow, "schemas/flow.json"
 
     .section .note.GNU-stack, "", @progbits

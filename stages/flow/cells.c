@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cells.h"
+
+#include "basics/memory.h"
+#include "geometry/walled_triangulation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// In units: copies of grains are first made as far as this.
+static const double first_reach = 2;
+
+// A cell whose edges from one corner span less than this of their product is flat: its
+// centre is not where its corners say but where their last digits do.
+static const double flat = 1e-8;
+
+// Two centres closer than this, in units, are one: rounding moves them less.
+static const double coincide = 1e-9;
+
+const int facet_corner[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+// ---- centres ------------------------------------------------------------------------
+
+// The four points of equal power: a wall is where the power to a grain is that to the
+// grain's reflection.
+struct four {
+    struct vector point[4];
+    double weight[4];
+};
+
+static struct four corners_of(const struct grains *grains, const struct cell *cell)
+{
+    struct four four;
+    int grain = 0;
+    while (cell->vertex[grain] < 0)
+        grain++;
+    const struct vector at = grains->position[cell->vertex[grain]];
+    for (int k = 0; k < 4; k++) {
+        const int32_t vertex = cell->vertex[k];
+        four.point[k] = vertex < 0 ? at : grains->position[vertex];
+        four.weight[k] = grains->weight[vertex < 0 ? cell->vertex[grain] : vertex];
+        if (vertex >= 0) continue;
+        const int wall = -1 - vertex, axis = wall / 2;
+        const double plane = wall % 2 ? component(grains->box, axis) : 0;
+        set_component(&four.point[k], axis, 2 * plane - component(at, axis));
+    }
+    return four;
+}
+
+// Where the powers are equal. False when the four are so nearly in a plane that digits
+// would be lost.
+static bool power_centre(const struct four *four, struct vector *centre)
+{
+    const struct vector a = four->point[0];
+    const struct vector u = subtract(four->point[1], a),
+                        v = subtract(four->point[2], a),
+                        w = subtract(four->point[3], a);
+    const struct vector vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+    const double determinant = dot(u, vw), uu = dot(u, u), vv = dot(v, v),
+                 ww = dot(w, w);
+    if (!(fabs(determinant) > flat * sqrt(uu * vv * ww))) return false;
+    const double p = uu - four->weight[1] + four->weight[0],
+                 q = vv - four->weight[2] + four->weight[0],
+                 r = ww - four->weight[3] + four->weight[0];
+    const double half = 0.5 / determinant;
+    *centre =
+        add(a, add(scale(half * p, vw), add(scale(half * q, wu), scale(half * r, uv))));
+    return true;
+}
+
+// Exactly on the walls among the corners.
+static void put_on_walls(const struct grains *grains, const int32_t corner[4],
+                         struct vector *at)
+{
+    for (int k = 0; k < 4; k++) {
+        if (corner[k] >= 0) continue;
+        const int wall = -1 - corner[k];
+        set_component(at, wall / 2, wall % 2 ? component(grains->box, wall / 2) : 0);
+    }
+}
+
+// Of all cells at once; `node` -1 where one has none of its own.
+static int find_centres(const struct grains *grains,
+                        struct triangulation *triangulation)
+{
+    int n_flat = 0;
+#pragma omp parallel for schedule(static) reduction(+ : n_flat)
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        struct cell *cell = &triangulation->cell[c];
+        const struct four four = corners_of(grains, cell);
+        cell->node = power_centre(&four, &cell->at) ? 0 : -1;
+        n_flat += cell->node < 0;
+        put_on_walls(grains, cell->vertex, &cell->at);
+    }
+    return n_flat;
+}
+
+// ---- copies -------------------------------------------------------------------------
+
+// Corners by what they are, then by image: the order is the same for all copies.
+struct name {
+    int32_t corner[4], image[4]; // images from the first's
+    struct image first;
+    int cell;
+};
+
+static struct name name_of(const struct grains *grains, const struct cell *cell, int c)
+{
+    struct name name = {.cell = c};
+    struct image image[4];
+    for (int k = 0; k < 4; k++) {
+        const int32_t vertex = cell->vertex[k];
+        // Walls, which repeat themselves, come last.
+        const int32_t corner =
+            vertex < 0 ? grains->n_base - 1 - vertex : grains->base[vertex];
+        const struct image at = vertex < 0 ? (struct image){0} : grains->image[vertex];
+        int place = k;
+        for (; place > 0; place--) {
+            const int32_t before = name.corner[place - 1];
+            if (before < corner ||
+                (before == corner && image_number(image[place - 1]) < image_number(at)))
+                break;
+            name.corner[place] = before;
+            image[place] = image[place - 1];
+        }
+        name.corner[place] = corner;
+        image[place] = at;
+    }
+    name.first = image[0];
+    for (int k = 0; k < 4; k++)
+        name.image[k] = name.corner[k] < grains->n_base
+                            ? image_number(image_difference(image[k], name.first))
+                            : 0;
+    return name;
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    const struct name *x = a, *y = b;
+    for (int k = 0; k < 4; k++) {
+        if (x->corner[k] != y->corner[k]) return x->corner[k] < y->corner[k] ? -1 : 1;
+        if (x->image[k] != y->image[k]) return x->image[k] < y->image[k] ? -1 : 1;
+    }
+    return 0;
+}
+
+// Of all copies of a cell, the one whose first corner is a grain itself stands for
+// them.
+static bool stands(const struct name *name)
+{
+    return same_image(name->first, (struct image){0});
+}
+
+// Marks the cells that stand for all (`node` their number, else -1) and lists the names
+// of those with a copy beside them, sorted.
+static struct name *number_cells(const struct grains *grains,
+                                 struct triangulation *triangulation, int *n_cell,
+                                 int *n_name)
+{
+    struct name *names = NULL;
+    int count = 0, capacity = 0;
+    *n_cell = 0;
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        const struct name name = name_of(grains, &triangulation->cell[c], c);
+        triangulation->cell[c].node = stands(&name) ? (*n_cell)++ : -1;
+    }
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        const struct cell *cell = &triangulation->cell[c];
+        bool beside = false;
+        for (int k = 0; k < 4 && cell->node >= 0; k++)
+            beside |= cell->neighbour[k] >= 0 &&
+                      triangulation->cell[cell->neighbour[k]].node < 0;
+        if (!beside) continue;
+        GROW_ARRAY(names, count, capacity);
+        names[count++] = name_of(grains, cell, c);
+    }
+    if (count) qsort(names, (size_t)count, sizeof *names, compare_names);
+    *n_name = count;
+    return names;
+}
+
+// No copy that was left out could change this cell: it would have to be inside the
+// sphere around the centre that no grain has less power to.
+static bool is_complete(const struct grains *grains, const struct cell *cell,
+                        double largest_weight)
+{
+    for (int k = 0; k < 4; k++) {
+        int walls = 0;
+        for (int m = 0; m < 4; m++)
+            walls += m != k && cell->vertex[m] < 0;
+        if (cell->neighbour[k] < 0 && walls < 3) return false;
+    }
+    int grain = 0;
+    while (cell->vertex[grain] < 0)
+        grain++;
+    const struct vector to = subtract(grains->position[cell->vertex[grain]], cell->at);
+    const double power = dot(to, to) - grains->weight[cell->vertex[grain]];
+    const double radius = sqrt(fmax(0, power + largest_weight));
+    for (int axis = 0; axis < 3; axis++) {
+        if (!grains->repeats[axis]) continue;
+        const double x = component(cell->at, axis);
+        if (x - radius <= -grains->reach ||
+            x + radius >= component(grains->box, axis) + grains->reach)
+            return false;
+    }
+    return true;
+}
+
+static bool all_complete(const struct grains *grains,
+                         const struct triangulation *triangulation)
+{
+    double largest_weight = 0;
+    for (int i = 0; i < grains->n_base; i++)
+        largest_weight = fmax(largest_weight, grains->weight[i]);
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        const struct cell *cell = &triangulation->cell[c];
+        if (cell->node >= 0 && !is_complete(grains, cell, largest_weight)) return false;
+    }
+    return true;
+}
+
+// ---- from the triangulation ---------------------------------------------------------
+
+// The cell that stands for cell C, and the image in which it is C; -1: none does, for
+// too few copies were made.
+static int32_t standing(const struct grains *grains,
+                        const struct triangulation *triangulation, int c,
+                        const struct name *names, int n_name, struct image *image)
+{
+    *image = (struct image){0};
+    if (triangulation->cell[c].node >= 0) return triangulation->cell[c].node;
+    const struct name name = name_of(grains, &triangulation->cell[c], c);
+    const struct name *found =
+        n_name ? bsearch(&name, names, (size_t)n_name, sizeof name, compare_names)
+               : NULL;
+    if (!found) return -1;
+    *image = name.first;
+    return triangulation->cell[found->cell].node;
+}
+
+static bool copy_cell(const struct grains *grains,
+                      const struct triangulation *triangulation, int c,
+                      const struct name *names, int n_name, struct pore_cell *to)
+{
+    const struct cell *from = &triangulation->cell[c];
+    *to = (struct pore_cell){.centre = from->at};
+    for (int k = 0; k < 4; k++) {
+        const int32_t vertex = from->vertex[k];
+        to->corner[k] = vertex < 0 ? vertex : grains->base[vertex];
+        if (vertex >= 0) to->corner_image[k] = grains->image[vertex];
+        to->neighbour[k] = -1;
+        if (from->neighbour[k] < 0) continue;
+        to->neighbour[k] = standing(grains, triangulation, from->neighbour[k], names,
+                                    n_name, &to->neighbour_image[k]);
+        if (to->neighbour[k] < 0) return false;
+    }
+    return true;
+}
+
+// Into CELLS those that stand for all; false when too few copies were made.
+static bool keep_cells(const struct grains *grains, struct triangulation *triangulation,
+                       struct cells *cells, uint8_t **is_flat)
+{
+    const int n = triangulation->n_cell;
+    uint8_t *all_flat = NEW_ARRAY(uint8_t, n);
+    cells->n_flat = find_centres(grains, triangulation);
+    for (int c = 0; c < n; c++)
+        all_flat[c] = triangulation->cell[c].node < 0;
+    int n_name = 0;
+    struct name *names = NULL;
+    if (grains_repeat(grains))
+        names = number_cells(grains, triangulation, &cells->n, &n_name);
+    else
+        for (int c = 0; c < n; c++)
+            triangulation->cell[c].node = cells->n++;
+    bool complete = all_complete(grains, triangulation) || !grains_repeat(grains);
+    cells->cell = NEW_ARRAY(struct pore_cell, cells->n);
+    *is_flat = NEW_ARRAY(uint8_t, cells->n);
+    for (int c = 0; c < n && complete; c++) {
+        const int32_t number = triangulation->cell[c].node;
+        if (number < 0) continue;
+        complete =
+            copy_cell(grains, triangulation, c, names, n_name, &cells->cell[number]);
+        (*is_flat)[number] = all_flat[c];
+    }
+    free(names);
+    free(all_flat);
+    return complete;
+}
+
+// ---- pores --------------------------------------------------------------------------
+
+// A flat cell is a chink between two others: it takes the centre of the first of them
+// that has one. Walls among its corners are among the neighbour's, or the centre would
+// leave them.
+static void settle_flat_cells(const struct grains *grains, struct cells *cells,
+                              uint8_t *is_flat)
+{
+    for (bool settled = false; !settled;) {
+        settled = true;
+        for (int c = 0; c < cells->n; c++) {
+            if (!is_flat[c]) continue;
+            struct pore_cell *cell = &cells->cell[c];
+            for (int k = 0; k < 4 && is_flat[c]; k++) {
+                const int32_t other = cell->neighbour[k];
+                if (other < 0 || is_flat[other] || cell->corner[k] < 0) continue;
+                cell->centre = in_image(grains, cells->cell[other].centre,
+                                        cell->neighbour_image[k]);
+                put_on_walls(grains, cell->corner, &cell->centre);
+                is_flat[c] = 0;
+                settled = false;
+            }
+        }
+    }
+}
+
+static int32_t root(struct cells *cells, int32_t c)
+{
+    while (cells->cell[c].pore != c)
+        c = cells->cell[c].pore = cells->cell[cells->cell[c].pore].pore;
+    return c;
+}
+
+static void unite_pores(const struct grains *grains, struct cells *cells)
+{
+    for (int c = 0; c < cells->n; c++)
+        cells->cell[c].pore = c;
+    for (int c = 0; c < cells->n; c++)
+        for (int k = 0; k < 4; k++) {
+            const struct pore_cell *cell = &cells->cell[c];
+            const int32_t other = cell->neighbour[k];
+            if (other < 0) continue;
+            const struct vector there =
+                in_image(grains, cells->cell[other].centre, cell->neighbour_image[k]);
+            if (distance(cell->centre, there) > coincide) continue;
+            const int32_t a = root(cells, c), b = root(cells, other);
+            cells->cell[a > b ? a : b].pore = a > b ? b : a;
+        }
+    // The root comes before its members, so that they find its number in place of it.
+    for (int c = 0; c < cells->n; c++)
+        cells->cell[c].pore = root(cells, c);
+    for (int c = 0; c < cells->n; c++) {
+        const int32_t first = cells->cell[c].pore;
+        cells->cell[c].pore = first == c ? cells->n_pore++ : cells->cell[first].pore;
+    }
+}
+
+static int count_hidden(const struct grains *grains, const struct cells *cells)
+{
+    uint8_t *met = NEW_ARRAY(uint8_t, grains->n_base);
+    for (int c = 0; c < cells->n; c++)
+        for (int k = 0; k < 4; k++)
+            if (cells->cell[c].corner[k] >= 0) met[cells->cell[c].corner[k]] = 1;
+    int hidden = grains->n_base;
+    for (int i = 0; i < grains->n_base; i++)
+        hidden -= met[i];
+    free(met);
+    return hidden;
+}
+
+// Whether a larger reach would give no more copies.
+static bool all_copies(const struct grains *grains)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (grains->repeats[axis] &&
+            grains->reach < FARTHEST_IMAGE * component(grains->box, axis))
+            return false;
+    return true;
+}
+
+enum status find_cells(const struct packing *packing, struct grains *grains,
+                       struct cells *cells, struct reason *reason)
+{
+    *cells = (struct cells){0};
+    for (double reach = first_reach;; reach *= 2) {
+        const enum status status = place_grains(packing, reach, grains, reason);
+        if (status) return status;
+        unsigned walls = 0;
+        for (int wall = 0; wall < WALL_COUNT; wall++)
+            walls |= (grains->repeats[wall / 2] ? 0u : 1u) << wall;
+        struct triangulation triangulation = {0};
+        uint8_t *is_flat = NULL;
+        const bool complete =
+            !triangulate_in_walls(grains->position, grains->weight, grains->n, walls,
+                                  grains->box, &triangulation) &&
+            keep_cells(grains, &triangulation, cells, &is_flat);
+        triangulation_free(&triangulation);
+        if (complete) {
+            settle_flat_cells(grains, cells, is_flat);
+            unite_pores(grains, cells);
+            cells->n_hidden = count_hidden(grains, cells);
+        }
+        free(is_flat);
+        if (complete) return STATUS_OK;
+        cells_free(cells);
+        if (all_copies(grains))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/domain/upper: the box is too narrow to repeat: grains meet "
+                          "that are more than %d boxes apart",
+                          FARTHEST_IMAGE);
+        grains_free(grains);
+    }
+}
+
+void cells_free(struct cells *cells)
+{
+    free(cells->cell);
+    *cells = (struct cells){0};
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tetrahedra of the regular triangulation of grains and walls, each with its pore
+// [C 2.1].
+#ifndef CRAQUELURE_FLOW_CELLS_H
+#define CRAQUELURE_FLOW_CELLS_H
+
+#include "grains.h"
+
+// A tetrahedron, positively oriented. Where the box repeats it stands for all its
+// copies, and corners and neighbours may lie in other images.
+struct pore_cell {
+    int32_t corner[4];    // grains; -1..-6 for the walls -x, +x, -y, +y, -z, +z
+    int32_t neighbour[4]; // cell opposite each corner; -1: none, beyond three walls
+    struct image corner_image[4], neighbour_image[4];
+    struct vector centre; // where the power to all corners is equal: on the walls among
+                          // them, exactly; of a flat cell, that of a neighbour
+    int32_t pore;         // cells whose centres coincide are one pore
+};
+
+struct cells {
+    int n, n_pore;
+    struct pore_cell *cell;
+    int n_hidden; // grains inside a larger one, which touch no cell
+    int n_flat;   // cells without a centre of their own
+};
+
+// Corners of the facet opposite corner k, anticlockwise seen from outside the cell.
+extern const int facet_corner[4][3];
+
+// Triangulates. STATUS_BAD_DATA: the box that repeats is too narrow. The caller frees
+// with cells_free; GRAINS is left with the copies that it took.
+enum status find_cells(const struct packing *packing, struct grains *grains,
+                       struct cells *cells, struct reason *reason);
+void cells_free(struct cells *cells);
+
+// Outward unit normal of wall 0..5.
+static inline struct vector wall_normal(int wall)
+{
+    struct vector normal = {0, 0, 0};
+    set_component(&normal, wall / 2, wall % 2 ? 1 : -1);
+    return normal;
+}
+
+// How far a point is inside a wall of the box, units.
+static inline double wall_distance(const struct grains *grains, struct vector at,
+                                   int wall)
+{
+    const double x = component(at, wall / 2);
+    return wall % 2 ? component(grains->box, wall / 2) - x : x;
+}
+
+// Where corner k of CELL is: a grain.
+static inline struct vector corner_position(const struct grains *grains,
+                                            const struct pore_cell *cell, int k)
+{
+    return in_image(grains, grains->position[cell->corner[k]], cell->corner_image[k]);
+}
+
+#endif

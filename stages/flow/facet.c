@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "facet.h"
+
+#include "geometry/solid_angle.h"
+
+static bool is_wall(const struct corner *corner)
+{
+    return corner->radius <= 0;
+}
+
+static double depth(const struct corner *wall, struct vector at)
+{
+    return wall->plane - dot(wall->normal, at);
+}
+
+// Direction from a grain to another corner; to a wall, its normal.
+static struct vector towards(struct vector from, const struct corner *corner)
+{
+    return is_wall(corner) ? corner->normal : subtract(corner->at, from);
+}
+
+// Solid angle at a grain between the directions U and V of the facet's other corners
+// and both centres.
+static double solid_angle_at(struct vector u, struct vector v, struct vector from,
+                             struct vector to, bool partition)
+{
+    if (partition)
+        return solid_angle_between(half_solid_angle(u, v, from),
+                                   half_solid_angle(u, v, to));
+    const struct half_angle none = {1, 0};
+    return fabs(solid_angle_between(none, half_solid_angle(u, from, to))) +
+           fabs(solid_angle_between(none, half_solid_angle(v, from, to)));
+}
+
+// What grain k takes of the facet and of the throat.
+static void measure_grain(const struct corner corner[3], int k, struct vector from,
+                          struct vector to, bool partition, struct facet *facet)
+{
+    const struct vector at = corner[k].at;
+    const struct vector u = towards(at, &corner[(k + 1) % 3]);
+    const struct vector v = towards(at, &corner[(k + 2) % 3]);
+    const double square = corner[k].radius * corner[k].radius;
+    facet->sector[k] = 0.5 * square * atan2(norm(cross(u, v)), dot(u, v));
+    facet->surface[k] =
+        square * solid_angle_at(u, v, subtract(from, at), subtract(to, at), partition);
+    facet->volume -= corner[k].radius * facet->surface[k] / 3;
+}
+
+// Two grains and wall K: a trapezium from the line between them to the wall.
+static void measure_at_wall(const struct corner corner[3], int k, struct vector step,
+                            struct facet *facet)
+{
+    const struct corner *wall = &corner[k];
+    const struct corner *i = &corner[(k + 1) % 3], *j = &corner[(k + 2) % 3];
+    const struct vector across = cross(subtract(j->at, i->at), wall->normal);
+    facet->area = scale(0.5 * (depth(wall, i->at) + depth(wall, j->at)), across);
+    facet->surface[k] = 0.5 * dot(across, step);
+}
+
+// Grain K and two walls: a rectangle from the grain to the edge of the box.
+static void measure_at_edge(const struct corner corner[3], int k, struct vector step,
+                            struct facet *facet)
+{
+    const int first = (k + 1) % 3, second = (k + 2) % 3;
+    const struct vector along = cross(corner[first].normal, corner[second].normal);
+    const double to_first = depth(&corner[first], corner[k].at);
+    const double to_second = depth(&corner[second], corner[k].at);
+    facet->area = scale(to_first * to_second, along);
+    facet->surface[first] = 0.5 * to_second * dot(along, step);
+    facet->surface[second] = 0.5 * to_first * dot(along, step);
+}
+
+struct facet measure_facet(const struct corner corner[3], struct vector from,
+                           struct vector to, bool partition)
+{
+    const struct vector step = subtract(to, from);
+    struct facet facet = {.length = norm(step)};
+    int walls = 0, wall = 0, grain = 0;
+    for (int k = 0; k < 3; k++) {
+        walls += is_wall(&corner[k]);
+        if (is_wall(&corner[k]))
+            wall = k;
+        else
+            grain = k;
+    }
+    if (walls == 0)
+        facet.area = scale(0.5, cross(subtract(corner[1].at, corner[0].at),
+                                      subtract(corner[2].at, corner[0].at)));
+    else if (walls == 1)
+        measure_at_wall(corner, wall, step, &facet);
+    else
+        measure_at_edge(corner, grain, step, &facet);
+    facet.volume = dot(facet.area, step) / 3;
+    for (int k = 0; k < 3; k++)
+        if (!is_wall(&corner[k])) measure_grain(corner, k, from, to, partition, &facet);
+    return facet;
+}
+
+// Where the circle may be, seen from grain K: at ACROSS its middle is off - radius *
+// rate along ACROSS.
+struct condition {
+    struct vector across;
+    double off, rate;
+};
+
+static struct condition touching(const struct corner *grain, const struct corner *other)
+{
+    if (is_wall(other))
+        return (struct condition){other->normal, depth(other, grain->at), 1};
+    const struct vector to = subtract(other->at, grain->at);
+    const double r = grain->radius, s = other->radius;
+    return (struct condition){to, 0.5 * (dot(to, to) + r * r - s * s), s - r};
+}
+
+// The smaller positive root of a x^2 + 2 b x + c, or 0.
+static double smaller_root(double a, double b, double c)
+{
+    const double discriminant = b * b - a * c;
+    if (!(discriminant >= 0)) return 0;
+    const double q = -(b + copysign(sqrt(discriminant), b));
+    const double first = q / a, second = q != 0 ? c / q : 0;
+    const double low = fmin(first, second), high = fmax(first, second);
+    if (isfinite(low) && low > 0) return low;
+    return isfinite(high) && high > 0 ? high : 0;
+}
+
+double inscribed_radius(const struct corner corner[3])
+{
+    int k = 0;
+    while (is_wall(&corner[k]))
+        k++;
+    const struct condition p = touching(&corner[k], &corner[(k + 1) % 3]);
+    const struct condition q = touching(&corner[k], &corner[(k + 2) % 3]);
+    const struct vector normal = cross(p.across, q.across);
+    const double square = dot(normal, normal);
+    if (!(square > 0)) return 0;
+    // The middle, from grain k, is START + radius RATE.
+    const struct vector to_p = scale(1 / square, cross(q.across, normal));
+    const struct vector to_q = scale(1 / square, cross(normal, p.across));
+    const struct vector start = add(scale(p.off, to_p), scale(q.off, to_q));
+    const struct vector rate = add(scale(-p.rate, to_p), scale(-q.rate, to_q));
+    const double r = corner[k].radius;
+    return smaller_root(dot(rate, rate) - 1, dot(start, rate) - r,
+                        dot(start, start) - r * r);
+}

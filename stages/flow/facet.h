@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The geometry of one throat [C 2.2.2]: a facet of the triangulation and the centres of
+// the two pores that it parts. In any unit of length.
+#ifndef CRAQUELURE_FLOW_FACET_H
+#define CRAQUELURE_FLOW_FACET_H
+
+#include "geometry/vector.h"
+
+#include <stdbool.h>
+
+// A corner of a facet: a grain, or a wall of the box with its outward NORMAL. A wall is
+// a sphere whose radius has no limit, so that what [C] says of spheres is said of it in
+// that limit: its centre is a direction, its surface a plane, and a facet ends there.
+struct corner {
+    struct vector at; // grain
+    double radius;    // grain; 0 for a wall
+    struct vector normal;
+    double plane; // where the wall stands along its normal
+};
+
+struct facet {
+    struct vector area; // S_ij n_ij, from the first pore to the second, up to the walls
+    double sector[3];   // A^k_ij: of the facet, inside each grain [C 14]
+    double surface[3];  // gamma^k_ij: of each grain, of each wall [C 9, 18]
+    double volume;      // phi_ij: of the throat; below 0 where grains overlap
+    double length;      // L_ij
+};
+
+// CORNER: anticlockwise seen from the second pore, at most two of them walls. FROM and
+// TO: the centres. With PARTITION all pieces are signed: where both centres are on one
+// side of the facet the nearer one's share is taken off, so that over all throats the
+// volumes sum to the void and the surfaces to those of the grains and walls, wherever
+// centres are (grains must not overlap, for the volumes). Without, a grain's surface is
+// that between the plane through an edge and both centres, added up over its two edges
+// of the facet without a sign, as Yade does.
+struct facet measure_facet(const struct corner corner[3], struct vector from,
+                           struct vector to, bool partition);
+
+// Radius of the circle in the plane of the facet that touches all three corners [C 10];
+// 0 when there is none, for grains overlap.
+double inscribed_radius(const struct corner corner[3]);
+
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+static void add_to(struct vector *sum, double factor, struct vector v)
+{
+    *sum = add(*sum, scale(factor, v));
+}
+
+// Pressure pushes on the sectors of the facet [C 14]; what it does to the fluid between
+// them the grains feel as drag [C 17], by their shares of the surface [C 18].
+static void add_throat(const struct throat *throat, double drop, struct forces *forces)
+{
+    const double area = norm(throat->area);
+    if (!(area > 0)) return;
+    const struct vector normal = scale(1 / area, throat->area);
+    const double drag = fluid_area(throat) * drop;
+    const double surface = throat->surface[0] + throat->surface[1] + throat->surface[2];
+    for (int k = 0; k < 3; k++) {
+        const int32_t corner = throat->corner[k];
+        struct vector *viscous =
+            corner < 0 ? &forces->wall_viscous[-1 - corner] : &forces->viscous[corner];
+        add_to(viscous, surface > 0 ? drag * throat->surface[k] / surface : 0, normal);
+        if (corner >= 0)
+            add_to(&forces->pressure[corner], throat->sector[k] * drop, normal);
+    }
+}
+
+// The part of a wall that closes a cell has the area, along the wall's normal, of the
+// facet opposite to the wall.
+static void add_wall(const struct cells *cells, const struct throat *throat, int end,
+                     double pressure, struct forces *forces)
+{
+    const int32_t *corner = cells->cell[throat->cell[end]].corner;
+    for (int k = 0; k < 4; k++) {
+        if (corner[k] >= 0 || corner[k] == throat->corner[0] ||
+            corner[k] == throat->corner[1] || corner[k] == throat->corner[2])
+            continue;
+        const int wall = -1 - corner[k];
+        const struct vector normal = wall_normal(wall);
+        const double inwards = dot(throat->area, normal);
+        add_to(&forces->wall_pressure[wall], pressure * (end == 0 ? -inwards : inwards),
+               normal);
+    }
+}
+
+struct forces find_forces(const struct grains *grains, const struct cells *cells,
+                          const struct throats *throats,
+                          const struct pressures *pressures)
+{
+    struct forces forces = {.viscous = NEW_ARRAY(struct vector, grains->n_base),
+                            .pressure = NEW_ARRAY(struct vector, grains->n_base)};
+    double volume = 0, pressure_sum = 0;
+    for (int t = 0; t < throats->n; t++) {
+        const struct throat *throat = &throats->throat[t];
+        const double drop = pressure_drop(pressures, grains, cells, throat);
+        add_throat(throat, drop, &forces);
+        double sum = 0;
+        for (int end = 0; end < 2; end++) {
+            const double pressure = pore_pressure(pressures, cells, throat->cell[end]);
+            add_wall(cells, throat, end, pressure, &forces);
+            sum += pressure;
+        }
+        volume += throat->volume;
+        pressure_sum += throat->volume * 0.5 * sum;
+        add_to(&forces.velocity, throat->conductance * drop,
+               throat_step(grains, cells, throat));
+    }
+    const struct vector box = grains->box;
+    forces.velocity = scale(1 / (box.x * box.y * box.z), forces.velocity);
+    forces.mean_pressure = volume > 0 ? pressure_sum / volume : 0;
+    return forces;
+}
+
+void forces_free(struct forces *forces)
+{
+    free(forces->viscous);
+    free(forces->pressure);
+    *forces = (struct forces){0};
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the fluid does to grains and walls [C 2.3].
+#ifndef CRAQUELURE_FLOW_FORCES_H
+#define CRAQUELURE_FLOW_FORCES_H
+
+#include "pressures.h"
+
+// In Pa unit^2.
+struct forces {
+    struct vector *viscous, *pressure; // (n_base) [C 18, 14]
+    struct vector wall_viscous[WALL_COUNT], wall_pressure[WALL_COUNT];
+    struct vector velocity; // mean over the box, solid included; for a viscosity of 1
+    double mean_pressure;   // in the fluid, Pa
+};
+
+// The force on a wall is what the fluid inside does to it. Over all grains and walls
+// the forces sum to nothing, or to the box times less the mean gradient where it
+// repeats. The caller frees with forces_free.
+struct forces find_forces(const struct grains *grains, const struct cells *cells,
+                          const struct throats *throats,
+                          const struct pressures *pressures);
+void forces_free(struct forces *forces);
+
+#endif

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// flow: viscous flow through a packing, and its drag on every grain.
+#include "artifacts/artifact.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "conditions.h"
+#include "swept.h"
+#include "write_flow.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum product { PRODUCT_FLOW, PRODUCT_FORCES };
+
+struct flow_parameters {
+    struct imposed imposed;
+    int sides, conductance, pieces, solver, product;
+    double factor, viscosity, density, tolerance;
+    double gravity[3], strain_rate[3];
+    bool tensor;
+    int64_t steps;
+};
+
+#define AT(member) offsetof(struct flow_parameters, member)
+#define WALL(key, kind, unit, wall, text)                                              \
+    {                                                                                  \
+        key, PARAMETER_NUMBER, unit, "null", BOUND_NONE, 0, 0, NULL, text,             \
+            AT(imposed.kind[wall])                                                     \
+    }
+
+static const struct parameter table[] = {
+    {"along", PARAMETER_CHOICE, "1", "\"z\"", BOUND_NONE, 0, 0, "x|y|z|none",
+     "direction in which the pressure falls, from the lower to the upper wall or, "
+     "where "
+     "the box repeats, from box to box; none: only what pressure and flux say",
+     AT(imposed.along)},
+    {"pressure_drop", PARAMETER_NUMBER, "Pa", "1", BOUND_NONE, 0, 0, NULL,
+     "how far it falls over the box", AT(imposed.drop)},
+    WALL("pressure.x_lower", pressure, "Pa", 0, "piezometric pressure at the wall -x"),
+    WALL("pressure.x_upper", pressure, "Pa", 1, "at the wall +x"),
+    WALL("pressure.y_lower", pressure, "Pa", 2, "at the wall -y"),
+    WALL("pressure.y_upper", pressure, "Pa", 3, "at the wall +y"),
+    WALL("pressure.z_lower", pressure, "Pa", 4, "at the wall -z"),
+    WALL("pressure.z_upper", pressure, "Pa", 5, "at the wall +z"),
+    WALL("flux.x_lower", flux, "m3 s-1", 0,
+         "into the box through the wall -x, at one pressure all over it"),
+    WALL("flux.x_upper", flux, "m3 s-1", 1, "through the wall +x"),
+    WALL("flux.y_lower", flux, "m3 s-1", 2, "through the wall -y"),
+    WALL("flux.y_upper", flux, "m3 s-1", 3, "through the wall +y"),
+    WALL("flux.z_lower", flux, "m3 s-1", 4, "through the wall -z"),
+    WALL("flux.z_upper", flux, "m3 s-1", 5, "through the wall +z"),
+    {"sides", PARAMETER_CHOICE, "1", "\"no-slip\"", BOUND_NONE, 0, 0,
+     "no-slip|symmetric|symmetric-yade",
+     "walls resist as grains do; or are planes of symmetry [C 3.1]; or as in Yade, "
+     "which also narrows the throats at symmetric walls",
+     AT(sides)},
+    {"conductance", PARAMETER_CHOICE, "1", "\"hydraulic\"", BOUND_NONE, 0, 0,
+     "hydraulic|effective",
+     "of a throat: by hydraulic radius [C 8] or effective radius "
+     "[C 10]",
+     AT(conductance)},
+    {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", BOUND_ABOVE, 0, 0, NULL,
+     "alpha of [C 8]", AT(factor)},
+    {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", BOUND_NONE, 0, 0, "signed|unsigned",
+     "of throats whose pores lie on one side of the facet: signed, a partition of the "
+     "void; or counted twice, as in Yade",
+     AT(pieces)},
+    {"viscosity", PARAMETER_NUMBER, "Pa s", "0.001", BOUND_ABOVE, 0, 0, NULL,
+     "of the fluid", AT(viscosity)},
+    {"density", PARAMETER_NUMBER, "kg m-3", "1000", BOUND_MINIMUM, 0, 0, NULL,
+     "of the fluid, for buoyancy", AT(density)},
+    {"gravity", PARAMETER_POINT, "m s-2", "[0,0,0]", BOUND_NONE, 0, 0, NULL,
+     "acceleration, for buoyancy", AT(gravity)},
+    {"strain_rate", PARAMETER_POINT, "s-1", "[0,0,0]", BOUND_NONE, 0, 0, NULL,
+     "of the box along x, y, z: walls move so, and so do grains that have no "
+     "/particles/velocity",
+     AT(strain_rate)},
+    {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "from three more flows, along x, y and z", AT(tensor)},
+    {"solver", PARAMETER_CHOICE, "1", "\"auto\"", BOUND_NONE, 0, 0,
+     "auto|cholesky|iteration",
+     "of the pressures: Cholesky's factor, or conjugate gradients with multigrid; "
+     "auto: "
+     "the faster",
+     AT(solver)},
+    {"tolerance", PARAMETER_NUMBER, "1", "1e-12", BOUND_BETWEEN, 1e-14, 0.1, NULL,
+     "on what does not flow out of a pore that flows in, and on the sum over all, of "
+     "the flux",
+     AT(tolerance)},
+    {"write", PARAMETER_CHOICE, "1", "\"flow\"", BOUND_NONE, 0, 0, "flow|forces",
+     "all of the flow, or the total force on every grain for dem-replay", AT(product)},
+    {"steps", PARAMETER_INTEGER, "1", "11", BOUND_BETWEEN, 2, 1e6, NULL,
+     "write=forces: in how many times, a second apart, the forces grow from nothing",
+     AT(steps)},
+    {0}};
+
+static const struct stage stage = {
+    .name = "flow",
+    .version = STAGE_VERSION,
+    .summary = "flow -- viscous flow through the pores and its drag on every grain [C]",
+    .reads = "packing",
+    .writes = "flow",
+    .most_inputs = 1,
+    .parameters = table,
+    .notes = "Pores are the cells of the regular triangulation of the grains, throats "
+             "its facets. "
+             "With write=forces the output is a forces artifact.\n"};
+
+// Everything a packing makes, and the flow through it.
+struct computation {
+    struct packing packing;
+    struct grains grains;
+    struct cells cells;
+    struct throats throats;
+    struct conditions conditions;
+    struct pressures pressures;
+    struct forces forces;
+    double *opening; // NULL: nothing moves
+    struct vector columns[3];
+};
+
+static struct vector vector_of(const double x[3])
+{
+    return (struct vector){x[0], x[1], x[2]};
+}
+
+// NULL when neither box nor grains move.
+static double *find_opening(const struct artifact *input,
+                            const struct flow_parameters *parameters,
+                            const struct computation *flow)
+{
+    const struct vector rate = vector_of(parameters->strain_rate);
+    const int n = flow->packing.n_particle;
+    const bool given = artifact_has_dataset(input, "/particles/velocity");
+    if (!given && !(norm(rate) > 0)) return NULL;
+    struct vector *velocity = given ? artifact_get(input, "/particles/velocity", NULL)
+                                    : NEW_ARRAY(struct vector, n);
+    for (int i = 0; i < n; i++) {
+        const struct vector at = flow->grains.position[i];
+        velocity[i] =
+            given ? scale(1 / flow->grains.unit, velocity[i])
+                  : (struct vector){rate.x * at.x, rate.y * at.y, rate.z * at.z};
+    }
+    double *opening =
+        opening_rates(&flow->grains, &flow->cells, &flow->throats, velocity, rate);
+    free(velocity);
+    return opening;
+}
+
+// A pore that opens draws fluid in.
+static double *sources_of(const struct computation *flow, double viscosity)
+{
+    if (!flow->opening) return NULL;
+    double *source = NEW_ARRAY(double, flow->cells.n_pore);
+    for (int i = 0; i < flow->cells.n_pore; i++)
+        source[i] = -viscosity * flow->opening[i];
+    return source;
+}
+
+static enum status find_columns(struct computation *flow,
+                                const struct flow_parameters *parameters,
+                                const struct solving *solving, struct reason *reason)
+{
+    const double unit = flow->grains.unit;
+    for (int axis = 0; axis < 3; axis++) {
+        const struct conditions along = fall_along(&flow->grains, axis, 1);
+        struct pressures pressures;
+        enum status status =
+            solve_pressures(&flow->grains, &flow->cells, &flow->throats, &along, NULL,
+                            solving, &pressures, reason);
+        if (!status) {
+            struct forces forces =
+                find_forces(&flow->grains, &flow->cells, &flow->throats, &pressures);
+            flow->columns[axis] =
+                scale(unit * unit * component(flow->grains.box, axis), forces.velocity);
+            forces_free(&forces);
+        }
+        pressures_free(&pressures);
+        if (status) return status;
+    }
+    (void)parameters;
+    return STATUS_OK;
+}
+
+static enum status compute(const struct artifact *input,
+                           const struct flow_parameters *parameters,
+                           struct computation *flow, struct reason *reason)
+{
+    const struct throat_rule rule = {.sides = (enum sides)parameters->sides,
+                                     .conductance =
+                                         (enum conductance)parameters->conductance,
+                                     .pieces = (enum pieces)parameters->pieces,
+                                     .factor = parameters->factor};
+    const struct solving solving = {(enum solver)parameters->solver,
+                                    parameters->tolerance};
+    enum status status =
+        find_cells(&flow->packing, &flow->grains, &flow->cells, reason);
+    if (status) return status;
+    flow->throats = find_throats(&flow->grains, &flow->cells, &rule);
+    status = find_conditions(&flow->grains, &parameters->imposed, parameters->viscosity,
+                             &flow->conditions, reason);
+    if (status) return status;
+    flow->opening = find_opening(input, parameters, flow);
+    double *source = sources_of(flow, parameters->viscosity);
+    status =
+        solve_pressures(&flow->grains, &flow->cells, &flow->throats, &flow->conditions,
+                        source, &solving, &flow->pressures, reason);
+    free(source);
+    if (status) return status;
+    flow->forces =
+        find_forces(&flow->grains, &flow->cells, &flow->throats, &flow->pressures);
+    return parameters->tensor ? find_columns(flow, parameters, &solving, reason)
+                              : STATUS_OK;
+}
+
+// mu U / (drop over the length) along the drop, m2.
+static double permeability_of(const struct computation *flow,
+                              const struct imposed *imposed)
+{
+    const int axis = imposed->along;
+    if (axis == ALONG_NONE || !(fabs(imposed->drop) > 0) || flow->opening) return NAN;
+    return component(flow->forces.velocity, axis) * flow->grains.unit *
+           flow->grains.unit * component(flow->grains.box, axis) / imposed->drop;
+}
+
+static void write(const struct computation *computation,
+                  const struct flow_parameters *parameters,
+                  const struct invocation *invocation, const struct artifact *input)
+{
+    static const char *const sides[] = {
+        "no slip", "planes of symmetry",
+        "planes of symmetry, throats narrower, as Yade"};
+    const struct flow flow = {
+        .packing = &computation->packing,
+        .grains = &computation->grains,
+        .cells = &computation->cells,
+        .throats = &computation->throats,
+        .pressures = &computation->pressures,
+        .forces = &computation->forces,
+        .opening = computation->opening,
+        .viscosity = parameters->viscosity,
+        .weight = scale(parameters->density, vector_of(parameters->gravity)),
+        .permeability = permeability_of(computation, &parameters->imposed),
+        .columns = parameters->tensor ? computation->columns : NULL};
+    char model[700];
+    snprintf(
+        model, sizeof model,
+        "Stokes flow on the regular triangulation [C], throats by %s radius\n"
+        "walls: exact planes, %s\n"
+        "pressures by %s, %d unknown, imbalance below %g of the flux\n"
+        "%d grains hidden in others, %d flat cells, %d throats closed, %d pockets\n"
+        "left out: inertia, viscous stress in the facets [C 17]%s\n",
+        parameters->conductance == CONDUCTANCE_HYDRAULIC ? "hydraulic" : "effective",
+        sides[parameters->sides],
+        flow.pressures->direct ? "Cholesky's factor"
+                               : "conjugate gradients with multigrid",
+        flow.pressures->n_unknown, parameters->tolerance, flow.cells->n_hidden,
+        flow.cells->n_flat, flow.throats->n_closed, flow.pressures->n_pocket,
+        flow.opening ? "" : ", motion of the grains");
+    const bool all = parameters->product == PRODUCT_FLOW;
+    struct artifact *artifact = artifact_create(all ? "flow" : "forces");
+    if (all)
+        put_flow(artifact, &flow);
+    else
+        put_forces(artifact, &flow, (int)parameters->steps);
+    artifact_finish(artifact, invocation, one_input(input), model);
+}
+
+int main(int argc, char **argv)
+{
+    struct flow_parameters parameters;
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    struct artifact *input = artifact_open(invocation.inputs[0], "packing");
+    struct computation flow = {.packing = artifact_get_packing(input)};
+
+    struct reason reason;
+    const enum status status = compute(input, &parameters, &flow, &reason);
+    if (status) die(status, "%s: %s", input_name(input->path), reason.text);
+    write(&flow, &parameters, &invocation, input);
+
+    forces_free(&flow.forces);
+    pressures_free(&flow.pressures);
+    throats_free(&flow.throats);
+    cells_free(&flow.cells);
+    grains_free(&flow.grains);
+    free(flow.opening);
+    packing_free(&flow.packing);
+    artifact_close(input);
+    invocation_free(&invocation);
+    return STATUS_OK;
+}

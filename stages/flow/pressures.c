@@ -1,0 +1,488 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pressures.h"
+
+#include "basics/memory.h"
+#include "cholesky.h"
+#include "multigrid.h"
+
+#include <stdlib.h>
+
+// Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
+enum { DIRECT_MOST = 1500 };
+
+// Each correction gains what the solver promises; rounding ends it.
+enum { CORRECTIONS = 12, MOST_ITERATIONS = 500 };
+static const double reduction = 1e-8;
+
+// A network of nodes: those whose pressure is sought first.
+struct balance {
+    const struct grains *grains;
+    const struct cells *cells;
+    const struct throats *throats;
+    uint8_t *walls;   // (n_pore)
+    uint8_t *known;   // (n_node)
+    double *given;    // (n_node) source and mean gradient
+    int32_t *unknown; // (n_node) place in the matrix
+    struct matrix matrix;
+};
+
+static int32_t root(int32_t *parent, int32_t i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+static void unite(int32_t *parent, int32_t a, int32_t b)
+{
+    a = root(parent, a), b = root(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+static unsigned walls_of_corners(const int32_t *corner, int n)
+{
+    unsigned walls = 0;
+    for (int k = 0; k < n; k++)
+        if (corner[k] < 0) walls |= 1u << (-1 - corner[k]);
+    return walls;
+}
+
+static void find_walls(struct balance *balance)
+{
+    balance->walls = NEW_ARRAY(uint8_t, balance->cells->n_pore);
+    for (int c = 0; c < balance->cells->n; c++)
+        balance->walls[balance->cells->cell[c].pore] |=
+            (uint8_t)walls_of_corners(balance->cells->cell[c].corner, 4);
+}
+
+// The wall that imposes the pressure on a pore; -1: none.
+static int imposing(const struct conditions *conditions, unsigned walls)
+{
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (walls >> wall & 1 && !isnan(conditions->pressure[wall])) return wall;
+    return -1;
+}
+
+// The wall through which a flux enters a pore; -1: none.
+static int feeding(const struct conditions *conditions, unsigned walls)
+{
+    if (imposing(conditions, walls) >= 0) return -1;
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (walls >> wall & 1 && !isnan(conditions->flux[wall])) return wall;
+    return -1;
+}
+
+// Numbers the nodes: pores, and all pores behind one flux plate as one.
+static void number_nodes(struct balance *balance, const struct conditions *conditions,
+                         struct pressures *pressures, int32_t plate[WALL_COUNT])
+{
+    const int n = balance->cells->n_pore;
+    int32_t *parent = NEW_ARRAY(int32_t, n);
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        plate[wall] = -1;
+    for (int i = 0; i < n; i++) {
+        parent[i] = i;
+        const int wall = feeding(conditions, balance->walls[i]);
+        if (wall < 0) continue;
+        if (plate[wall] < 0) plate[wall] = i;
+        parent[i] = plate[wall];
+    }
+    pressures->node = NEW_ARRAY(int32_t, n);
+    for (int i = 0; i < n; i++)
+        pressures->node[i] =
+            parent[i] == i ? pressures->n_node++ : pressures->node[parent[i]];
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (plate[wall] >= 0) plate[wall] = pressures->node[plate[wall]];
+    free(parent);
+}
+
+static int32_t node_of(const struct balance *balance, const struct pressures *pressures,
+                       int32_t cell)
+{
+    return pressures->node[balance->cells->cell[cell].pore];
+}
+
+// Both nodes of a throat that conducts; false: it does not.
+static bool nodes_of(const struct balance *balance, const struct pressures *pressures,
+                     const struct throat *throat, int32_t node[2])
+{
+    if (!(throat->conductance > 0)) return false;
+    node[0] = node_of(balance, pressures, throat->cell[0]);
+    node[1] = node_of(balance, pressures, throat->cell[1]);
+    return node[0] != node[1];
+}
+
+static void impose(struct balance *balance, const struct conditions *conditions,
+                   const double *source, const int32_t plate[WALL_COUNT],
+                   struct pressures *pressures)
+{
+    pressures->value = NEW_ARRAY(struct compensated, pressures->n_node);
+    balance->known = NEW_ARRAY(uint8_t, pressures->n_node);
+    balance->given = NEW_ARRAY(double, pressures->n_node);
+    for (int i = 0; i < balance->cells->n_pore; i++) {
+        const int32_t node = pressures->node[i];
+        const int wall = imposing(conditions, balance->walls[i]);
+        if (source) balance->given[node] += source[i];
+        if (wall < 0) continue;
+        balance->known[node] = 1;
+        pressures->value[node].value = conditions->pressure[wall];
+    }
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (plate[wall] >= 0) balance->given[plate[wall]] += conditions->flux[wall];
+    for (int t = 0; t < balance->throats->n; t++) {
+        const struct throat *throat = &balance->throats->throat[t];
+        int32_t node[2];
+        if (!nodes_of(balance, pressures, throat, node)) continue;
+        const double driven = throat->conductance *
+                              dot(conditions->gradient,
+                                  throat_step(balance->grains, balance->cells, throat));
+        balance->given[node[0]] += driven;
+        balance->given[node[1]] -= driven;
+    }
+}
+
+// Pins one pore of every pocket; POCKET (n_node) gets the root of each node.
+static enum status find_pockets(struct balance *balance, struct pressures *pressures,
+                                int32_t *pocket, struct reason *reason)
+{
+    const int n = pressures->n_node;
+    double *sum = NEW_ARRAY(double, n), *size = NEW_ARRAY(double, n);
+    uint8_t *way_out = NEW_ARRAY(uint8_t, n);
+    for (int i = 0; i < n; i++)
+        pocket[i] = i;
+    for (int t = 0; t < balance->throats->n; t++) {
+        int32_t node[2];
+        if (nodes_of(balance, pressures, &balance->throats->throat[t], node))
+            unite(pocket, node[0], node[1]);
+    }
+    for (int i = 0; i < n; i++) {
+        pocket[i] = root(pocket, i);
+        way_out[pocket[i]] |= balance->known[i];
+        sum[pocket[i]] += balance->given[i];
+        size[pocket[i]] += fabs(balance->given[i]);
+    }
+    enum status status = STATUS_OK;
+    for (int i = 0; i < n && !status; i++) {
+        if (pocket[i] != i || way_out[i]) continue;
+        pressures->n_pocket++;
+        balance->known[i] = 1;
+        if (fabs(sum[i]) > 1e-10 * size[i])
+            status =
+                refuse(reason, STATUS_BAD_DATA,
+                       "what flows into a pocket of pores with no way out does not "
+                       "leave it: %.3g of %.3g is left over",
+                       sum[i], size[i]);
+    }
+    for (int i = 0; i < n; i++)
+        pocket[i] = way_out[pocket[i]] ? -1 : pocket[i];
+    free(sum);
+    free(size);
+    free(way_out);
+    return status;
+}
+
+static void arrange(struct balance *balance, const struct pressures *pressures)
+{
+    struct matrix *matrix = &balance->matrix;
+    const int n_node = pressures->n_node;
+    balance->unknown = NEW_ARRAY(int32_t, n_node);
+    *matrix = (struct matrix){.n_all = n_node};
+    for (int i = 0; i < n_node; i++)
+        matrix->n += !balance->known[i];
+    for (int i = 0, next = 0, given = matrix->n; i < n_node; i++)
+        balance->unknown[i] = balance->known[i] ? given++ : next++;
+    const int n = matrix->n;
+    matrix->offset = NEW_ARRAY(int, n_node + 2);
+    for (int t = 0; t < balance->throats->n; t++) {
+        int32_t node[2];
+        if (!nodes_of(balance, pressures, &balance->throats->throat[t], node)) continue;
+        for (int end = 0; end < 2; end++)
+            matrix->offset[balance->unknown[node[end]] + 2]++;
+    }
+    for (int i = 0; i < n_node; i++)
+        matrix->offset[i + 2] += matrix->offset[i + 1];
+    const int n_entry = matrix->offset[n + 1];
+    matrix->column = NEW_ARRAY(int, n_entry);
+    matrix->value = NEW_ARRAY(double, n_entry);
+    matrix->diagonal = NEW_ARRAY(double, n);
+    for (int t = 0; t < balance->throats->n; t++) {
+        const struct throat *throat = &balance->throats->throat[t];
+        int32_t node[2];
+        if (!nodes_of(balance, pressures, throat, node)) continue;
+        for (int end = 0; end < 2; end++) {
+            const int row = balance->unknown[node[end]];
+            if (row >= n) continue;
+            const int k = matrix->offset[row + 1]++;
+            matrix->column[k] = balance->unknown[node[1 - end]];
+            matrix->value[k] = throat->conductance;
+            matrix->diagonal[row] += throat->conductance;
+        }
+    }
+}
+
+// ---- solution -----------------------------------------------------------------------
+
+// What each unknown balance still lacks: B (n). X (n_all) are the pressures in the
+// order of the matrix.
+static void find_lack(const struct matrix *matrix, const double *given,
+                      const struct compensated *x, double *b)
+{
+#pragma omp parallel for schedule(static) if (matrix->n > 20000)
+    for (int i = 0; i < matrix->n; i++) {
+        double sum = given[i];
+        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
+            const struct compensated there = x[matrix->column[k]];
+            sum += matrix->value[k] *
+                   ((there.value - x[i].value) + (there.lost - x[i].lost));
+        }
+        b[i] = sum;
+    }
+}
+
+double pressure_drop(const struct pressures *pressures, const struct grains *grains,
+                     const struct cells *cells, const struct throat *throat)
+{
+    const struct compensated *value = pressures->value;
+    const struct compensated a =
+        value[pressures->node[cells->cell[throat->cell[0]].pore]];
+    const struct compensated b =
+        value[pressures->node[cells->cell[throat->cell[1]].pore]];
+    const double drop = (a.value - b.value) + (a.lost - b.lost);
+    if (!grains_repeat(grains)) return drop;
+    return drop - dot(pressures->gradient, throat_step(grains, cells, throat));
+}
+
+double pore_pressure(const struct pressures *pressures, const struct cells *cells,
+                     int cell)
+{
+    const struct pore_cell *at = &cells->cell[cell];
+    return compensated_value(pressures->value[pressures->node[at->pore]]) +
+           dot(pressures->gradient, at->centre);
+}
+
+static double find_throughput(const struct balance *balance,
+                              const struct pressures *pressures)
+{
+    const struct vector box = balance->grains->box;
+    const double edge = fmax(box.x, fmax(box.y, box.z));
+    double sum = 0;
+    for (int t = 0; t < balance->throats->n; t++) {
+        const struct throat *throat = &balance->throats->throat[t];
+        sum += throat->conductance * throat->length / edge *
+               fabs(pressure_drop(pressures, balance->grains, balance->cells, throat));
+    }
+    return sum;
+}
+
+struct solver_state {
+    struct cholesky *cholesky;
+    struct multigrid *multigrid;
+};
+
+static enum status prepare(const struct matrix *matrix, enum solver solver,
+                           struct solver_state *state, struct reason *reason)
+{
+    *state = (struct solver_state){0};
+    if (solver == SOLVER_CHOLESKY ||
+        (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
+        return cholesky_make(matrix, &state->cholesky, reason);
+    state->multigrid = multigrid_make(matrix);
+    return STATUS_OK;
+}
+
+static enum status correct(const struct matrix *matrix, struct solver_state *state,
+                           const double *b, double *x, int *iterations,
+                           struct reason *reason)
+{
+    if (state->multigrid)
+        *iterations +=
+            multigrid_solve(state->multigrid, b, x, reduction, MOST_ITERATIONS);
+    else if (!cholesky_solve(state->cholesky, b, x))
+        return refuse(reason, STATUS_INTERNAL,
+                      "out of memory in the balances of %d pores", matrix->n);
+    return STATUS_OK;
+}
+
+static double imbalance(const double *lack, int n)
+{
+    double largest = 0, sum = 0;
+    for (int i = 0; i < n; i++) {
+        largest = fmax(largest, fabs(lack[i]));
+        sum += lack[i];
+    }
+    return fmax(largest, fabs(sum));
+}
+
+// Puts the pressures into the order of the matrix, or back.
+static void reorder(const struct balance *balance, struct pressures *pressures,
+                    struct compensated *x, bool back)
+{
+    for (int i = 0; i < pressures->n_node; i++)
+        if (back)
+            pressures->value[i] = x[balance->unknown[i]];
+        else
+            x[balance->unknown[i]] = pressures->value[i];
+}
+
+// Corrects the pressures until the balances close. From nothing, the first correction
+// is the whole solution.
+static enum status close_balances(const struct balance *balance,
+                                  const struct solving *solving,
+                                  struct pressures *pressures, struct reason *reason)
+{
+    const struct matrix *matrix = &balance->matrix;
+    const int n = matrix->n;
+    struct compensated *x = NEW_ARRAY(struct compensated, matrix->n_all);
+    double *lack = NEW_ARRAY(double, n), *correction = NEW_ARRAY(double, n);
+    double *given = NEW_ARRAY(double, matrix->n_all);
+    for (int i = 0; i < matrix->n_all; i++)
+        given[balance->unknown[i]] = balance->given[i];
+    reorder(balance, pressures, x, false);
+    struct solver_state state;
+    enum status status = prepare(matrix, solving->solver, &state, reason);
+    pressures->direct = state.cholesky;
+    find_lack(matrix, given, x, lack);
+    double best = INFINITY;
+    for (int round = 0; !status && round < CORRECTIONS; round++) {
+        status =
+            correct(matrix, &state, lack, correction, &pressures->iterations, reason);
+        if (status) break;
+        for (int i = 0; i < n; i++)
+            compensated_add(&x[i], correction[i]);
+        reorder(balance, pressures, x, true);
+        find_lack(matrix, given, x, lack);
+        pressures->throughput = find_throughput(balance, pressures);
+        const double absolute = imbalance(lack, n);
+        pressures->imbalance = absolute > 0 ? absolute / pressures->throughput : 0;
+        if (pressures->imbalance < 0.1 * solving->tolerance) break;
+        if (pressures->imbalance < solving->tolerance &&
+            pressures->imbalance > 0.5 * best)
+            break;
+        best = fmin(best, pressures->imbalance);
+    }
+    multigrid_free(state.multigrid);
+    cholesky_free(state.cholesky);
+    free(x);
+    free(lack);
+    free(correction);
+    free(given);
+    if (!status && !(pressures->imbalance <= solving->tolerance))
+        return refuse(reason, STATUS_NOT_CONVERGED,
+                      "the balances of %d pores close to %.3g of the flux only, needed "
+                      "is %g after %d iterations; try solver=cholesky, or a larger "
+                      "tolerance",
+                      n, pressures->imbalance, solving->tolerance,
+                      pressures->iterations);
+    return status;
+}
+
+// ---- what follows -------------------------------------------------------------------
+
+// Pockets float: each takes the mean pressure of the pores around it, by facet area;
+// one with nothing around it but itself, a mean of 0.
+static void settle_pockets(const struct balance *balance, const int32_t *pocket,
+                           struct pressures *pressures)
+{
+    const int n = pressures->n_node;
+    double *area = NEW_ARRAY(double, n), *sum = NEW_ARRAY(double, n);
+    double *inside = NEW_ARRAY(double, n), *count = NEW_ARRAY(double, n);
+    for (int t = 0; t < balance->throats->n; t++) {
+        const struct throat *throat = &balance->throats->throat[t];
+        int32_t node[2];
+        for (int end = 0; end < 2; end++)
+            node[end] = node_of(balance, pressures, throat->cell[end]);
+        if (pocket[node[0]] == pocket[node[1]]) continue;
+        const double drop =
+            pressure_drop(pressures, balance->grains, balance->cells, throat);
+        for (int end = 0; end < 2; end++) {
+            const int32_t here = pocket[node[end]];
+            if (here < 0 || pocket[node[1 - end]] >= 0) continue;
+            area[here] += norm(throat->area);
+            sum[here] += norm(throat->area) * (end == 0 ? drop : -drop);
+        }
+    }
+    for (int i = 0; i < n; i++)
+        if (pocket[i] >= 0) {
+            inside[pocket[i]] += compensated_value(pressures->value[i]);
+            count[pocket[i]]++;
+        }
+    for (int i = 0; i < n; i++) {
+        const int32_t here = pocket[i];
+        if (here < 0) continue;
+        const double above =
+            area[here] > 0 ? sum[here] / area[here] : inside[here] / count[here];
+        compensated_add(&pressures->value[i], -above);
+    }
+    free(area);
+    free(sum);
+    free(inside);
+    free(count);
+}
+
+// What leaves the pores of each wall for the others enters through the wall.
+static void find_inflow(const struct balance *balance,
+                        const struct conditions *conditions,
+                        struct pressures *pressures)
+{
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        pressures->inflow[wall] =
+            isnan(conditions->flux[wall]) ? 0 : conditions->flux[wall];
+    struct compensated sum[WALL_COUNT] = {{0, 0}};
+    for (int t = 0; t < balance->throats->n; t++) {
+        const struct throat *throat = &balance->throats->throat[t];
+        int32_t node[2];
+        if (!nodes_of(balance, pressures, throat, node)) continue;
+        const double flux =
+            throat->conductance *
+            pressure_drop(pressures, balance->grains, balance->cells, throat);
+        for (int end = 0; end < 2; end++) {
+            const int wall =
+                imposing(conditions,
+                         balance->walls[balance->cells->cell[throat->cell[end]].pore]);
+            if (wall >= 0) compensated_add(&sum[wall], end == 0 ? flux : -flux);
+        }
+    }
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (!isnan(conditions->pressure[wall]))
+            pressures->inflow[wall] = compensated_value(sum[wall]);
+}
+
+enum status solve_pressures(const struct grains *grains, const struct cells *cells,
+                            const struct throats *throats,
+                            const struct conditions *conditions, const double *source,
+                            const struct solving *solving, struct pressures *pressures,
+                            struct reason *reason)
+{
+    *pressures = (struct pressures){.gradient = conditions->gradient};
+    struct balance balance = {.grains = grains, .cells = cells, .throats = throats};
+    int32_t plate[WALL_COUNT];
+    find_walls(&balance);
+    number_nodes(&balance, conditions, pressures, plate);
+    impose(&balance, conditions, source, plate, pressures);
+    int32_t *pocket = NEW_ARRAY(int32_t, pressures->n_node);
+    enum status status = find_pockets(&balance, pressures, pocket, reason);
+    if (!status) {
+        arrange(&balance, pressures);
+        pressures->n_unknown = balance.matrix.n;
+        if (balance.matrix.n > 0)
+            status = close_balances(&balance, solving, pressures, reason);
+    }
+    if (!status) {
+        settle_pockets(&balance, pocket, pressures);
+        find_inflow(&balance, conditions, pressures);
+    }
+    free(pocket);
+    free(balance.walls);
+    free(balance.known);
+    free(balance.given);
+    free(balance.unknown);
+    matrix_free(&balance.matrix);
+    return status;
+}
+
+void pressures_free(struct pressures *pressures)
+{
+    free(pressures->node);
+    free(pressures->value);
+    *pressures = (struct pressures){0};
+}

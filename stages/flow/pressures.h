@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pressure in every pore: what flows in flows out [C 6, 20].
+#ifndef CRAQUELURE_FLOW_PRESSURES_H
+#define CRAQUELURE_FLOW_PRESSURES_H
+
+#include "basics/compensated.h"
+#include "basics/status.h"
+#include "throats.h"
+
+// In units of length, for a viscosity of 1: a flux is then in unit^3 Pa.
+struct conditions {
+    double pressure[WALL_COUNT]; // piezometric, Pa; NAN: not imposed
+    double flux[WALL_COUNT];     // into the box through the wall, at one pressure all
+                                 // over it; NAN: not imposed
+    struct vector gradient;      // mean gradient where the box repeats, Pa/unit
+};
+
+enum solver { SOLVER_AUTO, SOLVER_CHOLESKY, SOLVER_ITERATION };
+
+struct solving {
+    enum solver solver;
+    double tolerance; // on the imbalance
+};
+
+// Pressure is a field that repeats, plus the mean gradient times the place.
+struct pressures {
+    int n_node;                // pores behind one flux plate are one
+    int32_t *node;             // (n_pore)
+    struct compensated *value; // (n_node) Pa, without the mean gradient
+    struct vector gradient;
+    double inflow[WALL_COUNT]; // through each wall
+    double throughput;         // sum of flux times length over the throats, by the edge
+    double imbalance; // largest of one pore, or of all in sum; of the throughput
+    int n_pocket;     // sets of pores with no way out
+    int n_unknown, iterations;
+    bool direct; // by Cholesky's factor
+};
+
+// SOURCE (n_pore) is what each pore gives off, or NULL. A pocket with no way out takes
+// the mean pressure of the pores around it. Pores in an edge between walls of imposed
+// pressure belong to the lower wall. STATUS_BAD_DATA: what flows into a pocket cannot
+// leave it. STATUS_NOT_CONVERGED: the imbalance stays above the tolerance. The caller
+// frees with pressures_free.
+enum status solve_pressures(const struct grains *grains, const struct cells *cells,
+                            const struct throats *throats,
+                            const struct conditions *conditions, const double *source,
+                            const struct solving *solving, struct pressures *pressures,
+                            struct reason *reason);
+void pressures_free(struct pressures *pressures);
+
+// p_i - p_j over a throat, Pa, to full precision however small.
+double pressure_drop(const struct pressures *pressures, const struct grains *grains,
+                     const struct cells *cells, const struct throat *throat);
+
+// p_i, Pa.
+double pore_pressure(const struct pressures *pressures, const struct cells *cells,
+                     int cell);
+
+#endif

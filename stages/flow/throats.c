@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "throats.h"
+
+#include "basics/memory.h"
+#include "facet.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct corner facet_corner_of(const struct grains *grains, const struct pore_cell *cell,
+                              int facet, int k)
+{
+    const int place = facet_corner[facet][k];
+    const int32_t corner = cell->corner[place];
+    if (corner >= 0)
+        return (struct corner){.at = corner_position(grains, cell, place),
+                               .radius = grains->radius[corner]};
+    const int wall = -1 - corner;
+    return (struct corner){.normal = wall_normal(wall),
+                           .plane = wall % 2 ? component(grains->box, wall / 2) : 0};
+}
+
+double fluid_area(const struct throat *throat)
+{
+    return norm(throat->area) -
+           (throat->sector[0] + throat->sector[1] + throat->sector[2]);
+}
+
+struct vector throat_step(const struct grains *grains, const struct cells *cells,
+                          const struct throat *throat)
+{
+    return subtract(
+        in_image(grains, cells->cell[throat->cell[1]].centre, throat->image),
+        cells->cell[throat->cell[0]].centre);
+}
+
+// R^h_ij = phi_ij / gamma_ij [C 9].
+static double hydraulic_radius(const struct throat *throat, enum sides sides)
+{
+    const double surface = throat->surface[0] + throat->surface[1] + throat->surface[2];
+    if (!(surface > 0)) return 0;
+    double radius = throat->volume / surface;
+    for (int k = 0; k < 3 && sides == SIDES_SYMMETRIC_YADE; k++)
+        if (throat->corner[k] < 0) radius *= sqrt(M_SQRT1_2);
+    return radius;
+}
+
+// g_ij [C 8, 10].
+static double conductance_of(const struct throat *throat, const struct corner corner[3],
+                             const struct throat_rule *rule)
+{
+    const double area = fluid_area(throat);
+    if (!(area > 0)) return 0;
+    if (rule->conductance == CONDUCTANCE_EFFECTIVE) {
+        const double inscribed = inscribed_radius(corner);
+        const double effective = (sqrt(area / M_PI) + inscribed) / 4;
+        return inscribed > 0 ? 2 * M_PI * pow(effective, 4) : 0;
+    }
+    const double radius = hydraulic_radius(throat, rule->sides);
+    return radius > 0 ? rule->factor * area * radius * radius : 0;
+}
+
+// Grains that overlap in the facet share it.
+static bool fit_sectors(struct throat *throat)
+{
+    const double area = norm(throat->area);
+    const double sum = throat->sector[0] + throat->sector[1] + throat->sector[2];
+    if (sum < area) return true;
+    for (int k = 0; k < 3; k++)
+        throat->sector[k] *= area / sum;
+    return false;
+}
+
+static void measure_throat(const struct grains *grains, const struct cells *cells,
+                           const struct pore_cell *cell, int facet,
+                           const struct throat_rule *rule, struct throat *throat)
+{
+    struct corner corner[3];
+    for (int k = 0; k < 3; k++) {
+        corner[k] = facet_corner_of(grains, cell, facet, k);
+        throat->corner[k] = cell->corner[facet_corner[facet][k]];
+    }
+    const struct vector to = add(cell->centre, throat_step(grains, cells, throat));
+    const struct facet shape =
+        measure_facet(corner, cell->centre, to, rule->pieces == PIECES_SIGNED);
+    throat->area = shape.area;
+    memcpy(throat->sector, shape.sector, sizeof throat->sector);
+    for (int k = 0; k < 3; k++)
+        throat->surface[k] = throat->corner[k] < 0 && rule->sides != SIDES_NO_SLIP
+                                 ? 0
+                                 : shape.surface[k];
+    throat->volume = shape.volume;
+    throat->length = shape.length;
+    const bool open = fit_sectors(throat);
+    if (cells->cell[throat->cell[0]].pore == cells->cell[throat->cell[1]].pore)
+        throat->length = 0;
+    else if (open)
+        throat->conductance = conductance_of(throat, corner, rule) / throat->length;
+}
+
+// Whether facet K of cell C is listed from there, and not from the other side.
+static bool is_first(const struct cells *cells, int c, int k)
+{
+    const int32_t other = cells->cell[c].neighbour[k];
+    if (other != c) return c < other;
+    return image_number(cells->cell[c].neighbour_image[k]) > 0;
+}
+
+struct throats find_throats(const struct grains *grains, const struct cells *cells,
+                            const struct throat_rule *rule)
+{
+    struct throats throats = {0};
+    int *first = NEW_ARRAY(int, cells->n + 1);
+    for (int c = 0; c < cells->n; c++) {
+        first[c] = throats.n;
+        for (int k = 0; k < 4; k++)
+            throats.n += is_first(cells, c, k);
+    }
+    throats.throat = NEW_ARRAY(struct throat, throats.n);
+    int n_closed = 0;
+#pragma omp parallel for schedule(static) reduction(+ : n_closed)
+    for (int c = 0; c < cells->n; c++) {
+        const struct pore_cell *cell = &cells->cell[c];
+        struct throat *throat = &throats.throat[first[c]];
+        for (int k = 0; k < 4; k++) {
+            if (!is_first(cells, c, k)) continue;
+            throat->cell[0] = c;
+            throat->cell[1] = cell->neighbour[k];
+            throat->image = cell->neighbour_image[k];
+            measure_throat(grains, cells, cell, k, rule, throat);
+            n_closed += throat->length > 0 && !(throat->conductance > 0);
+            throat++;
+        }
+    }
+    throats.n_closed = n_closed;
+    free(first);
+    return throats;
+}
+
+void throats_free(struct throats *throats)
+{
+    free(throats->throat);
+    *throats = (struct throats){0};
+}

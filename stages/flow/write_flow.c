@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "write_flow.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct vector buoyancy(const struct flow *flow, int i)
+{
+    const double radius = flow->packing->radius[i];
+    return scale(-4 * M_PI / 3 * radius * radius * radius, flow->weight);
+}
+
+static struct vector newtons(const struct flow *flow, struct vector force)
+{
+    return scale(flow->grains->unit * flow->grains->unit, force);
+}
+
+struct vector total_force(const struct flow *flow, int i)
+{
+    return add(newtons(flow, add(flow->forces->viscous[i], flow->forces->pressure[i])),
+               buoyancy(flow, i));
+}
+
+static double cube(double x)
+{
+    return x * x * x;
+}
+
+static void put_pores(struct artifact *artifact, const struct flow *flow)
+{
+    const struct cells *cells = flow->cells;
+    const int n = cells->n;
+    struct vector *position = NEW_ARRAY(struct vector, n);
+    int32_t(*corner)[4] = allocate((size_t)n, sizeof *corner);
+    double *value = NEW_ARRAY(double, n);
+    for (int c = 0; c < n; c++) {
+        position[c] =
+            add(flow->packing->lower, scale(flow->grains->unit, cells->cell[c].centre));
+        memcpy(corner[c], cells->cell[c].corner, sizeof *corner);
+        value[c] = pore_pressure(flow->pressures, cells, c);
+    }
+    artifact_put(artifact, "/pores/position", position, n);
+    artifact_put(artifact, "/pores/particles", corner, n);
+    artifact_put(artifact, "/pores/pressure", value, n);
+    // Of cells that are one pore, the first shows what the pore gives off.
+    for (int c = 0, next = 0; c < n && flow->opening; c++) {
+        const int pore = cells->cell[c].pore;
+        value[c] = pore == next ? -flow->opening[pore] * cube(flow->grains->unit) : 0;
+        next += pore == next;
+    }
+    if (flow->opening) artifact_put(artifact, "/pores/source", value, n);
+    free(position);
+    free(corner);
+    free(value);
+}
+
+static void put_throat_numbers(struct artifact *artifact, const struct flow *flow)
+{
+    const struct throats *throats = flow->throats;
+    const int n = throats->n;
+    const double unit = flow->grains->unit, conducts = cube(unit) / flow->viscosity;
+    double *conductance = NEW_ARRAY(double, n), *flux = NEW_ARRAY(double, n),
+           *length = NEW_ARRAY(double, n), *area = NEW_ARRAY(double, n);
+    for (int t = 0; t < n; t++) {
+        const struct throat *throat = &throats->throat[t];
+        conductance[t] = conducts * throat->conductance;
+        flux[t] = conductance[t] *
+                  pressure_drop(flow->pressures, flow->grains, flow->cells, throat);
+        length[t] = unit * throat->length;
+        area[t] = unit * unit * fmax(0, fluid_area(throat));
+    }
+    artifact_put(artifact, "/throats/conductance", conductance, n);
+    artifact_put(artifact, "/throats/flux", flux, n);
+    artifact_put(artifact, "/throats/length", length, n);
+    artifact_put(artifact, "/throats/area", area, n);
+    free(conductance);
+    free(flux);
+    free(length);
+    free(area);
+}
+
+static void put_throats(struct artifact *artifact, const struct flow *flow)
+{
+    const struct throats *throats = flow->throats;
+    const int n = throats->n;
+    int32_t(*pores)[2] = allocate((size_t)n, sizeof *pores);
+    int32_t(*corner)[3] = allocate((size_t)n, sizeof *corner);
+    struct image *image = NEW_ARRAY(struct image, n);
+    for (int t = 0; t < n; t++) {
+        memcpy(pores[t], throats->throat[t].cell, sizeof *pores);
+        memcpy(corner[t], throats->throat[t].corner, sizeof *corner);
+        image[t] = throats->throat[t].image;
+    }
+    artifact_put(artifact, "/throats/pores", pores, n);
+    artifact_put(artifact, "/throats/particles", corner, n);
+    if (grains_repeat(flow->grains)) artifact_put(artifact, "/throats/image", image, n);
+    put_throat_numbers(artifact, flow);
+    artifact_put_vtk(artifact, "/pores/position", flow->cells->n,
+                     (const char *const[]){"/pores/pressure", NULL},
+                     (const int32_t(*)[2])pores, n,
+                     (const char *const[]){"/throats/conductance", "/throats/flux",
+                                           "/throats/length", "/throats/area", NULL});
+    free(pores);
+    free(corner);
+    free(image);
+}
+
+static void put_grains(struct artifact *artifact, const struct flow *flow)
+{
+    const int n = flow->packing->n_particle;
+    struct vector *force = NEW_ARRAY(struct vector, n);
+    for (int i = 0; i < n; i++)
+        force[i] = newtons(flow, flow->forces->viscous[i]);
+    artifact_put(artifact, "/particles/viscous_force", force, n);
+    for (int i = 0; i < n; i++)
+        force[i] = newtons(flow, flow->forces->pressure[i]);
+    artifact_put(artifact, "/particles/pressure_force", force, n);
+    for (int i = 0; i < n; i++)
+        force[i] = buoyancy(flow, i);
+    artifact_put(artifact, "/particles/buoyancy", force, n);
+    free(force);
+}
+
+// Returns what flows in.
+static double put_walls(struct artifact *artifact, const struct flow *flow)
+{
+    struct vector viscous[WALL_COUNT], pressure[WALL_COUNT];
+    double inflow[WALL_COUNT], sum = 0;
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        viscous[wall] = newtons(flow, flow->forces->wall_viscous[wall]);
+        pressure[wall] = newtons(flow, flow->forces->wall_pressure[wall]);
+        inflow[wall] =
+            flow->pressures->inflow[wall] * cube(flow->grains->unit) / flow->viscosity;
+        sum += fmax(0, inflow[wall]);
+    }
+    artifact_put(artifact, "/walls/inflow", inflow, WALL_COUNT);
+    artifact_put(artifact, "/walls/viscous_force", viscous, WALL_COUNT);
+    artifact_put(artifact, "/walls/pressure_force", pressure, WALL_COUNT);
+    return sum;
+}
+
+static void put_permeability(struct artifact *artifact, const struct flow *flow)
+{
+    if (!isnan(flow->permeability))
+        artifact_put_number(artifact, "/summary/permeability", flow->permeability);
+    if (!flow->columns) return;
+    double tensor[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            tensor[i][j] = component(flow->columns[j], i);
+    artifact_put(artifact, "/permeability", tensor, 3);
+}
+
+void put_flow(struct artifact *artifact, const struct flow *flow)
+{
+    artifact_put_packing(artifact, flow->packing);
+    put_pores(artifact, flow);
+    put_throats(artifact, flow);
+    put_grains(artifact, flow);
+    const double flux = put_walls(artifact, flow);
+    put_permeability(artifact, flow);
+    artifact_put_number(artifact, "/summary/flux", flux);
+    artifact_put_number(artifact, "/summary/imbalance", flow->pressures->imbalance);
+    artifact_put_number(artifact, "/summary/mean_pressure",
+                        flow->forces->mean_pressure);
+    artifact_put_number(artifact, "/summary/closed_throats", flow->throats->n_closed);
+    artifact_put_number(artifact, "/summary/pockets", flow->pressures->n_pocket);
+}
+
+void put_forces(struct artifact *artifact, const struct flow *flow, int steps)
+{
+    const int n = flow->packing->n_particle;
+    double *time = NEW_ARRAY(double, steps), *saturation = NEW_ARRAY(double, steps);
+    struct vector *force = NEW_ARRAY(struct vector, (size_t)steps * (size_t)n);
+    double largest = 0;
+    for (int k = 0; k < steps; k++) {
+        time[k] = k;
+        saturation[k] = 1;
+        for (int i = 0; i < n; i++)
+            force[(size_t)k * (size_t)n + (size_t)i] =
+                scale((double)k / (steps - 1), total_force(flow, i));
+    }
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, norm(total_force(flow, i)));
+    artifact_put_packing(artifact, flow->packing);
+    artifact_put(artifact, "/time", time, steps);
+    artifact_put(artifact, "/saturation", saturation, steps);
+    artifact_put_table(artifact, "/force", force, steps, n);
+    artifact_put_number(artifact, "/summary/capillary_pressure", 0);
+    artifact_put_number(artifact, "/summary/force_scale", 1);
+    artifact_put_number(artifact, "/summary/largest_force", largest);
+    artifact_put_number(artifact, "/summary/first_period_end_time", 0);
+    free(time);
+    free(saturation);
+    free(force);
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef CRAQUELURE_WRITE_FLOW_H
+#define CRAQUELURE_WRITE_FLOW_H
+
+#include "artifacts/artifact.h"
+#include "forces.h"
+
+// All that there is to write, in the units of the computation.
+struct flow {
+    const struct packing *packing;
+    const struct grains *grains;
+    const struct cells *cells;
+    const struct throats *throats;
+    const struct pressures *pressures;
+    const struct forces *forces;
+    const double *opening;        // (n_pore); NULL: nothing moves
+    double viscosity;             // Pa s
+    struct vector weight;         // density of the fluid times gravity, N m-3
+    double permeability;          // m2; NAN: none
+    const struct vector *columns; // (3) of the permeability tensor; NULL: not asked for
+};
+
+// Force of the weight of the fluid on grain I [C 12]: what a sphere of fluid weighs, N.
+struct vector buoyancy(const struct flow *flow, int i);
+
+// Everything on grain I, N [C 19].
+struct vector total_force(const struct flow *flow, int i);
+
+// All of FLOW into an artifact of schema flow; the caller finishes it.
+void put_flow(struct artifact *artifact, const struct flow *flow);
+
+// The total force on each grain, grown from nothing in STEPS times a second apart, into
+// an artifact of schema forces.
+void put_forces(struct artifact *artifact, const struct flow *flow, int steps);
+
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Solid angles of triangles seen from the origin (A. van Oosterom, J. Strackee, The
+// solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 125, 1983).
+#ifndef CRAQUELURE_SOLID_ANGLE_H
+#define CRAQUELURE_SOLID_ANGLE_H
+
+#include "geometry/vector.h"
+
+// A number whose argument is half a solid angle. Two multiplied add their angles, so a
+// polygon takes one arc tangent.
+struct half_angle {
+    double real, imaginary;
+};
+
+// Of the triangle U V W; positive where they turn anticlockwise seen from outside.
+static inline struct half_angle half_solid_angle(struct vector u, struct vector v,
+                                                 struct vector w)
+{
+    const double a = norm(u), b = norm(v), c = norm(w);
+    return (struct half_angle){
+        a * b * c + dot(u, v) * c + dot(v, w) * a + dot(w, u) * b, dot(cross(u, v), w)};
+}
+
+// The solid angle of TO less that of FROM, between -2 pi and 2 pi, sr.
+static inline double solid_angle_between(struct half_angle from, struct half_angle to)
+{
+    return 2 * atan2(to.imaginary * from.real - from.imaginary * to.real,
+                     to.real * from.real + to.imaginary * from.imaginary);
+}
+
+#endif
