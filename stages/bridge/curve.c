@@ -2,6 +2,7 @@
 #include "curve.h"
 
 #include "basics/memory.h"
+#include "bridges/table.h"
 
 #include <stdlib.h>
 
@@ -98,10 +99,41 @@ static void fill_in(json_t *report)
             json_object_set_new(report, names[k], json_null());
 }
 
+static enum status append_table(json_t *report, const struct bridge *bridge,
+                                const struct curve_request *request,
+                                struct reason *reason)
+{
+    struct bridge_table *table;
+    const enum status status =
+        bridge_table_create(bridge->radius, bridge->contact_angle, &table, reason);
+    if (status) return status;
+    const double scale = bridge_effective_radius(bridge);
+    const double volume = bridge_dimensionless_volume(bridge);
+    const double rupture = bridge_table_rupture(table, volume);
+    const bool inside = volume >= BRIDGE_TABLE_LEAST && volume <= BRIDGE_TABLE_MOST;
+    for (int k = 0; k < request->count; k++) {
+        const double gap = request->separation[k] / scale;
+        const double force = bridge_table_force(table, volume, gap);
+        append(report, "separation", json_real(request->separation[k]));
+        append(report, "force", json_real(bridge->surface_tension * scale * force));
+        append(report, "flags",
+               flag_words((gap > rupture ? BRIDGE_RUPTURED : 0) |
+                          (gap < 0 ? BRIDGE_OVERLAPS : 0) |
+                          (inside ? 0 : BRIDGE_VOLUME)));
+    }
+    bridge_table_free(table);
+    return STATUS_OK;
+}
+
 enum status put_curve(json_t *report, const struct bridge *bridge,
                       enum bridge_model model, const struct curve_request *request,
                       struct reason *reason)
 {
+    if (model == BRIDGE_TABLE) {
+        const enum status status = append_table(report, bridge, request, reason);
+        fill_in(report);
+        return status;
+    }
     for (int k = 0; k < request->count; k++) {
         const double separation = request->separation[k];
         append(report, "separation", json_real(separation));

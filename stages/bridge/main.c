@@ -20,7 +20,8 @@ struct bridge_parameters {
 static const struct parameter table[] = {
     {"model", PARAMETER_CHOICE, "1", "\"exact\"", BOUND_NONE, 0, 0,
      BRIDGE_MODEL_CHOICES,
-     "exact: Young and Laplace's equation; the others are approximations [G 2]",
+     "exact: Young and Laplace's equation; table: interpolated from it, to 1e-5; the "
+     "others are approximations [G 2]",
      AT(model)},
     {"radius", PARAMETER_NUMBER, "m", NULL, BOUND_ABOVE, 0, 0, NULL,
      "of the first sphere", AT(radius)},
@@ -75,7 +76,8 @@ static struct bridge bridge_of(const struct bridge_parameters *given)
 
 static double rupture_distance(const struct bridge *bridge, enum bridge_model model)
 {
-    if (model != BRIDGE_EXACT) return bridge_rupture_distance(bridge);
+    if (model != BRIDGE_EXACT && model != BRIDGE_TABLE)
+        return bridge_rupture_distance(bridge);
     struct bridge_state state;
     struct reason reason;
     const enum status status = bridge_solve_rupture(bridge, &state, &reason);

@@ -65,6 +65,11 @@ for model in MODELS:
     near = bridge(**W11, model=model, separations=[0, 1e-18])["force"]
     ok(abs(near[1] / near[0] - 1) < 1e-6, f"{model} is continuous at contact", near)
 
+curve = bridge(**W11, points=41, to=0.999)
+table = bridge(**W11, model="table", separations=curve["separation"])
+worst = max(abs(a / b - 1) for a, b in zip(table["force"], curve["force"]))
+ok(worst < 1e-5 and not any(table["flags"]), "the table holds the exact forces to 1e-5", worst)
+
 small = bridge(radius=1e-9, volume=1e-30, contact_angle=20, points=5)
 large = bridge(radius=1e3, volume=1e6, contact_angle=20, points=5)
 ok(all(abs(1e12 * a - b) <= 1e-12 * b for a, b in zip(small["force"], large["force"])),

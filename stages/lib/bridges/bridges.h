@@ -18,6 +18,7 @@ struct bridge {
 
 enum bridge_model {
     BRIDGE_EXACT,
+    BRIDGE_TABLE,              // bridges/table.h
     BRIDGE_WEIGERT,            // [G A1-A7]
     BRIDGE_WILLETT_FULL,       // [G B1-B4]
     BRIDGE_WILLETT_REDUCED,    // [G 8]
@@ -28,18 +29,17 @@ enum bridge_model {
 };
 // "exact", "table", ...: in the order above, as choices are spelled for parameters.
 #define BRIDGE_MODEL_CHOICES                                                           \
-    "exact|weigert|willett-full|willett-reduced|rabinovich|rabinovich-lambert|"        \
+    "exact|table|weigert|willett-full|willett-reduced|rabinovich|rabinovich-lambert|"  \
     "soulie"
 
 // What a force is not good for. It is finite all the same, and continuous but for
 // rupture.
 enum bridge_flag {
-    BRIDGE_RUPTURED = 1,        // beyond the rupture distance of the model
-    BRIDGE_OVERLAPS = 2,        // bodies overlap
-    BRIDGE_ANGLE = 4,           // contact angle beyond what the model was made for
-    BRIDGE_VOLUME = 8,          // volume beyond what the model was made for
-    BRIDGE_UNEQUAL_ANGLES = 16, // the model has one contact angle: their mean cosine
-    BRIDGE_UNSOLVED = 32        // no force: the exact solution was not found (NaN)
+    BRIDGE_RUPTURED = 1,       // beyond the rupture distance of the model
+    BRIDGE_OVERLAPS = 2,       // bodies overlap
+    BRIDGE_ANGLE = 4,          // contact angle beyond what the model was made for
+    BRIDGE_VOLUME = 8,         // volume beyond what the model was made for
+    BRIDGE_UNEQUAL_ANGLES = 16 // the model has one contact angle: their mean cosine
 };
 
 // 2 R1 R2/(R1 + R2) [G 1].
@@ -51,11 +51,16 @@ double bridge_dimensionless_volume(const struct bridge *bridge);
 // [G 2]; with the mean cosine of two contact angles.
 double bridge_rupture_distance(const struct bridge *bridge);
 
-// The force of a model other than BRIDGE_EXACT at SEPARATION (m;
+// The force of a model other than BRIDGE_EXACT and BRIDGE_TABLE at SEPARATION (m;
 // negative: overlap, where the models keep their value at contact). Beyond rupture it
 // goes on with the model's formula. FLAGS may be NULL.
 double bridge_model_force(const struct bridge *bridge, enum bridge_model model,
                           double separation, unsigned *flags);
+
+// Many forces of such a model in effective radii and surface tensions, for one contact
+// angle: COUNT volumes, gaps (negative ones count as 0) and forces.
+void bridge_model_forces(enum bridge_model model, double contact_angle, int count,
+                         const double *volume, const double *gap, double *force);
 
 // ---- the exact solution ------------------------------------------------------------
 

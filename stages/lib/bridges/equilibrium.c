@@ -471,3 +471,40 @@ enum status find_equilibrium(const struct bodies *bodies, double volume, double 
     *found = equilibrium_of(&state);
     return status;
 }
+
+// From the two bridges before by secants.
+static struct unknowns extrapolated(const struct state *before,
+                                    const struct state *last, double gap)
+{
+    struct unknowns to;
+    const double share = (gap - last->gap) / (last->gap - before->gap);
+    for (int n = 0; n < ARC_NUMBERS; n++)
+        to.at[n] = last->unknowns.at[n] +
+                   share * (last->unknowns.at[n] - before->unknowns.at[n]);
+    return to;
+}
+
+enum status follow_branch(const struct bodies *bodies, double volume, int count,
+                          const double *gap, struct equilibrium *found)
+{
+    struct state before = {0}, last = {0};
+    for (int k = 0; k < count; k++) {
+        struct state next = last;
+        const struct problem problem = problem_at(bodies, volume, gap[k]);
+        if (k > 1) next.unknowns = extrapolated(&before, &last, gap[k]);
+        const bool settled =
+            k > 0 && settle(&problem, &next) && near(&next.unknowns, &last.unknowns);
+        if (settled)
+            found[k] = equilibrium_of(&next);
+        else {
+            const enum status status =
+                find_equilibrium(bodies, volume, gap[k], &found[k]);
+            if (status) return status;
+            next.unknowns = unknowns_of(&found[k].arc);
+            next.gap = found[k].gap;
+        }
+        before = last;
+        last = next;
+    }
+    return STATUS_OK;
+}

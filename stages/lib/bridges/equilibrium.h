@@ -27,9 +27,9 @@ enum status find_equilibrium(const struct bodies *bodies, double volume, double 
 enum status find_rupture(const struct bodies *bodies, double volume,
                          struct equilibrium *found);
 
-// Follows the stable branch from touching bodies to rupture: COUNT bridges (at least 2)
-// at gaps from 0 to the widest, the K-th at widest times SHARE[K], in rising order.
+// Bridges at COUNT rising gaps from contact to rupture, each from those before it:
+// several times faster than one by one where gaps are close.
 enum status follow_branch(const struct bodies *bodies, double volume, int count,
-                          const double *share, struct equilibrium *found);
+                          const double *gap, struct equilibrium *found);
 
 #endif

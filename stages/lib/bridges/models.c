@@ -45,7 +45,7 @@ double bridge_rupture_distance(const struct bridge *bridge)
 }
 
 // [G 5, A1-A7], with a/2 where A6 has a: the meridian's circle touches both spheres.
-static double weigert(const struct reduced *is)
+static inline double weigert(const struct reduced *is)
 {
     const double reach =
         is->volume / (0.96 * (1 + 3 * is->gap) * (1 + 1.1 * sin(is->angle))); // sin^4
@@ -66,7 +66,7 @@ static double weigert(const struct reduced *is)
 static const double least_volume = 3e-5;
 
 // [G 7, B1-B4]
-static double willett_full(const struct reduced *is)
+static inline double willett_full(const struct reduced *is)
 {
     const double t = is->angle, l = log(fmax(is->volume, least_volume));
     const double f1 = (-0.44507 + t * (0.050832 - 1.1466 * t)) +
@@ -89,27 +89,27 @@ static double willett_full(const struct reduced *is)
 }
 
 // [G 8]
-static double willett_reduced(const struct reduced *is)
+static inline double willett_reduced(const struct reduced *is)
 {
     const double s = is->half_gap;
     return 2 * M_PI * cos(is->angle) / (1 + s * (2.1 + 10 * s));
 }
 
 // 2 d [G 10], without the difference of near-equal numbers.
-static double immersion(const struct reduced *is)
+static inline double immersion(const struct reduced *is)
 {
     const double area = 2 * is->volume / M_PI;
     return area / (is->gap + sqrt(is->gap * is->gap + area));
 }
 
 // [G 12]
-static double rabinovich_lambert(const struct reduced *is)
+static inline double rabinovich_lambert(const struct reduced *is)
 {
     return 2 * M_PI * cos(is->angle) / (1 + is->gap / immersion(is));
 }
 
 // [G 9, 11]
-static double rabinovich(const struct reduced *is)
+static inline double rabinovich(const struct reduced *is)
 {
     const double embracing = fmin(sqrt(immersion(is)), M_PI);
     return rabinovich_lambert(is) +
@@ -117,7 +117,7 @@ static double rabinovich(const struct reduced *is)
 }
 
 // Soulie et al. (2006), with the effective radius for both of theirs, as Yade has it.
-static double soulie(const struct reduced *is)
+static inline double soulie(const struct reduced *is)
 {
     const double l = log(is->volume), t = is->angle;
     const double a = -1.1 * pow(is->volume, -0.53);
@@ -126,7 +126,7 @@ static double soulie(const struct reduced *is)
     return M_PI * (c + exp(a * is->gap + b));
 }
 
-static double reduced_force(const struct reduced *is, enum bridge_model model)
+static inline double reduced_force(const struct reduced *is, enum bridge_model model)
 {
     switch (model) {
     case BRIDGE_WEIGERT:
@@ -169,4 +169,35 @@ double bridge_model_force(const struct bridge *bridge, enum bridge_model model,
     if (flags) *flags = flags_of(bridge, &is, model, separation);
     return bridge->surface_tension * bridge_effective_radius(bridge) *
            reduced_force(&is, model);
+}
+
+// The loop of one model, so that the compiler sees which it is.
+#define FORCES_OF(model)                                                               \
+    for (int k = 0; k < count; k++) {                                                  \
+        const double apart = gap[k] > 0 ? gap[k] : 0;                                  \
+        const struct reduced is = {apart, volume[k], contact_angle,                    \
+                                   apart / (2 * sqrt(volume[k]))};                     \
+        force[k] = model(&is);                                                         \
+    }                                                                                  \
+    return
+
+void bridge_model_forces(enum bridge_model model, double contact_angle, int count,
+                         const double *volume, const double *gap, double *force)
+{
+    switch (model) {
+    case BRIDGE_WEIGERT:
+        FORCES_OF(weigert);
+    case BRIDGE_WILLETT_FULL:
+        FORCES_OF(willett_full);
+    case BRIDGE_WILLETT_REDUCED:
+        FORCES_OF(willett_reduced);
+    case BRIDGE_RABINOVICH:
+        FORCES_OF(rabinovich);
+    case BRIDGE_RABINOVICH_LAMBERT:
+        FORCES_OF(rabinovich_lambert);
+    case BRIDGE_SOULIE:
+        FORCES_OF(soulie);
+    default:
+        return;
+    }
 }
