@@ -233,7 +233,8 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-.PHONY: check hard bench bench-dem bench-impact bench-network bench-walls sanitize check-c
+.PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
+	sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
 	@tests/hard/run
@@ -258,6 +259,8 @@ bench-impact: all $(BENCHES) ## error of the contact laws against cost, over tim
 	@tests/bench/impact
 bench-walls: all ## the tessellation in a cylinder and of grains on a sphere, next to voro++
 	@tests/bench/walls
+bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cost
+	@tests/bench/bridge
 bench-network: all ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
 
