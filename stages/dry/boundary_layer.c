@@ -160,10 +160,21 @@ static void find_areas(const struct open_face *face, bool lateral,
     layer->n_lateral = lateral ? cells.n_edge : 0;
     layer->lateral = allocate((size_t)layer->n_lateral, sizeof *layer->lateral);
     layer->lateral_conductance = NEW_ARRAY(double, layer->n_lateral);
+    layer->lateral_width = NEW_ARRAY(double, layer->n_lateral);
+    layer->lateral_length = NEW_ARRAY(double, layer->n_lateral);
+    layer->lateral_edge =
+        allocate((size_t)layer->n_lateral, sizeof *layer->lateral_edge);
     for (int k = 0; k < layer->n_lateral; k++) {
         const struct planar_edge *edge = &cells.edge[k];
-        for (int end = 0; end < 2; end++)
+        for (int end = 0; end < 2; end++) {
             layer->lateral[k][end] = edge->point[end];
+            layer->lateral_edge[k][2 * end] =
+                face->corner.x / face->unit + edge->end[end].x;
+            layer->lateral_edge[k][2 * end + 1] =
+                face->corner.y / face->unit + edge->end[end].y;
+        }
+        layer->lateral_width[k] = edge->width;
+        layer->lateral_length[k] = edge->distance;
         layer->lateral_conductance[k] = edge->width * layer->spacing / edge->distance;
     }
     planar_cells_free(&cells);
@@ -196,5 +207,8 @@ void boundary_layer_free(struct boundary_layer *layer)
     free(layer->area);
     free(layer->lateral);
     free(layer->lateral_conductance);
+    free(layer->lateral_width);
+    free(layer->lateral_length);
+    free(layer->lateral_edge);
     *layer = (struct boundary_layer){0};
 }

@@ -39,6 +39,11 @@ struct boundary_layer {
     int n_lateral;
     int (*lateral)[2]; // (n_lateral) links along a level, as indices into exposed
     double *lateral_conductance; // (n_lateral) area over length; half of it at level 0
+    double *lateral_width;       // (n_lateral) of the area
+    double *lateral_length;      // (n_lateral)
+    double (
+        *lateral_edge)[4]; // (n_lateral) seen along the columns, from where to where
+                           // the area reaches, along the axes that follow the open
 };
 
 // FOOT (n_node) becomes true for the nodes that have a column if none lies before them.

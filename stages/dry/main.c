@@ -7,6 +7,7 @@
 #include "enclosed.h"
 #include "mass_transfer.h"
 #include "network/throat_radius.h"
+#include "write_layer.h"
 
 #include <limits.h>
 #include <stdio.h>
@@ -215,36 +216,6 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
     artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
 }
 
-static const char *describe_layer(const struct dry_parameters *parameters,
-                                  const struct drying_history *history, char text[300])
-{
-    const char *feet = parameters->feet == FEET_SURFACE
-                           ? "all nodes of the surface"
-                           : "the nodes of the auxiliary layer";
-    if (parameters->exchange == EXCHANGE_LUMPED)
-        snprintf(text, 300, "lumped, %s exchange with the air one by one", feet);
-    else
-        snprintf(text, 300, "%d layers of columns on %s, lateral diffusion included",
-                 history->boundary_layers, feet);
-    return text;
-}
-
-static const char *describe_flow(const struct dry_parameters *parameters,
-                                 const struct mass_transfer *transfer, char text[200])
-{
-    static const char *const name[] = {"the mass transfer coefficient",
-                                       "the thickness given", "the Sherwood number",
-                                       "laminar flow along a plate [K 3.6]",
-                                       "flow around a sphere [Ranz and Marshall]"};
-    const char *from = name[parameters->transfer_law];
-    if (parameters->transfer_law < TRANSFER_PLATE)
-        snprintf(text, 200, "%s", from);
-    else
-        snprintf(text, 200, "%s: Re = %.6g, Sc = %.6g, Sh = %.6g", from,
-                 transfer->reynolds, transfer->schmidt, transfer->sherwood);
-    return text;
-}
-
 static void write_drying(const struct network *network,
                          const struct drying_history *history,
                          const struct invocation *invocation,
@@ -253,23 +224,25 @@ static void write_drying(const struct network *network,
                          const struct mass_transfer *transfer)
 {
     const struct drying_conditions *conditions = &parameters->conditions;
+    const enum transfer_law law = (enum transfer_law)parameters->transfer_law;
     char model[2000], layer[300], flow[200], liquid[300], switches[500];
-    snprintf(
-        model, sizeof model,
-        "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
-        "boundary layer: %s\n"
-        "boundary layer: %.17g m thick, from %s\n"
-        "liquid: %s\n"
-        "throats shut in by those imposed empty, and empty as well: %d\n"
-        "%s\n",
-        describe_layer(parameters, history, layer), history->boundary_layer_thickness,
-        describe_flow(parameters, transfer, flow),
-        describe_liquid(conditions, history, liquid, sizeof liquid),
-        parameters->enclosed, describe_switches(conditions, switches, sizeof switches));
+    snprintf(model, sizeof model,
+             "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
+             "boundary layer: %s\n"
+             "boundary layer: %.17g m thick, from %s\n"
+             "liquid: %s\n"
+             "throats shut in by those imposed empty, and empty as well: %d\n"
+             "%s\n",
+             describe_layer(conditions, history, layer),
+             history->boundary_layer_thickness, describe_flow(law, transfer, flow),
+             describe_liquid(conditions, history, liquid, sizeof liquid),
+             parameters->enclosed,
+             describe_switches(conditions, switches, sizeof switches));
     struct artifact *artifact = artifact_create("drying");
     artifact_put_network(artifact, network);
     put_history(artifact, history);
     put_summary(artifact, history, parameters->conditions.open_walls);
+    put_boundary_layer(artifact, network, &parameters->conditions, history);
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 

@@ -224,6 +224,7 @@ static void add_edges(struct cutting *cutting, int i, bool ends)
 {
     struct planar_cells *cells = cutting->cells;
     const struct polygon *cell = &cutting->cell;
+    const struct planar at = cutting->point[i];
     for (int k = 0; k < cell->n; k++) {
         const struct corner *from = &cell->corner[k];
         const struct corner *to = &cell->corner[(k + 1) % cell->n];
@@ -233,8 +234,12 @@ static void add_edges(struct cutting *cutting, int i, bool ends)
                                   : hypot(to->at.x - from->at.x, to->at.y - from->at.y);
         if (width <= LEAST_WIDTH * from->distance) continue;
         GROW_ARRAY(cells->edge, cells->n_edge, cutting->edge_capacity);
-        cells->edge[cells->n_edge++] = (struct planar_edge){
-            .point = {i, from->neighbour}, .width = width, .distance = from->distance};
+        cells->edge[cells->n_edge++] =
+            (struct planar_edge){.point = {i, from->neighbour},
+                                 .width = width,
+                                 .distance = from->distance,
+                                 .end = {{at.x + from->at.x, at.y + from->at.y},
+                                         {at.x + to->at.x, at.y + to->at.y}}};
     }
 }
 

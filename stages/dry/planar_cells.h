@@ -9,9 +9,10 @@
 // The edge between the cells of two points. Two cells may share several where the
 // rectangle repeats.
 struct planar_edge {
-    int point[2]; // lower first
-    double width;
+    int point[2];    // lower first
+    double width;    // in the region
     double distance; // between the points
+    struct planar end[2];
 };
 
 struct planar_cells {
