@@ -22,7 +22,9 @@ struct chord {
 
 struct cut {
     struct network *network;
-    const struct body *body;
+    int k; // which body
+    bool within;
+    int wall;
     bool *holds;            // (n_node) whether the body does
     int32_t (*crossing)[2]; // (n_throat) node where it enters and leaves the body; -1
     struct image *image;    // (n_crossing) of such a node, seen from the first end
@@ -40,15 +42,10 @@ struct cut {
 
 static bool stays(const struct cut *cut, int32_t node)
 {
-    return cut->holds[node] == cut->body->within;
+    return cut->holds[node] == cut->within;
 }
 
 // ---- throats ------------------------------------------------------------------------
-
-static struct vector edge_of(const struct cut *cut)
-{
-    return subtract(cut->network->packing.upper, cut->network->packing.lower);
-}
 
 static struct image throat_image(const struct cut *cut, int t)
 {
@@ -60,14 +57,9 @@ static void find_ends(const struct cut *cut, int t, struct vector end[2])
 {
     const struct network *network = cut->network;
     const int32_t *node = network->throat_nodes[t];
-    const struct image image = throat_image(cut, t);
     end[0] = network->node_position[node[0]];
-    end[1] = network->node_position[node[1]];
-    for (int axis = 0; axis < 3; axis++)
-        if (image.along[axis])
-            set_component(&end[1], axis,
-                          component(end[1], axis) +
-                              image.along[axis] * component(edge_of(cut), axis));
+    end[1] = add(network->node_position[node[1]],
+                 image_offset(&network->packing, throat_image(cut, t)));
 }
 
 // A node at TIME along throat T, moved into the box where it repeats.
@@ -81,9 +73,9 @@ static int32_t add_node(struct cut *cut, int t, const struct vector end[2], doub
     struct image image = {0};
     for (int axis = 0; axis < 3; axis++) {
         if (!network->packing.periodic[axis]) continue;
-        const double edge = component(edge_of(cut), axis), x = component(at, axis);
-        const double boxes =
-            floor((x - component(network->packing.lower, axis)) / edge);
+        const double lower = component(network->packing.lower, axis);
+        const double edge = component(network->packing.upper, axis) - lower;
+        const double x = component(at, axis), boxes = floor((x - lower) / edge);
         image.along[axis] = (int8_t)boxes;
         set_component(&at, axis, x - boxes * edge);
     }
@@ -98,7 +90,7 @@ static int32_t add_node(struct cut *cut, int t, const struct vector end[2], doub
     network->node_position[network->n_node] = at;
     network->node_walls[network->n_node] =
         (uint8_t)((network->node_walls[node[0]] & network->node_walls[node[1]]) |
-                  1 << body_wall(cut->body));
+                  1 << cut->wall);
     return network->n_node++;
 }
 
@@ -112,7 +104,12 @@ static void cross_throat(struct cut *cut, int t)
     cut->crossing[t][0] = cut->crossing[t][1] = -1;
     if (first && second) return;
     find_ends(cut, t, end);
-    bool meets = body_span(cut->body, end[0], end[1], span);
+    const struct body body =
+        body_near(&cut->network->packing, cut->k,
+                  first    ? end[0]
+                  : second ? end[1]
+                           : add(end[0], scale(0.5, subtract(end[1], end[0]))));
+    bool meets = body_span(&body, end[0], end[1], span);
     if (!meets) span[0] = span[1] = first ? 0 : 1; // grazed, if one end is within
     meets = first || second || (meets && span[0] > 0 && span[1] < 1);
     if (meets && !first) cut->crossing[t][0] = add_node(cut, t, end, span[0]);
@@ -234,8 +231,8 @@ static void cut_face(struct cut *cut, int f)
         if (step->crosses == CROSSES_IN) in = step->corner;
         if (step->crosses != CROSSES_OUT) continue;
         const struct step *next = &cut->step[(first + k + 1) % n];
-        add_chords(cut, f, step->corner, cut->body->within ? next->corner : in);
-        if (!cut->body->within) end_path(cut, f);
+        add_chords(cut, f, step->corner, cut->within ? next->corner : in);
+        if (!cut->within) end_path(cut, f);
     }
     end_path(cut, f);
 }
@@ -275,7 +272,7 @@ static void close_cells(struct cut *cut)
     bool *used = NEW_ARRAY(bool, cut->n_chord);
     for (int k = 0; k < cut->n_chord; k++) {
         const int32_t grain = cut->chord_row[k].key[0];
-        const int32_t side[2] = {grain, -1 - body_wall(cut->body)};
+        const int32_t side[2] = {grain, -1 - cut->wall};
         cut->n_path = 0;
         for (int at = used[k] ? -1 : k; at >= 0;) {
             const struct chord *chord = &cut->chord[cut->chord_row[at].item];
@@ -288,17 +285,15 @@ static void close_cells(struct cut *cut)
     free(used);
 }
 
-static enum status check_cut(const struct cut *cut, struct reason *reason)
+static enum status check_sides(const struct cut *cut, struct reason *reason)
 {
     const struct packing *packing = &cut->network->packing;
     for (int axis = 0; axis < 3; axis++)
-        if (packing->periodic[axis] &&
-            (component(cut->body->lower, axis) > component(packing->lower, axis) ||
-             component(cut->body->upper, axis) < component(packing->upper, axis) ||
-             body_is_round(cut->body, axis)))
+        if (cut->within && packing->periodic[axis] &&
+            body_is_round(&packing->body[cut->k], axis))
             return refuse(reason, STATUS_BAD_DATA,
-                          "/domain/periodic: row %d: a box that repeats where a body "
-                          "of /domain/bodies does not go through is not known",
+                          "/domain/periodic: row %d: must be 0 where the wall around "
+                          "the grains is round",
                           axis);
     return STATUS_OK;
 }
@@ -306,8 +301,11 @@ static enum status check_cut(const struct cut *cut, struct reason *reason)
 static void find_crossings(struct cut *cut)
 {
     const struct network *network = cut->network;
-    for (int i = 0; i < network->n_node; i++)
-        cut->holds[i] = body_holds(cut->body, network->node_position[i]);
+    for (int i = 0; i < network->n_node; i++) {
+        const struct vector at = network->node_position[i];
+        const struct body body = body_near(&network->packing, cut->k, at);
+        cut->holds[i] = body_holds(&body, at);
+    }
     for (int t = 0; t < network->n_throat; t++)
         cross_throat(cut, t);
 }
@@ -323,28 +321,32 @@ static void cut_free(struct cut *cut)
     free(cut->chord);
 }
 
-enum status cut_network(struct network *network, const struct body *body,
-                        enum clearance clearance, struct reason *reason)
+enum status cut_network(struct network *network, int k, enum clearance clearance,
+                        struct reason *reason)
 {
+    const struct body *body = &network->packing.body[k];
     struct cut cut = {.network = network,
-                      .body = body,
+                      .k = k,
+                      .within = body->within,
+                      .wall = body_wall(body),
                       .n_whole = network->n_node,
                       .node_capacity = network->n_node};
-    enum status status = check_cut(&cut, reason);
+    enum status status = check_sides(&cut, reason);
     if (status) return status;
     cut.holds = NEW_ARRAY(bool, network->n_node);
     cut.crossing = allocate((size_t)network->n_throat, sizeof *cut.crossing);
     find_crossings(&cut);
     // Beyond a wall around the grains lies what belongs to images of theirs.
     for (int f = 0; f < network->n_face; f++)
-        if (network->face_particles[f][1] != -1 - WALL_OUTER || !body->within)
+        if (network->face_particles[f][1] != -1 - WALL_OUTER || !cut.within)
             cut_face(&cut, f);
     close_cells(&cut);
     loops_to_network(&cut.loops, clearance, network);
     if (!cut.n_chord)
         status = refuse(reason, STATUS_BAD_DATA,
-                        "/domain/bodies: no throat meets the surface of one: it is too "
-                        "small for the grains around it, or they are too few");
+                        "/domain/bodies: row %d: no throat meets its surface: it is "
+                        "too small for the grains around it, or they are too few",
+                        k);
     cut_free(&cut);
     return status;
 }

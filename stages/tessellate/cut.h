@@ -6,7 +6,7 @@
 #include "basics/status.h"
 #include "diagram.h"
 
-// Cuts from NETWORK what does not lie within BODY (or around it, as it says): throats
+// Cuts from NETWORK what does not lie within body K (or around it, as it says): throats
 // end where they meet its surface [K 3.3.1, step 3], exactly; faces end there in a
 // throat that is the chord between those ends; and each grain gets a face on the wall,
 // whose rim these chords are. So cells stay closed, with the nodes on the wall, and
@@ -17,8 +17,8 @@
 //
 // New nodes come last, in the order of the throats they cut. STATUS_BAD_DATA when the
 // surface meets no throat: it is too small for the grains, or they are too few; or when
-// the box repeats where the body does not go through.
-enum status cut_network(struct network *network, const struct body *body,
-                        enum clearance clearance, struct reason *reason);
+// the box repeats where the grains lie within a round wall.
+enum status cut_network(struct network *network, int k, enum clearance clearance,
+                        struct reason *reason);
 
 #endif

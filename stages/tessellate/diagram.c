@@ -168,10 +168,8 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     nodes_free(&nodes);
     triangulation_free(&triangulation);
     generators_free(&generators);
-    for (int k = 0; k < packing->n_body && !status; k++) {
-        const struct body body = body_through(packing, k);
-        status = cut_network(network, &body, how->clearance, reason);
-    }
+    for (int k = 0; k < packing->n_body && !status; k++)
+        status = cut_network(network, k, how->clearance, reason);
     report->n_cell = packing->n_particle - report->hidden;
     if (!status) mark_boundary_layer(network, how->layer);
     if (!status && how->boundary == BOUNDARY_ELIMINATE)

@@ -65,10 +65,10 @@ static void place_walls(const struct packing *packing, struct generators *genera
 static enum status check_within(const struct packing *packing, struct reason *reason)
 {
     static const char *const name[] = {"box", "cylinder", "sphere", "disc"};
-    for (int k = 0; k < packing->n_body; k++) {
-        const struct body body = body_through(packing, k);
+    for (int k = 0; k < packing->n_body; k++)
         for (int i = 0; i < packing->n_particle; i++) {
             const struct vector at = packing->position[i];
+            const struct body body = body_near(packing, k, at);
             if (body_holds(&body, at) == body.within) continue;
             return refuse(reason, STATUS_BAD_DATA,
                           "/particles/position: row %d: the centre must be %s the %s "
@@ -76,7 +76,6 @@ static enum status check_within(const struct packing *packing, struct reason *re
                           i, body.within ? "in" : "outside", name[body.shape], k, at.x,
                           at.y, at.z);
         }
-    }
     return STATUS_OK;
 }
 

@@ -36,14 +36,7 @@ void loops_append(struct loops *loops, const int32_t side[2], struct image image
 static struct vector place(const struct network *network, struct vector at,
                            struct image image)
 {
-    const struct packing *packing = &network->packing;
-    for (int axis = 0; axis < 3; axis++)
-        if (image.along[axis])
-            set_component(&at, axis,
-                          component(at, axis) +
-                              image.along[axis] * (component(packing->upper, axis) -
-                                                   component(packing->lower, axis)));
-    return at;
+    return add(at, image_offset(&network->packing, image));
 }
 
 static void append_edge(struct edges *edges, struct corner a, struct corner b,

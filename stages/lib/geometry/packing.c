@@ -18,6 +18,25 @@ double wall_position(const struct packing *packing, int wall)
     return component(wall % 2 ? packing->upper : packing->lower, wall / 2);
 }
 
+struct body body_near(const struct packing *packing, int k, struct vector x)
+{
+    struct body body = packing->body[k];
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = component(packing->lower, axis);
+        const double high = component(packing->upper, axis), edge = high - low;
+        double from = component(body.lower, axis), to = component(body.upper, axis);
+        const bool round = body_is_round(&body, axis);
+        const double away = component(x, axis) - from - 0.5 * (to - from);
+        const double boxes = packing->periodic[axis] ? nearbyint(away / edge) : 0;
+        const double slack = 1e-9 * edge;
+        if (!round && from <= low + slack) from -= 4 * edge;
+        if (!round && to >= high - slack) to += 4 * edge;
+        set_component(&body.lower, axis, from + boxes * edge);
+        set_component(&body.upper, axis, to + boxes * edge);
+    }
+    return body;
+}
+
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x)
 {
     if (wall < WALL_COUNT) {
@@ -27,28 +46,13 @@ struct vector nearest_on_wall(const struct packing *packing, int wall, struct ve
     double least = HUGE_VAL;
     struct vector nearest = x;
     for (int k = 0; k < packing->n_body; k++) {
-        if (body_wall(&packing->body[k]) != wall) continue;
-        const struct vector on = body_nearest(&packing->body[k], x);
+        const struct body body = body_near(packing, k, x);
+        if (body_wall(&body) != wall) continue;
+        const struct vector on = body_nearest(&body, x);
         if (distance(on, x) < least) nearest = on;
         least = fmin(least, distance(on, x));
     }
     return nearest;
-}
-
-struct body body_through(const struct packing *packing, int k)
-{
-    struct body body = packing->body[k];
-    for (int axis = 0; axis < 3; axis++) {
-        const double low = component(packing->lower, axis);
-        const double high = component(packing->upper, axis), edge = high - low;
-        const double slack = 1e-9 * edge;
-        if (body_is_round(&body, axis)) continue;
-        if (component(body.lower, axis) <= low + slack)
-            set_component(&body.lower, axis, low - 4 * edge);
-        if (component(body.upper, axis) >= high - slack)
-            set_component(&body.upper, axis, high + 4 * edge);
-    }
-    return body;
 }
 
 struct vector image_offset(const struct packing *packing, struct image image)

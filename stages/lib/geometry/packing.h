@@ -63,8 +63,9 @@ static inline int body_wall(const struct body *body)
 // The point nearest to X on wall 0..5, WALL_OUTER or WALL_INNER (the nearest body's).
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x);
 
-// Body K, going on beyond the sides of the box that it reaches.
-struct body body_through(const struct packing *packing, int k);
+// Body K in the repetition of the box nearest to X, going on beyond the sides of the
+// box that it reaches.
+struct body body_near(const struct packing *packing, int k, struct vector x);
 
 // From something in the box to what it repeats IMAGE boxes away; m.
 struct vector image_offset(const struct packing *packing, struct image image);
