@@ -102,7 +102,7 @@ def compare_cut(title, cells, flat, folder, radius):
     """Face by face as voro++ has them without the wall, cut here."""
     lower, upper = np.full(3, -0.5), np.full(3, 1.5)
     if flat is not None:
-        lower[flat], upper[flat] = 0, 1
+        lower[flat], upper[flat] = 0, cells.edge[flat]
     areas = np.linalg.norm(cells.areas(), axis=1)
     ours = {pair: a for pair, a in zip(map(tuple, cells.sides.tolist()), areas) if pair[1] >= 0}
     theirs = {pair: cut_polygon(polygon, flat) for pair, polygon in polygons(
@@ -146,6 +146,13 @@ def check_peer(folder):
                   [(OUTER, 0.5, flat)])
             compare_clear(f"  {name}", cells, ARGUMENTS[name], folder, radius)
             compare_cut(f"  {name}", cells, flat, folder, radius)
+
+
+def check_settled(folder):
+    cells = of_packing(folder, "method=deposition", "radius=0.07", *SIZES, *CYLINDER)
+    sound("settled in a cylinder", cells, np.pi / 4 * cells.edge[2], 0.05, [(OUTER, 0.5, 2)])
+    compare_clear("  settled", cells, ARGUMENTS["cylinder"], folder, cells.radius)
+    compare_cut("  settled", cells, 2, folder, cells.radius)
 
 
 # ---- what no peer has --------------------------------------------------------------------
@@ -273,6 +280,7 @@ def refused(title, pattern, folder, *settings, grains=None):
 with scratch() as folder:
     if has_voro():
         check_peer(folder)
+        check_settled(folder)
     check_shapes(folder)
     check_right_angles(folder)
     check_scales(folder)
