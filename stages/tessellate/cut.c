@@ -25,6 +25,8 @@ struct cut {
     int k; // which body
     bool within;
     int wall;
+    enum clearance clearance;
+    bool *near;             // (n_node) whether a throat of it meets the surface
     bool *holds;            // (n_node) whether the body does
     int32_t (*crossing)[2]; // (n_throat) node where it enters and leaves the body; -1
     struct image *image;    // (n_crossing) of such a node, seen from the first end
@@ -114,6 +116,7 @@ static void cross_throat(struct cut *cut, int t)
     meets = first || second || (meets && span[0] > 0 && span[1] < 1);
     if (meets && !first) cut->crossing[t][0] = add_node(cut, t, end, span[0]);
     if (meets && !second) cut->crossing[t][1] = add_node(cut, t, end, span[1]);
+    if (meets) cut->near[node[0]] = cut->near[node[1]] = true;
 }
 
 // The throat between two corners of a face; FORWARD when A is its first node.
@@ -150,8 +153,9 @@ static struct corner corner_of(const struct network *network, int64_t k)
 // From corner A to B: what of it stays, and where it crosses.
 static void walk_edge(struct cut *cut, struct corner a, struct corner b)
 {
-    bool forward, staying = stays(cut, a.node);
-    const int t = throat_of(cut, a, b, &forward);
+    bool forward = true, staying = stays(cut, a.node);
+    const bool near = cut->near[a.node] && cut->near[b.node];
+    const int t = near ? throat_of(cut, a, b, &forward) : -1;
     if (staying) add_step(cut, a, CROSSES_NOT);
     for (int k = 0; k < 2 && t >= 0; k++) {
         const int32_t node = cut->crossing[t][forward ? k : 1 - k];
@@ -163,11 +167,20 @@ static void walk_edge(struct cut *cut, struct corner a, struct corner b)
     }
 }
 
+static bool is_near(const struct cut *cut, int f)
+{
+    const struct network *network = cut->network;
+    for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
+        if (cut->near[network->face_nodes[k]]) return true;
+    return false;
+}
+
 static void walk_face(struct cut *cut, int f)
 {
     const struct network *network = cut->network;
     const int64_t begin = network->face_offset[f], end = network->face_offset[f + 1];
     cut->n_step = 0;
+    if (!is_near(cut, f) && !stays(cut, network->face_nodes[begin])) return;
     for (int64_t k = begin; k < end; k++)
         walk_edge(cut, corner_of(network, k),
                   corner_of(network, k + 1 < end ? k + 1 : begin));
@@ -198,12 +211,41 @@ static void add_chords(struct cut *cut, int f, struct corner from, struct corner
     add_chord(cut, side[1], from, to);
 }
 
+static struct image face_image(const struct cut *cut, int f)
+{
+    return cut->network->face_image ? cut->network->face_image[f] : (struct image){0};
+}
+
+// A throat of face F with an end on the wall.
+static void add_throat(struct cut *cut, int f, struct corner a, struct corner b)
+{
+    const struct network *network = cut->network;
+    const struct packing *packing = &network->packing;
+    const struct vector end[2] = {
+        add(network->node_position[a.node], image_offset(packing, a.image)),
+        add(network->node_position[b.node], image_offset(packing, b.image))};
+    double radius = HUGE_VAL;
+    for (int side = 0; side < 2; side++) {
+        const int32_t grain = network->face_particles[f][side];
+        if (grain < 0) continue;
+        const struct vector image =
+            side ? image_offset(packing, face_image(cut, f)) : (struct vector){0};
+        radius =
+            fmin(radius, clearance_of(add(packing->position[grain], image),
+                                      packing->radius[grain], end, cut->clearance));
+    }
+    loops_add_throat(&cut->loops, a, b, fmax(0, radius), distance(end[0], end[1]));
+}
+
 static void end_path(struct cut *cut, int f)
 {
-    const struct image image =
-        cut->network->face_image ? cut->network->face_image[f] : (struct image){0};
-    loops_append(&cut->loops, cut->network->face_particles[f], image, cut->path,
-                 cut->n_path);
+    loops_append(&cut->loops, cut->network->face_particles[f], face_image(cut, f),
+                 cut->path, cut->n_path);
+    for (int k = 0; k < cut->n_path && cut->n_path > 1; k++) {
+        const struct corner a = cut->path[k];
+        const struct corner b = cut->path[k + 1 < cut->n_path ? k + 1 : 0];
+        if (a.node >= cut->n_whole || b.node >= cut->n_whole) add_throat(cut, f, a, b);
+    }
     cut->n_path = 0;
 }
 
@@ -298,6 +340,21 @@ static enum status check_sides(const struct cut *cut, struct reason *reason)
     return STATUS_OK;
 }
 
+// Throats that do not meet the wall stay as they are.
+static void keep_throats(struct cut *cut)
+{
+    const struct network *network = cut->network;
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *node = network->throat_nodes[t];
+        if (!stays(cut, node[0]) || !stays(cut, node[1])) continue;
+        if (cut->crossing[t][0] >= 0) continue;
+        const struct corner a = {.node = node[0]};
+        const struct corner b = {.node = node[1], .image = throat_image(cut, t)};
+        loops_add_throat(&cut->loops, a, b, network->throat_radius[t],
+                         network->throat_length[t]);
+    }
+}
+
 static void find_crossings(struct cut *cut)
 {
     const struct network *network = cut->network;
@@ -312,6 +369,7 @@ static void find_crossings(struct cut *cut)
 
 static void cut_free(struct cut *cut)
 {
+    free(cut->near);
     free(cut->holds);
     free(cut->crossing);
     free(cut->image);
@@ -328,20 +386,23 @@ enum status cut_network(struct network *network, int k, enum clearance clearance
     struct cut cut = {.network = network,
                       .k = k,
                       .within = body->within,
+                      .clearance = clearance,
                       .wall = body_wall(body),
                       .n_whole = network->n_node,
                       .node_capacity = network->n_node};
     enum status status = check_sides(&cut, reason);
     if (status) return status;
+    cut.near = NEW_ARRAY(bool, network->n_node);
     cut.holds = NEW_ARRAY(bool, network->n_node);
     cut.crossing = allocate((size_t)network->n_throat, sizeof *cut.crossing);
     find_crossings(&cut);
+    keep_throats(&cut);
     // Beyond a wall around the grains lies what belongs to images of theirs.
     for (int f = 0; f < network->n_face; f++)
         if (network->face_particles[f][1] != -1 - WALL_OUTER || !cut.within)
             cut_face(&cut, f);
     close_cells(&cut);
-    loops_to_network(&cut.loops, clearance, network);
+    loops_to_network(&cut.loops, network);
     if (!cut.n_chord)
         status = refuse(reason, STATUS_BAD_DATA,
                         "/domain/bodies: row %d: no throat meets its surface: it is "

@@ -6,13 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Throats as seen from the faces beside them.
-struct edges {
-    struct row *row;   // the two nodes, the image of the second; which of those below
-    double *clearance; // to the grains of the face, m
-    int count, capacity, clearance_capacity;
-};
-
 void loops_append(struct loops *loops, const int32_t side[2], struct image image,
                   const struct corner *corner, int count)
 {
@@ -33,48 +26,20 @@ void loops_append(struct loops *loops, const int32_t side[2], struct image image
     loops->begin[++loops->count] = loops->n_corner;
 }
 
-static struct vector place(const struct network *network, struct vector at,
-                           struct image image)
-{
-    return add(at, image_offset(&network->packing, image));
-}
-
-static void append_edge(struct edges *edges, struct corner a, struct corner b,
-                        double clearance)
+void loops_add_throat(struct loops *loops, struct corner a, struct corner b,
+                      double radius, double length)
 {
     const struct corner first = a.node < b.node ? a : b;
     const struct corner second = a.node < b.node ? b : a;
     const struct image apart = image_difference(second.image, first.image);
-    GROW_ARRAY(edges->row, edges->count, edges->capacity);
-    GROW_ARRAY(edges->clearance, edges->count, edges->clearance_capacity);
-    edges->row[edges->count] = (struct row){
-        .key = {first.node, second.node, image_number(apart)}, .item = edges->count};
-    edges->clearance[edges->count++] = clearance;
-}
-
-static void append_edges(const struct network *network, const struct loops *loops,
-                         const struct row *face, enum clearance how,
-                         struct edges *edges)
-{
-    const struct packing *packing = &network->packing;
-    const int64_t begin = loops->begin[face->item], end = loops->begin[face->item + 1];
-    for (int64_t k = begin; k < end; k++) {
-        const struct corner a = loops->corner[k];
-        const struct corner b = loops->corner[k + 1 < end ? k + 1 : begin];
-        const struct vector ends[2] = {
-            place(network, network->node_position[a.node], a.image),
-            place(network, network->node_position[b.node], b.image)};
-        double least = HUGE_VAL;
-        for (int side = 0; side < 2; side++) {
-            const int32_t grain = face->key[side];
-            const struct image image = numbered_image(side ? face->key[2] : 0);
-            if (grain < 0) continue;
-            least = fmin(least,
-                         clearance_of(place(network, packing->position[grain], image),
-                                      packing->radius[grain], ends, how));
-        }
-        append_edge(edges, a, b, least);
-    }
+    const int k = loops->n_throat;
+    GROW_ARRAY(loops->throat, k, loops->throat_capacity);
+    GROW_ARRAY(loops->size, k, loops->size_capacity);
+    loops->throat[k] =
+        (struct row){.key = {first.node, second.node, image_number(apart)}, .item = k};
+    loops->size[k][0] = radius;
+    loops->size[k][1] = length;
+    loops->n_throat++;
 }
 
 static void store_faces(const struct loops *loops, struct network *network)
@@ -104,61 +69,72 @@ static void store_faces(const struct loops *loops, struct network *network)
     }
 }
 
-// Of each edge the least clearance that the faces beside it say; keeps it at the index
-// of the row.
-static void fuse(struct edges *edges)
+// Once each, with the least radius; keeps the index of that at the row.
+static void fuse_throats(struct loops *loops)
 {
-    struct row *row = edges->row;
+    struct row *row = loops->throat;
     int kept = 0;
-    for (int k = 0; k < edges->count; k++) {
+    for (int k = 0; k < loops->n_throat; k++) {
         struct row *last = kept ? &row[kept - 1] : NULL;
         if (!last || memcmp(last->key, row[k].key, sizeof last->key))
             row[kept++] = row[k];
-        else if (edges->clearance[row[k].item] < edges->clearance[last->item])
+        else if (loops->size[row[k].item][0] < loops->size[last->item][0])
             last->item = row[k].item;
     }
-    edges->count = kept;
+    loops->n_throat = kept;
 }
 
-static void store_throats(const struct edges *edges, struct network *network)
+static void store_throats(const struct loops *loops, struct network *network)
 {
     const bool periodic = is_periodic(&network->packing);
-    const int n = network->n_throat = edges->count;
+    const int n = network->n_throat = loops->n_throat;
     network->throat_nodes = allocate((size_t)n, sizeof *network->throat_nodes);
     network->throat_radius = NEW_ARRAY(double, n);
     network->throat_length = NEW_ARRAY(double, n);
     network->throat_kind = NEW_ARRAY(uint8_t, n);
     if (periodic) network->throat_image = NEW_ARRAY(struct image, n);
     for (int t = 0; t < n; t++) {
-        const struct row *row = &edges->row[t];
-        const int32_t a = row->key[0], b = row->key[1];
-        const struct image image = numbered_image(row->key[2]);
-        network->throat_nodes[t][0] = a;
-        network->throat_nodes[t][1] = b;
-        network->throat_radius[t] = fmax(0, edges->clearance[row->item]);
-        network->throat_length[t] =
-            distance(network->node_position[a],
-                     place(network, network->node_position[b], image));
-        if (periodic) network->throat_image[t] = image;
+        const struct row *row = &loops->throat[t];
+        network->throat_nodes[t][0] = row->key[0];
+        network->throat_nodes[t][1] = row->key[1];
+        network->throat_radius[t] = loops->size[row->item][0];
+        network->throat_length[t] = loops->size[row->item][1];
+        if (periodic) network->throat_image[t] = numbered_image(row->key[2]);
     }
 }
 
-// Numbers the nodes anew, those that are corners only.
-static void keep_used_nodes(struct loops *loops, struct network *network)
+// The new number of each node, -1 for those that are no corner.
+static int *number_corners(const struct loops *loops, struct network *network)
 {
     int *number = NEW_ARRAY(int, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        number[i] = -1;
     for (int64_t k = 0; k < loops->n_corner; k++)
-        number[loops->corner[k].node] = 1;
+        number[loops->corner[k].node] = 0;
     int n = 0;
     for (int i = 0; i < network->n_node; i++) {
-        if (!number[i]) continue;
+        if (number[i] < 0) continue;
         network->node_position[n] = network->node_position[i];
         network->node_walls[n] = network->node_walls[i];
         number[i] = n++;
     }
     network->n_node = n;
+    return number;
+}
+
+static void keep_corners(struct loops *loops, struct network *network)
+{
+    int *number = number_corners(loops, network);
     for (int64_t k = 0; k < loops->n_corner; k++)
         loops->corner[k].node = number[loops->corner[k].node];
+    int kept = 0;
+    for (int t = 0; t < loops->n_throat; t++) {
+        struct row row = loops->throat[t];
+        for (int end = 0; end < 2; end++)
+            row.key[end] = number[row.key[end]];
+        if (row.key[0] >= 0 && row.key[1] >= 0) loops->throat[kept++] = row;
+    }
+    loops->n_throat = kept;
     free(number);
 }
 
@@ -176,23 +152,19 @@ static void forget(struct network *network)
     free(network->face_node_image);
 }
 
-void loops_to_network(struct loops *loops, enum clearance clearance,
-                      struct network *network)
+void loops_to_network(struct loops *loops, struct network *network)
 {
-    struct edges edges = {0};
-    keep_used_nodes(loops, network);
+    keep_corners(loops, network);
     loops->row = sort_rows(loops->row, loops->count);
-    for (int f = 0; f < loops->count; f++)
-        append_edges(network, loops, &loops->row[f], clearance, &edges);
-    edges.row = sort_rows(edges.row, edges.count);
-    fuse(&edges);
+    loops->throat = sort_rows(loops->throat, loops->n_throat);
+    fuse_throats(loops);
     forget(network);
     store_faces(loops, network);
-    store_throats(&edges, network);
-    free(edges.row);
-    free(edges.clearance);
+    store_throats(loops, network);
     free(loops->row);
     free(loops->begin);
     free(loops->corner);
+    free(loops->throat);
+    free(loops->size);
     *loops = (struct loops){0};
 }

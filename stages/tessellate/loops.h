@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_LOOPS_H
 #define CRAQUELURE_LOOPS_H
 
-#include "diagram.h"
+#include "network/network.h"
 #include "rows.h"
 
 // A node, in the repetition of the box that the first grain of the face sees it in.
@@ -12,13 +12,17 @@ struct corner {
     struct image image;
 };
 
-// Faces one after the other.
+// Faces, one after the other, and throats, as often as they are met.
 struct loops {
     struct row *row; // keys: the two sides, the image of the second; which loop
     int64_t *begin;  // where its corners begin; one more for the end
     int count, capacity, begin_capacity;
     struct corner *corner;
     int64_t n_corner, corner_capacity;
+
+    struct row *throat; // keys: the two nodes, the image of the second; which of those
+    double (*size)[2];  // its radius and length, m
+    int n_throat, throat_capacity, size_capacity;
 };
 
 // Adds a face between SIDE[0] and SIDE[1] in repetition IMAGE, its COUNT corners
@@ -26,10 +30,14 @@ struct loops {
 void loops_append(struct loops *loops, const int32_t side[2], struct image image,
                   const struct corner *corner, int count);
 
-// Gives the network these faces, in the order of their sides; as throats the edges of
-// them; and takes away nodes that are in none. All throats are of kind network. Empties
-// LOOPS.
-void loops_to_network(struct loops *loops, enum clearance clearance,
-                      struct network *network);
+// Adds a throat, RADIUS and LENGTH in m. Of one that is added more than once the least
+// radius counts.
+void loops_add_throat(struct loops *loops, struct corner a, struct corner b,
+                      double radius, double length);
+
+// Gives the network these faces, in the order of their sides, and those of the throats
+// that join corners of them; takes away nodes that are no corner. All throats are of
+// kind network. Empties LOOPS.
+void loops_to_network(struct loops *loops, struct network *network);
 
 #endif
