@@ -2,6 +2,7 @@
 #include "viscous.h"
 
 #include "basics/memory.h"
+#include "graph_factor.h"
 #include "losses.h"
 
 #include <cholmod.h>
@@ -13,7 +14,12 @@ enum { MOST_ROUNDS = 200, REFINEMENTS = 10 };
 
 // Largest error of a node's balance, relative to the largest flow in its cluster.
 #define FLOW_TOLERANCE 1e-11
-static const double AIM = 1e-14;
+static const double AIM = 1e-13;
+
+// A cluster of at least this many nodes keeps its factor; the conjugate gradients with
+// it stop at this part of the square of the error, or after so many steps.
+enum { FOLLOWED_NODES = 150, MOST_STEPS = 24, FEW_MOVING = 8 };
+static const double REDUCTION = 1e-26;
 
 // One cluster of liquid. Its unknowns are the potentials at nodes that liquid fills.
 struct piece {
@@ -22,7 +28,19 @@ struct piece {
     int n_unknown;
     int reference;      // throat that gas enters most easily: potentials are above its
     double evaporation; // of all its throats
-    double flow;        // scale of the flows in it
+    int n_meniscus, n_partial; // of them, in throats partly empty
+    double margin;             // of the reference over the next throat that gas enters
+    double resistance;         // of all its throats one after the other
+    int n_moving;
+    double flow;   // scale of the flows in it
+    bool followed; // its factor is kept
+    int n_link;
+};
+
+// Of the matrix: between unknowns, or to the ground where B is -1.
+struct flow_link {
+    int a, b;
+    double conductance;
 };
 
 struct flow_solver {
@@ -34,6 +52,10 @@ struct flow_solver {
     // In two parts: across a wide throat potentials differ by less than the last digit.
     struct compensated *potential;
     double *lack;
+    struct graph_factor *factor; // of the largest cluster
+    struct flow_link *link;
+    double *vector[3]; // (n_node) each
+    int64_t steps;     // of conjugate gradients
     const struct phases *phases;
     const double *charge;
 };
@@ -45,20 +67,26 @@ struct liquid_flow liquid_flow_make(const struct network *network, double length
     struct liquid_flow flow = {.network = network,
                                .menisci = menisci,
                                .conductance = NEW_ARRAY(double, network->n_throat),
+                               .resistance = NEW_ARRAY(double, network->n_throat),
                                .moving = NEW_ARRAY(bool, network->n_throat),
                                .pressure = NEW_ARRAY(double, network->n_node),
                                .solver = solver};
     for (int t = 0; t < network->n_throat; t++) {
         const double r = network->throat_radius[t] / length;
-        if (network->throat_kind[t] == THROAT_NETWORK)
-            flow.conductance[t] =
-                M_PI * (r * r) * (r * r) / (8 * (network->throat_length[t] / length));
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        flow.conductance[t] =
+            M_PI * (r * r) * (r * r) / (8 * (network->throat_length[t] / length));
+        flow.resistance[t] = 1 / flow.conductance[t];
     }
     solver->throat = NEW_ARRAY(int, network->n_throat);
     solver->unknown = NEW_ARRAY(int, network->n_node);
     solver->node = NEW_ARRAY(int, network->n_node);
     solver->potential = NEW_ARRAY(struct compensated, network->n_node);
     solver->lack = NEW_ARRAY(double, network->n_node);
+    solver->link = NEW_ARRAY(struct flow_link, 2 * (size_t)network->n_throat);
+    for (int k = 0; k < 3; k++)
+        solver->vector[k] = NEW_ARRAY(double, network->n_node);
+    solver->factor = graph_factor_make(network->n_node, 3 * network->n_throat);
     for (int i = 0; i < network->n_node; i++)
         solver->unknown[i] = -1;
     cholmod_start(&solver->common);
@@ -81,10 +109,15 @@ void liquid_flow_free(struct liquid_flow *flow)
         free(solver->node);
         free(solver->potential);
         free(solver->lack);
+        free(solver->link);
+        for (int k = 0; k < 3; k++)
+            free(solver->vector[k]);
+        graph_factor_free(solver->factor);
         free(solver);
     }
     menisci_free(&flow->menisci);
     free(flow->conductance);
+    free(flow->resistance);
     free(flow->moving);
     free(flow->pressure);
     *flow = (struct liquid_flow){0};
@@ -197,6 +230,26 @@ static void find_lack(const struct liquid_flow *flow, const struct piece *piece)
     }
 }
 
+// The matrix, link by link.
+static void find_links(const struct liquid_flow *flow, struct piece *piece)
+{
+    struct flow_link *link = flow->solver->link;
+    piece->n_link = piece->n_moving = 0;
+    for (int k = 0; k < piece->n_throat; k++) {
+        const int throat = piece->throat[k];
+        int end[2];
+        const int n = liquid_ends(flow, throat, end);
+        piece->n_moving += flow->moving[throat];
+        if (flow->moving[throat])
+            for (int e = 0; e < n; e++)
+                link[piece->n_link++] =
+                    (struct flow_link){end[e], -1, arm(flow, throat, n)};
+        else if (n == 2)
+            link[piece->n_link++] =
+                (struct flow_link){end[0], end[1], flow->conductance[throat]};
+    }
+}
+
 static void add_entry(cholmod_triplet *entries, int row, int column, double value)
 {
     ((int *)entries->i)[entries->nnz] = row > column ? row : column;
@@ -210,20 +263,16 @@ static cholmod_sparse *assemble(const struct liquid_flow *flow,
                                 const struct piece *piece)
 {
     cholmod_common *common = &flow->solver->common;
-    const size_t n_unknown = (size_t)piece->n_unknown;
-    cholmod_triplet *entries = cholmod_allocate_triplet(
-        n_unknown, n_unknown, 3 * (size_t)piece->n_throat, -1, CHOLMOD_REAL, common);
+    const size_t n = (size_t)piece->n_unknown;
+    cholmod_triplet *entries = cholmod_allocate_triplet(n, n, 3 * (size_t)piece->n_link,
+                                                        -1, CHOLMOD_REAL, common);
     if (!entries) return NULL;
-    for (int k = 0; k < piece->n_throat; k++) {
-        const int throat = piece->throat[k];
-        int end[2];
-        const int n = liquid_ends(flow, throat, end);
-        const bool moving = flow->moving[throat];
-        if (!moving && n < 2) continue;
-        const double value = moving ? arm(flow, throat, n) : flow->conductance[throat];
-        for (int e = 0; e < n; e++)
-            add_entry(entries, end[e], end[e], value);
-        if (!moving) add_entry(entries, end[0], end[1], -value);
+    for (int k = 0; k < piece->n_link; k++) {
+        const struct flow_link *link = &flow->solver->link[k];
+        add_entry(entries, link->a, link->a, link->conductance);
+        if (link->b < 0) continue;
+        add_entry(entries, link->b, link->b, link->conductance);
+        add_entry(entries, link->a, link->b, -link->conductance);
     }
     cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, entries->nnz, common);
     cholmod_free_triplet(&entries, common);
@@ -248,6 +297,108 @@ static double flow_scale(const struct liquid_flow *flow, const struct piece *pie
     return scale;
 }
 
+// --- with a factor that follows
+// -------------------------------------------------------
+
+// The arm of a moving meniscus to the next power of two, and no more than a million
+// times that of a full throat: near enough, and seldom another.
+static double rough_arm(const struct liquid_flow *flow, int throat, int n)
+{
+    int exponent;
+    frexp(fmax(1e-6, saturation_of(flow->solver, throat)), &exponent);
+    return ldexp(n * flow->conductance[throat], -exponent);
+}
+
+// Numbers of a throat's links: between its nodes, and from either to its meniscus.
+enum { LINK_THROUGH, LINK_ARM, LINKS = 3 };
+
+static void name_throat(const struct liquid_flow *flow, const struct piece *piece,
+                        int throat)
+{
+    struct flow_solver *solver = flow->solver;
+    const int32_t *node = flow->network->throat_nodes[throat];
+    int end[2];
+    const int n = liquid_ends(flow, throat, end);
+    const bool moving = flow->moving[throat];
+    graph_factor_link(solver->factor, LINKS * throat + LINK_THROUGH, node[0], node[1],
+                      n == 2 && !moving ? flow->conductance[throat] : 0);
+    if (!has_meniscus(solver, throat)) return;
+    for (int e = 0; e < 2; e++)
+        if (solver->unknown[node[e]] >= 0)
+            graph_factor_link(
+                solver->factor, LINKS * throat + LINK_ARM + e, node[e], -1,
+                !moving                         ? 0
+                : piece->n_moving <= FEW_MOVING ? arm(flow, throat, n)
+                                                : rough_arm(flow, throat, n));
+}
+
+static bool name_links(const struct liquid_flow *flow, const struct piece *piece)
+{
+    struct graph_factor *factor = flow->solver->factor;
+    bool good = false;
+    for (int attempt = 0; attempt < 2 && !good; attempt++) {
+        graph_factor_begin(factor, piece->n_unknown, flow->solver->node);
+        for (int k = 0; k < piece->n_throat; k++)
+            name_throat(flow, piece, piece->throat[k]);
+        good = graph_factor_finish(factor);
+    }
+    return good;
+}
+
+// RESULT = matrix times POTENTIAL.
+static void multiply(const struct liquid_flow *flow, const struct piece *piece,
+                     const double *potential, double *result)
+{
+    for (int k = 0; k < piece->n_unknown; k++)
+        result[k] = 0;
+    for (int k = 0; k < piece->n_link; k++) {
+        const struct flow_link *link = &flow->solver->link[k];
+        const double through =
+            link->conductance *
+            (potential[link->a] - (link->b < 0 ? 0 : potential[link->b]));
+        result[link->a] += through;
+        if (link->b >= 0) result[link->b] -= through;
+    }
+}
+
+static double product(const double *a, const double *b, int n)
+{
+    double sum = 0;
+    for (int k = 0; k < n; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+// The same by conjugate gradients, preconditioned with the factor that follows. Few
+// steps are enough, for it differs in few links.
+static bool correct_followed(const struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    const int n = piece->n_unknown;
+    double *rest = solver->lack, *z = solver->vector[0], *p = solver->vector[1],
+           *q = solver->vector[2];
+    double rho = 0, first = 0;
+    for (int k = 0; k < MOST_STEPS; k++) {
+        if (!graph_factor_solve(solver->factor, rest, z)) return false;
+        const double before = rho;
+        rho = product(rest, z, n);
+        if (k == 0) first = rho;
+        if (!(rho > REDUCTION * first)) return rho >= 0;
+        for (int i = 0; i < n; i++)
+            p[i] = z[i] + (k > 0 ? rho / before * p[i] : 0);
+        multiply(flow, piece, p, q);
+        const double step = rho / product(p, q, n);
+        for (int i = 0; i < n; i++) {
+            compensated_add(&solver->potential[i], step * p[i]);
+            rest[i] -= step * q[i];
+        }
+        solver->steps++;
+    }
+    graph_factor_forget(solver->factor);
+    return true;
+}
+
+// Adds to the potentials what the balances lack, by a factor of this matrix.
 static bool correct(const struct liquid_flow *flow, const struct piece *piece,
                     cholmod_factor *factor)
 {
@@ -268,32 +419,65 @@ static bool correct(const struct liquid_flow *flow, const struct piece *piece,
     return true;
 }
 
+// Corrects until the balances close; the last error comes back in RESIDUAL.
+static bool refine(const struct liquid_flow *flow, const struct piece *piece,
+                   cholmod_factor *factor, double *residual)
+{
+    for (int k = 0; k < REFINEMENTS; k++) {
+        if (*residual <= AIM) break;
+        const bool corrected =
+            factor ? correct(flow, piece, factor) : correct_followed(flow, piece);
+        if (!corrected) return false;
+        find_lack(flow, piece);
+        *residual = largest_lack(flow->solver, piece) / flow_scale(flow, piece);
+    }
+    return true;
+}
+
+// By a factor that is made for this and thrown away.
+static bool solve_directly(const struct liquid_flow *flow, const struct piece *piece,
+                           double *residual)
+{
+    cholmod_common *common = &flow->solver->common;
+    cholmod_sparse *matrix = assemble(flow, piece);
+    cholmod_factor *factor = matrix ? cholmod_analyze(matrix, common) : NULL;
+    const bool solved = factor && cholmod_factorize(matrix, factor, common) &&
+                        common->status == CHOLMOD_OK &&
+                        refine(flow, piece, factor, residual);
+    cholmod_free_factor(&factor, common);
+    cholmod_free_sparse(&matrix, common);
+    return solved;
+}
+
+static void start_from_rest(const struct liquid_flow *flow, const struct piece *piece)
+{
+    for (int k = 0; k < piece->n_unknown; k++)
+        flow->solver->potential[k] = (struct compensated){0};
+    find_lack(flow, piece);
+}
+
 // Potentials for the menisci as they are.
-static enum status solve_potentials(struct liquid_flow *flow, const struct piece *piece,
+static enum status solve_potentials(struct liquid_flow *flow, struct piece *piece,
                                     struct reason *reason)
 {
     struct flow_solver *solver = flow->solver;
-    cholmod_common *common = &solver->common;
-    for (int k = 0; k < piece->n_unknown; k++)
-        solver->potential[k] = (struct compensated){0};
-    cholmod_sparse *matrix = assemble(flow, piece);
-    cholmod_factor *factor = matrix ? cholmod_analyze(matrix, common) : NULL;
-    bool solved = factor && cholmod_factorize(matrix, factor, common) &&
-                  common->status == CHOLMOD_OK;
     double residual = INFINITY;
-    find_lack(flow, piece);
-    for (int k = 0; solved && residual > AIM && k < REFINEMENTS; k++) {
-        solved = correct(flow, piece, factor);
-        find_lack(flow, piece);
-        residual = largest_lack(solver, piece) / flow_scale(flow, piece);
+    find_links(flow, piece);
+    start_from_rest(flow, piece);
+    bool solved = piece->followed && name_links(flow, piece) &&
+                  refine(flow, piece, NULL, &residual) && residual < FLOW_TOLERANCE;
+    if (!solved) {
+        if (piece->followed) graph_factor_forget(solver->factor);
+        residual = INFINITY;
+        start_from_rest(flow, piece);
+        solved = solve_directly(flow, piece, &residual);
     }
-    cholmod_free_factor(&factor, common);
-    cholmod_free_sparse(&matrix, common);
     if (!solved || !(residual < FLOW_TOLERANCE))
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "the liquid's balance closes to %.3g of its largest flow only, "
                       "needed is %g (%d unknowns, CHOLMOD status %d)",
-                      residual, FLOW_TOLERANCE, piece->n_unknown, common->status);
+                      residual, FLOW_TOLERANCE, piece->n_unknown,
+                      solver->common.status);
     flow->residual = fmax(flow->residual, residual);
     return STATUS_OK;
 }
@@ -381,7 +565,10 @@ static void collect_losses(const struct liquid_flow *flow, const struct piece *p
     }
     for (int k = first; k < *n_loss; k++)
         if (fabs(loss[k].rate) > fabs(loss[largest].rate)) largest = k;
-    if (*n_loss > first) loss[largest].rate += piece->evaporation - sum;
+    if (*n_loss == first + 1)
+        loss[first].rate = piece->evaporation;
+    else if (*n_loss > first)
+        loss[largest].rate += piece->evaporation - sum;
 }
 
 static void write_pressures(struct liquid_flow *flow, const struct piece *piece)
@@ -421,35 +608,59 @@ static void forget_unknowns(struct flow_solver *solver, const struct piece *piec
         solver->unknown[solver->node[k]] = -1;
 }
 
-// Counts the menisci, and those of throats partly empty.
-static void survey(const struct liquid_flow *flow, struct piece *piece, int *n_meniscus,
-                   int *n_partial)
+// Counts the menisci, and those in throats partly empty; finds where gas enters first
+// and second.
+static void survey(const struct liquid_flow *flow, struct piece *piece)
 {
     const struct flow_solver *solver = flow->solver;
-    *n_meniscus = *n_partial = 0;
+    int second = -1;
     for (int k = 0; k < piece->n_throat; k++) {
         const int throat = piece->throat[k];
+        piece->resistance += flow->resistance[throat];
         if (!has_meniscus(solver, throat)) continue;
-        if (*n_meniscus == 0 || entry(flow, piece, throat) > 0)
+        if (piece->n_meniscus++ == 0) {
             piece->reference = throat;
-        (*n_meniscus)++;
-        *n_partial += !is_full(solver, throat);
+        } else if (entry(flow, piece, throat) > 0) {
+            second = piece->reference;
+            piece->reference = throat;
+        } else if (second < 0 ||
+                   entry(flow, piece, throat) > entry(flow, piece, second)) {
+            second = throat;
+        }
+        piece->n_partial += !is_full(solver, throat);
         piece->evaporation += solver->charge[throat];
     }
+    if (second >= 0) piece->margin = -entry(flow, piece, second);
+}
+
+// Whether only the meniscus that gas enters most easily can move: all that evaporates
+// falls by less than the margin to the next on any way through the cluster.
+static bool only_one_moves(const struct liquid_flow *flow, const struct piece *piece)
+{
+    if (piece->n_meniscus == 1) return true;
+    if (piece->n_partial > !is_full(flow->solver, piece->reference)) return false;
+    return piece->evaporation * piece->resistance < piece->margin;
+}
+
+static void move_reference(struct liquid_flow *flow, const struct piece *piece)
+{
+    for (int k = 0; k < piece->n_throat; k++)
+        flow->moving[piece->throat[k]] = false;
+    flow->moving[piece->reference] = true;
 }
 
 static enum status find_losses(struct liquid_flow *flow, struct piece *piece,
                                struct loss *loss, int *n_loss, struct reason *reason)
 {
-    int n_meniscus, n_partial;
-    survey(flow, piece, &n_meniscus, &n_partial);
-    if (!(piece->evaporation > 0) && n_partial < 2) return STATUS_OK;
-    if (n_meniscus == 1) {
-        flow->moving[piece->reference] = true;
+    survey(flow, piece);
+    if (!(piece->evaporation > 0) && piece->n_partial < 2) return STATUS_OK;
+    if (only_one_moves(flow, piece)) {
+        move_reference(flow, piece);
         add_loss(loss, n_loss, piece->reference, piece->evaporation);
         return STATUS_OK;
     }
     number_unknowns(flow, piece);
+    piece->followed &= piece->n_unknown >= FOLLOWED_NODES;
     const enum status status = find_menisci(flow, piece, reason);
     if (!status) {
         collect_losses(flow, piece, loss, n_loss);
@@ -478,6 +689,14 @@ static void sort_throats(struct flow_solver *solver, int n_throat)
             solver->throat[offset[clusters->of_throat[t] + 1]++] = t;
 }
 
+static int largest_cluster(const struct clusters *clusters)
+{
+    int largest = 0;
+    for (int c = 1; c < clusters->n_id; c++)
+        if (clusters->size[c] > clusters->size[largest]) largest = c;
+    return largest;
+}
+
 enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phases,
                              const double *charge, struct loss *loss, int *n_loss,
                              struct reason *reason)
@@ -486,10 +705,12 @@ enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phas
     solver->phases = phases;
     solver->charge = charge;
     sort_throats(solver, flow->network->n_throat);
+    const int largest = largest_cluster(&phases->clusters);
     enum status status = STATUS_OK;
     for (int c = 0; !status && c < phases->clusters.n_id; c++) {
         struct piece piece = {.throat = solver->throat + solver->offset[c],
-                              .n_throat = solver->offset[c + 1] - solver->offset[c]};
+                              .n_throat = solver->offset[c + 1] - solver->offset[c],
+                              .followed = c == largest};
         if (piece.n_throat > 0)
             status = find_losses(flow, &piece, loss, n_loss, reason);
     }

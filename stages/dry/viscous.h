@@ -27,6 +27,7 @@ struct liquid_flow {
     const struct network *network;
     struct menisci menisci;
     double *conductance; // (n_throat) of a full throat, scaled
+    double *resistance;  // (n_throat) its inverse
     bool *moving;        // (n_throat) its meniscus, when last solved for
     double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit
     double residual;  // largest so far, of what flows
