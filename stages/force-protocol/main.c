@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // force-protocol: the capillary force on every grain over the time of drying.
 #include "artifacts/artifact.h"
+#include "auxiliary.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "protocol.h"
@@ -150,6 +151,7 @@ int main(int argc, char **argv)
     struct protocol protocol =
         make_protocol(&network, &record, patches, n_patch,
                       pressure * parameters.force_scale, (int)parameters.steps);
+    drop_auxiliary(&network.packing, &protocol);
     const double largest = largest_force(&protocol, network.packing.n_particle);
     if (!(fmax(largest, pressure) <= 1e150))
         die(STATUS_BAD_DATA,

@@ -44,20 +44,45 @@ static int wall_faced(unsigned walls, struct vector outwards)
     return best;
 }
 
+// Of each face between what stays and what does not, the grain beyond; else -1.
+static int grain_beyond(const struct network *network, const bool *stay, int face)
+{
+    const int32_t *side = network->face_particles[face];
+    if (side[1] < 0 || stay[side[0]] == stay[side[1]]) return -1;
+    return side[stay[side[0]]];
+}
+
+// Walls by all faces of each grain beyond: single ones may be too small to have a
+// direction.
+static int *find_walls(const struct network *network, const bool *stay, bool layer)
+{
+    const int n = network->packing.n_particle;
+    uint8_t *cuts = find_cuts(network, layer);
+    struct vector *outwards = NEW_ARRAY(struct vector, n);
+    for (int f = 0; f < network->n_face; f++) {
+        const int grain = grain_beyond(network, stay, f);
+        if (grain < 0) continue;
+        const double sign = grain == network->face_particles[f][1] ? 1 : -1;
+        outwards[grain] = add(outwards[grain], scale(sign, face_area(network, f)));
+    }
+    int *wall = NEW_ARRAY(int, n);
+    for (int i = 0; i < n; i++)
+        wall[i] = wall_faced(cuts[i], outwards[i]);
+    free(outwards);
+    free(cuts);
+    return wall;
+}
+
 void face_walls(struct network *network, const bool *stay, bool layer)
 {
-    uint8_t *cuts = find_cuts(network, layer);
+    int *wall = find_walls(network, stay, layer);
     for (int f = 0; f < network->n_face; f++) {
-        const int32_t *side = network->face_particles[f];
-        if (side[1] < 0 || stay[side[0]] == stay[side[1]]) continue;
-        const bool forward = stay[side[0]];
-        const int wall = wall_faced(cuts[side[forward]],
-                                    scale(forward ? 1 : -1, face_area(network, f)));
-        if (wall < 0) continue;
+        const int grain = grain_beyond(network, stay, f);
+        if (grain < 0 || wall[grain] < 0) continue;
         for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
-            network->node_walls[network->face_nodes[k]] |= (uint8_t)(1 << wall);
+            network->node_walls[network->face_nodes[k]] |= (uint8_t)(1 << wall[grain]);
     }
-    free(cuts);
+    free(wall);
 }
 
 void mark_boundary_layer(struct network *network, bool layer)

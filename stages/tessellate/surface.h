@@ -6,9 +6,9 @@
 
 #include "network/network.h"
 
-// Between grains that STAY and those beyond, each face belongs to the wall, of those
-// that cut the cell beyond, that it faces best; so do its nodes from now on. In a LAYER
-// the walls y do not count.
+// What lies between grains that STAY and a cell beyond faces one wall: of those that
+// cut that cell, the one that its faces together look at best. Their nodes belong to
+// that wall from now on. In a LAYER the walls y do not count.
 void face_walls(struct network *network, const bool *stay, bool layer);
 
 // Where there are auxiliary grains, throats with no other grain beside them become

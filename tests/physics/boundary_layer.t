@@ -120,18 +120,21 @@ with scratch() as folder:
     for first, second in cut.sides[cut.sides[:, 1] < 0]:
         cuts[first, -1 - second] = True
     network = make("n", settled, "boundary=eliminate", threshold=0)
-    faces, outer = np.zeros(len(network.node), int), 0
+    outer, total = [], np.zeros(cut.grain.shape)
     for side, loop in zip(network.sides, network.loops):
         beyond = cuts[side].any(axis=1)
         if beyond.all() or not beyond.any():
             continue
         x = network.node[loop] - network.node[loop[0]]
-        area = np.cross(x, np.roll(x, -1, 0)).sum(0) * (1 if beyond[1] else -1)
-        along = np.where(cuts[side[beyond][0]], np.stack([-area, area], 1).ravel(), -np.inf)
-        faces[loop] |= 1 << int(along.argmax())
-        outer += 1
-    ok(outer > 50 and (network.walls == faces).all(),
-       "with cut cells left out, nodes face the walls that their outer faces face", outer)
+        grain = side[beyond][0]
+        total[grain] += np.cross(x, np.roll(x, -1, 0)).sum(0) * (1 if beyond[1] else -1)
+        outer.append((grain, loop))
+    along = np.where(cuts, np.stack([-total, total], 2).reshape(-1, 6), -np.inf)
+    faces = np.zeros(len(network.node), int)
+    for grain, loop in outer:
+        faces[loop] |= 1 << int(along[grain].argmax())
+    ok(len(outer) > 50 and (network.walls == faces).all(),
+       "with cut cells left out, nodes face the walls that cut the cells beyond", len(outer))
     make("n", settled, "boundary=eliminate")
     sides = dry("n", 'imposed_empty=["-x","+x","-y","+y","-z"]')
     closed = dry("n")
@@ -159,12 +162,12 @@ with scratch() as folder:
             step = (network.upper - network.lower)[:2] / shape
             place = (feet[:, :2] - network.lower[:2]) / step
             axes = [0, 1] if dimensions == 3 else [0]
-            regular = np.abs(place - np.rint(place))[:, axes].max()
+            uneven = np.abs(place - np.rint(place))[:, axes].max()
             most = np.prod([n + 1 for n in shape[:len(axes)]])
-            ok(regular < 0.1 and (len(feet) == most if boundary == "truncate"
+            ok(uneven < 0.1 and (len(feet) == most if boundary == "truncate"
                                   else 0 < len(feet) < most),
                f"auxiliary layer {label}, {boundary}: columns on the corners of its grains",
-               (regular, len(feet), most))
+               (uneven, len(feet), most))
             face = one_dimension(network.face(2), DIFFUSIVITY / 5.1)
             for columns in "auxiliary", "surface":
                 rate = dry("n", f"boundary_layer.columns={columns}")["rate"][0]
@@ -172,6 +175,29 @@ with scratch() as folder:
                    "first rate is that of the open face", rate / face - 1)
     ok("columns on the nodes of the auxiliary layer"
        in dry("n", "boundary_layer.columns=auxiliary")["model"], "the model says so")
+
+    # On a lattice the auxiliary layer goes on with it, so nothing may change but its being there.
+    same = {}
+    for extra, columns in ("false", "surface"), ("true", "surface"), ("true", "auxiliary"):
+        make("n", [*regular, f"extra_layer={extra}"], threshold=1e-6)
+        same[extra, columns] = dry("n", "throat_radius.distribution=network", "liquid=immobile",
+                                   f"boundary_layer.columns={columns}",
+                                   'imposed_empty=["-x","+x","-y","+y","-z"]')
+        run("force-protocol", "--quiet", *settings(["steps=20"]), at("d"), "-o", at("f"))
+        with h5py.File(at("f")) as file:
+            same[extra, columns]["force"] = file["force"][:]
+            same[extra, columns]["auxiliary"] = "kind" in file["particles"]
+    bare, *others = same.values()
+    for other, label in zip(others, ("surface", "auxiliary")):
+        size = np.abs(bare["force"]).max()
+        ok(len(other["time"]) == len(bare["time"])
+           and np.abs(other["rate"] / bare["rate"][0] - bare["rate"] / bare["rate"][0]).max() < 1e-11
+           and np.abs(other["time"] / bare["time"][-1] - bare["time"] / bare["time"][-1]).max()
+           < 1e-11, f"a lattice dries alike with an auxiliary layer, columns on its {label}")
+        ok(other["force"].shape == bare["force"].shape and not other["auxiliary"]
+           and np.abs(other["force"] - bare["force"]).max() < 1e-10 * size,
+           "and its grains feel the same forces; those of the layer are gone",
+           np.abs(other["force"] - bare["force"]).max() / size)
 
     # ---- thickness ----------------------------------------------------------------------
     network = make("n", settled)
