@@ -118,6 +118,7 @@ static void copy_nodes(const struct nodes *nodes, const struct generators *gener
     network->n_node = nodes->n;
     network->node_walls = duplicate(nodes->walls, (size_t)nodes->n, 1);
     network->node_position = NEW_ARRAY(struct vector, nodes->n);
+#pragma omp parallel for
     for (int i = 0; i < nodes->n; i++) {
         network->node_position[i] =
             add(packing->lower, scale(generators->unit, nodes->position[i]));

@@ -6,6 +6,7 @@
 #include "basics/memory.h"
 #include "rows.h"
 
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,18 +20,22 @@ struct loop {
     bool forward; // counter-clockwise seen from the second side
 };
 
-// Faces in the order in which they are met.
-struct face_list {
-    struct row *row; // the two sides, the image of the second; which face
-    int64_t *offset; // where its corners begin
-    int count, capacity;
-    int32_t *node;
-    struct image *image;
-    int64_t n_node, node_capacity;
+// A part of the cells, and the faces that are met first in it.
+struct part {
+    int begin, end;
 };
 
-// Which of the six edges of a cell joins two of its corners, as a bit.
-static const uint8_t edge_bit[4][4] = {
+struct face_list {
+    struct row *row; // the two sides, the image of the second, which list, how many
+                     // corners; where in the list those begin
+    int count, capacity;
+    int32_t *node;
+    struct image *image; // NULL unless the box repeats
+    int n_node, node_capacity;
+};
+
+// Which of the six edges of a cell does not end at two of its corners, as a bit.
+static const uint8_t other_edge[4][4] = {
     {0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}};
 
 static void append_corner(struct loop *loop, int32_t node, struct image image)
@@ -47,44 +52,26 @@ static void append_corner(struct loop *loop, int32_t node, struct image image)
     loop->image[loop->count++] = image;
 }
 
-static bool is_even(int a, int b, int c, int d)
+// Turns around the edge of cell START that does not end at its corners OUT and STAYS,
+// first across the facet opposite OUT, gathers the nodes passed, and marks the edge as
+// seen in the cells of the part. False when the way leaves the finite cells, or passes
+// an earlier part, to which the face belongs.
+static bool turn_around(const struct triangulation *cells, struct part part, int start,
+                        int out, int stays, struct loop *loop)
 {
-    return ((a > b) + (a > c) + (a > d) + (b > c) + (b > d) + (c > d)) % 2 == 0;
-}
-
-// Turns around the edge P-Q of cell START, gathers the nodes passed, and marks the edge
-// as seen in every cell passed: in positively oriented cells it turns forward when the
-// corners in the order P, Q, that left opposite of, that stays are an even permutation.
-// False when the way leaves the finite cells.
-static bool turn_around(const struct assembly *assembly, int start, int32_t p,
-                        int32_t q, struct loop *loop)
-{
-    const struct triangulation *cells = assembly->triangulation;
-    int32_t leaving = -1; // the corner that the next step goes opposite of
-    int cell = start, steps = 0;
+    int at = start, steps = 0;
     loop->count = 0;
     do {
-        struct cell *here = &cells->cell[cell];
-        const int32_t *corner = here->vertex;
-        int at_p = 0, at_q = 0, through = -1, stays = -1;
-        for (int k = 0; k < 4; k++) {
-            if (corner[k] == p)
-                at_p = k;
-            else if (corner[k] == q)
-                at_q = k;
-            else if (through < 0 && (leaving < 0 || corner[k] == leaving))
-                through = k;
-            else
-                stays = k;
-        }
-        here->seen |= edge_bit[at_p][at_q];
-        if (!steps) loop->forward = is_even(at_p, at_q, through, stays);
+        struct cell *here = &cells->cell[at];
+        if (at < part.end) here->seen |= other_edge[out][stays];
         append_corner(loop, here->node, here->image);
-        // The next way out is opposite the corner that stays.
-        leaving = corner[stays];
-        cell = here->neighbour[through];
-        if (cell < 0 || ++steps > MOST_AROUND) return false;
-    } while (cell != start);
+        const int32_t next = here->neighbour[out], kept = here->vertex[stays];
+        if (next < part.begin || ++steps > MOST_AROUND) return false;
+        // What stayed is left next, what is new stays.
+        out = index_among(cells->cell[next].vertex, kept);
+        stays = index_among(cells->cell[next].neighbour, at);
+        at = next;
+    } while (at != start);
     while (loop->count > 1 && loop->node[loop->count - 1] == loop->node[0] &&
            same_image(loop->image[loop->count - 1], loop->image[0]))
         loop->count--;
@@ -110,103 +97,147 @@ static bool comes_first(const struct loop *loop, int a, int b)
     return image_number(loop->image[a]) < image_number(loop->image[b]);
 }
 
+static void reserve(struct face_list *faces, int more)
+{
+    GROW_ARRAY(faces->row, faces->count, faces->capacity);
+    if (faces->n_node + more <= faces->node_capacity) return;
+    faces->node_capacity = 2 * (faces->n_node + more) + 1024;
+    const size_t capacity = (size_t)faces->node_capacity;
+    faces->node = reallocate(faces->node, capacity, sizeof *faces->node);
+    if (faces->image)
+        faces->image = reallocate(faces->image, capacity, sizeof *faces->image);
+}
+
 // A loop begins with its lowest node, and its normal points from the first side of the
 // face to the second, also where the first lies beyond its own face.
 static void append_face(struct face_list *faces, const struct row *row,
                         const struct loop *loop)
 {
-    if (faces->count == faces->capacity) {
-        faces->capacity = faces->capacity ? 2 * faces->capacity : 1024;
-        faces->row = reallocate(faces->row, (size_t)faces->capacity, sizeof *row);
-        faces->offset =
-            reallocate(faces->offset, (size_t)faces->capacity + 1, sizeof(int64_t));
-    }
-    if (faces->n_node + loop->count > faces->node_capacity) {
-        faces->node_capacity = 2 * (faces->n_node + loop->count) + 1024;
-        const size_t capacity = (size_t)faces->node_capacity;
-        faces->node = reallocate(faces->node, capacity, sizeof *faces->node);
-        faces->image = reallocate(faces->image, capacity, sizeof *faces->image);
-    }
+    reserve(faces, loop->count);
     int first = 0;
     for (int k = 1; k < loop->count; k++)
         if (comes_first(loop, k, first)) first = k;
-    for (int k = 0; k < loop->count; k++) {
-        const int from = first + (loop->forward ? k : loop->count - k);
-        faces->node[faces->n_node + k] = loop->node[from % loop->count];
-        faces->image[faces->n_node + k] = loop->image[from % loop->count];
+    for (int k = 0, from = first; k < loop->count; k++) {
+        faces->node[faces->n_node + k] = loop->node[from];
+        if (faces->image) faces->image[faces->n_node + k] = loop->image[from];
+        from += loop->forward ? 1 : -1;
+        if (from < 0) from = loop->count - 1;
+        if (from == loop->count) from = 0;
     }
-    faces->row[faces->count] = *row;
-    faces->row[faces->count].item = faces->count;
-    faces->offset[faces->count++] = faces->n_node;
+    struct row *added = &faces->row[faces->count++];
+    *added = *row;
+    added->key[4] = loop->count;
+    added->item = faces->n_node;
     faces->n_node += loop->count;
-    faces->offset[faces->count] = faces->n_node;
-}
-
-// Into the network, by the grains they separate.
-static void store(const struct face_list *faces, struct network *network)
-{
-    network->n_face = faces->count;
-    network->face_offset = NEW_ARRAY(int64_t, faces->count + 1);
-    network->face_nodes = NEW_ARRAY(int32_t, faces->n_node);
-    network->face_particles =
-        allocate((size_t)faces->count, sizeof *network->face_particles);
-    const bool periodic = is_periodic(&network->packing);
-    if (periodic) {
-        network->face_image = NEW_ARRAY(struct image, faces->count);
-        network->face_node_image = NEW_ARRAY(struct image, faces->n_node);
-    }
-    for (int f = 0; f < faces->count; f++) {
-        const struct row *row = &faces->row[f];
-        const int64_t from = faces->offset[row->item], to = network->face_offset[f];
-        const size_t size = (size_t)(faces->offset[row->item + 1] - from);
-        network->face_offset[f + 1] = to + (int64_t)size;
-        memcpy(network->face_nodes + to, faces->node + from, size * sizeof(int32_t));
-        network->face_particles[f][0] = row->key[0];
-        network->face_particles[f][1] = row->key[1];
-        if (!periodic) continue;
-        network->face_image[f] = numbered_image(row->key[2]);
-        memcpy(network->face_node_image + to, faces->image + from,
-               size * sizeof(struct image));
-    }
 }
 
 // Those around the edges of one cell that were not seen from another.
-static void find_faces(const struct assembly *assembly, int cell, struct loop *loop,
-                       struct face_list *faces)
+static void find_faces(const struct assembly *assembly, struct part part, int cell,
+                       struct loop *loop, struct face_list *faces)
 {
-    static const int edges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    static const int edges[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
+                                    {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
     const struct generators *generators = assembly->generators;
-    const int32_t *corner = assembly->triangulation->cell[cell].vertex;
+    const struct cell *here = &assembly->triangulation->cell[cell];
     for (int e = 0; e < 6; e++) {
-        if (assembly->triangulation->cell[cell].seen &
-            edge_bit[edges[e][0]][edges[e][1]])
-            continue;
-        int32_t p = corner[edges[e][0]], q = corner[edges[e][1]];
-        if (compare_generators(generators, p, q) > 0) {
-            p = corner[edges[e][1]];
-            q = corner[edges[e][0]];
-        }
+        const int *corner = edges[e]; // an even permutation
+        if (here->seen & other_edge[corner[2]][corner[3]]) continue;
+        const int32_t p = here->vertex[corner[0]], q = here->vertex[corner[1]];
+        loop->forward = compare_generators(generators, p, q) < 0;
         struct row row = {0};
-        if (!is_face(generators, p, q, &row)) continue;
-        if (!turn_around(assembly, cell, p, q, loop)) continue;
-        if (loop->count < 3) continue; // closed up on a wall
-        append_face(faces, &row, loop);
+        if (is_face(generators, loop->forward ? p : q, loop->forward ? q : p, &row) &&
+            turn_around(assembly->triangulation, part, cell, corner[2], corner[3],
+                        loop) &&
+            loop->count >= 3) // else closed up on a wall
+            append_face(faces, &row, loop);
+    }
+}
+
+static void find_all(const struct assembly *assembly, bool periodic, int n_part,
+                     struct face_list *lists)
+{
+    const int n_cell = assembly->triangulation->n_cell;
+#pragma omp parallel for schedule(static, 1)
+    for (int i = 0; i < n_part; i++) {
+        const struct part part = {(int)((int64_t)n_cell * i / n_part),
+                                  (int)((int64_t)n_cell * (i + 1) / n_part)};
+        struct loop loop = {0};
+        if (periodic) lists[i].image = NEW_ARRAY(struct image, 1);
+        for (int c = part.begin; c < part.end; c++) {
+            expect_neighbours(assembly->triangulation, c);
+            if (assembly->triangulation->cell[c].node >= 0)
+                find_faces(assembly, part, c, &loop, &lists[i]);
+        }
+        free(loop.node);
+        free(loop.image);
+    }
+}
+
+// The rows of all lists, sorted by the grains they separate.
+static struct row *join(struct face_list *lists, int n_part, int *count)
+{
+    *count = 0;
+    for (int i = 0; i < n_part; i++)
+        *count += lists[i].count;
+    struct row *row = reallocate(lists[0].row, (size_t)*count, sizeof *row);
+    for (int i = 0, to = 0; i < n_part; to += lists[i++].count) {
+        if (i > 0) memcpy(row + to, lists[i].row, (size_t)lists[i].count * sizeof *row);
+        for (int f = 0; f < lists[i].count; f++)
+            row[to + f].key[3] = i;
+        if (i > 0) free(lists[i].row);
+    }
+    return sort_rows(row, *count);
+}
+
+static void store_face(const struct face_list *list, const struct row *row, int f,
+                       struct network *network)
+{
+    const int64_t to = network->face_offset[f];
+    const size_t corners = (size_t)row->key[4];
+    memcpy(network->face_nodes + to, list->node + row->item, corners * sizeof(int32_t));
+    network->face_particles[f][0] = row->key[0];
+    network->face_particles[f][1] = row->key[1];
+    if (!list->image) return;
+    network->face_image[f] = numbered_image(row->key[2]);
+    memcpy(network->face_node_image + to, list->image + row->item,
+           corners * sizeof(struct image));
+}
+
+// Into the network. What comes next is somewhere else: asked for in time.
+static void store(const struct face_list *lists, const struct row *row,
+                  struct network *network)
+{
+    enum { AHEAD = 12 };
+    const int count = network->n_face;
+    network->face_offset = NEW_ARRAY(int64_t, count + 1);
+    for (int f = 0; f < count; f++)
+        network->face_offset[f + 1] = network->face_offset[f] + row[f].key[4];
+    const int64_t n_node = network->face_offset[count];
+    network->face_nodes = NEW_ARRAY(int32_t, n_node);
+    network->face_particles = allocate((size_t)count, sizeof *network->face_particles);
+    if (lists->image) {
+        network->face_image = NEW_ARRAY(struct image, count);
+        network->face_node_image = NEW_ARRAY(struct image, n_node);
+    }
+#pragma omp parallel for
+    for (int f = 0; f < count; f++) {
+        const struct row *later = &row[f + AHEAD < count ? f + AHEAD : f];
+        __builtin_prefetch(lists[later->key[3]].node + later->item);
+        store_face(&lists[row[f].key[3]], &row[f], f, network);
     }
 }
 
 void assemble_faces(const struct assembly *assembly, struct network *network)
 {
-    struct face_list faces = {0};
-    struct loop loop = {0};
-    for (int c = 0; c < assembly->triangulation->n_cell; c++)
-        if (assembly->triangulation->cell[c].node >= 0)
-            find_faces(assembly, c, &loop, &faces);
-    faces.row = sort_rows(faces.row, faces.count);
-    store(&faces, network);
-    free(loop.node);
-    free(loop.image);
-    free(faces.row);
-    free(faces.offset);
-    free(faces.node);
-    free(faces.image);
+    const int n_part = omp_get_max_threads();
+    struct face_list *lists = NEW_ARRAY(struct face_list, n_part);
+    find_all(assembly, is_periodic(&network->packing), n_part, lists);
+    struct row *row = join(lists, n_part, &network->n_face);
+    store(lists, row, network);
+    for (int i = 0; i < n_part; i++) {
+        free(lists[i].node);
+        free(lists[i].image);
+    }
+    free(lists);
+    free(row);
 }

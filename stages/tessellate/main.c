@@ -6,6 +6,7 @@
 #include "diagram.h"
 #include "network/void_volume.h"
 
+#include <omp.h>
 #include <stdio.h>
 
 enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
@@ -59,9 +60,10 @@ static enum status give_void_volumes(const struct tessellation *how,
         return refuse(reason, STATUS_BAD_DATA,
                       "tessellate.throat_volume: void must go with diagram=power");
     if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->packing.n_body)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "tessellate.throat_volume: void must go with whole cells and flat "
-                      "walls: dimensions=3, boundary=truncate");
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "tessellate.throat_volume: void must go with whole cells and flat "
+            "walls: dimensions=3, boundary=truncate");
     return find_void_volumes(network, reason);
 }
 
@@ -91,6 +93,7 @@ int main(int argc, char **argv)
 {
     struct tessellate_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
     struct packing packing = artifact_get_packing(input);
 

@@ -83,16 +83,23 @@ static uint8_t snap_to_walls(const struct generators *generators,
 
 // ---- names --------------------------------------------------------------------------
 
+static void put_in_order(const struct generators *generators, int32_t *a, int32_t *b)
+{
+    const bool swap = compare_generators(generators, *a, *b) > 0;
+    const int32_t first = swap ? *b : *a;
+    *b = swap ? *a : *b;
+    *a = first;
+}
+
 static void sort_corners(const struct generators *generators, const int32_t cell[4],
                          int32_t corner[4])
 {
-    for (int k = 0; k < 4; k++) {
-        int to = k;
-        for (; to > 0 && compare_generators(generators, corner[to - 1], cell[k]) > 0;
-             to--)
-            corner[to] = corner[to - 1];
-        corner[to] = cell[k];
-    }
+    memcpy(corner, cell, 4 * sizeof *corner);
+    put_in_order(generators, &corner[0], &corner[1]);
+    put_in_order(generators, &corner[2], &corner[3]);
+    put_in_order(generators, &corner[0], &corner[2]);
+    put_in_order(generators, &corner[1], &corner[3]);
+    put_in_order(generators, &corner[1], &corner[2]);
 }
 
 // A cell is named after its corners in order, and where they are relative to the first:
@@ -115,57 +122,67 @@ static bool name_cell(const struct generators *generators, const int32_t cell[4]
     return true;
 }
 
+// Of the cells near grains; NULL when one has no name.
 static struct row *sorted_names(const struct generators *generators,
                                 const struct triangulation *triangulation, int *count)
 {
-    struct row *names = NEW_ARRAY(struct row, triangulation->n_cell);
-    *count = 0;
-    for (int c = 0; c < triangulation->n_cell; c++) {
-        if (!near_grain(generators, triangulation->cell[c].vertex)) continue;
-        names[*count].item = c;
-        if (!name_cell(generators, triangulation->cell[c].vertex, &names[(*count)++])) {
-            free(names);
-            return NULL;
-        }
+    const int n_cell = triangulation->n_cell;
+    struct row *names = allocate_aligned((size_t)n_cell, sizeof *names);
+    bool named = true;
+#pragma omp parallel for reduction(&& : named)
+    for (int c = 0; c < n_cell; c++) {
+        const int32_t *corner = triangulation->cell[c].vertex;
+        names[c].item = near_grain(generators, corner) ? c : -1;
+        if (names[c].item == c)
+            named = name_cell(generators, corner, &names[c]) && named;
     }
-    return sort_rows(names, *count);
+    *count = 0;
+    for (int c = 0; c < n_cell; c++)
+        if (names[c].item == c) names[(*count)++] = names[c];
+    if (named) return sort_rows(names, *count);
+    free(names);
+    return NULL;
 }
 
 // ---- places -------------------------------------------------------------------------
 
 // One for all cells of one name, and those united with it on a wall.
 struct place {
-    struct vector position;
     int parent;             // itself, or a place it coincides with
     struct image of_parent; // the repetition of the box in which it does
-    int node;
-    uint8_t walls;
+    struct image within;    // its first cell has it in, when seen from a grain
 };
 
 struct places {
     int n;
     struct place *place;
+    struct vector *position;
+    uint8_t *walls;
 };
 
-// Where a cell has its node, when its first corner is one of the grains themselves;
-// then moved into the box, by the image this returns.
-static struct image find_place(const struct generators *generators,
-                               const int32_t cell[4], struct place *place,
-                               bool *outside)
+enum { FIRST_OF_NAME = 1 }; // in cell.seen
+
+// Gives every named cell its place, and marks the first of each name. Cells come in any
+// order: they are asked for in time.
+static int number_places(struct triangulation *triangulation, const struct row *names,
+                         int count)
 {
-    int32_t corner[4];
-    sort_corners(generators, cell, corner);
-    const struct image none = {0}, first = generators->image[corner[0]];
-    struct vector at = power_centre(generators, corner);
-    at = moved(generators, at, image_difference(none, first));
-    place->walls = snap_to_walls(generators, &at, outside);
-    struct image within = {0};
-    for (int axis = 0; axis < 3; axis++)
-        if (generators->repeats[axis])
-            within.along[axis] =
-                (int8_t)floor(component(at, axis) / component(generators->box, axis));
-    place->position = moved(generators, at, image_difference(none, within));
-    return within;
+    enum { AHEAD = 16 };
+    int n = 0;
+#pragma omp parallel for
+    for (int c = 0; c < triangulation->n_cell; c++)
+        triangulation->cell[c].node = -1;
+    for (int k = 0; k < count; k++) {
+        const int later = k + AHEAD < count ? k + AHEAD : k;
+        __builtin_prefetch(&triangulation->cell[names[later].item], 1);
+        struct cell *cell = &triangulation->cell[names[k].item];
+        const bool first =
+            !k || memcmp(names[k].key, names[k - 1].key, sizeof names->key);
+        n += first;
+        cell->node = n - 1;
+        cell->seen = first ? FIRST_OF_NAME : 0;
+    }
+    return n;
 }
 
 static struct image first_image(const struct generators *generators,
@@ -176,29 +193,64 @@ static struct image first_image(const struct generators *generators,
     return generators->image[corner[0]];
 }
 
-// Gives every named cell its place, for a node, and the repetition it has it in.
+// Where the first cell of a name has its node, when its first corner is one of the
+// grains themselves; then moved into the box.
+static void find_place(const struct generators *generators, const struct cell *cell,
+                       struct places *places, bool *outside)
+{
+    int32_t corner[4];
+    sort_corners(generators, cell->vertex, corner);
+    const struct image none = {0}, first = generators->image[corner[0]];
+    struct vector at = power_centre(generators, corner);
+    at = moved(generators, at, image_difference(none, first));
+    const uint8_t walls = snap_to_walls(generators, &at, outside);
+    if (walls) places->walls[cell->node] = walls;
+    struct image within = {0};
+    for (int axis = 0; axis < 3 && repeats(generators); axis++)
+        if (generators->repeats[axis])
+            within.along[axis] =
+                (int8_t)floor(component(at, axis) / component(generators->box, axis));
+    if (repeats(generators)) places->place[cell->node].within = within;
+    places->position[cell->node] =
+        moved(generators, at, image_difference(none, within));
+}
+
+// Where a cell has its place, seen from where the cell is.
+static void move_to_place(const struct generators *generators,
+                          const struct places *places, struct cell *cell)
+{
+    const bool periodic = repeats(generators);
+    if (periodic)
+        cell->image = image_sum(places->place[cell->node].within,
+                                first_image(generators, cell->vertex));
+    cell->at = moved(generators, places->position[cell->node], cell->image);
+    cell->seen = periodic || places->walls[cell->node] ? SHARES_NODE : 0;
+}
+
 static struct places find_places(const struct generators *generators,
                                  struct triangulation *triangulation,
                                  const struct row *names, int count, bool *outside)
 {
-    struct places places = {.place = NEW_ARRAY(struct place, count)};
-    const bool periodic = repeats(generators);
-    struct image within = {0};
-    for (int c = 0; c < triangulation->n_cell; c++)
-        triangulation->cell[c].node = -1;
-    for (int k = 0; k < count; k++) {
-        struct cell *cell = &triangulation->cell[names[k].item];
-        if (!k || memcmp(names[k].key, names[k - 1].key, sizeof names->key)) {
-            struct place *place = &places.place[places.n];
-            within = find_place(generators, cell->vertex, place, outside);
-            place->parent = places.n++;
-            place->node = -1;
-        }
-        cell->node = places.n - 1;
-        if (periodic)
-            cell->image = image_sum(within, first_image(generators, cell->vertex));
-        cell->at = moved(generators, places.place[cell->node].position, cell->image);
+    const int n = number_places(triangulation, names, count);
+    struct places places = {.n = n,
+                            .place = NEW_ARRAY(struct place, n),
+                            .position = NEW_ARRAY(struct vector, n),
+                            .walls = NEW_ARRAY(uint8_t, n)};
+    bool beyond = false;
+    for (int i = 0; i < n; i++)
+        places.place[i].parent = i;
+#pragma omp parallel for reduction(|| : beyond)
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        struct cell *cell = &triangulation->cell[c];
+        if (cell->node < 0 || cell->seen != FIRST_OF_NAME) continue;
+        find_place(generators, cell, &places, &beyond);
+        move_to_place(generators, &places, cell);
     }
+#pragma omp parallel for
+    for (int c = 0; c < (n < count ? triangulation->n_cell : 0); c++) // copies
+        if (triangulation->cell[c].node >= 0 && !triangulation->cell[c].seen)
+            move_to_place(generators, &places, &triangulation->cell[c]);
+    *outside = beyond;
     return places;
 }
 
@@ -232,39 +284,45 @@ static void unite_on_walls(const struct triangulation *triangulation,
 {
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct cell *cell = &triangulation->cell[c];
-        if (cell->node < 0 || !places->place[cell->node].walls) continue;
+        if (!cell->seen || !places->walls[cell->node]) continue;
         for (int k = 0; k < 4; k++) {
             if (cell->neighbour[k] < c) continue;
             const struct cell *other = &triangulation->cell[cell->neighbour[k]];
-            if (other->node < 0 || !places->place[other->node].walls) continue;
-            if (distance(cell->at, other->at) <= coincide)
+            if (other->node >= 0 && places->walls[other->node] &&
+                distance(cell->at, other->at) <= coincide)
                 unite(places, cell->node, cell->image, other->node, other->image);
         }
     }
 }
 
-// Nodes are numbered in the order of the names.
-static void number_nodes(const struct generators *generators, struct places *places,
-                         struct triangulation *triangulation, struct nodes *nodes)
+// Those places become nodes that are not united with an earlier one, in the order of
+// the names. Takes over what PLACES holds of them; returns their numbers.
+static int *number_nodes(struct places *places, struct nodes *nodes)
 {
-    nodes->position = NEW_ARRAY(struct vector, places->n);
-    nodes->walls = NEW_ARRAY(uint8_t, places->n);
+    int *number = NEW_ARRAY(int, places->n);
     for (int i = 0; i < places->n; i++) {
-        struct place *place = &places->place[i];
-        if (place->parent != i) continue; // united with an earlier one
-        nodes->position[nodes->n] = place->position;
-        nodes->walls[nodes->n] = place->walls;
-        place->node = nodes->n++;
+        if (places->place[i].parent != i) continue;
+        places->position[nodes->n] = places->position[i];
+        places->walls[nodes->n] = places->walls[i];
+        number[i] = nodes->n++;
     }
-    for (int c = 0; c < triangulation->n_cell; c++) {
-        struct cell *cell = &triangulation->cell[c];
-        if (cell->node < 0) continue;
-        struct image image;
-        const int root = root_of(places, cell->node, &image);
-        cell->node = places->place[root].node;
+    nodes->position = places->position;
+    nodes->walls = places->walls;
+    return number;
+}
+
+// From the place of a cell to its node.
+static void move_to_node(const struct generators *generators,
+                         const struct places *places, const int *number,
+                         const struct nodes *nodes, struct cell *cell)
+{
+    struct image image;
+    const int root = root_of(places, cell->node, &image);
+    if (root != cell->node) {
         cell->image = image_sum(cell->image, image);
-        cell->at = moved(generators, nodes->position[cell->node], cell->image);
+        cell->at = moved(generators, nodes->position[number[root]], cell->image);
     }
+    cell->node = number[root];
 }
 
 // ---- what was left out --------------------------------------------------------------
@@ -310,17 +368,23 @@ enum status find_nodes(const struct generators *generators,
                       "/domain/upper: the box is too narrow for a network that "
                       "repeats: grains meet that are more than %d boxes apart",
                       FARTHEST_IMAGE);
-    bool outside = false;
+    bool outside;
     struct places places =
         find_places(generators, triangulation, names, count, &outside);
     free(names);
     unite_on_walls(triangulation, &places);
-    number_nodes(generators, &places, triangulation, nodes);
+    int *number = number_nodes(&places, nodes);
+    bool complete = !outside;
+#pragma omp parallel for reduction(&& : complete)
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        struct cell *cell = &triangulation->cell[c];
+        if (cell->node < 0) continue;
+        move_to_node(generators, &places, number, nodes, cell);
+        complete = is_complete(generators, cell) && complete;
+    }
+    nodes->complete = complete;
+    free(number);
     free(places.place);
-    nodes->complete = !outside;
-    for (int c = 0; c < triangulation->n_cell; c++)
-        if (triangulation->cell[c].node >= 0)
-            nodes->complete &= is_complete(generators, &triangulation->cell[c]);
     return STATUS_OK;
 }
 

@@ -38,10 +38,11 @@ struct row *sort_rows(struct row *rows, int count)
         offset[rows[k].key[0] + 2]++;
     for (int32_t i = 0; i < largest; i++)
         offset[i + 2] += offset[i + 1];
-    struct row *sorted = reallocate(NULL, (size_t)count, sizeof *sorted);
+    struct row *sorted = allocate_aligned((size_t)count, sizeof *sorted);
     for (int k = 0; k < count; k++)
         sorted[offset[rows[k].key[0] + 1]++] = rows[k];
     free(rows);
+#pragma omp parallel for
     for (int32_t i = 0; i <= largest; i++) {
         const int size = offset[i + 1] - offset[i];
         if (size <= FEW)

@@ -3,17 +3,19 @@
 #include "assemble.h"
 
 #include "basics/memory.h"
-#include "rows.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-// Throats as seen from facets.
+// A throat as seen from a facet, and from the first of its nodes.
+struct candidate {
+    int32_t second, image; // the other node, and the number of the image it is in
+    double radius, length; // in units; the radius may be below 0 where grains overlap
+};
+
+// Candidates by their first nodes: those of node i from offset[i] to offset[i + 1].
 struct candidates {
-    struct row *row; // the two nodes, the image of the second; which of those below
-    double *radius;  // in units; may be below 0 where grains overlap
-    double *length;  // in units
-    int count, capacity;
+    int *offset; // (n_node + 1)
+    struct candidate *at;
 };
 
 double clearance_of(struct vector centre, double radius, const struct vector end[2],
@@ -23,7 +25,7 @@ double clearance_of(struct vector centre, double radius, const struct vector end
     const struct vector to = subtract(centre, end[0]);
     const double length2 = dot(along, along);
     double t = length2 > 0 ? dot(to, along) / length2 : 0;
-    if (how == CLEARANCE_SEGMENT) t = fmin(fmax(t, 0), 1);
+    if (how == CLEARANCE_SEGMENT) t = t < 0 ? 0 : t > 1 ? 1 : t;
     return norm(subtract(to, scale(t, along))) - radius;
 }
 
@@ -36,9 +38,10 @@ static double facet_clearance(const struct assembly *assembly, int cell, int k,
         const int32_t point = assembly->triangulation->cell[cell].vertex[m];
         if (m == k || assembly->generators->wall[point] >= 0) continue;
         const int32_t grain = assembly->generators->particle[point];
-        least = fmin(least,
-                     clearance_of(assembly->generators->position[point],
-                                  assembly->radius[grain], end, assembly->clearance));
+        const double here =
+            clearance_of(assembly->generators->position[point], assembly->radius[grain],
+                         end, assembly->clearance);
+        if (here < least) least = here;
     }
     return least;
 }
@@ -57,112 +60,194 @@ static bool facet_counts(const struct assembly *assembly, int cell, int k)
     return first < generators->n_particle;
 }
 
-static void append(struct candidates *candidates, const struct row *row, double radius,
-                   double length)
+// The facets of cell C, as bits, from which a throat is seen whose first node is that
+// of the cell. NARROW when one would join a node to its own image.
+static int find_facets(const struct assembly *assembly, int c, bool *narrow)
 {
-    if (candidates->count == candidates->capacity) {
-        const size_t capacity =
-            candidates->capacity ? 2 * (size_t)candidates->capacity : 1024;
-        candidates->row = reallocate(candidates->row, capacity, sizeof *row);
-        candidates->radius =
-            reallocate(candidates->radius, capacity, sizeof *candidates->radius);
-        candidates->length =
-            reallocate(candidates->length, capacity, sizeof *candidates->length);
-        candidates->capacity = (int)capacity;
+    const struct cell *cells = assembly->triangulation->cell, *from = &cells[c];
+    int facets = 0;
+    for (int k = 0; k < 4 && from->node >= 0; k++) {
+        const int d = from->neighbour[k];
+        if (d < 0 || from->node > cells[d].node || !facet_counts(assembly, c, k))
+            continue;
+        if (from->node < cells[d].node)
+            facets |= 1 << k;
+        else if (!same_image(from->image, cells[d].image)) // else united on a wall
+            *narrow = true;
     }
-    candidates->row[candidates->count] = *row;
-    candidates->row[candidates->count].item = candidates->count;
-    candidates->radius[candidates->count] = radius;
-    candidates->length[candidates->count++] = length;
+    return facets;
 }
 
-// False when a throat would join a node to its own image.
-static bool find_candidates(const struct assembly *assembly,
+// Adds MORE to the count of the node of a cell; returns what it was. Most cells have
+// nodes of their own, and need not wait.
+static int add_to_count(const struct cell *cell, int *count, int more)
+{
+    int before;
+    if (cell->seen & SHARES_NODE) {
+#pragma omp atomic capture
+        {
+            before = *count;
+            *count += more;
+        }
+        return before;
+    }
+    before = *count;
+    *count += more;
+    return before;
+}
+
+// How many candidates there are of each first node, two places on. False when a throat
+// would join a node to its own image.
+static bool count_candidates(const struct assembly *assembly, int *count)
+{
+    bool narrow = false;
+#pragma omp parallel for reduction(|| : narrow)
+    for (int c = 0; c < assembly->triangulation->n_cell; c++) {
+        const struct cell *cell = &assembly->triangulation->cell[c];
+        expect_neighbours(assembly->triangulation, c);
+        const int facets = find_facets(assembly, c, &narrow);
+        if (facets)
+            add_to_count(cell, &count[cell->node + 2],
+                         __builtin_popcount((unsigned)facets));
+    }
+    return !narrow;
+}
+
+// Filling moves each offset on, so that candidates of a node end where those of the
+// next begin.
+static void fill_candidates(const struct assembly *assembly,
                             struct candidates *candidates)
 {
     const struct triangulation *cells = assembly->triangulation;
+#pragma omp parallel for
     for (int c = 0; c < cells->n_cell; c++) {
         const struct cell *from = &cells->cell[c];
+        bool narrow;
+        expect_neighbours(cells, c);
+        const int facets = find_facets(assembly, c, &narrow);
+        if (!facets) continue;
+        int to = add_to_count(from, &candidates->offset[from->node + 1],
+                              __builtin_popcount((unsigned)facets));
         for (int k = 0; k < 4; k++) {
-            const int d = from->neighbour[k];
-            if (d < c || from->node < 0 || !facet_counts(assembly, c, k)) continue;
-            const struct cell *to = &cells->cell[d];
-            const int32_t a = from->node, b = to->node;
-            const struct image apart = a < b ? image_difference(to->image, from->image)
-                                             : image_difference(from->image, to->image);
-            const bool united = same_image(apart, (struct image){0}); // on a wall
-            if (a == b && united) continue;
-            if (a == b) return false;
-            const struct vector end[2] = {from->at, to->at};
-            append(candidates,
-                   &(struct row){
-                       .key = {a < b ? a : b, a < b ? b : a, image_number(apart)}},
-                   facet_clearance(assembly, c, k, end), distance(end[0], end[1]));
+            if (!(facets & 1 << k)) continue;
+            const struct cell *other = &cells->cell[from->neighbour[k]];
+            const struct vector end[2] = {from->at, other->at};
+            const struct image apart = image_difference(other->image, from->image);
+            candidates->at[to++] = (struct candidate){
+                other->node, image_number(apart), facet_clearance(assembly, c, k, end),
+                distance(end[0], end[1])};
         }
     }
-    return true;
+}
+
+static int compare_candidates(const void *a, const void *b)
+{
+    const struct candidate *p = a, *q = b;
+    if (p->second != q->second) return p->second < q->second ? -1 : 1;
+    if (p->image != q->image) return p->image < q->image ? -1 : 1;
+    if (p->radius != q->radius) return p->radius < q->radius ? -1 : 1;
+    return (p->length > q->length) - (p->length < q->length);
+}
+
+static void sort_candidates(struct candidate *at, int count)
+{
+    enum { FEW = 32 };
+    if (count > FEW) {
+        qsort(at, (size_t)count, sizeof *at, compare_candidates);
+        return;
+    }
+    for (int k = 1; k < count; k++) {
+        const struct candidate candidate = at[k];
+        int to = k;
+        for (; to > 0 && compare_candidates(&at[to - 1], &candidate) > 0; to--)
+            at[to] = at[to - 1];
+        at[to] = candidate;
+    }
 }
 
 // A throat in a wall is seen from the facets of several images: one throat, as wide as
-// the narrowest of them says.
-static int fuse_in_walls(const struct nodes *nodes, struct candidates *candidates)
+// the narrowest of them says, which comes first. Returns how many of COUNT stay.
+static int fuse_in_walls(const uint8_t *walls, int node, struct candidate *at,
+                         int count)
 {
-    struct row *row = candidates->row;
     int kept = 0;
-    for (int k = 0; k < candidates->count; k++) {
-        struct row *last = kept ? &row[kept - 1] : NULL;
-        const bool same = last && !memcmp(last->key, row[k].key, sizeof last->key) &&
-                          (nodes->walls[last->key[0]] & nodes->walls[last->key[1]]);
-        if (!same)
-            row[kept++] = row[k];
-        else if (candidates->radius[row[k].item] < candidates->radius[last->item])
-            last->item = row[k].item;
+    for (int k = 0; k < count; k++) {
+        const bool same = kept && at[kept - 1].second == at[k].second &&
+                          at[kept - 1].image == at[k].image &&
+                          (walls[node] & walls[at[k].second]);
+        if (!same) at[kept++] = at[k];
     }
     return kept;
 }
 
-// The images of second nodes.
-static void store_images(const struct row *row, struct network *network)
-{
-    network->throat_image = NEW_ARRAY(struct image, network->n_throat);
-    for (int t = 0; t < network->n_throat; t++)
-        network->throat_image[t] = numbered_image(row[t].key[2]);
-}
-
-static void store(const struct candidates *candidates, double unit,
+// The throats of one node, from throat TO on.
+static void store(const struct candidate *at, int count, double unit, int node, int to,
                   struct network *network)
 {
-    const int count = network->n_throat;
+    for (int k = 0; k < count; k++) {
+        network->throat_nodes[to + k][0] = node;
+        network->throat_nodes[to + k][1] = at[k].second;
+        network->throat_length[to + k] = unit * at[k].length;
+        network->throat_radius[to + k] = unit * fmax(0, at[k].radius);
+        if (network->throat_image)
+            network->throat_image[to + k] = numbered_image(at[k].image);
+    }
+}
+
+static void allocate_throats(struct network *network, int count)
+{
+    network->n_throat = count;
     network->throat_nodes = allocate((size_t)count, sizeof *network->throat_nodes);
     network->throat_radius = NEW_ARRAY(double, count);
     network->throat_length = NEW_ARRAY(double, count);
     network->throat_kind = NEW_ARRAY(uint8_t, count);
-    for (int t = 0; t < count; t++) {
-        const struct row *row = &candidates->row[t];
-        for (int end = 0; end < 2; end++)
-            network->throat_nodes[t][end] = row->key[end];
-        network->throat_length[t] = unit * candidates->length[row->item];
-        network->throat_radius[t] = unit * fmax(0, candidates->radius[row->item]);
+    if (is_periodic(&network->packing))
+        network->throat_image = NEW_ARRAY(struct image, count);
+}
+
+// Sorts and fuses what the nodes have, and stores it one node after the other.
+static void store_candidates(const struct assembly *assembly,
+                             const struct candidates *candidates,
+                             struct network *network)
+{
+    const int n = assembly->nodes->n, *offset = candidates->offset;
+    int *to = NEW_ARRAY(int, n + 1);
+#pragma omp parallel for
+    for (int i = 0; i < n; i++) {
+        struct candidate *at = candidates->at + offset[i];
+        sort_candidates(at, offset[i + 1] - offset[i]);
+        to[i + 1] =
+            fuse_in_walls(assembly->nodes->walls, i, at, offset[i + 1] - offset[i]);
     }
-    if (is_periodic(&network->packing)) store_images(candidates->row, network);
+    for (int i = 0; i < n; i++)
+        to[i + 1] += to[i];
+    allocate_throats(network, to[n]);
+#pragma omp parallel for
+    for (int i = 0; i < n; i++)
+        store(candidates->at + offset[i], to[i + 1] - to[i], assembly->generators->unit,
+              i, to[i], network);
+    free(to);
 }
 
 enum status assemble_throats(const struct assembly *assembly, struct network *network,
                              struct reason *reason)
 {
-    struct candidates candidates = {0};
+    const int n = assembly->nodes->n;
+    struct candidates candidates = {.offset = NEW_ARRAY(int, n + 2)};
     enum status status = STATUS_OK;
-    if (!find_candidates(assembly, &candidates))
+    if (!count_candidates(assembly, candidates.offset)) {
         status = refuse(reason, STATUS_BAD_DATA,
                         "/domain/upper: the box is too narrow for a network that "
                         "repeats: a throat would join a node to its own image");
-    if (!status) {
-        candidates.row = sort_rows(candidates.row, candidates.count);
-        network->n_throat = fuse_in_walls(assembly->nodes, &candidates);
-        store(&candidates, assembly->generators->unit, network);
+    } else {
+        for (int i = 0; i < n; i++)
+            candidates.offset[i + 2] += candidates.offset[i + 1];
+        candidates.at =
+            allocate_aligned((size_t)candidates.offset[n + 1], sizeof *candidates.at);
+        fill_candidates(assembly, &candidates);
+        store_candidates(assembly, &candidates, network);
     }
-    free(candidates.row);
-    free(candidates.radius);
-    free(candidates.length);
+    free(candidates.offset);
+    free(candidates.at);
     return status;
 }

@@ -240,12 +240,6 @@ static int32_t locate(const struct insertion *insertion, int32_t e)
     }
 }
 
-// Where X is among FOUR, known to be there; without branches, which would be guesses.
-static int index_of(const int32_t four[4], int32_t x)
-{
-    return (four[1] == x) + 2 * (four[2] == x) + 3 * (four[3] == x);
-}
-
 // For four more in the cavity, or in the rim.
 static void make_room(struct insertion *insertion)
 {
@@ -286,7 +280,7 @@ static void find_cavity(struct insertion *insertion, int32_t start, int32_t e)
                 .vertex = {cell->vertex[facing[k][0]], cell->vertex[facing[k][1]],
                            cell->vertex[facing[k][2]]},
                 .beyond = next,
-                .back = index_of(beyond->neighbour, from)};
+                .back = index_among(beyond->neighbour, from)};
             n_rim += fresh & !taken;
         }
         insertion->n_cavity = n_cavity;

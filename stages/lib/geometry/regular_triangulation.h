@@ -20,10 +20,18 @@ struct cell {
         float error;  // of `at`, while triangulating
     };
     struct image image; // repetition of the box that `at` is in
-    uint8_t seen;       // edges done with
+    uint8_t seen;       // edges done with; SHARES_NODE
 };
 
+enum { SHARES_NODE = 1 << 7 }; // other cells may have the same node
+
 static_assert(sizeof(struct cell) == 64, "one cache line");
+
+// Where X is among FOUR, known to be there. Without branches, which would be guesses.
+static inline int index_among(const int32_t four[4], int32_t x)
+{
+    return (four[1] == x) + 2 * (four[2] == x) + 3 * (four[3] == x);
+}
 
 // The infinite cells are left out.
 struct triangulation {
@@ -31,6 +39,19 @@ struct triangulation {
     struct cell *cell;
     int64_t n_test, n_exact; // sphere tests made, and those that took exact numbers
 };
+
+// For loops over all cells that look at neighbours: asks in time for those of a cell
+// soon to come.
+static inline void expect_neighbours(const struct triangulation *triangulation,
+                                     int cell)
+{
+    enum { AHEAD = 8 };
+    if (cell + AHEAD >= triangulation->n_cell) return;
+    for (int k = 0; k < 4; k++) {
+        const int32_t next = triangulation->cell[cell + AHEAD].neighbour[k];
+        if (next >= 0) __builtin_prefetch(&triangulation->cell[next]);
+    }
+}
 
 // Triangulates N points with WEIGHTS (radius squared; NULL: all equal). O(n log n) for
 // points that fill space. Which cells there are depends on the points alone: tests are
