@@ -79,7 +79,8 @@ static const struct parameter table[] = {
      "from three more flows, along x, y and z", AT(tensor)},
     {"solver", PARAMETER_CHOICE, "1", "\"auto\"", BOUND_NONE, 0, 0,
      "auto|cholesky|iteration",
-     "of the pressures: Cholesky's factor, or conjugate gradients with multigrid; "
+     "of the pressures: Cholesky's factor, or conjugate gradients with a sampled "
+     "factor; "
      "auto: "
      "the faster",
      AT(solver)},
@@ -253,7 +254,7 @@ static void write(const struct computation *computation,
         parameters->conductance == CONDUCTANCE_HYDRAULIC ? "hydraulic" : "effective",
         sides[parameters->sides],
         flow.pressures->direct ? "Cholesky's factor"
-                               : "conjugate gradients with multigrid",
+                               : "conjugate gradients with a sampled factor",
         flow.pressures->n_unknown, parameters->tolerance, flow.cells->n_hidden,
         flow.cells->n_flat, flow.throats->n_closed, flow.pressures->n_pocket,
         flow.opening ? "" : ", motion of the grains");

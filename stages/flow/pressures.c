@@ -3,16 +3,16 @@
 
 #include "basics/memory.h"
 #include "cholesky.h"
-#include "multigrid.h"
+#include "conjugate_gradients.h"
 
 #include <stdlib.h>
 
 // Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
 enum { DIRECT_MOST = 1500 };
 
-// Each correction gains what the solver promises; rounding ends it.
+// Each correction gains what the solver promises, at most this; rounding ends it.
 enum { CORRECTIONS = 12, MOST_ITERATIONS = 500 };
-static const double reduction = 1e-8;
+static const double first_reduction = 1e-8;
 
 // A network of nodes: those whose pressure is sought first.
 struct balance {
@@ -276,7 +276,7 @@ static double find_throughput(const struct balance *balance,
 
 struct solver_state {
     struct cholesky *cholesky;
-    struct multigrid *multigrid;
+    struct sampled_factor *factor;
 };
 
 static enum status prepare(const struct matrix *matrix, enum solver solver,
@@ -286,17 +286,17 @@ static enum status prepare(const struct matrix *matrix, enum solver solver,
     if (solver == SOLVER_CHOLESKY ||
         (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
         return cholesky_make(matrix, &state->cholesky, reason);
-    state->multigrid = multigrid_make(matrix);
+    state->factor = sampled_factor_make(matrix);
     return STATUS_OK;
 }
 
 static enum status correct(const struct matrix *matrix, struct solver_state *state,
-                           const double *b, double *x, int *iterations,
-                           struct reason *reason)
+                           const double *b, double *x, double reduction,
+                           int *iterations, struct reason *reason)
 {
-    if (state->multigrid)
-        *iterations +=
-            multigrid_solve(state->multigrid, b, x, reduction, MOST_ITERATIONS);
+    if (state->factor)
+        *iterations += conjugate_gradients(matrix, state->factor, b, x, reduction,
+                                           MOST_ITERATIONS);
     else if (!cholesky_solve(state->cholesky, b, x))
         return refuse(reason, STATUS_INTERNAL,
                       "out of memory in the balances of %d pores", matrix->n);
@@ -344,8 +344,12 @@ static enum status close_balances(const struct balance *balance,
     find_lack(matrix, given, x, lack);
     double best = INFINITY;
     for (int round = 0; !status && round < CORRECTIONS; round++) {
-        status =
-            correct(matrix, &state, lack, correction, &pressures->iterations, reason);
+        const double reduction = round == 0
+                                     ? first_reduction
+                                     : fmax(first_reduction, 0.02 * solving->tolerance /
+                                                                 pressures->imbalance);
+        status = correct(matrix, &state, lack, correction, reduction,
+                         &pressures->iterations, reason);
         if (status) break;
         for (int i = 0; i < n; i++)
             compensated_add(&x[i], correction[i]);
@@ -360,7 +364,7 @@ static enum status close_balances(const struct balance *balance,
             break;
         best = fmin(best, pressures->imbalance);
     }
-    multigrid_free(state.multigrid);
+    sampled_factor_free(state.factor);
     cholesky_free(state.cholesky);
     free(x);
     free(lack);
