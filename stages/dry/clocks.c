@@ -10,67 +10,19 @@
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
 
-struct clock {
-    int throat;              // -1: none
+struct account {
     int n_charge;            // that are above 0
-    struct compensated rate; // their sum: cancels exactly, or nearly, when they go
-    struct compensated since, end;
-    int place; // in the heap, -1: it does not run
+    struct compensated rate; // their sum
+    int clock;               // -1: none runs
     bool touched;
 };
 
-// --- the heap ----------------------------------------------------------------------
-
-static bool earlier(const struct clocks *clocks, int a, int b)
-{
-    const struct clock *c = &clocks->clock[a], *d = &clocks->clock[b];
-    const double later = compensated_difference(d->end, c->end);
-    return later > 0 || (later == 0 && c->throat < d->throat);
-}
-
-static void put(struct clocks *clocks, int place, int owner)
-{
-    clocks->heap[place] = owner;
-    clocks->clock[owner].place = place;
-}
-
-static void rise(struct clocks *clocks, int place, int owner)
-{
-    while (place > 0 && earlier(clocks, owner, clocks->heap[(place - 1) / 2])) {
-        put(clocks, place, clocks->heap[(place - 1) / 2]);
-        place = (place - 1) / 2;
-    }
-    put(clocks, place, owner);
-}
-
-static void sink(struct clocks *clocks, int place, int owner)
-{
-    for (int child = 2 * place + 1; child < clocks->n_heap; child = 2 * place + 1) {
-        if (child + 1 < clocks->n_heap &&
-            earlier(clocks, clocks->heap[child + 1], clocks->heap[child]))
-            child++;
-        if (!earlier(clocks, clocks->heap[child], owner)) break;
-        put(clocks, place, clocks->heap[child]);
-        place = child;
-    }
-    rise(clocks, place, owner);
-}
-
-static void stop(struct clocks *clocks, int owner)
-{
-    const int place = clocks->clock[owner].place;
-    if (place < 0) return;
-    clocks->clock[owner].place = -1;
-    const int last = clocks->heap[--clocks->n_heap];
-    if (last != owner) sink(clocks, place, last);
-}
-
 // --- who loses ---------------------------------------------------------------------
 
-// Where THROAT is or belongs among those that lose.
-static int losing_place(const struct clocks *clocks, int throat)
+// Where THROAT is or belongs among the N that lose.
+static int losing_place(const struct clocks *clocks, int n, int throat)
 {
-    int low = 0, high = clocks->n_losing;
+    int low = 0, high = n;
     while (low < high) {
         const int middle = low + (high - low) / 2;
         if (clocks->losing[middle] < throat)
@@ -81,93 +33,150 @@ static int losing_place(const struct clocks *clocks, int throat)
     return low;
 }
 
-static void add_losing(struct clocks *clocks, int throat)
+static void start_clock(struct clocks *clocks, int owner, int throat)
 {
-    const int place = losing_place(clocks, throat);
-    if (place < clocks->n_losing && clocks->losing[place] == throat) return;
-    GROW_ARRAY(clocks->losing, clocks->n_losing, clocks->losing_capacity);
+    const int n = clocks->n++, place = losing_place(clocks, n, throat);
     memmove(clocks->losing + place + 1, clocks->losing + place,
-            (size_t)(clocks->n_losing++ - place) * sizeof *clocks->losing);
+            (size_t)(n - place) * sizeof *clocks->losing);
     clocks->losing[place] = throat;
+    clocks->account[owner].clock = n;
+    clocks->owner[n] = owner;
+    clocks->throat[n] = throat;
+    clocks->left[n] = clocks->saturation[throat] * clocks->phases->volume[throat];
+    clocks->left_lost[n] = 0;
 }
 
-static void remove_losing(struct clocks *clocks, int throat)
+static void stop_clock(struct clocks *clocks, int clock)
 {
-    const int place = losing_place(clocks, throat);
-    if (place == clocks->n_losing || clocks->losing[place] != throat) return;
+    const int last = --clocks->n, throat = clocks->throat[clock];
+    const int place = losing_place(clocks, clocks->n + 1, throat);
     memmove(clocks->losing + place, clocks->losing + place + 1,
-            (size_t)(--clocks->n_losing - place) * sizeof *clocks->losing);
+            (size_t)(last - place) * sizeof *clocks->losing);
+    clocks->saturation[throat] = (clocks->left[clock] + clocks->left_lost[clock]) /
+                                 clocks->phases->volume[throat];
+    clocks->account[clocks->owner[clock]].clock = -1;
+    if (clock == last) return;
+    clocks->owner[clock] = clocks->owner[last];
+    clocks->throat[clock] = clocks->throat[last];
+    clocks->rate[clock] = clocks->rate[last];
+    clocks->left[clock] = clocks->left[last];
+    clocks->left_lost[clock] = clocks->left_lost[last];
+    clocks->account[clocks->owner[clock]].clock = clock;
 }
 
-// --- the clocks --------------------------------------------------------------------
+// --- charges -----------------------------------------------------------------------
+
+static struct account *touch(struct clocks *clocks, int owner)
+{
+    while (owner >= clocks->n_account) {
+        GROW_ARRAY(clocks->account, clocks->n_account, clocks->account_capacity);
+        clocks->account[clocks->n_account++] = (struct account){.clock = -1};
+    }
+    struct account *account = &clocks->account[owner];
+    if (!account->touched) clocks->touched[clocks->n_touched++] = owner;
+    account->touched = true;
+    return account;
+}
 
 static int owner_of(const struct clocks *clocks, int throat)
 {
     return clocks->by_throat ? throat : clocks->phases->clusters.of_throat[throat];
 }
 
-static double liquid_now(const struct clocks *clocks, const struct clock *clock)
+static void charge(struct account *account, double amount)
 {
-    const double left = compensated_value(clocks->phases->liquid[clock->throat]);
-    if (clock->place < 0) return left;
-    const double lost = compensated_value(clock->rate) *
-                        compensated_difference(clocks->now, clock->since);
-    return left > lost ? left - lost : 0;
+    compensated_add(&account->rate, amount);
+    account->n_charge += amount > 0 ? 1 : -1;
+    if (account->n_charge == 0) account->rate = (struct compensated){0};
 }
 
-// Before anything of it changes: its throat has lost at the old rate until now.
-static struct clock *touch(struct clocks *clocks, int owner)
+static void recharge(struct account *account, double before, double now)
 {
-    while (owner >= clocks->n_clock) {
-        GROW_ARRAY(clocks->clock, clocks->n_clock, clocks->clock_capacity);
-        clocks->clock[clocks->n_clock++] = (struct clock){.throat = -1, .place = -1};
+    if (now > 0) charge(account, now);
+    if (before > 0) charge(account, -before);
+}
+
+// The one account of all the throats with liquid at the node, -1 if there are several.
+static int sole_owner(const struct clocks *clocks, int node)
+{
+    const struct incidence *incidence = &clocks->phases->incidence;
+    int sole = -1;
+    for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++) {
+        if (clocks->share[k] == 0) continue;
+        const int owner = owner_of(clocks, incidence->throat[k]);
+        if (sole >= 0 && owner != sole) return -1;
+        sole = owner;
     }
-    struct clock *clock = &clocks->clock[owner];
-    if (clock->touched) return clock;
-    clock->touched = true;
-    clocks->touched[clocks->n_touched++] = owner;
-    if (clock->place >= 0)
-        clocks->phases->liquid[clock->throat] =
-            (struct compensated){.value = liquid_now(clocks, clock)};
-    clock->since = clocks->now;
-    return clock;
+    return sole;
 }
 
-static void add_charge(struct clock *clock, double charge, int sign)
+// What the node evaporates now is charged instead of what was before.
+static void charge_node(struct clocks *clocks, int node, double evaporation)
 {
-    if (!(charge > 0)) return;
-    compensated_add(&clock->rate, sign * charge);
-    clock->n_charge += sign;
-    if (clock->n_charge == 0) clock->rate = (struct compensated){0};
+    const struct incidence *incidence = &clocks->phases->incidence;
+    const double before = clocks->charged[node];
+    if (evaporation == before) return;
+    if (before == 0) clocks->sole[node] = sole_owner(clocks, node);
+    clocks->charged[node] = evaporation;
+    if (clocks->sole[node] >= 0) {
+        recharge(touch(clocks, clocks->sole[node]), before, evaporation);
+        return;
+    }
+    for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
+        if (clocks->share[k] > 0)
+            recharge(touch(clocks, owner_of(clocks, incidence->throat[k])),
+                     before * clocks->share[k], evaporation * clocks->share[k]);
 }
 
-static void set_charge(struct clocks *clocks, int throat, int end, double charge)
-{
-    double *old = &clocks->charge[throat][end];
-    if (charge == *old) return;
-    struct clock *clock = touch(clocks, owner_of(clocks, throat));
-    add_charge(clock, charge, 1);
-    add_charge(clock, *old, -1);
-    *old = charge;
-}
-
-static void charge_throats(struct clocks *clocks, int node)
+// Shares are proportional to the cross-sections of the throats that hold liquid.
+static void share_node(struct clocks *clocks, int node)
 {
     const struct phases *phases = clocks->phases;
-    const double evaporation = vapour_evaporation(&phases->vapour, node);
     const int begin = phases->incidence.offset[node];
     const int end = phases->incidence.offset[node + 1];
-    double section = 0;
-    for (int k = begin; k < end; k++)
-        section += clocks->section[phases->incidence.throat[k]];
+    double sum = 0;
     for (int k = begin; k < end; k++) {
         const int throat = phases->incidence.throat[k];
-        const double share = clocks->section[throat];
-        if (share == 0) continue;
-        const int side = phases->network->throat_nodes[throat][1] == node;
-        set_charge(clocks, throat, side, evaporation * (share / section));
+        clocks->share[k] =
+            phases->clusters.of_throat[throat] < 0
+                ? 0
+                : phases->volume[throat] / phases->network->throat_length[throat];
+        sum += clocks->share[k];
+    }
+    for (int k = begin; k < end; k++)
+        clocks->share[k] /= sum > 0 ? sum : 1;
+}
+
+// The charges of a throat that has left cluster FROM go with it. Where the node was
+// charged as a whole, it is free to be charged anew.
+static void move_charges(struct clocks *clocks, int throat, int from)
+{
+    const struct phases *phases = clocks->phases;
+    for (int end = 0; end < 2; end++) {
+        const int node = phases->network->throat_nodes[throat][end];
+        if (!(clocks->charged[node] > 0)) continue;
+        if (clocks->sole[node] >= 0) {
+            charge_node(clocks, node, 0);
+            continue;
+        }
+        int k = phases->incidence.offset[node];
+        while (phases->incidence.throat[k] != throat)
+            k++;
+        const double amount = clocks->charged[node] * clocks->share[k];
+        charge(touch(clocks, owner_of(clocks, throat)), amount);
+        charge(touch(clocks, from), -amount);
     }
 }
+
+static void charge_ends(struct clocks *clocks, int throat)
+{
+    for (int end = 0; end < 2; end++) {
+        const int node = clocks->phases->network->throat_nodes[throat][end];
+        charge_node(clocks, node, vapour_evaporation(&clocks->phases->vapour, node));
+    }
+}
+
+// --- the clocks --------------------------------------------------------------------
 
 static int throat_of(const struct clocks *clocks, int owner)
 {
@@ -176,27 +185,23 @@ static int throat_of(const struct clocks *clocks, int owner)
     return clusters->size[owner] > 0 ? clusters_invasion_throat(clusters, owner) : -1;
 }
 
-// Sets the clock of OWNER for the throat it empties now and the rate it has now.
 static void set_clock(struct clocks *clocks, int owner)
 {
-    struct clock *clock = &clocks->clock[owner];
-    const int old = clock->throat;
-    clock->touched = false;
-    if (old < 0 || owner_of(clocks, old) != owner)
-        clock->throat = throat_of(clocks, owner);
-    const double rate = compensated_value(clock->rate);
-    if (clock->place >= 0 && (clock->throat != old || !(rate > 0)))
-        remove_losing(clocks, old);
-    if (clock->throat < 0 || !(rate > 0)) {
-        stop(clocks, owner);
-        return;
+    struct account *account = &clocks->account[owner];
+    account->touched = false;
+    const double rate = compensated_value(account->rate);
+    if (account->clock >= 0) {
+        const int throat = clocks->throat[account->clock];
+        if (!(rate > 0) || owner_of(clocks, throat) != owner)
+            stop_clock(clocks, account->clock);
     }
-    if (clock->place < 0 || clock->throat != old) add_losing(clocks, clock->throat);
-    clock->end = clocks->now;
-    compensated_add(&clock->end,
-                    compensated_value(clocks->phases->liquid[clock->throat]) / rate);
-    if (clock->place < 0) clock->place = clocks->n_heap++;
-    sink(clocks, clock->place, owner);
+    if (!(rate > 0)) return;
+    if (account->clock < 0) {
+        const int throat = throat_of(clocks, owner);
+        if (throat < 0) return;
+        start_clock(clocks, owner, throat);
+    }
+    clocks->rate[account->clock] = rate;
 }
 
 static void set_touched(struct clocks *clocks)
@@ -211,52 +216,89 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
     const int n = phases->network->n_throat;
     struct clocks clocks = {.phases = phases,
                             .by_throat = by_throat,
-                            .charge = allocate((size_t)n, sizeof *clocks.charge),
-                            .section = NEW_ARRAY(double, n),
-                            .heap = NEW_ARRAY(int, n),
-                            .touched = NEW_ARRAY(int, n)};
+                            .charged = NEW_ARRAY(double, phases->network->n_node),
+                            .sole = NEW_ARRAY(int, phases->network->n_node),
+                            .share = NEW_ARRAY(double, 2 * (size_t)n),
+                            .touched = NEW_ARRAY(int, n),
+                            .owner = NEW_ARRAY(int, n),
+                            .throat = NEW_ARRAY(int, n),
+                            .rate = NEW_ARRAY(double, n),
+                            .left = NEW_ARRAY(double, n),
+                            .left_lost = NEW_ARRAY(double, n),
+                            .losing = NEW_ARRAY(int, n),
+                            .saturation = NEW_ARRAY(double, n)};
     for (int t = 0; t < n; t++)
-        if (phases->clusters.of_throat[t] >= 0)
-            clocks.section[t] = phases->volume[t] / phases->network->throat_length[t];
+        clocks.saturation[t] = phases->volume[t] > 0 ? 1 : 0;
+    for (int i = 0; i < phases->network->n_node; i++)
+        share_node(&clocks, i);
     for (int k = 0; k < phases->n_wet; k++)
-        charge_throats(&clocks, phases->wet[k]);
+        charge_node(&clocks, phases->wet[k],
+                    vapour_evaporation(&phases->vapour, phases->wet[k]));
     set_touched(&clocks);
     return clocks;
 }
 
 void clocks_free(struct clocks *clocks)
 {
-    free(clocks->charge);
-    free(clocks->section);
-    free(clocks->clock);
-    free(clocks->heap);
+    free(clocks->charged);
+    free(clocks->sole);
+    free(clocks->share);
+    free(clocks->account);
     free(clocks->touched);
+    free(clocks->owner);
+    free(clocks->throat);
+    free(clocks->rate);
+    free(clocks->left);
+    free(clocks->left_lost);
     free(clocks->losing);
+    free(clocks->saturation);
     free(clocks->ended);
     *clocks = (struct clocks){0};
 }
 
 double clocks_saturation(const struct clocks *clocks, int throat)
 {
-    const struct phases *phases = clocks->phases;
-    if (phases->clusters.of_throat[throat] < 0) return 0;
     const int owner = owner_of(clocks, throat);
-    const bool runs = owner < clocks->n_clock && clocks->clock[owner].throat == throat;
-    const double liquid = runs ? liquid_now(clocks, &clocks->clock[owner])
-                               : compensated_value(phases->liquid[throat]);
-    return liquid / phases->volume[throat];
+    if (owner < 0) return 0;
+    const int clock = owner < clocks->n_account ? clocks->account[owner].clock : -1;
+    if (clock < 0 || clocks->throat[clock] != throat) return clocks->saturation[throat];
+    return (clocks->left[clock] + clocks->left_lost[clock]) /
+           clocks->phases->volume[throat];
 }
 
 double clocks_imbalance(const struct clocks *clocks)
 {
     const double rate = vapour_rate(&clocks->phases->vapour);
     struct compensated sum = {.value = -rate};
-    for (int k = 0; k < clocks->n_heap; k++)
-        compensated_add(&sum, compensated_value(clocks->clock[clocks->heap[k]].rate));
-    return clocks->n_heap > 0 ? compensated_value(sum) / rate : 0;
+    for (int k = 0; k < clocks->n; k++)
+        compensated_add(&sum, clocks->rate[k]);
+    return clocks->n > 0 ? compensated_value(sum) / rate : 0;
 }
 
 // --- events ------------------------------------------------------------------------
+
+static double time_to_first(const struct clocks *clocks)
+{
+    double shortest = INFINITY;
+    for (int k = 0; k < clocks->n; k++) {
+        const double time = clocks->left[k] / clocks->rate[k];
+        shortest = time < shortest ? time : shortest;
+    }
+    return shortest;
+}
+
+// Two-sum: what is rounded off LEFT is kept beside it.
+static void pass(struct clocks *clocks, double duration)
+{
+    double *restrict left = clocks->left, *restrict lost = clocks->left_lost;
+    const double *restrict rate = clocks->rate;
+    for (int k = 0; k < clocks->n; k++) {
+        const double amount = lost[k] - rate[k] * duration;
+        const double after = left[k] + amount, back = after - left[k];
+        lost[k] = (left[k] - (after - back)) + (amount - back);
+        left[k] = after;
+    }
+}
 
 static int compare_numbers(const void *a, const void *b)
 {
@@ -264,59 +306,53 @@ static int compare_numbers(const void *a, const void *b)
     return (*m > *n) - (*m < *n);
 }
 
-static void end_first(struct clocks *clocks)
+// Those that have lost all.
+static void end_throats(struct clocks *clocks)
 {
-    const int owner = clocks->heap[0], throat = clocks->clock[owner].throat;
     struct phases *phases = clocks->phases;
-    GROW_ARRAY(clocks->ended, clocks->n_ended, clocks->ended_capacity);
-    clocks->ended[clocks->n_ended++] = throat;
-    touch(clocks, owner);
-    compensated_add(&phases->total_liquid, -compensated_value(phases->liquid[throat]));
-    phases->liquid[throat] = (struct compensated){0};
-    remove_losing(clocks, throat);
-    stop(clocks, owner);
-}
-
-static bool first_ties(const struct clocks *clocks)
-{
-    if (clocks->n_heap == 0) return false;
-    const struct clock *first = &clocks->clock[clocks->heap[0]];
-    const double left = compensated_difference(first->end, clocks->now) *
-                        compensated_value(first->rate);
-    return left <= TIE * clocks->phases->volume[first->throat];
+    clocks->n_ended = 0;
+    for (int k = 0; k < clocks->n; k++) {
+        const int throat = clocks->throat[k];
+        if (clocks->left[k] > TIE * phases->volume[throat]) continue;
+        compensated_add(&phases->total_liquid, -clocks->left[k]);
+        compensated_add(&phases->total_liquid, -clocks->left_lost[k]);
+        clocks->left[k] = clocks->left_lost[k] = 0;
+        GROW_ARRAY(clocks->ended, clocks->n_ended, clocks->ended_capacity);
+        clocks->ended[clocks->n_ended++] = throat;
+    }
+    if (clocks->n_ended > 1)
+        qsort(clocks->ended, (size_t)clocks->n_ended, sizeof *clocks->ended,
+              compare_numbers);
 }
 
 double clocks_advance(struct clocks *clocks)
 {
-    clocks->n_ended = 0;
-    if (clocks->n_heap == 0) return -1;
-    const struct compensated before = clocks->now;
-    clocks->now = clocks->clock[clocks->heap[0]].end;
-    const double duration = compensated_difference(clocks->now, before);
     struct phases *phases = clocks->phases;
+    if (clocks->n == 0) return -1;
+    const double duration = time_to_first(clocks);
     compensated_add(&phases->total_liquid, -vapour_rate(&phases->vapour) * duration);
-    do
-        end_first(clocks);
-    while (first_ties(clocks));
-    qsort(clocks->ended, (size_t)clocks->n_ended, sizeof *clocks->ended,
-          compare_numbers);
+    pass(clocks, duration);
+    end_throats(clocks);
     return duration;
 }
 
-// The charges of throats that have left their cluster go with them.
-static void move_charges(struct clocks *clocks, int from)
+static void empty_throat(struct clocks *clocks, int throat)
 {
-    const struct clusters *clusters = &clocks->phases->clusters;
-    for (int k = 0; k < clusters->n_moved; k++) {
-        const int throat = clusters->moved[k];
-        const double *charge = clocks->charge[throat];
-        if (!(charge[0] > 0 || charge[1] > 0)) continue;
-        touch(clocks, clusters->of_throat[throat]);
-        for (int end = 0; end < 2; end++) {
-            add_charge(&clocks->clock[clusters->of_throat[throat]], charge[end], 1);
-            add_charge(&clocks->clock[from], charge[end], -1);
-        }
-    }
+    struct phases *phases = clocks->phases;
+    const int32_t *node = phases->network->throat_nodes[throat];
+    const int owner = owner_of(clocks, throat);
+    for (int end = 0; end < 2; end++)
+        charge_node(clocks, node[end], 0);
+    phases_empty_throat(phases, throat);
+    for (int end = 0; end < 2; end++)
+        share_node(clocks, node[end]);
+    const struct clusters *clusters = &phases->clusters;
+    const int n_moved = clocks->by_throat ? 0 : clusters->n_moved;
+    for (int k = 0; k < n_moved; k++)
+        move_charges(clocks, clusters->moved[k], owner);
+    for (int k = 0; k < n_moved; k++)
+        charge_ends(clocks, clusters->moved[k]);
+    charge_ends(clocks, throat);
 }
 
 void clocks_empty_ended(struct clocks *clocks)
@@ -324,17 +360,12 @@ void clocks_empty_ended(struct clocks *clocks)
     struct phases *phases = clocks->phases;
     struct star_mesh *mesh = &phases->vapour.mesh;
     for (int k = 0; k < clocks->n_ended; k++) {
-        const int throat = clocks->ended[k], owner = owner_of(clocks, throat);
-        for (int end = 0; end < 2; end++)
-            set_charge(clocks, throat, end, 0);
-        clocks->section[throat] = 0;
-        phases_empty_throat(phases, throat);
-        if (!clocks->by_throat) move_charges(clocks, owner);
-        for (int end = 0; end < 2; end++)
-            charge_throats(clocks, phases->network->throat_nodes[throat][end]);
+        touch(clocks, owner_of(clocks, clocks->ended[k]));
+        empty_throat(clocks, clocks->ended[k]);
     }
     for (int k = 0; k < mesh->n_changed; k++)
-        charge_throats(clocks, mesh->changed[k]);
+        charge_node(clocks, mesh->changed[k],
+                    vapour_evaporation(&phases->vapour, mesh->changed[k]));
     star_mesh_forget_changes(mesh);
     set_touched(clocks);
 }

@@ -1,34 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which throat empties next where the liquid has no viscosity or does not move: each
-// throat that loses liquid has a clock, which is set anew only when its rate changes.
+// Which throat empties next where the liquid has no viscosity or does not move.
 //
 // What a wet node evaporates is charged to the throats with liquid beside it, in
 // proportion to their cross-sections. Without viscosity all charges of a cluster go to
 // its widest meniscus throat [K 3.4.2, steps 2 to 4]; immobile, each throat bears its
-// own.
+// own. A throat that loses has a clock; all that is not beside the gas piece that
+// reaches the air has none.
 #ifndef CRAQUELURE_CLOCKS_H
 #define CRAQUELURE_CLOCKS_H
 
 #include "phases.h"
 
-struct clock;
+struct account; // of a cluster, or of a throat: what it is charged with
 
 struct clocks {
     struct phases *phases;
-    bool by_throat;         // a clock for each throat; else for each cluster
-    struct compensated now; // scaled
-    double (*charge)[2];    // (n_throat) from each end
-    double *section; // (n_throat) of those that hold liquid, of the rest 0; any scale
+    bool by_throat; // an account for each throat; else for each cluster
 
-    struct clock *clock; // by throat or cluster
-    int n_clock, clock_capacity;
-    int n_heap;
-    int *heap; // (n_heap) clocks that run, the first to end on top
+    double *charged; // (n_node) what the node evaporates, as charged
+    int *sole;       // (n_node) account charged with the whole; -1: by SHARE
+    double *share;   // (2 n_throat) of a node's throat, beside incidence.throat
+    struct account *account;
+    int n_account, account_capacity;
     int n_touched;
-    int *touched; // clocks whose rate or throat has changed at this moment
+    int *touched; // accounts whose charges or throat have changed at this moment
 
-    int n_losing, losing_capacity;
-    int *losing; // (n_losing) throats whose clocks run, ascending
+    // The clocks that run.
+    int n;
+    int *owner;         // (n) account
+    int *throat;        // (n)
+    double *rate;       // (n) of scaled volume
+    double *left;       // (n) liquid of the throat
+    double *left_lost;  // (n) what rounding takes from LEFT
+    int *losing;        // (n) the throats, ascending
+    double *saturation; // (n_throat) of throats whose clock has stopped
 
     int n_ended, ended_capacity;
     int *ended; // (n_ended) throats that empty now, ascending

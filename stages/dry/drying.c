@@ -99,7 +99,7 @@ static void record_changes(struct run *run)
     const struct clocks *clocks = &run->clocks;
     qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, compare_throats);
     int k = 0;
-    for (int l = 0; l < clocks->n_losing; l++) {
+    for (int l = 0; l < clocks->n; l++) {
         for (; k < run->n_ended && run->ended[k] < clocks->losing[l]; k++)
             record_change(run, run->ended[k]);
         record_change(run, clocks->losing[l]);

@@ -2,13 +2,15 @@
 #include "star_mesh.h"
 
 #include "basics/memory.h"
+#include "triangle.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// On a front larger than this, what eliminations add waits until there are so many, and
-// then passes over the triangle once for all.
-enum { LARGE_FRONT = 96, MOST_WAITING = 32, BLOCK_COLUMNS = 128 };
+// On a front larger than this, what eliminations add waits until there are
+// MOST_SOURCES, and then passes over the triangle once for all.
+enum { LARGE_FRONT = 96 };
 
 struct membership {
     int front;
@@ -22,14 +24,9 @@ struct front {
     size_t triangle_capacity;
     int n_waiting;
     double *waiting; // (n_waiting) rows of CAPACITY: what eliminated sites had
-    double factor[MOST_WAITING]; // of the product of two entries of a row
+    double factor[MOST_SOURCES]; // of the product of two entries of a row
     int next_unused;
 };
-
-static size_t triangle_size(int n)
-{
-    return n > 0 ? (size_t)n * (size_t)(n - 1) / 2 : 0;
-}
 
 static double *waiting_row(const struct front *front, int k)
 {
@@ -125,7 +122,7 @@ static void widen(struct front *front)
     const int capacity = front->capacity ? front->capacity + front->capacity / 2 : 4;
     front->site = reallocate(front->site, (size_t)capacity, sizeof *front->site);
     if (front->waiting) {
-        double *waiting = NEW_ARRAY(double, (size_t)MOST_WAITING *(size_t)capacity);
+        double *waiting = NEW_ARRAY(double, (size_t)MOST_SOURCES *(size_t)capacity);
         for (int k = 0; k < front->n_waiting; k++)
             memcpy(waiting + (size_t)k * (size_t)capacity, waiting_row(front, k),
                    (size_t)front->n * sizeof *waiting);
@@ -162,99 +159,38 @@ void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance)
     mesh->front[front].triangle[0] = conductance;
 }
 
-static void change_air(struct star_mesh *mesh, int site, double air)
+static void sum_air(struct star_mesh *mesh)
 {
-    compensated_add(&mesh->all_air, air);
-    compensated_add(&mesh->all_air, -mesh->air[site]);
-    mesh->air[site] = air;
+    mesh->all_air = (struct compensated){0};
+    for (int i = 0; i < mesh->n_site; i++)
+        compensated_add(&mesh->all_air, mesh->air[i]);
+    mesh->summed_air = compensated_value(mesh->all_air);
+}
+
+// Digits are lost only when little is left of a large sum: then it is summed anew.
+static void lower_air(struct star_mesh *mesh, double fall)
+{
+    compensated_add(&mesh->all_air, -fall);
+    if (compensated_value(mesh->all_air) < 0.5 * mesh->summed_air) sum_air(mesh);
 }
 
 void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
 {
-    change_air(mesh, site, mesh->air[site] + conductance);
+    mesh->air[site] += conductance;
+    compensated_add(&mesh->all_air, conductance);
+    mesh->summed_air = fmax(mesh->summed_air, compensated_value(mesh->all_air));
 }
 
 // --- the triangle ------------------------------------------------------------------
 
-// Adds to N entries of TARGET the rows SOURCE times their weights. Whatever N, each
-// entry sums in the same order.
-static void add_rows(double *restrict target, int n, int n_source,
-                     const double *restrict weight,
-                     const double *restrict const *source, int first)
-{
-    int k = 0;
-    for (; k + 4 <= n_source; k += 4) {
-        const double a = weight[k], b = weight[k + 1];
-        const double c = weight[k + 2], d = weight[k + 3];
-        const double *restrict p = source[k] + first, *restrict q =
-                                                          source[k + 1] + first;
-        const double *restrict r = source[k + 2] + first, *restrict s =
-                                                              source[k + 3] + first;
-        for (int j = 0; j < n; j++)
-            target[j] += (a * p[j] + b * q[j]) + (c * r[j] + d * s[j]);
-    }
-    for (; k < n_source; k++)
-        for (int j = 0; j < n; j++)
-            target[j] += weight[k] * source[k][first + j];
-}
-
-// The same for two rows of N entries at once, which halves what is loaded.
-static void add_rows_twice(double *restrict target, double *restrict other, int n,
-                           int n_source, const double *restrict weight,
-                           const double *restrict more,
-                           const double *restrict const *source, int first)
-{
-    int k = 0;
-    for (; k + 4 <= n_source; k += 4) {
-        const double *restrict p = source[k] + first, *restrict q =
-                                                          source[k + 1] + first;
-        const double *restrict r = source[k + 2] + first, *restrict s =
-                                                              source[k + 3] + first;
-        for (int j = 0; j < n; j++) {
-            target[j] += (weight[k] * p[j] + weight[k + 1] * q[j]) +
-                         (weight[k + 2] * r[j] + weight[k + 3] * s[j]);
-            other[j] += (more[k] * p[j] + more[k + 1] * q[j]) +
-                        (more[k + 2] * r[j] + more[k + 3] * s[j]);
-        }
-    }
-    for (; k < n_source; k++)
-        for (int j = 0; j < n; j++) {
-            target[j] += weight[k] * source[k][first + j];
-            other[j] += more[k] * source[k][first + j];
-        }
-}
-
-// COLUMNS columns of the triangle from FIRST.
-static void add_block(struct front *front, const double *const *source, int first,
-                      int columns)
-{
-    double weight[2][MOST_WAITING];
-    for (int i = first + 1; i < front->n; i++) {
-        const bool whole = i >= first + columns && i + 1 < front->n;
-        for (int k = 0; k < front->n_waiting; k++)
-            for (int row = 0; row <= whole; row++)
-                weight[row][k] = front->factor[k] * source[k][i + row];
-        double *target = front->triangle + triangle_size(i) + first;
-        if (whole)
-            add_rows_twice(target, front->triangle + triangle_size(i + 1) + first,
-                           columns, front->n_waiting, weight[0], weight[1], source,
-                           first);
-        else
-            add_rows(target, i - first < columns ? i - first : columns,
-                     front->n_waiting, weight[0], source, first);
-        i += whole;
-    }
-}
-
-// What has waited is added to the triangle, in blocks of columns that stay in cache.
+// What has waited is added to the triangle.
 static void bring_up_to_date(struct front *front)
 {
     if (front->n_waiting == 0) return;
-    const double *source[MOST_WAITING];
+    const double *source[MOST_SOURCES];
     for (int k = 0; k < front->n_waiting; k++)
         source[k] = waiting_row(front, k);
-    for (int first = 0; first + 1 < front->n; first += BLOCK_COLUMNS)
-        add_block(front, source, first, BLOCK_COLUMNS);
+    triangle_update(front->triangle, front->n, front->n_waiting, front->factor, source);
     front->n_waiting = 0;
 }
 
@@ -266,13 +202,12 @@ static void take_row(const struct front *front, int p, double *row)
     row[p] = 0;
     for (int i = p + 1; i < n; i++)
         row[i] = front->triangle[triangle_size(i) + (size_t)p];
-    const double *source[MOST_WAITING];
-    double weight[MOST_WAITING];
     for (int k = 0; k < front->n_waiting; k++) {
-        source[k] = waiting_row(front, k);
-        weight[k] = front->factor[k] * source[k][p];
+        const double *restrict waiting = waiting_row(front, k);
+        const double weight = front->factor[k] * waiting[p];
+        for (int i = 0; i < n; i++)
+            row[i] += weight * waiting[i];
     }
-    add_rows(row, n, front->n_waiting, weight, source, 0);
     row[p] = 0;
 }
 
@@ -298,10 +233,10 @@ static void add_mesh(struct front *front, const double *row, double factor)
     if (n > LARGE_FRONT) {
         if (!front->waiting)
             front->waiting =
-                NEW_ARRAY(double, (size_t)MOST_WAITING *(size_t)front->capacity);
+                NEW_ARRAY(double, (size_t)MOST_SOURCES *(size_t)front->capacity);
         front->factor[front->n_waiting] = factor;
         memcpy(waiting_row(front, front->n_waiting++), row, (size_t)n * sizeof *row);
-        if (front->n_waiting == MOST_WAITING) bring_up_to_date(front);
+        if (front->n_waiting == MOST_SOURCES) bring_up_to_date(front);
         return;
     }
     bring_up_to_date(front);
@@ -366,7 +301,7 @@ static void raise_air(struct star_mesh *mesh, const struct front *front, double 
     for (int i = 0; i < front->n; i++) {
         if (!(mesh->row[i] > 0)) continue;
         const int site = front->site[i];
-        change_air(mesh, site, mesh->air[site] + mesh->row[i] * share);
+        mesh->air[site] += mesh->row[i] * share;
         if (!mesh->is_changed[site]) mesh->changed[mesh->n_changed++] = site;
         mesh->is_changed[site] = true;
     }
@@ -375,9 +310,12 @@ static void raise_air(struct star_mesh *mesh, const struct front *front, double 
 void star_mesh_eliminate(struct star_mesh *mesh, int site)
 {
     const double air = mesh->air[site];
-    change_air(mesh, site, 0);
+    mesh->air[site] = 0;
     const int front_index = merge_fronts(mesh, site);
-    if (front_index < 0) return;
+    if (front_index < 0) {
+        lower_air(mesh, air);
+        return;
+    }
     struct front *front = &mesh->front[front_index];
     while (mesh->row_capacity < front->n)
         GROW_ARRAY(mesh->row, mesh->row_capacity, mesh->row_capacity);
@@ -395,6 +333,7 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
         add_mesh(front, mesh->row, 1 / total);
         if (air > 0) raise_air(mesh, front, air / total);
     }
+    if (air > 0) lower_air(mesh, air * (air / total));
     if (front->n == 1) { // a dead end
         leave(mesh, front->site[0], front_index);
         front->n = 0;

@@ -24,6 +24,7 @@ struct star_mesh {
     int n_site;
     double *air;                // (n_site) conductance to the air
     struct compensated all_air; // its sum
+    double summed_air;          // the sum when all were last added up
     int *first;                 // (n_site) its memberships, -1: none
 
     struct membership *membership;
