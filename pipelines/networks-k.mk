@@ -32,7 +32,7 @@ endef
 k_files = $(k_folder)/$1/network.h5 $(k_shares:%=$(k_folder)/$1/merged-%.h5)
 
 .PHONY: networks-k
-networks-k: ## the networks of K 3.5 and 3.7: counts, merging, distributions (about three minutes)
+networks-k: ## the networks of K 3.5 and 3.7: counts, merging, distributions (about two minutes)
 
 ifneq ($(filter networks-k $(k_folder)/%,$(MAKECMDGOALS)),)
 $(foreach n,$(k_names),$(call k_network,$n,$(word 1,$(k_counts/$n)),0,samples/networks-k-$(firstword $(subst -, ,$n))d.json,$(k_folder)/$n-0))
