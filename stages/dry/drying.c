@@ -242,11 +242,32 @@ static void empty_throats(struct run *run)
     note_breakthrough(run);
 }
 
+static bool snapshot_is_due(const struct run *run)
+{
+    const int next = run->recorder.history->n_pressure;
+    return next < run->conditions->n_snapshot &&
+           network_saturation(run) <= run->conditions->snapshot[next];
+}
+
+static void keep_pressures(struct run *run)
+{
+    struct drying_history *history = run->recorder.history;
+    const size_t n = (size_t)run->phases.network->n_node;
+    if (!history->pressure)
+        history->pressure = NEW_ARRAY(double, n *(size_t)run->conditions->n_snapshot);
+    double *pressure = history->pressure + n * (size_t)history->n_pressure++;
+    for (size_t i = 0; i < n; i++)
+        pressure[i] = run->flow.pressure[i] * run->flow.menisci.pressure;
+}
+
 static enum status dry_step(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
+    run->flow.wants_pressures = snapshot_is_due(run);
     enum status status = losses_find(&run->losses, phases, &run->flow, reason);
     if (status) return status;
+    while (snapshot_is_due(run))
+        keep_pressures(run);
     if (run->losses.n == 0)
         return refuse(
             reason, STATUS_NOT_CONVERGED,

@@ -47,6 +47,9 @@ struct drying_conditions {
     double contact_angle;   // degrees, from 0 to below 90
     double gravity;         // towards -z, m/s2; 0: none
     bool knudsen;           // molecules meet the walls of narrow throats
+    int n_snapshot;
+    const double *snapshot; // (n_snapshot) saturations, each below the one before:
+                            // where the pressures of viscous liquid are kept
     // Viscous: conductances are renewed when a throat's saturation has changed by this,
     // in (0,1]; 1: only when a throat has emptied or filled, as K does.
     double saturation_step;
@@ -108,6 +111,10 @@ struct drying_history {
     double evaporated;     // kg: integral of the rate into the drying air
     double
         vapour_residual; // |what throats lose less what reaches the air|, of the rate
+    int n_pressure;      // snapshots so far
+    double *pressure;    // (n_snapshot, n_node) Pa, of viscous liquid less that of the
+                      // gas, in the first step with at most the snapshot's saturation;
+                      // 0 in gas. NULL: none asked for, or the liquid is not viscous
     double
         liquid_residual; // of the liquid's balances, of the largest flow in a cluster
     int64_t flow_solutions, flow_rounds; // clusters solved, and rounds to find menisci

@@ -82,5 +82,6 @@ void drying_history_free(struct drying_history *history)
     free(history->change_offset);
     free(history->change_throat);
     free(history->change_saturation);
+    free(history->pressure);
     *history = (struct drying_history){0};
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // dry: which throat empties when.
 #include "artifacts/artifact.h"
+#include "basics/memory.h"
 #include "basics/status.h"
 #include "describe.h"
 #include "drying.h"
 #include "enclosed.h"
 #include "mass_transfer.h"
 #include "network/throat_radius.h"
+#include "profiles.h"
 #include "write_layer.h"
 
 #include <limits.h>
@@ -18,6 +20,7 @@ enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 
 struct dry_parameters {
     struct drying_conditions conditions;
+    struct number_list snapshots;
     struct air_flow air;
     int liquid, distribution, transfer_law, exchange, feet;
     int enclosed; // throats that others imposed empty have shut in
@@ -137,6 +140,10 @@ static const struct parameter table[] = {
      "0: "
      "every event is a step; of no effect in viscous liquid",
      AT(conditions.step_interval)},
+    {"snapshots", PARAMETER_LIST, "1", "[]", BOUND_BETWEEN, 0, 1, NULL,
+     "saturations, falling, at which the state of every throat is written, and the "
+     "pressures of viscous liquid",
+     AT(snapshots)},
     {"first_period_rate", PARAMETER_NUMBER, "1", "0.9", BOUND_BETWEEN, 0.01, 0.999,
      NULL,
      "the first drying period ends when the rate falls below this share of its start",
@@ -151,6 +158,15 @@ static const struct stage stage = {
     .writes = "drying",
     .most_inputs = 1,
     .parameters = table};
+
+static void check_snapshots(const struct number_list *snapshots)
+{
+    for (int k = 1; k < snapshots->count; k++)
+        if (snapshots->value[k] >= snapshots->value[k - 1])
+            die(STATUS_BAD_DATA,
+                "dry.snapshots: must fall from one to the next, got %g after %g",
+                snapshots->value[k], snapshots->value[k - 1]);
+}
 
 static void show(void *bar, double fraction)
 {
@@ -178,6 +194,72 @@ static double first_period_end_time(const struct drying_history *history)
     return history->time[history->n_step - 1];
 }
 
+static void put_normalised_rate(struct artifact *artifact,
+                                const struct drying_history *history)
+{
+    double *rate = NEW_ARRAY(double, history->n_step);
+    for (int k = 0; k < history->n_step; k++)
+        rate[k] = history->rate[k] / history->rate[0];
+    artifact_put(artifact, "/history/normalised_rate", rate, history->n_step);
+    free(rate);
+}
+
+// At the steps of the profiles.
+static void put_moments(struct artifact *artifact, const char *group,
+                        const struct drying_history *history,
+                        const struct profiles *profiles)
+{
+    const int n = profiles->n_level;
+    double *time = NEW_ARRAY(double, n), *saturation = NEW_ARRAY(double, n);
+    for (int k = 0; k < n; k++) {
+        time[k] = history->time[profiles->step[k]];
+        saturation[k] = history->saturation[profiles->step[k]];
+    }
+    char name[64];
+    snprintf(name, sizeof name, "/%s/time", group);
+    artifact_put(artifact, name, time, n);
+    snprintf(name, sizeof name, "/%s/saturation", group);
+    artifact_put(artifact, name, saturation, n);
+    free(time);
+    free(saturation);
+}
+
+static void put_profiles(struct artifact *artifact, const struct network *network,
+                         const struct drying_history *history,
+                         const struct drying_conditions *conditions)
+{
+    static const double level[] = {0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
+    const int n_level = sizeof level / sizeof *level;
+    struct profiles profiles =
+        profiles_make(network, history, conditions->open_walls,
+                      conditions->liquid != LIQUID_IMMOBILE, n_level, level, false);
+    put_moments(artifact, "profiles", history, &profiles);
+    artifact_put(artifact, "/profiles/depth", profiles.depth, PROFILE_SLICES);
+    artifact_put_table(artifact, "/profiles/slice_saturation", profiles.slice, n_level,
+                       PROFILE_SLICES);
+    artifact_put(artifact, "/profiles/surface_saturation", profiles.surface, n_level);
+    artifact_put_table(artifact, "/profiles/clusters", profiles.clusters, n_level,
+                       PROFILE_CLASSES);
+    profiles_free(&profiles);
+}
+
+static void put_snapshots(struct artifact *artifact, const struct network *network,
+                          const struct drying_history *history,
+                          const struct dry_parameters *parameters)
+{
+    const struct drying_conditions *conditions = &parameters->conditions;
+    struct profiles profiles = profiles_make(
+        network, history, conditions->open_walls, conditions->liquid != LIQUID_IMMOBILE,
+        parameters->snapshots.count, parameters->snapshots.value, true);
+    put_moments(artifact, "snapshots", history, &profiles);
+    artifact_put_table(artifact, "/snapshots/throat_saturation",
+                       profiles.throat_saturation, profiles.n_level, network->n_throat);
+    if (history->pressure)
+        artifact_put_table(artifact, "/snapshots/liquid_pressure", history->pressure,
+                           profiles.n_level, network->n_node);
+    profiles_free(&profiles);
+}
+
 static void put_history(struct artifact *artifact, const struct drying_history *history)
 {
     const int n_step = history->n_step, n_event = history->n_event;
@@ -190,6 +272,7 @@ static void put_history(struct artifact *artifact, const struct drying_history *
     artifact_put(artifact, "/history/saturation", history->saturation, n_step);
     artifact_put(artifact, "/history/rate", history->rate, n_step);
     artifact_put(artifact, "/history/clusters", history->clusters, n_step);
+    put_normalised_rate(artifact, history);
     artifact_put(artifact, "/events/time", history->event_time, n_event);
     artifact_put(artifact, "/events/throat", history->event_throat, n_event);
     artifact_put(artifact, "/events/kind", history->event_kind, n_event);
@@ -243,6 +326,9 @@ static void write_drying(const struct network *network,
     put_history(artifact, history);
     put_summary(artifact, history, parameters->conditions.open_walls);
     put_boundary_layer(artifact, network, &parameters->conditions, history);
+    put_profiles(artifact, network, history, conditions);
+    if (parameters->snapshots.count > 0)
+        put_snapshots(artifact, network, history, parameters);
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
@@ -293,6 +379,9 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     parameters.conditions.liquid = (enum liquid_limit)parameters.liquid;
     parameters.conditions.open_walls = parameters.open_walls;
+    check_snapshots(&parameters.snapshots);
+    parameters.conditions.n_snapshot = parameters.snapshots.count;
+    parameters.conditions.snapshot = parameters.snapshots.value;
     parameters.conditions.layers = (int)parameters.layers;
     parameters.conditions.feet = (enum boundary_feet)parameters.feet;
     parameters.conditions.lumped = parameters.exchange == EXCHANGE_LUMPED;

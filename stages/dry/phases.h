@@ -4,9 +4,9 @@
 #ifndef CRAQUELURE_PHASES_H
 #define CRAQUELURE_PHASES_H
 
+#include "basics/compensated.h"
 #include "boundary_layer.h"
 #include "clusters.h"
-#include "basics/compensated.h"
 #include "vapour.h"
 
 struct phases {

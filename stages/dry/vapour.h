@@ -10,8 +10,8 @@
 #ifndef CRAQUELURE_VAPOUR_H
 #define CRAQUELURE_VAPOUR_H
 
-#include "boundary_layer.h"
 #include "basics/compensated.h"
+#include "boundary_layer.h"
 #include "star_mesh.h"
 
 struct vapour {

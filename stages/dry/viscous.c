@@ -608,6 +608,16 @@ static void forget_unknowns(struct flow_solver *solver, const struct piece *piec
         solver->unknown[solver->node[k]] = -1;
 }
 
+// The pressures of a cluster that does not flow: at the verge of its widest meniscus.
+static void write_rest(struct liquid_flow *flow, struct piece *piece)
+{
+    number_unknowns(flow, piece);
+    for (int k = 0; k < piece->n_unknown; k++)
+        flow->solver->potential[k] = (struct compensated){0};
+    write_pressures(flow, piece);
+    forget_unknowns(flow->solver, piece);
+}
+
 // Counts the menisci, and those in throats partly empty; finds where gas enters first
 // and second.
 static void survey(const struct liquid_flow *flow, struct piece *piece)
@@ -653,8 +663,12 @@ static enum status find_losses(struct liquid_flow *flow, struct piece *piece,
                                struct loss *loss, int *n_loss, struct reason *reason)
 {
     survey(flow, piece);
-    if (!(piece->evaporation > 0) && piece->n_partial < 2) return STATUS_OK;
-    if (only_one_moves(flow, piece)) {
+    if (!(piece->evaporation > 0) && piece->n_partial < 2) {
+        if (flow->wants_pressures) write_rest(flow, piece);
+        return STATUS_OK;
+    }
+    const bool decided = only_one_moves(flow, piece);
+    if (decided && (piece->n_throat == 1 || !flow->wants_pressures)) {
         move_reference(flow, piece);
         add_loss(loss, n_loss, piece->reference, piece->evaporation);
         return STATUS_OK;
@@ -664,7 +678,7 @@ static enum status find_losses(struct liquid_flow *flow, struct piece *piece,
     const enum status status = find_menisci(flow, piece, reason);
     if (!status) {
         collect_losses(flow, piece, loss, n_loss);
-        write_pressures(flow, piece);
+        if (flow->wants_pressures) write_pressures(flow, piece);
         flow->solutions++;
     }
     forget_unknowns(flow->solver, piece);
@@ -705,6 +719,8 @@ enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phas
     solver->phases = phases;
     solver->charge = charge;
     sort_throats(solver, flow->network->n_throat);
+    for (int i = 0; flow->wants_pressures && i < flow->network->n_node; i++)
+        flow->pressure[i] = 0;
     const int largest = largest_cluster(&phases->clusters);
     enum status status = STATUS_OK;
     for (int c = 0; !status && c < phases->clusters.n_id; c++) {

@@ -26,10 +26,12 @@ struct flow_solver; // the factorised matrix and room to solve in
 struct liquid_flow {
     const struct network *network;
     struct menisci menisci;
-    double *conductance; // (n_throat) of a full throat, scaled
-    double *resistance;  // (n_throat) its inverse
-    bool *moving;        // (n_throat) its meniscus, when last solved for
-    double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit
+    double *conductance;  // (n_throat) of a full throat, scaled
+    double *resistance;   // (n_throat) its inverse
+    bool *moving;         // (n_throat) its meniscus, when last solved for
+    bool wants_pressures; // where they decide nothing, too
+    double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit,
+                      // 0 in gas: if they were wanted
     double residual;  // largest so far, of what flows
     int64_t rounds, solutions; // in which menisci were found; clusters solved
     struct flow_solver *solver;

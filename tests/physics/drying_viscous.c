@@ -93,6 +93,37 @@ static void test_two_tubes(void **state)
     network_free(&network);
 }
 
+// While only the wide tube's meniscus moves, pressure falls from it to the narrow one
+// by what evaporates there times the resistances passed.
+static void test_pressures_along_a_chain(void **state)
+{
+    (void)state;
+    struct network network = two_tubes(0.8);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+    const double full = 1;
+    conditions.snapshot = &full;
+    conditions.n_snapshot = 1;
+    struct drying_history history = dry_and_check(&network, &conditions);
+    assert_int_equal(history.n_pressure, 1);
+    const int top = 4 * (DEPTH - 1);
+    const double evaporation = history.rate[0] / 2;
+    double pressure =
+        -2 * 0.07274 / network.throat_radius[lattice_throat(&network, top, 2)];
+    for (int k = DEPTH - 1; k >= 0; k--) { // down the wide tube
+        const int throat = lattice_throat(&network, 4 * k, 2);
+        pressure -= evaporation * resistance(&network, throat, conditions.viscosity);
+        assert_true(fabs(history.pressure[4 * k] / pressure - 1) < 1e-13);
+    }
+    for (int k = 0; k < DEPTH; k++) { // across, and up the narrow one
+        const int throat = k == 0 ? lattice_throat(&network, 0, 0)
+                                  : lattice_throat(&network, 4 * (k - 1) + 1, 2);
+        pressure -= evaporation * resistance(&network, throat, conditions.viscosity);
+        assert_true(fabs(history.pressure[4 * k + 1] / pressure - 1) < 1e-13);
+    }
+    drying_history_free(&history);
+    network_free(&network);
+}
+
 // As conductances are renewed more often, the time at which the first throat has
 // emptied goes to a limit with the first power of the step.
 static void test_step_converges(void **state)
@@ -186,7 +217,9 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_two_tubes), cmocka_unit_test(test_step_converges),
+        cmocka_unit_test(test_two_tubes),
+        cmocka_unit_test(test_pressures_along_a_chain),
+        cmocka_unit_test(test_step_converges),
         cmocka_unit_test(test_vanishing_viscosity_is_inviscid),
         cmocka_unit_test(test_great_viscosity_is_immobile),
         cmocka_unit_test(test_eighteen_decades)};

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the liquid is at chosen saturations of the network, from the history of a run:
+// profiles over the depth [K Figs. 3.31b, 3.48b], the surface, sizes of clusters,
+// snapshots of all throats.
+#ifndef CRAQUELURE_PROFILES_H
+#define CRAQUELURE_PROFILES_H
+
+#include "drying.h"
+
+// Slices over the depth, and classes of cluster sizes: 1, 2-3, 4-7, ... throats.
+enum { PROFILE_SLICES = 20, PROFILE_CLASSES = 31 };
+
+struct profiles {
+    int n_level;
+    int *step;         // (n_level) first with at most the level's saturation
+    double *depth;     // (PROFILE_SLICES) of their middles, 0 at the open wall
+    double *slice;     // (n_level, PROFILE_SLICES) saturation
+    double *surface;   // (n_level) saturation of throats with a node on that wall
+    int32_t *clusters; // (n_level, PROFILE_CLASSES)
+    double *throat_saturation; // (n_level, n_throat); NULL unless asked for
+};
+
+// LEVEL (N_LEVEL) falls from one to the next. A slice without throats has saturation 0.
+// Each throat counts where its middle is. The caller frees the result with
+// profiles_free. O(n_change + n_level * n_throat).
+struct profiles profiles_make(const struct network *network,
+                              const struct drying_history *history, unsigned open_walls,
+                              bool gas_parts, int n_level, const double *level,
+                              bool keep_throats);
+
+void profiles_free(struct profiles *profiles);
+
+#endif
