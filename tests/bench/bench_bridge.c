@@ -42,9 +42,11 @@ static void draw(struct sample *sample, const struct bridge_table *table)
         sample->volume[k] = volume;
         sample->gap[k] =
             bridge_table_rupture(table, volume) * 0.99 * fmod(0.5 + k * 0.569840290, 1);
-        struct equilibrium exact;
-        if (find_equilibrium(&bodies, volume, sample->gap[k], &exact)) exit(1);
-        sample->exact[k] = 2 * M_PI * arc_force(&bodies, &exact.arc);
+        // By another way than it is solved below, which tells how well it is solved.
+        const double way[2] = {0.9 * sample->gap[k], sample->gap[k]};
+        struct equilibrium exact[2];
+        if (follow_branch(&bodies, volume, 2, way, exact)) exit(1);
+        sample->exact[k] = 2 * M_PI * arc_force(&bodies, &exact[1].arc);
     }
 }
 

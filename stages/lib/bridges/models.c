@@ -60,15 +60,17 @@ static inline double weigert(const struct reduced *is)
     return M_PI * sine * sine * suction + 2 * M_PI * sine * sin(turned);
 }
 
-// Below this volume the polynomials of [G B1-B4] leave their ground (at 1e-8 the force
-// is 74 times too large). As volumes vanish the force becomes a function of S+ alone,
-// so the coefficients are held there.
-static const double least_volume = 3e-5;
+// [G 8]
+static inline double willett_reduced(const struct reduced *is)
+{
+    const double s = is->half_gap;
+    return 2 * M_PI * cos(is->angle) / (1 + s * (2.1 + 10 * s));
+}
 
 // [G 7, B1-B4]
-static inline double willett_full(const struct reduced *is)
+static inline double willett_fit(double t, double volume, double half_gap)
 {
-    const double t = is->angle, l = log(fmax(is->volume, least_volume));
+    const double l = log(volume);
     const double f1 = (-0.44507 + t * (0.050832 - 1.1466 * t)) +
                       l * ((-0.1119 + t * (-0.000411 - 0.1490 * t)) +
                            l * ((-0.012101 + t * (-0.0036456 - 0.01255 * t)) +
@@ -83,16 +85,28 @@ static inline double willett_full(const struct reduced *is)
     const double f4 = (-0.010703 + t * (0.073776 - 0.34742 * t)) +
                       l * ((0.03345 + t * (0.04543 - 0.09056 * t)) +
                            l * (0.0018574 + t * (0.004456 - 0.006257 * t)));
-    if (!(is->half_gap > 0)) return 2 * M_PI * exp(f1);
-    const double s = log(is->half_gap);
+    if (!(half_gap > 0)) return 2 * M_PI * exp(f1);
+    const double s = log(half_gap);
     return 2 * M_PI * exp(f1 - f2 * exp(s * (f3 + f4 * s)));
 }
 
-// [G 8]
-static inline double willett_reduced(const struct reduced *is)
+// Below this volume the fit leaves its ground (at 1e-8 the force is 74 times too
+// large). As volumes vanish the force becomes a function of S+ alone: so the fit is
+// held at this volume, and beyond the S+ of nine tenths of rupture there, falls as [G
+// 8] does.
+static const double least_volume = 3e-5;
+
+static inline double willett_full(const struct reduced *is)
 {
-    const double s = is->half_gap;
-    return 2 * M_PI * cos(is->angle) / (1 + s * (2.1 + 10 * s));
+    if (is->volume >= least_volume)
+        return willett_fit(is->angle, is->volume, is->half_gap);
+    const double edge = cbrt(least_volume);
+    const double widest = 0.9 * (1 + 0.5 * is->angle) * (edge + 0.1 * edge * edge) /
+                          (2 * sqrt(least_volume));
+    struct reduced held = *is;
+    held.half_gap = fmin(is->half_gap, widest);
+    return willett_fit(is->angle, least_volume, held.half_gap) * willett_reduced(is) /
+           willett_reduced(&held);
 }
 
 // 2 d [G 10], without the difference of near-equal numbers.
