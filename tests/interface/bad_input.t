@@ -310,10 +310,8 @@ damage("a negative throat radius is refused", "network", value("throats/radius",
        "/throats/radius: row 3: must be >= 0, got -1")
 damage("an unknown kind of throat is refused", "network", value("throats/kind", 9, 3),
        "/throats/kind: row 9: must be <= 2, got 3")
-damage("an unknown wall is refused", "network", value("nodes/kind", 1, 64),
-       "/nodes/kind: row 1: must be <= 63, got 64")
-damage("a face of a seventh wall is refused", "network",
-       value("faces/particles", (8, 1), -7), "/faces/particles: row 8: must be >= -6, got -7")
+damage("a face of an unknown wall is refused", "network",
+       value("faces/particles", (8, 1), -9), "/faces/particles: row 8: must be >= -8, got -9")
 damage("a face of a grain that is not there is refused", "network",
        value("faces/particles", (8, 1), 12),
        r"/faces/particles: row 8: must be < 12 \(n_particle\), got 12")
@@ -834,6 +832,19 @@ setting("air wetter than saturated is refused", BAD_DATA, "air_vapour_pressure=3
 setting("a boiling liquid is refused", BAD_DATA, "saturation_pressure=2e5",
         r"network: saturation_pressure: must be below gas_pressure \(100000 Pa\), "
         "is 200000 Pa: the liquid would boil", program=DRY)
+setting("a draught beyond laminar flow is refused", BAD_DATA,
+        'boundary_layer={"from":"plate","flow_length":10,"air_velocity":1}',
+        r"dry.boundary_layer.air_velocity: must keep Re = u L / nu at or below 500000, .*, "
+        "got Re = 653595", program=DRY)
+setting("a boundary layer without end is refused", BAD_DATA,
+        'boundary_layer={"from":"plate","air_velocity":0}',
+        "dry.boundary_layer: must come to a thickness that numbers hold, got inf m",
+        program=DRY)
+setting("columns on an auxiliary layer need one", BAD_DATA, "boundary_layer.columns=auxiliary",
+        "network: /throats/kind: no throat of the boundary layer begins at the network .*",
+        program=DRY)
+setting("an unknown way to find the boundary layer is refused", BAD_DATA,
+        "boundary_layer.from=wind", r"dry.boundary_layer.from: .*", program=DRY)
 setting("no open wall is refused", BAD_DATA, "open=[]", "network: open walls?: .*, are 0",
         program=DRY)
 setting("two open walls are refused", BAD_DATA, 'open=["-z","+z"]',
