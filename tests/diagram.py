@@ -106,7 +106,7 @@ class Diagram:
             of = self.sides[self.face, side]
             keep = of >= 0
             shift = side * self.face_image[self.face] * self.edge
-            to = (self.place - self.centre[of] - shift)[keep]
+            to = (self.place - self.centre[np.where(keep, of, 0)] - shift)[keep]
             node.append(self.corner[keep])
             value.append((to**2).sum(1) - weight[of[keep]])
         node, value = np.concatenate(node), np.concatenate(value)

@@ -16,10 +16,8 @@ struct assembly {
     enum clearance clearance;
 };
 
-// Fills the throats of the network. STATUS_BAD_DATA: a throat would join a node to its
-// own image.
-enum status assemble_throats(const struct assembly *assembly, struct network *network,
-                             struct reason *reason);
+// Fills the throats of the network.
+void assemble_throats(const struct assembly *assembly, struct network *network);
 
 // Fills the faces: each a loop of nodes, normal pointing from its first side to its
 // second, sorted by the grains they separate.

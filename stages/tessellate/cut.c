@@ -119,14 +119,16 @@ static void cross_throat(struct cut *cut, int t)
     if (meets) cut->near[node[0]] = cut->near[node[1]] = true;
 }
 
-// The throat between two corners of a face; FORWARD when A is its first node.
+// The throat between two corners of a face; FORWARD when A is its first node, of one
+// that joins a node to its own image the first end.
 static int throat_of(const struct cut *cut, struct corner a, struct corner b,
                      bool *forward)
 {
-    *forward = a.node < b.node;
+    const struct image apart = image_difference(b.image, a.image);
+    const bool same = a.node == b.node;
+    *forward = a.node < b.node || (same && image_number(apart) > 0);
     const int32_t ends[2] = {*forward ? a.node : b.node, *forward ? b.node : a.node};
-    const struct image image = *forward ? image_difference(b.image, a.image)
-                                        : image_difference(a.image, b.image);
+    const struct image image = *forward ? apart : image_opposite(apart);
     for (int t = first_throat(cut->network, ends); t < cut->network->n_throat; t++) {
         const int32_t *node = cut->network->throat_nodes[t];
         if (node[0] != ends[0] || node[1] != ends[1]) break;

@@ -162,8 +162,8 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
                                           how->clearance};
         copy_packing(packing, &network->packing);
         copy_nodes(&nodes, &generators, network);
-        status = assemble_throats(&assembly, network, reason);
-        if (!status) assemble_faces(&assembly, network);
+        assemble_throats(&assembly, network);
+        assemble_faces(&assembly, network);
         free(radius);
     }
     nodes_free(&nodes);

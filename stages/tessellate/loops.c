@@ -31,7 +31,8 @@ void loops_add_throat(struct loops *loops, struct corner a, struct corner b,
 {
     const struct corner first = a.node < b.node ? a : b;
     const struct corner second = a.node < b.node ? b : a;
-    const struct image apart = image_difference(second.image, first.image);
+    struct image apart = image_difference(second.image, first.image);
+    if (a.node == b.node && image_number(apart) < 0) apart = image_opposite(apart);
     const int k = loops->n_throat;
     GROW_ARRAY(loops->throat, k, loops->throat_capacity);
     GROW_ARRAY(loops->size, k, loops->size_capacity);

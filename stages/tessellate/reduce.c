@@ -65,9 +65,14 @@ static void keep_throats(const struct network *network, int64_t from, int64_t to
     const int64_t low = a < b ? from : to, high = a < b ? to : from;
     for (int t = first_throat(network, ends);
          t < network->n_throat && !compare_ends(network->throat_nodes[t], ends); t++) {
+        if (!network->throat_image) {
+            stays[t] = true;
+            continue;
+        }
         const struct image *image = network->face_node_image;
-        if (!image || same_image(image_difference(image[high], image[low]),
-                                 network->throat_image[t]))
+        const struct image apart = image_difference(image[high], image[low]);
+        if (same_image(apart, network->throat_image[t]) ||
+            (a == b && same_image(image_opposite(apart), network->throat_image[t])))
             stays[t] = true;
     }
 }

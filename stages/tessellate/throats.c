@@ -61,8 +61,9 @@ static bool facet_counts(const struct assembly *assembly, int cell, int k)
 }
 
 // The facets of cell C, as bits, from which a throat is seen whose first node is that
-// of the cell. NARROW when one would join a node to its own image.
-static int find_facets(const struct assembly *assembly, int c, bool *narrow)
+// of the cell. A throat that joins a node to its own image, around the box, is seen
+// from where the number of that image is above 0.
+static int find_facets(const struct assembly *assembly, int c)
 {
     const struct cell *cells = assembly->triangulation->cell, *from = &cells[c];
     int facets = 0;
@@ -70,10 +71,9 @@ static int find_facets(const struct assembly *assembly, int c, bool *narrow)
         const int d = from->neighbour[k];
         if (d < 0 || from->node > cells[d].node || !facet_counts(assembly, c, k))
             continue;
-        if (from->node < cells[d].node)
+        if (from->node < cells[d].node ||
+            image_number(image_difference(cells[d].image, from->image)) > 0)
             facets |= 1 << k;
-        else if (!same_image(from->image, cells[d].image)) // else united on a wall
-            *narrow = true;
     }
     return facets;
 }
@@ -96,21 +96,18 @@ static int add_to_count(const struct cell *cell, int *count, int more)
     return before;
 }
 
-// How many candidates there are of each first node, two places on. False when a throat
-// would join a node to its own image.
-static bool count_candidates(const struct assembly *assembly, int *count)
+// How many candidates there are of each first node, two places on.
+static void count_candidates(const struct assembly *assembly, int *count)
 {
-    bool narrow = false;
-#pragma omp parallel for reduction(|| : narrow)
+#pragma omp parallel for
     for (int c = 0; c < assembly->triangulation->n_cell; c++) {
         const struct cell *cell = &assembly->triangulation->cell[c];
         expect_neighbours(assembly->triangulation, c);
-        const int facets = find_facets(assembly, c, &narrow);
+        const int facets = find_facets(assembly, c);
         if (facets)
             add_to_count(cell, &count[cell->node + 2],
                          __builtin_popcount((unsigned)facets));
     }
-    return !narrow;
 }
 
 // Filling moves each offset on, so that candidates of a node end where those of the
@@ -122,9 +119,8 @@ static void fill_candidates(const struct assembly *assembly,
 #pragma omp parallel for
     for (int c = 0; c < cells->n_cell; c++) {
         const struct cell *from = &cells->cell[c];
-        bool narrow;
         expect_neighbours(cells, c);
-        const int facets = find_facets(assembly, c, &narrow);
+        const int facets = find_facets(assembly, c);
         if (!facets) continue;
         int to = add_to_count(from, &candidates->offset[from->node + 1],
                               __builtin_popcount((unsigned)facets));
@@ -229,25 +225,17 @@ static void store_candidates(const struct assembly *assembly,
     free(to);
 }
 
-enum status assemble_throats(const struct assembly *assembly, struct network *network,
-                             struct reason *reason)
+void assemble_throats(const struct assembly *assembly, struct network *network)
 {
     const int n = assembly->nodes->n;
     struct candidates candidates = {.offset = NEW_ARRAY(int, n + 2)};
-    enum status status = STATUS_OK;
-    if (!count_candidates(assembly, candidates.offset)) {
-        status = refuse(reason, STATUS_BAD_DATA,
-                        "/domain/upper: the box is too narrow for a network that "
-                        "repeats: a throat would join a node to its own image");
-    } else {
-        for (int i = 0; i < n; i++)
-            candidates.offset[i + 2] += candidates.offset[i + 1];
-        candidates.at =
-            allocate_aligned((size_t)candidates.offset[n + 1], sizeof *candidates.at);
-        fill_candidates(assembly, &candidates);
-        store_candidates(assembly, &candidates, network);
-    }
+    count_candidates(assembly, candidates.offset);
+    for (int i = 0; i < n; i++)
+        candidates.offset[i + 2] += candidates.offset[i + 1];
+    candidates.at =
+        allocate_aligned((size_t)candidates.offset[n + 1], sizeof *candidates.at);
+    fill_candidates(assembly, &candidates);
+    store_candidates(assembly, &candidates, network);
     free(candidates.offset);
     free(candidates.at);
-    return status;
 }

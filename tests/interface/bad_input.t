@@ -310,8 +310,13 @@ damage("a negative throat radius is refused", "network", value("throats/radius",
        "/throats/radius: row 3: must be >= 0, got -1")
 damage("an unknown kind of throat is refused", "network", value("throats/kind", 9, 3),
        "/throats/kind: row 9: must be <= 2, got 3")
-damage("a face of an unknown wall is refused", "network",
-       value("faces/particles", (8, 1), -9), "/faces/particles: row 8: must be >= -8, got -9")
+damage("an unknown wall is refused", "network", value("nodes/kind", 1, 64),
+       "/nodes/kind: row 1: is on the wall of no body of /domain/bodies, got 64")
+damage("a face of a seventh wall is refused", "network",
+       value("faces/particles", (8, 1), -7),
+       "/faces/particles: row 8: is on the wall of no body of /domain/bodies, got -7")
+damage("a face of a ninth wall is refused", "network", value("faces/particles", (8, 1), -9),
+       "/faces/particles: row 8: must be >= -8, got -9")
 damage("a face of a grain that is not there is refused", "network",
        value("faces/particles", (8, 1), 12),
        r"/faces/particles: row 8: must be < 12 \(n_particle\), got 12")
@@ -421,6 +426,33 @@ damage("a grain outside the box is refused", "packing",
 damage("two grains in one place are refused", "packing",
        lambda file: value("particles/position", 4, file["particles/position"][3])(file),
        "/particles/position: row 4: has the same centre as row 3")
+make("round", "pack", "--set", "method=poisson", "--set", "count=60", "--set", "bonds=none",
+     *(word for key in ("shape=ring", "radius=1e-5", "inner_radius=4e-6", "height=2e-5")
+       for word in ("--set", f"domain.{key}")))
+for title, change, line in [
+        ("a body of no shape that is known", value("domain/bodies/shape", 0, 4),
+         "/domain/bodies/shape: row 0: must be <= 3, got 4"),
+        ("a body of which grains are half within", value("domain/bodies/within", 1, 2),
+         "/domain/bodies/within: row 1: must be <= 1, got 2"),
+        ("a body without an upper corner", removed("domain/bodies/upper"),
+         "/domain/bodies/upper: is missing"),
+        ("a body upside down", value("domain/bodies/lower", (1, 2), 1),
+         "/domain/bodies/lower: row 1: must be < /domain/bodies/upper"),
+        ("a corner that is no number", value("domain/bodies/lower", (0, 1), numpy.nan),
+         "/domain/bodies/lower: row 0: must be finite, got -?nan"),
+        ("more bodies than are known",
+         lambda file: [replaced(f"domain/bodies/{name}", lambda old: numpy.repeat(old, 2, 0))(file)
+                       for name in ("shape", "within", "lower", "upper")],
+         "/domain/bodies/shape: must have at most 3 rows, got 4"),
+        ("one more shape than bodies", replaced("domain/bodies/shape", numpy.ones(3, "u1")),
+         r"/domain/bodies/within: extent 0 must be n_body = 3, got 2"),
+        ("a body far from its grains", value("domain/bodies/upper", 0, 1e-6),
+         "/particles/position: row 0: the centre must be in the cylinder of /domain/bodies: "
+         "row 0, is at .* m"),
+        ("a round wall where the box repeats", value("domain/periodic", 0, 1),
+         "/domain/periodic: row 0: must be 0 where the wall around the grains is round")]:
+    refused(f"{title} is refused", BAD_DATA, ["tessellate", damaged("round", change)],
+            f"damaged: {line}")
 make("periodic", "pack", "--set", "method=poisson", "--set", "count=60", "--set", "bonds=none",
      "--set", "upper=[4e-6,4e-6,4e-6]", "--set", "periodic=[true,true,true]")
 make("periodic-network", "tessellate", "periodic")

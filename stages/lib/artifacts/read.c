@@ -269,6 +269,28 @@ static void check_throats_lead_away(const struct artifact *artifact,
     }
 }
 
+// The schema lets walls of bodies through, also where there are none.
+static void check_walls(const struct artifact *artifact, const struct network *network)
+{
+    unsigned walls = (1u << WALL_COUNT) - 1;
+    for (int k = 0; k < network->packing.n_body; k++)
+        walls |= 1u << body_wall(&network->packing.body[k]);
+    for (int i = 0; i < network->n_node; i++)
+        if (network->node_walls[i] & ~walls)
+            die(STATUS_BAD_DATA,
+                "%s: /nodes/kind: row %d: is on the wall of no body of /domain/bodies, "
+                "got %d",
+                input_name(artifact->path), i, network->node_walls[i]);
+    for (int f = 0; f < network->n_face; f++) {
+        const int32_t side = network->face_particles[f][1];
+        if (side < 0 && !(walls >> (-1 - side) & 1))
+            die(STATUS_BAD_DATA,
+                "%s: /faces/particles: row %d: is on the wall of no body of "
+                "/domain/bodies, got %d",
+                input_name(artifact->path), f, side);
+    }
+}
+
 struct network artifact_get_periodic_network(const struct artifact *artifact)
 {
     const struct schema *schema = artifact->schema;
@@ -283,6 +305,7 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     network.face_nodes = artifact_get(artifact, "/faces/nodes", NULL);
     network.face_particles =
         artifact_get(artifact, "/faces/particles", &network.n_face);
+    check_walls(artifact, &network);
     if (artifact_has_dataset(artifact, "/throats/volume"))
         network.throat_volume = artifact_get(artifact, "/throats/volume", NULL);
     if (artifact_has(artifact, schema_attribute(schema, "/summary/unmerged_throats"))) {
