@@ -20,7 +20,7 @@ struct bridge_parameters {
 static const struct parameter table[] = {
     {"model", PARAMETER_CHOICE, "1", "\"exact\"", BOUND_NONE, 0, 0,
      BRIDGE_MODEL_CHOICES,
-     "exact: Young and Laplace's equation; table: interpolated from it, to 1e-5; the "
+     "exact: Young and Laplace's equation; table: interpolated from it; the "
      "others are approximations [G 2]",
      AT(model)},
     {"radius", PARAMETER_NUMBER, "m", NULL, BOUND_ABOVE, 0, 0, NULL,

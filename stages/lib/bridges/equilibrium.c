@@ -499,7 +499,9 @@ enum status follow_branch(const struct bodies *bodies, double volume, int count,
         else {
             const enum status status =
                 find_equilibrium(bodies, volume, gap[k], &found[k]);
-            if (status) return status;
+            const bool just_beyond =
+                status == STATUS_NO && gap[k] < (1 + 1e-4) * found[k].gap;
+            if (status && !just_beyond) return status;
             next.unknowns = unknowns_of(&found[k].arc);
             next.gap = found[k].gap;
         }
