@@ -261,7 +261,7 @@ bench-walls: all ## the tessellation in a cylinder and of grains on a sphere, ne
 	@tests/bench/walls
 bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cost
 	@tests/bench/bridge
-bench-network: all ## measure time and memory of the tessellation, next to voro++
+bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
 
 # --- house ----------------------------------------------------------------------------

@@ -53,6 +53,11 @@ static bool facet_counts(const struct assembly *assembly, int cell, int k)
     const struct generators *generators = assembly->generators;
     const int32_t *corner = assembly->triangulation->cell[cell].vertex;
     int32_t first = -1;
+    if (generators->n == generators->n_base)
+        return (k != 0 && corner[0] < generators->n_particle) ||
+               (k != 1 && corner[1] < generators->n_particle) ||
+               (k != 2 && corner[2] < generators->n_particle) ||
+               (k != 3 && corner[3] < generators->n_particle);
     for (int m = 0; m < 4; m++)
         if (m != k &&
             (first < 0 || compare_generators(generators, corner[m], first) < 0))
@@ -101,9 +106,10 @@ static void count_candidates(const struct assembly *assembly, int *count)
 {
 #pragma omp parallel for
     for (int c = 0; c < assembly->triangulation->n_cell; c++) {
-        const struct cell *cell = &assembly->triangulation->cell[c];
+        struct cell *cell = &assembly->triangulation->cell[c];
         expect_neighbours(assembly->triangulation, c);
         const int facets = find_facets(assembly, c);
+        cell->seen |= (uint8_t)facets; // until filling
         if (facets)
             add_to_count(cell, &count[cell->node + 2],
                          __builtin_popcount((unsigned)facets));
@@ -118,9 +124,10 @@ static void fill_candidates(const struct assembly *assembly,
     const struct triangulation *cells = assembly->triangulation;
 #pragma omp parallel for
     for (int c = 0; c < cells->n_cell; c++) {
-        const struct cell *from = &cells->cell[c];
+        struct cell *from = &cells->cell[c];
+        const int facets = from->seen & ~SHARES_NODE;
         expect_neighbours(cells, c);
-        const int facets = find_facets(assembly, c);
+        from->seen &= SHARES_NODE;
         if (!facets) continue;
         int to = add_to_count(from, &candidates->offset[from->node + 1],
                               __builtin_popcount((unsigned)facets));
