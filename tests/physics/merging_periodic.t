@@ -172,6 +172,20 @@ with scratch() as folder:
         ok(np.allclose(lengths, np.sort(other["throats/length"][:]), rtol=1e-9),
            "the same where the box begins elsewhere")
 
+    # One grain to eight in a box that repeats: throats around it.
+    around = 0
+    for n in range(1, 9):
+        for share, sides in (0, (True, True, True)), (0.1, (True, False, True)), (0.6, (True,) * 3):
+            box = random.uniform(0.3, 1.5, 3)
+            merge = ["measure=fraction", f"threshold={share}", "volumes=conserved"]
+            before, after = network(box * random.random((n, 3)), [0.01] * n, box, sides, (), merge)
+            volume = np.pi * (before["throats/radius"][:]**2 * before["throats/length"][:]).sum()
+            ok(closed(after) == (True, True) and again(*merge)
+               and abs(after["throats/volume"][:].sum() / volume - 1) < 1e-12,
+               f"{n} grains in a box that repeats along {sides}, {share:.0%} merged")
+            around += (np.diff(after["throats/nodes"][:]) == 0).sum()
+    ok(around > 0, "some throats join a node to its own image", around)
+
     # A square layer: squares of throats.
     across, up = 5, 4
     centres = np.array([(x + 0.5, 0.5, z + 0.5) for x in range(across) for z in range(up)])
