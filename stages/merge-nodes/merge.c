@@ -16,20 +16,34 @@ static double mean(const double *values, int count)
     return count ? sum / count : 0;
 }
 
+// Throats but those of the boundary layer, and their mean length.
+static int count_throats(const struct network *network, double *length)
+{
+    int n = 0;
+    double sum = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] == THROAT_BOUNDARY_LAYER) continue;
+        sum += network->throat_length[t];
+        n++;
+    }
+    *length = n ? sum / n : 0;
+    return n;
+}
+
 // What thresholds are relative to stays that of the first time, so that merging again
 // changes nothing.
 static void remember_unmerged(struct network *network)
 {
     if (network->unmerged_throats) return;
-    network->unmerged_throats = network->n_throat;
-    network->unmerged_length = mean(network->throat_length, network->n_throat);
+    network->unmerged_throats = count_throats(network, &network->unmerged_length);
 }
 
 // The length below which throats go, and how many may go at most.
 static void limits(const struct network *network, enum merge_measure measure,
                    double threshold, double *length, int *most)
 {
-    const int gone = network->unmerged_throats - network->n_throat;
+    double now;
+    const int gone = network->unmerged_throats - count_throats(network, &now);
     *most = network->n_throat;
     switch (measure) {
     case MERGE_GRAIN_RADIUS:

@@ -133,7 +133,7 @@ static void append(struct throat_row *row, int throat)
 void merging_remove(struct merging *merging, int throat)
 {
     merging->gone[throat] = true;
-    merging->removed++;
+    merging->removed += merging->network->throat_kind[throat] != THROAT_BOUNDARY_LAYER;
 }
 
 static void fuse(struct merging *merging, int kept, int removed)
