@@ -234,6 +234,7 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 .PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
+	bench-viscous \
 	sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -261,6 +262,8 @@ bench-walls: all ## the tessellation in a cylinder and of grains on a sphere, ne
 	@tests/bench/walls
 bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cost
 	@tests/bench/bridge
+bench-viscous: all ## time to dryness with viscous liquid, next to none
+	@tests/bench/viscous
 bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 // More changes than this at once, or nodes left aside than this share, are factorised.
-enum { MOST_CHANGES = 48 };
+enum { MOST_CHANGES = 64 };
 static const double MOST_ASIDE = 0.3;
 
 struct named_link {

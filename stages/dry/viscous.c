@@ -7,6 +7,7 @@
 
 #include <cholmod.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Rounds in which menisci are found; from the second on none can come back, so this is
 // far more than any network needs.
@@ -14,12 +15,12 @@ enum { MOST_ROUNDS = 200, REFINEMENTS = 10 };
 
 // Largest error of a node's balance, relative to the largest flow in its cluster.
 #define FLOW_TOLERANCE 1e-11
-static const double AIM = 1e-13;
+static const double AIM = 5e-13;
 
 // A cluster of at least this many nodes keeps its factor; the conjugate gradients with
 // it stop at this part of the square of the error, or after so many steps.
-enum { FOLLOWED_NODES = 150, MOST_STEPS = 24, FEW_MOVING = 8 };
-static const double REDUCTION = 1e-26;
+enum { FOLLOWED_NODES = 150, MOST_STEPS = 24, FEW_MOVING = 32 };
+static const double REDUCTION = 1e-18;
 
 // One cluster of liquid. Its unknowns are the potentials at nodes that liquid fills.
 struct piece {
@@ -37,10 +38,10 @@ struct piece {
     int n_link;
 };
 
-// Of the matrix: between unknowns, or to the ground where B is -1.
+// Of the matrix: between unknowns, or to a meniscus at potential LEVEL where B is -1.
 struct flow_link {
     int a, b;
-    double conductance;
+    double conductance, level;
 };
 
 struct flow_solver {
@@ -54,6 +55,7 @@ struct flow_solver {
     double *lack;
     struct graph_factor *factor; // of the largest cluster
     struct flow_link *link;
+    double *source;    // (n_unknown) what stationary menisci take, negative
     double *vector[3]; // (n_node) each
     int64_t steps;     // of conjugate gradients
     const struct phases *phases;
@@ -83,6 +85,7 @@ struct liquid_flow liquid_flow_make(const struct network *network, double length
     solver->node = NEW_ARRAY(int, network->n_node);
     solver->potential = NEW_ARRAY(struct compensated, network->n_node);
     solver->lack = NEW_ARRAY(double, network->n_node);
+    solver->source = NEW_ARRAY(double, network->n_node);
     solver->link = NEW_ARRAY(struct flow_link, 2 * (size_t)network->n_throat);
     for (int k = 0; k < 3; k++)
         solver->vector[k] = NEW_ARRAY(double, network->n_node);
@@ -110,6 +113,7 @@ void liquid_flow_free(struct liquid_flow *flow)
         free(solver->potential);
         free(solver->lack);
         free(solver->link);
+        free(solver->source);
         for (int k = 0; k < 3; k++)
             free(solver->vector[k]);
         graph_factor_free(solver->factor);
@@ -201,52 +205,46 @@ static double potential_at_mouth(const struct liquid_flow *flow, int throat)
 
 // --- the balances --------------------------------------------------------------------
 
-// What the balances of all nodes lack. Moved liquid is added to the piece's scale.
+// What the balances of all nodes lack.
 static void find_lack(const struct liquid_flow *flow, const struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
     double *lack = solver->lack;
-    for (int k = 0; k < piece->n_unknown; k++)
-        lack[k] = 0;
+    memcpy(lack, solver->source, (size_t)piece->n_unknown * sizeof *lack);
+    for (int k = 0; k < piece->n_link; k++) {
+        const struct flow_link *link = &solver->link[k];
+        const struct compensated here = solver->potential[link->a];
+        const double through =
+            link->conductance * (link->b < 0 ? above(here, link->level)
+                                             : fall(here, solver->potential[link->b]));
+        lack[link->a] -= through;
+        if (link->b >= 0) lack[link->b] += through;
+    }
+}
+
+// The matrix, link by link, and what stationary menisci take.
+static void find_links(const struct liquid_flow *flow, struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    struct flow_link *link = solver->link;
+    piece->n_link = piece->n_moving = 0;
+    memset(solver->source, 0, (size_t)piece->n_unknown * sizeof(double));
     for (int k = 0; k < piece->n_throat; k++) {
         const int throat = piece->throat[k];
         int end[2];
         const int n = liquid_ends(flow, throat, end);
         if (flow->moving[throat]) {
+            piece->n_moving++;
             for (int e = 0; e < n; e++)
-                lack[end[e]] -=
-                    arm(flow, throat, n) *
-                    above(solver->potential[end[e]], entry(flow, piece, throat));
+                link[piece->n_link++] = (struct flow_link){
+                    end[e], -1, arm(flow, throat, n), entry(flow, piece, throat)};
             continue;
         }
         for (int e = 0; e < n; e++)
-            lack[end[e]] -= solver->charge[throat] / n;
-        if (n < 2) continue;
-        const double through =
-            flow->conductance[throat] *
-            fall(solver->potential[end[1]], solver->potential[end[0]]);
-        lack[end[0]] += through;
-        lack[end[1]] -= through;
-    }
-}
-
-// The matrix, link by link.
-static void find_links(const struct liquid_flow *flow, struct piece *piece)
-{
-    struct flow_link *link = flow->solver->link;
-    piece->n_link = piece->n_moving = 0;
-    for (int k = 0; k < piece->n_throat; k++) {
-        const int throat = piece->throat[k];
-        int end[2];
-        const int n = liquid_ends(flow, throat, end);
-        piece->n_moving += flow->moving[throat];
-        if (flow->moving[throat])
-            for (int e = 0; e < n; e++)
-                link[piece->n_link++] =
-                    (struct flow_link){end[e], -1, arm(flow, throat, n)};
-        else if (n == 2)
+            solver->source[end[e]] -= solver->charge[throat] / n;
+        if (n == 2)
             link[piece->n_link++] =
-                (struct flow_link){end[0], end[1], flow->conductance[throat]};
+                (struct flow_link){end[0], end[1], flow->conductance[throat], 0};
     }
 }
 
@@ -377,13 +375,14 @@ static bool correct_followed(const struct liquid_flow *flow, const struct piece 
     const int n = piece->n_unknown;
     double *rest = solver->lack, *z = solver->vector[0], *p = solver->vector[1],
            *q = solver->vector[2];
-    double rho = 0, first = 0;
+    const double enough = REDUCTION * product(rest, rest, n);
+    double rho = 0;
     for (int k = 0; k < MOST_STEPS; k++) {
+        if (k > 0 && product(rest, rest, n) <= enough) return true;
         if (!graph_factor_solve(solver->factor, rest, z)) return false;
         const double before = rho;
         rho = product(rest, z, n);
-        if (k == 0) first = rho;
-        if (!(rho > REDUCTION * first)) return rho >= 0;
+        if (!(rho > 0)) return rho == 0;
         for (int i = 0; i < n; i++)
             p[i] = z[i] + (k > 0 ? rho / before * p[i] : 0);
         multiply(flow, piece, p, q);
