@@ -264,6 +264,8 @@ bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cos
 	@tests/bench/bridge
 bench-viscous: all ## time to dryness with viscous liquid, next to none
 	@tests/bench/viscous
+bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (minutes)
+	@tests/bench/dry
 bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
 

@@ -2,6 +2,7 @@
 #include "clusters.h"
 
 #include "basics/memory.h"
+#include "ranks.h"
 
 #include <stdlib.h>
 
@@ -230,30 +231,12 @@ int clusters_invasion_throat(struct clusters *clusters, int cluster)
     return -1;
 }
 
-struct ranked {
-    double ease;
-    int throat;
-};
-
-static int compare_ranked(const void *a, const void *b)
-{
-    const struct ranked *r = a, *s = b;
-    if (r->ease != s->ease) return r->ease > s->ease ? -1 : 1;
-    return (r->throat > s->throat) - (r->throat < s->throat);
-}
-
 static void rank_throats(struct clusters *clusters, const double *ease)
 {
     const int n = clusters->network->n_throat;
-    struct ranked *ranked = NEW_ARRAY(struct ranked, n);
-    for (int t = 0; t < n; t++)
-        ranked[t] = (struct ranked){ease[t], t};
-    if (n > 0) qsort(ranked, (size_t)n, sizeof *ranked, compare_ranked);
-    for (int k = 0; k < n; k++) {
-        clusters->throat_at_rank[k] = ranked[k].throat;
-        clusters->rank[ranked[k].throat] = k;
-    }
-    free(ranked);
+    rank_descending(ease, n, clusters->throat_at_rank);
+    for (int k = 0; k < n; k++)
+        clusters->rank[clusters->throat_at_rank[k]] = k;
 }
 
 // Every piece of the full network, by a search that nothing interrupts.

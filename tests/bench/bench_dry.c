@@ -4,8 +4,12 @@
 //
 //     bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]
 //
-// prints throats, seconds, throats a second, and what rounding leaves of the balances.
+//     bench_dry invade NX NY NZ pure|trapping
+//
+// print throats, seconds, throats a second and what rounding leaves of the balances; or
+// throats, seconds, throats invaded, and those when gas first reaches the far side.
 #include "dry/drying.h"
+#include "dry/invasion.h"
 
 #include "basics/memory.h"
 
@@ -102,12 +106,30 @@ static int dry(const int n[3], const char *liquid, double step_interval)
     return STATUS_OK;
 }
 
+static int invade_lattice(const int n[3], bool trapping)
+{
+    struct network network = lattice(n);
+    struct invasion invasion;
+    struct reason reason;
+    const double start = seconds();
+    const enum status status =
+        invade(&network, WALL_Z_UPPER, WALL_Z_LOWER, trapping, &invasion, &reason);
+    printf("%d %.4f %d %d\n", network.n_throat, seconds() - start, invasion.n,
+           invasion.breakthrough);
+    invasion_free(&invasion);
+    network_free(&network);
+    return status;
+}
+
 int main(int argc, char **argv)
 {
-    if (argc < 6 || strcmp(argv[1], "dry") != 0) {
-        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]\n");
+    if (argc < 6) {
+        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]\n"
+                        "bench_dry invade NX NY NZ pure|trapping\n");
         return STATUS_USAGE;
     }
     const int n[3] = {atoi(argv[2]), atoi(argv[3]), atoi(argv[4])};
+    if (strcmp(argv[1], "invade") == 0)
+        return invade_lattice(n, strcmp(argv[5], "trapping") == 0);
     return dry(n, argv[5], argc > 6 ? strtod(argv[6], NULL) : 1e-3);
 }

@@ -2,6 +2,7 @@
 // Sites eliminated one by one against Gaussian elimination in long double, over twelve
 // decades of conductance.
 #include "dry/star_mesh.h"
+#include "dry/triangle.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
@@ -123,12 +124,48 @@ static void test_shut_in_is_exactly_zero(void **state)
     star_mesh_free(&mesh);
 }
 
+// Large fronts are updated by vectors of four or eight: the same bytes, and near what
+// the sum is.
+static void test_width_of_vectors_does_not_matter(void **state)
+{
+    (void)state;
+#if defined __x86_64__
+    if (!__builtin_cpu_supports("avx512f")) skip();
+#endif
+    enum { N = 301, SOURCES = 31 };
+    uint64_t seed = 5;
+    double *narrow = NEW_ARRAY(double, triangle_size(N));
+    double *wide = NEW_ARRAY(double, triangle_size(N));
+    static double row[SOURCES][N];
+    const double *source[SOURCES];
+    double factor[SOURCES];
+    for (int k = 0; k < SOURCES; k++) {
+        for (int i = 0; i < N; i++)
+            row[k][i] = next_random(&seed);
+        source[k] = row[k];
+        factor[k] = next_random(&seed);
+    }
+    triangle_update_narrow(narrow, N, SOURCES, factor, source);
+    triangle_update_wide(wide, N, SOURCES, factor, source);
+    assert_memory_equal(narrow, wide, triangle_size(N) * sizeof *wide);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < i; j++) {
+            double sum = 0;
+            for (int k = 0; k < SOURCES; k++)
+                sum += factor[k] * row[k][i] * row[k][j];
+            assert_true(fabs(narrow[triangle_size(i) + (size_t)j] / sum - 1) < 1e-14);
+        }
+    free(narrow);
+    free(wide);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_digit_over_twelve_decades),
         cmocka_unit_test(test_every_digit_where_conductances_are_alike),
-        cmocka_unit_test(test_shut_in_is_exactly_zero)};
+        cmocka_unit_test(test_shut_in_is_exactly_zero),
+        cmocka_unit_test(test_width_of_vectors_does_not_matter)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

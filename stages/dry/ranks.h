@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The order in which gas enters throats: the widest first, of equals that with the
+// lowest index. And a queue of ranks.
+#ifndef CRAQUELURE_RANKS_H
+#define CRAQUELURE_RANKS_H
+
+#include <stdint.h>
+
+// ORDER (n): indices of VALUE, descending, ties by index. O(n) but for long runs of
+// values that are equal to nine digits and not quite.
+void rank_descending(const double *value, int n, int *order);
+
+// A set of numbers below N, kept as bits, bits for words of bits, and so on: adding and
+// taking the lowest cost a few operations whatever the size.
+struct rank_queue {
+    int n_level;
+    uint64_t *level[6]; // the last has one word
+};
+
+struct rank_queue rank_queue_make(int n);
+void rank_queue_add(struct rank_queue *queue, int rank);
+
+// Removes the lowest and returns it; -1 if there is none.
+int rank_queue_take(struct rank_queue *queue);
+
+void rank_queue_free(struct rank_queue *queue);
+
+#endif
