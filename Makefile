@@ -234,7 +234,7 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 .PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
-	bench-viscous \
+	bench-viscous bench-flow \
 	sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -268,6 +268,8 @@ bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against 
 	@tests/bench/dry
 bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
+bench-flow: all ## measure time and memory of the flow, next to Yade
+	@tests/bench/flow
 
 # --- house ----------------------------------------------------------------------------
 

@@ -21,7 +21,8 @@ struct balance {
     const struct throats *throats;
     uint8_t *walls;   // (n_pore)
     uint8_t *known;   // (n_node)
-    double *given;    // (n_node) source and mean gradient
+    double *injected; // (n_node) sources and fluxes through walls
+    double *given;    // (n_node) these, and what the mean gradient drives
     int32_t *unknown; // (n_node) place in the matrix
     struct matrix matrix;
 };
@@ -118,17 +119,19 @@ static void impose(struct balance *balance, const struct conditions *conditions,
 {
     pressures->value = NEW_ARRAY(struct compensated, pressures->n_node);
     balance->known = NEW_ARRAY(uint8_t, pressures->n_node);
-    balance->given = NEW_ARRAY(double, pressures->n_node);
+    balance->injected = NEW_ARRAY(double, pressures->n_node);
     for (int i = 0; i < balance->cells->n_pore; i++) {
         const int32_t node = pressures->node[i];
         const int wall = imposing(conditions, balance->walls[i]);
-        if (source) balance->given[node] += source[i];
+        if (source) balance->injected[node] += source[i];
         if (wall < 0) continue;
         balance->known[node] = 1;
         pressures->value[node].value = conditions->pressure[wall];
     }
     for (int wall = 0; wall < WALL_COUNT; wall++)
-        if (plate[wall] >= 0) balance->given[plate[wall]] += conditions->flux[wall];
+        if (plate[wall] >= 0) balance->injected[plate[wall]] += conditions->flux[wall];
+    balance->given =
+        duplicate(balance->injected, (size_t)pressures->n_node, sizeof *balance->given);
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
@@ -158,8 +161,8 @@ static enum status find_pockets(struct balance *balance, struct pressures *press
     for (int i = 0; i < n; i++) {
         pocket[i] = root(pocket, i);
         way_out[pocket[i]] |= balance->known[i];
-        sum[pocket[i]] += balance->given[i];
-        size[pocket[i]] += fabs(balance->given[i]);
+        sum[pocket[i]] += balance->injected[i];
+        size[pocket[i]] += fabs(balance->injected[i]);
     }
     enum status status = STATUS_OK;
     for (int i = 0; i < n && !status; i++) {
@@ -423,15 +426,20 @@ static void settle_pockets(const struct balance *balance, const int32_t *pocket,
     free(count);
 }
 
-// What leaves the pores of each wall for the others enters through the wall.
+// What leaves the pores of each wall for the others, less what they give off
+// themselves, enters through the wall.
 static void find_inflow(const struct balance *balance,
-                        const struct conditions *conditions,
+                        const struct conditions *conditions, const double *source,
                         struct pressures *pressures)
 {
     for (int wall = 0; wall < WALL_COUNT; wall++)
         pressures->inflow[wall] =
             isnan(conditions->flux[wall]) ? 0 : conditions->flux[wall];
     struct compensated sum[WALL_COUNT] = {{0, 0}};
+    for (int i = 0; source && i < balance->cells->n_pore; i++) {
+        const int wall = imposing(conditions, balance->walls[i]);
+        if (wall >= 0) compensated_add(&sum[wall], -source[i]);
+    }
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
@@ -473,11 +481,12 @@ enum status solve_pressures(const struct grains *grains, const struct cells *cel
     }
     if (!status) {
         settle_pockets(&balance, pocket, pressures);
-        find_inflow(&balance, conditions, pressures);
+        find_inflow(&balance, conditions, source, pressures);
     }
     free(pocket);
     free(balance.walls);
     free(balance.known);
+    free(balance.injected);
     free(balance.given);
     free(balance.unknown);
     matrix_free(&balance.matrix);

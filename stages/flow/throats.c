@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+// In units: more than centres of one pore are apart.
+static const double inside = 1e-6;
+
 struct corner facet_corner_of(const struct grains *grains, const struct pore_cell *cell,
                               int facet, int k)
 {
@@ -71,6 +74,13 @@ static bool fit_sectors(struct throat *throat)
     return false;
 }
 
+// Inside a pore; not so from a pore to its own copy in the next box.
+static bool is_inside(const struct cells *cells, const struct throat *throat)
+{
+    return cells->cell[throat->cell[0]].pore == cells->cell[throat->cell[1]].pore &&
+           throat->length < inside;
+}
+
 static void measure_throat(const struct grains *grains, const struct cells *cells,
                            const struct pore_cell *cell, int facet,
                            const struct throat_rule *rule, struct throat *throat)
@@ -92,7 +102,7 @@ static void measure_throat(const struct grains *grains, const struct cells *cell
     throat->volume = shape.volume;
     throat->length = shape.length;
     const bool open = fit_sectors(throat);
-    if (cells->cell[throat->cell[0]].pore == cells->cell[throat->cell[1]].pore)
+    if (is_inside(cells, throat))
         throat->length = 0;
     else if (open)
         throat->conductance = conductance_of(throat, corner, rule) / throat->length;

@@ -105,4 +105,71 @@ with scratch() as folder:
                               for c in cells])
             ok(np.isfinite(error).all() and np.abs(error).max() < 1e-4,
                f"{title}: cells and their pressures", np.abs(error).max())
+
+    # Nine spheres over d/D. The spheres of the tables are off the lattice by some 1e-5: by
+    # symmetry the pressure on the wall is 1/2, theirs is up to 0.50002. Ours are exact.
+    header, rows = table("nine_spheres.csv")
+    for row in rows[8:18]:
+        entry = dict(zip(header, row))
+        spheres = [(x, y, z, .25) for x in (.25, .75) for y in (.25, .75) for z in (.25, .75)]
+        path = pack(spheres + [(.5, .5, .5, float(entry["d_over_D"]) / 4)], at("nine"))
+        result = flow(path, sides="symmetric-yade" if entry["lateral"] == "symmetry"
+                      else "no-slip")
+        ours = [permeability(result),
+                *(-result[f"particles/{kind}_force"][i, 1] for i in (0, 8)
+                  for kind in ("viscous", "pressure"))]
+        theirs = [float(entry[key]) for key in
+                  ("K_ref", "big_visc", "big_press", "center_visc", "center_press")]
+        error = np.abs(np.array(ours) / theirs - 1).max()
+        ok(error < 4e-4 and abs(result["walls/pressure_force"][0, 0] + .5) < 1e-12,
+           f"nine spheres, d/D = {entry['d_over_D']}, {entry['lateral']}", error)
+
+    # Drag on spheres in lattices that repeat, over 6 pi mu a U, against Stokes flow (Zick and
+    # Homsy 1982): the model is to be within a tenth at contact, and the same along each axis.
+    sites = {"sc": ([(0, 0, 0)], 1, 42.1),
+             "bcc": ([(0, 0, 0), (.5, .5, .5)], 3 ** .5 / 2, 162.9),
+             "fcc": ([(0, 0, 0), (0, .5, .5), (.5, 0, .5), (.5, .5, 0)], .5 ** .5, 435)}
+    for name, (places, distance, stokes) in sites.items():
+        path = pack([(*(x + .25 for x in p), distance / 2) for p in places], at(name),
+                    "[true,true,true]")
+        result = flow(path, along="x", permeability_tensor="true", **{
+            "pressure.y_lower": "null", "pressure.y_upper": "null"})
+        tensor = result["permeability"][:]
+        drag = 1 / (6 * np.pi * distance / 2 * len(places) * tensor[0, 0])
+        ok(abs(drag / stokes - 1) < .1, f"{name}: drag {drag:.4g}, Stokes {stokes}")
+        ok(np.abs(tensor / tensor[0, 0] - np.eye(3)).max() < 1e-9, f"{name}: isotropic", tensor)
+        force = total(result)
+        ok(np.abs(force - [1, 0, 0]).max() < 1e-12, f"{name}: drag is drop times section", force)
+
+    # Both solvers, any number of threads, any scale.
+    path = at("packing_200_r0.9")
+    both = [permeability(flow(path, solver=solver)) for solver in ("cholesky", "iteration")]
+    ok(abs(both[0] / both[1] - 1) < 1e-11, "both solvers agree", both)
+    one, two = (run("flow", "--threads", n, "--set=solver=iteration", path) for n in (1, 2))
+    ok(one == two, "the same bytes on two threads")
+    small = pack(numbers("packing_200_r0.9.csv") * 1e-9, at("small"), upper="[1e-9,1e-9,1e-9]")
+    ratio = permeability(flow(small, solver="cholesky")) / both[0]
+    ok(abs(ratio / 1e-27 - 1) < 1e-9, "a scene of a nanometre", ratio)
+
+    # What flows in through one wall at a given rate.
+    imposed = flow(path, **{"pressure.y_upper": "null", "flux.y_upper": both[0]})
+    ok(abs(imposed["walls/pressure_force"][3, 1] - 1) < 1e-9, "a flux that is imposed",
+       imposed["walls/pressure_force"][:])
+
+    # A box that is squeezed along x pushes out just its volume.
+    squeezed = flow(path, **{"pressure.y_upper": 0, "strain_rate": "[-0.01,0,0]"})
+    ok(abs(squeezed["walls/inflow"][:].sum() + 0.01) < 1e-13, "squeezed: what is lost flows out",
+       squeezed["walls/inflow"][:])
+
+    # Hard cases: one sphere, small ones in a void, overlap that closes throats.
+    one = pack([(.5, .5, .5, .5)], at("one"))
+    conserves(flow(one), "one sphere")
+    generator = np.random.default_rng(1)
+    floating = [(*generator.uniform(.4, .6, 3), .0025) for _ in range(30)]
+    lattice = [(x, y, z, .25) for x in (.25, .75) for y in (.25, .75) for z in (.25, .75)]
+    conserves(flow(pack(lattice + floating, at("floating"))), "a hundred times smaller grains")
+    overlapping = pack([(x, y, z, .3) for x, y, z, _ in lattice], at("overlapping"))
+    result = flow(overlapping)
+    ok(result["summary"].attrs["closed_throats"] > 0 and np.abs(total(result)).max() < 1e-12,
+       "overlap closes throats, and the forces still sum up", total(result))
 done()

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# [C Figs. 10-12] and lattices against Stokes flow. Variable: tables, the folder of pipelines/drag.
+set terminal svg size 1000,760 font "Helvetica,15" linewidth 1 background "#ffffff"
+set multiplot layout 2,2
+set border 3 linecolor "#555555"
+set tics nomirror out scale 0.6 textcolor "#222222"
+set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+blue = "#0a4a96"; pale = "#a9c1dd"; red = "#d6201c"; grey = "#777777"
+file(name) = tables . "/" . name
+
+set title "Nine spheres: permeability [C Fig. 10]"
+set xlabel "d / D"; set ylabel "K / l^2"; set format y "%.0e"; set key top right opaque
+plot [0:0.75] [0:1.5e-3] file("nine.tsv") using 1:2 with lines linewidth 2 linecolor rgb blue title "symmetric", \
+    '' using 1:6 with lines linewidth 2 linecolor rgb pale title "symmetric as in Yade", \
+    '' using 1:4 with lines linewidth 2 linecolor rgb red title "no-slip", \
+    '' using 1:8 with lines linewidth 2 linecolor rgb grey title "no-slip, ER"
+
+set title "Force on the small sphere [C Fig. 12]"
+set ylabel "F / (S drop)"; set key top left opaque; set logscale xy; set format y "10^{%T}"
+plot [0.02:0.75] file("nine.tsv") using 1:3 with lines linewidth 2 linecolor rgb blue title "symmetric", \
+    '' using 1:9 with points pointtype 7 pointsize 0.4 linecolor rgb grey title "no-slip, ER", \
+    '' using 1:($5) with lines dashtype (6, 4) linewidth 2 linecolor rgb red title "no-slip"
+unset logscale; set format y "%g"
+
+set title "Throats of 200 spheres [C Fig. 11]"
+set xlabel "hydraulic radius / l"; set ylabel "effective radius / l"; unset key
+plot [0:0.03] [0:0.03] file("radii.tsv") with dots linecolor rgb blue, x with lines linecolor rgb grey
+
+set title "Lattices: drag over 6πμaU"
+set xlabel "solid share"; set ylabel ""; set logscale y; set key bottom right; set format y "10^{%T}"
+plot [0:0.75] file("sc.tsv") with lines linewidth 2 linecolor rgb blue title "sc", \
+    file("bcc.tsv") with lines linewidth 2 linecolor rgb pale title "bcc", \
+    file("fcc.tsv") with lines linewidth 2 linecolor rgb grey title "fcc", \
+    file("stokes.tsv") with points pointtype 7 pointsize 0.6 linecolor rgb red title "Stokes (Zick, Homsy)"
