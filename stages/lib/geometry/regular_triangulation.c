@@ -499,26 +499,48 @@ static struct turn *order_points(const struct vector *points, int n)
     return turns;
 }
 
-// Moves the finite cells together, and gives points their own numbers back.
-static int32_t pack_cells(struct insertion *insertion, const struct turn *turns)
+static int32_t last_point(const struct cell *cell)
 {
-    int32_t *number = NEW_ARRAY(int32_t, insertion->n_cell), count = 0;
+    int32_t last = cell->vertex[0];
+    for (int k = 1; k < 4; k++)
+        if (cell->vertex[k] > last) last = cell->vertex[k];
+    return last;
+}
+
+// Puts the finite cells in the order in which their last points came, along the curve,
+// and gives points their own numbers back. Frees the cells that were.
+static struct triangulation pack_cells(struct insertion *insertion,
+                                       const struct turn *turns, int n)
+{
+    int32_t *number = NEW_ARRAY(int32_t, insertion->n_cell);
+    int32_t *next = NEW_ARRAY(int32_t, n + 1);
     for (int c = 0; c < insertion->n_cell; c++) {
         const struct cell *cell = &insertion->cell[c];
-        number[c] = cell->seen || cell->error < 0 ? -1 : count++;
+        number[c] = cell->seen || cell->error < 0 ? -1 : last_point(cell);
+        if (number[c] >= 0) next[number[c] + 1]++;
     }
+    for (int i = 0; i < n; i++)
+        next[i + 1] += next[i];
+    const int32_t count = next[n];
+    struct cell *packed = allocate_aligned((size_t)count, sizeof *packed);
+    for (int c = 0; c < insertion->n_cell; c++)
+        if (number[c] >= 0) number[c] = next[number[c]]++;
     for (int c = 0; c < insertion->n_cell; c++) {
         if (number[c] < 0) continue;
         const struct cell *from = &insertion->cell[c];
-        struct cell cell = {0};
+        struct cell *cell = &packed[number[c]];
         for (int k = 0; k < 4; k++) {
-            cell.vertex[k] = turns[from->vertex[k]].point;
-            cell.neighbour[k] = number[from->neighbour[k]];
+            cell->vertex[k] = turns[from->vertex[k]].point;
+            cell->neighbour[k] = number[from->neighbour[k]];
         }
-        insertion->cell[number[c]] = cell;
     }
     free(number);
-    return count;
+    free(next);
+    free(insertion->cell);
+    return (struct triangulation){.n_cell = count,
+                                  .cell = packed,
+                                  .n_test = insertion->n_test,
+                                  .n_exact = insertion->n_exact};
 }
 
 static struct insertion insertion_begin(const struct weighted_point *point, int n,
@@ -563,10 +585,7 @@ int triangulate(const struct vector *points, const double *weights, int n,
         for (int32_t e = 1; e < n; e++)
             if (e != corner[0] && e != corner[1] && e != corner[2] && e != corner[3])
                 insert(&insertion, e);
-        *triangulation = (struct triangulation){.n_cell = pack_cells(&insertion, turns),
-                                                .cell = insertion.cell,
-                                                .n_test = insertion.n_test,
-                                                .n_exact = insertion.n_exact};
+        *triangulation = pack_cells(&insertion, turns, n);
         insertion_free(&insertion);
     }
     free(point);
