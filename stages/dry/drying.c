@@ -24,6 +24,7 @@ struct run {
     struct clocks clocks;    // empty if the liquid is viscous
     struct losses losses;    // empty unless it is
     struct liquid_flow flow; // empty unless it is
+    int n_idle;              // viscous: steps since a throat has emptied
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
     double imbalance;                    // largest at a step
@@ -260,6 +261,19 @@ static void keep_pressures(struct run *run)
         pressure[i] = run->flow.pressure[i] * run->flow.menisci.pressure;
 }
 
+// Throats may refill in turn, but not for ever.
+static enum status note_idle(struct run *run, bool idle, struct reason *reason)
+{
+    run->n_idle = idle ? run->n_idle + 1 : 0;
+    const double most =
+        100.0 * (run->phases.n_full + 10) / run->conditions->saturation_step;
+    if (run->n_idle < most) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "throats refilled %d times over, and none has emptied, with %d still "
+                  "wet (a smaller saturation_step may help)",
+                  run->n_idle, run->phases.n_full);
+}
+
 static enum status dry_step(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
@@ -275,9 +289,10 @@ static enum status dry_step(struct run *run, struct reason *reason)
             "small for the arithmetic)",
             phases->n_full);
     advance(run, time_to_first(run));
+    const int n_before = phases->n_full;
     empty_throats(run);
     record_state(run);
-    return STATUS_OK;
+    return note_idle(run, phases->n_full == n_before, reason);
 }
 
 // --- the whole run -----------------------------------------------------------------

@@ -295,8 +295,15 @@ static double flow_scale(const struct liquid_flow *flow, const struct piece *pie
     return scale;
 }
 
-// --- with a factor that follows
-// -------------------------------------------------------
+// What the worst balance lacks, of the largest flow; 0 where nothing flows, as between
+// menisci that are all alike.
+static double balance_error(const struct liquid_flow *flow, const struct piece *piece)
+{
+    const double lack = largest_lack(flow->solver, piece);
+    return lack == 0 ? 0 : lack / flow_scale(flow, piece);
+}
+
+// --- with a factor that follows ----------------------------------------------------
 
 // The arm of a moving meniscus to the next power of two, and no more than a million
 // times that of a full throat: near enough, and seldom another.
@@ -428,7 +435,7 @@ static bool refine(const struct liquid_flow *flow, const struct piece *piece,
             factor ? correct(flow, piece, factor) : correct_followed(flow, piece);
         if (!corrected) return false;
         find_lack(flow, piece);
-        *residual = largest_lack(flow->solver, piece) / flow_scale(flow, piece);
+        *residual = balance_error(flow, piece);
     }
     return true;
 }

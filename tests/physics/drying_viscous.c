@@ -193,6 +193,20 @@ static void test_great_viscosity_is_immobile(void **state)
     check_limit(LIQUID_IMMOBILE, 1e7, 1e-8);
 }
 
+// All throats equal: menisci that are alike exchange nothing, and all dries.
+static void test_equal_throats(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(5, 5, 5, spacing);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+    for (int k = -18; k <= 0; k += 6) {
+        conditions.viscosity = pow(10, k);
+        struct drying_history history = dry_and_check(&network, &conditions);
+        drying_history_free(&history);
+    }
+    network_free(&network);
+}
+
 // Between them, decade by decade, everything balances, and throats refill.
 static void test_eighteen_decades(void **state)
 {
@@ -222,6 +236,7 @@ int main(void)
         cmocka_unit_test(test_step_converges),
         cmocka_unit_test(test_vanishing_viscosity_is_inviscid),
         cmocka_unit_test(test_great_viscosity_is_immobile),
+        cmocka_unit_test(test_equal_throats),
         cmocka_unit_test(test_eighteen_decades)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
