@@ -11,7 +11,7 @@
 
 struct replay_parameters {
     struct replay_settings settings;
-    int support;
+    int support, engine;
     struct number_list snapshots;
 };
 
@@ -53,6 +53,18 @@ static const struct parameter table[] = {
      "wall: "
      "a rigid wall beneath",
      AT(support)},
+    {"engine", PARAMETER_CHOICE, "1", "\"explicit\"", BOUND_NONE, 0, 0,
+     "explicit|quasi-static",
+     "explicit: cycles of discrete elements [K 4]; quasi-static: equilibrium itself, "
+     "for "
+     "small displacements, bonds breaking one by one",
+     AT(engine)},
+    {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8", BOUND_ABOVE, 0, 0, NULL,
+     "largest force or moment left on a grain, of the largest load",
+     AT(settings.equilibrium_tolerance)},
+    {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "1000", BOUND_BETWEEN, 1,
+     1e9, NULL, "more than these at one equilibrium: not converged",
+     AT(settings.most_iterations)},
     {"time_step_safety", PARAMETER_NUMBER, "1", "0.045", BOUND_ABOVE, 0, 0, NULL,
      "time step, of the critical one of two grains [K 4.47]",
      AT(settings.time_step_safety)},
@@ -139,14 +151,19 @@ static void write_response(const struct packing *packing, const struct load *loa
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "grains at the lower z wall held",
                                            "a rigid wall beneath"};
+    static const char *const engines[] = {
+        "discrete elements: leapfrog, linear contacts, slip, dashpots, parallel bonds "
+        "[K 4]",
+        "equilibria: linear contacts, slip, parallel bonds that break one by one [K "
+        "4], "
+        "small displacements; what nothing holds leaves"};
     char model[700];
     snprintf(
         model, sizeof model,
-        "discrete elements: leapfrog, linear contacts, slip, dashpots, parallel bonds "
-        "[K 4]\n"
+        "%s\n"
         "support: %s\n"
         "left out: gravity, liquid bridges at contacts, moments of capillary forces\n",
-        supports[settings->support]);
+        engines[settings->engine], supports[settings->support]);
     struct artifact *artifact = artifact_create("response");
     put_response(artifact, packing, load, response);
     artifact_put_number(artifact, "/summary/first_period_end_time",
@@ -162,6 +179,9 @@ static void warn_if_loose(const struct packing *packing,
     for (int i = 0; i < packing->n_particle; i++)
         largest_radius = fmax(largest_radius, packing->radius[i]);
     const double moved = largest_displacement(packing, response);
+    if (response->n_gone > 0)
+        report("%d grains left the aggregate: nothing held them under their load",
+               response->n_gone);
     if (moved > largest_radius)
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
                "%.3g "
@@ -176,9 +196,13 @@ int main(int argc, char **argv)
     check_snapshots(&parameters.snapshots);
     struct replay_settings *settings = &parameters.settings;
     settings->support = (enum support)parameters.support;
+    settings->engine = (enum engine)parameters.engine;
     settings->n_snapshot = parameters.snapshots.count;
     settings->snapshot = parameters.snapshots.value;
     settings->threads = invocation.threads;
+    if (settings->engine == ENGINE_QUASI_STATIC && invocation.checkpoint)
+        die(STATUS_USAGE, "--checkpoint is for engine=explicit: an equilibrium has no "
+                          "state between steps that is kept");
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
     struct packing packing = artifact_get_packing(input);
     struct load load = read_load(input);

@@ -2,6 +2,7 @@
 #include "replay.h"
 
 #include "basics/memory.h"
+#include "equilibrium.h"
 #include "net_load.h"
 #include "resume.h"
 
@@ -30,16 +31,33 @@ struct run {
     const struct replay_settings *settings;
     struct response *response;
     const struct keeper *keeper;
-    struct dem *dem;
+    struct dem *dem; // of the two engines the one asked for
+    struct equilibrium *equilibrium;
+    uint8_t *fixed;       // (n_particle)
     struct vector *force; // (n_particle) of this step
     struct replay_place place;
 };
 
-static enum status begin(struct run *run, struct reason *reason)
+static enum status begin_equilibrium(struct run *run, const uint8_t *fixed,
+                                     struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    const struct equilibrium_setup setup = {
+        .packing = run->packing,
+        .fixed = fixed,
+        .has_wall = settings->support == SUPPORT_WALL,
+        .material = settings->material,
+        .bond = settings->bond,
+        .tolerance = settings->equilibrium_tolerance,
+        .most_iterations = settings->most_iterations};
+    return equilibrium_new(&run->equilibrium, &setup, reason);
+}
+
+static enum status begin_dem(struct run *run, const uint8_t *fixed,
+                             struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
     const struct packing *packing = run->packing;
-    uint8_t *fixed = fixed_grains(packing, settings->support);
     const struct dem_wall beneath = {.point = packing->lower, .normal = {0, 0, 1}};
     const struct dem_setup setup = {.packing = packing,
                                     .material = settings->material,
@@ -51,7 +69,6 @@ static enum status begin(struct run *run, struct reason *reason)
                                     .force_time_step = settings->force_time_step,
                                     .threads = settings->threads};
     const enum status status = dem_create(&run->dem, &setup, reason);
-    free(fixed);
     if (status) return status;
     run->response->time_step = dem_time_step(run->dem);
     // Where nothing can touch no step is too long: then what [K 4.47] says is written.
@@ -61,13 +78,25 @@ static enum status begin(struct run *run, struct reason *reason)
     return STATUS_OK;
 }
 
+static bool is_explicit(const struct run *run)
+{
+    return run->settings->engine == ENGINE_EXPLICIT;
+}
+
+static enum status begin(struct run *run, struct reason *reason)
+{
+    run->fixed = fixed_grains(run->packing, run->settings->support);
+    return is_explicit(run) ? begin_dem(run, run->fixed, reason)
+                            : begin_equilibrium(run, run->fixed, reason);
+}
+
 static void apply_load(struct run *run, int step)
 {
     const size_t n = (size_t)run->packing->n_particle;
     memcpy(run->force, run->load->force + (size_t)step * n, n * sizeof *run->force);
     if (run->settings->support == SUPPORT_FREE)
         take_off_net_load(run->packing, run->force);
-    dem_set_force(run->dem, run->force);
+    if (is_explicit(run)) dem_set_force(run->dem, run->force);
 }
 
 // [K 4.20] has no denominator once no contact carries a force: then all that is applied
@@ -129,13 +158,28 @@ static enum status run_on(struct run *run, struct reason *reason)
     }
 }
 
-static enum status settle(struct run *run, int step, struct reason *reason)
+static int64_t cycles_done(const struct run *run)
+{
+    return is_explicit(run) ? dem_cycle(run->dem)
+                            : equilibrium_iterations(run->equilibrium);
+}
+
+static enum status settle_dem(struct run *run, struct reason *reason)
 {
     const int64_t end = run->place.began + run->settings->cycles;
-    enum status status = run_cycles(run, end - dem_cycle(run->dem), reason);
-    if (!status) status = run_on(run, reason);
-    run->response->cycles[step] = dem_cycle(run->dem) - run->place.began;
-    run->response->unbalanced_ratio[step] = unbalanced_ratio(run->dem);
+    const enum status status = run_cycles(run, end - dem_cycle(run->dem), reason);
+    return status ? status : run_on(run, reason);
+}
+
+static enum status settle(struct run *run, int step, struct reason *reason)
+{
+    const enum status status =
+        is_explicit(run) ? settle_dem(run, reason)
+                         : equilibrium_find(run->equilibrium, run->force, reason);
+    run->response->cycles[step] = cycles_done(run) - run->place.began;
+    run->response->unbalanced_ratio[step] =
+        is_explicit(run) ? unbalanced_ratio(run->dem)
+                         : equilibrium_unbalanced_ratio(run->equilibrium);
     if (!status) return STATUS_OK;
     struct reason cause = *reason;
     return refuse(reason, status, "step %d of the load (saturation %.3f): %.400s", step,
@@ -146,7 +190,9 @@ static void note_cracks(struct run *run, int step)
 {
     struct response *response = run->response;
     int count;
-    const struct dem_crack *cracks = dem_cracks(run->dem, &count);
+    const struct dem_crack *cracks = is_explicit(run)
+                                         ? dem_cracks(run->dem, &count)
+                                         : equilibrium_cracks(run->equilibrium, &count);
     response->crack =
         reallocate(response->crack, (size_t)count, sizeof *response->crack);
     response->crack_step =
@@ -169,9 +215,15 @@ static void take_snapshot(struct run *run, int step)
         .displacement = NEW_ARRAY(struct vector, packing->n_particle),
         .force = duplicate(run->force, (size_t)packing->n_particle, sizeof *run->force),
         .intact = NEW_ARRAY(uint8_t, packing->n_bond)};
-    dem_displacements(run->dem, snapshot->displacement);
-    dem_bonds_intact(run->dem, snapshot->intact);
-    snapshot->contact = dem_contacts(run->dem, &snapshot->n_contact);
+    if (is_explicit(run)) {
+        dem_displacements(run->dem, snapshot->displacement);
+        dem_bonds_intact(run->dem, snapshot->intact);
+        snapshot->contact = dem_contacts(run->dem, &snapshot->n_contact);
+        return;
+    }
+    equilibrium_displacements(run->equilibrium, snapshot->displacement);
+    equilibrium_bonds_intact(run->equilibrium, snapshot->intact);
+    snapshot->contact = equilibrium_contacts(run->equilibrium, &snapshot->n_contact);
 }
 
 static bool snapshot_due(const struct run *run, int step)
@@ -200,7 +252,7 @@ static enum status do_step(struct run *run, struct reason *reason)
     note_cracks(run, step);
     while (!status && snapshot_due(run, step))
         take_snapshot(run, step);
-    run->place = (struct replay_place){step + 1, dem_cycle(run->dem)};
+    run->place = (struct replay_place){step + 1, cycles_done(run)};
     return status;
 }
 
@@ -227,7 +279,10 @@ enum status replay(const struct packing *packing, const struct load *load,
         if (progress && progress->report)
             progress->report(progress->context, (double)run.place.step / load->n_time);
     }
+    if (run.equilibrium) response->n_gone = equilibrium_gone(run.equilibrium);
     dem_free(run.dem);
+    equilibrium_free(run.equilibrium);
+    free(run.fixed);
     free(run.force);
     if (status) response_free(response);
     return status;

@@ -15,6 +15,11 @@ enum support {
     SUPPORT_WALL   // a rigid wall beneath, at the lower z wall
 };
 
+enum engine {
+    ENGINE_EXPLICIT,    // cycles of discrete elements [K 4]
+    ENGINE_QUASI_STATIC // equilibrium itself
+};
+
 // Forces over time, as forces.h5 holds them.
 struct load {
     int n_time;
@@ -26,6 +31,9 @@ struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
     enum support support;
+    enum engine engine;
+    double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load
+    int64_t most_iterations;      // quasi-static: at one equilibrium
     double time_step_safety;
     bool force_time_step;
     int64_t cycles;      // at every step of the load
@@ -51,11 +59,12 @@ struct response {
     struct dem_crack *crack;
     int *crack_step;          // (n_crack) row of the load it broke under
     double *unbalanced_ratio; // (n_time) at the end of each step
-    int64_t *cycles;          // (n_time)
+    int64_t *cycles;          // (n_time) of time steps; quasi-static: of iterations
     int32_t *cracks;          // (n_time) so far
     int n_snapshot;
     struct snapshot *snapshot;
-    double time_step, time_step_limit; // s
+    double time_step, time_step_limit; // s; 0 when quasi-static
+    int n_gone;                        // grains that left an equilibrium
 };
 
 // Told how far the replay is.
@@ -65,9 +74,9 @@ struct replay_progress {
 };
 
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the
-// run diverged, or a step did not settle within its cycles; STATUS_BAD_DATA: KEEPER,
-// which may be NULL, begins with a state that is not one of such a replay. The caller
-// frees *RESPONSE with response_free.
+// run diverged, or a step did not settle within its cycles or iterations;
+// STATUS_BAD_DATA: KEEPER, which may be NULL, begins with a state that is not one of
+// such a replay. The caller frees *RESPONSE with response_free.
 enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
                    const struct replay_progress *progress, const struct keeper *keeper,

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fragments.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+struct fragments fragments_new(int n)
+{
+    return (struct fragments){
+        .n = n, .of = NEW_ARRAY(int32_t, n), .is_held = NEW_ARRAY(bool, n)};
+}
+
+void fragments_free(struct fragments *fragments)
+{
+    free(fragments->of);
+    free(fragments->is_held);
+}
+
+// With the way there made half as long.
+static int32_t root_of(int32_t *of, int32_t grain)
+{
+    while (of[grain] != grain)
+        grain = of[grain] = of[of[grain]];
+    return grain;
+}
+
+static void hold_largest(struct fragments *fragments, const bool *is_gone)
+{
+    int *size = NEW_ARRAY(int, fragments->n);
+    int largest = 0;
+    for (int i = 0; i < fragments->n; i++)
+        if (!is_gone[i]) size[fragments->of[i]]++;
+    for (int i = 1; i < fragments->n; i++)
+        if (size[i] > size[largest]) largest = i;
+    if (fragments->n > 0) fragments->is_held[largest] = true;
+    free(size);
+}
+
+void fragments_find(struct fragments *fragments, const struct joint *joint, int n_joint,
+                    const uint8_t *fixed, const bool *is_gone)
+{
+    int32_t *of = fragments->of;
+    for (int i = 0; i < fragments->n; i++) {
+        of[i] = i;
+        fragments->is_held[i] = false;
+    }
+    for (int j = 0; j < n_joint; j++) {
+        if (!joint[j].is_bonded || joint[j].is_gone) continue;
+        const int32_t a = root_of(of, joint[j].grain[0]);
+        const int32_t b = root_of(of, joint[j].grain[1]);
+        of[a > b ? a : b] = a > b ? b : a;
+    }
+    bool any = false;
+    for (int i = 0; i < fragments->n; i++) {
+        of[i] = root_of(of, i);
+        if (fixed[i]) any = fragments->is_held[of[i]] = true;
+    }
+    if (!any) hold_largest(fragments, is_gone);
+}

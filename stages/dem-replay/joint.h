@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two grains that are bonded or may touch, or a grain and the wall beneath, for small
+// displacements about where they began. A joint answers six strains with six loads,
+// each of its own but for slip, which takes both shear strains.
+#ifndef CRAQUELURE_JOINT_H
+#define CRAQUELURE_JOINT_H
+
+#include "geometry/vector.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// Lengths in mean radii, stiffnesses in the largest of a joint.
+struct displacement {
+    struct vector shift, turn; // m over the unit of length; rad
+};
+
+enum strain { STRAIN_ALONG, STRAIN_ACROSS, STRAIN_TWIST = 3, STRAIN_BEND, STRAINS = 6 };
+
+struct contact {
+    bool touches;
+    double anchor[2]; // shear strains at which the shear spring is free
+};
+
+struct joint {
+    int32_t grain[2];      // the second is -1 for the wall
+    int32_t bond;          // as numbered in the packing, or -1
+    bool is_bonded;        // and has not broken
+    bool is_gone;          // one of the grains has left the aggregate
+    struct vector axis[3]; // from the first to the second, and two across it
+    double arm[2];         // from the centres to the contact point
+    double overlap;        // at the start
+    double bond_radius;
+    // Parallel bond [K 4.32-4.39]: k^n A, k^s A, k^s J, k^n I.
+    double bond_along, bond_across, bond_twist, bond_bend;
+    double contact_along, contact_across; // [K 4.22]
+    double friction;
+    // Held while the rest is balanced: with them each load is the derivative of a
+    // convex energy, which Newton's method cannot miss the minimum of.
+    double slip_limit; // friction times normal force
+    double anchor[2];
+    // Of the last equilibrium, from which history goes on.
+    double strain[STRAINS];
+    struct contact contact;
+};
+
+// What a joint resists with: the derivatives of its energy, and theirs.
+struct resistance {
+    double load[STRAINS];
+    double bond_load[STRAINS]; // the part of the bond
+    double tangent[STRAINS];   // diagonal
+    double tangent_across;     // between the two shear strains
+    struct contact contact;    // as it would be
+};
+
+// Strains of [K 4.7, 4.15, 4.17], all linear: a wall neither moves nor turns.
+void joint_strains(const struct joint *joint, const struct displacement *of_grain,
+                   double strain[STRAINS]);
+// Slip limit and anchor as they are at STRAIN; the limit goes there by SHARE only.
+void joint_hold_friction(struct joint *joint, const double strain[STRAINS],
+                         double share);
+struct resistance joint_resistance(const struct joint *joint,
+                                   const double strain[STRAINS]);
+
+// What of STRAIN a displacement of the grain at END makes: the transpose is what the
+// load does to that grain.
+struct displacement joint_arm(const struct joint *joint, int end, int strain);
+
+// The force and moment on grain END that LOADS, from strains as they are, resist with:
+// what is to be added to the load when the grain is pushed the way of its displacement.
+struct displacement joint_loads(const struct joint *joint, int end,
+                                const double load[STRAINS]);
+
+// Stress over strength [K 4.41, 4.42] of a bond under its loads.
+struct overload {
+    double normal, shear;
+};
+struct overload joint_overload(const struct joint *joint,
+                               const double bond_load[STRAINS], double normal_strength,
+                               double shear_strength);
+
+#endif

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium itself (dem-replay, engine=quasi-static) against closed forms and against
+// the discrete elements brought to rest.
+#include "dem-replay/equilibrium.h"
+#include "dem_scene.h"
+
+static const double bond_stiffness = 8e14; // N/m3
+static const double contact_stiffness = 3e4;
+static const double radius_fraction = 0.5858;
+
+static struct equilibrium_setup setup_of(const struct packing *packing,
+                                         const uint8_t *fixed)
+{
+    return (struct equilibrium_setup){
+        .packing = packing,
+        .fixed = fixed,
+        .material = {.normal_stiffness = contact_stiffness,
+                     .shear_stiffness = contact_stiffness},
+        .bond = {.normal_stiffness = bond_stiffness,
+                 .shear_stiffness = bond_stiffness,
+                 .normal_strength = INFINITY,
+                 .shear_strength = INFINITY,
+                 .radius_fraction = radius_fraction},
+        .tolerance = 1e-10,
+        .most_iterations = 1000};
+}
+
+static struct equilibrium *make(const struct equilibrium_setup *setup)
+{
+    struct equilibrium *equilibrium;
+    struct reason reason = {""};
+    if (equilibrium_new(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
+    return equilibrium;
+}
+
+static void find(struct equilibrium *equilibrium, const struct vector *force)
+{
+    struct reason reason = {""};
+    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+}
+
+static double bond_area(void)
+{
+    return M_PI * pow(radius_fraction * RADIUS, 2);
+}
+
+// A row of N held at the first: pulled it stretches by F/(k^n A) a bond; pushed,
+// contacts help with k/2. Loaded across, the sums over its hinges are exact: each bends
+// under the moment of what is beyond it and shears.
+static void a_row_as_its_hinges_say(void **state)
+{
+    (void)state;
+    enum { N = 8 };
+    struct packing packing = cubic_lattice(N, 1, 1, false);
+    const uint8_t fixed[N] = {1};
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct vector force[N] = {{0, 0, 0}}, moved[N];
+    const double f = 1e-10, glue = bond_stiffness * bond_area();
+
+    struct equilibrium *equilibrium = make(&setup);
+    force[N - 1] = (struct vector){f, 0, 0};
+    find(equilibrium, force);
+    equilibrium_displacements(equilibrium, moved);
+    assert_true(fabs(moved[N - 1].x / ((N - 1) * f / glue) - 1) < 1e-9);
+    force[N - 1] = (struct vector){-f, 0, 0};
+    find(equilibrium, force);
+    equilibrium_displacements(equilibrium, moved);
+    const double together = glue + contact_stiffness / 2;
+    assert_true(fabs(moved[N - 1].x / (-(N - 1) * f / together) - 1) < 1e-9);
+    equilibrium_free(equilibrium);
+
+    setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
+    equilibrium = make(&setup);
+    force[N - 1] = (struct vector){0, f, 0};
+    find(equilibrium, force);
+    equilibrium_displacements(equilibrium, moved);
+    const double bending = bond_stiffness * M_PI / 4 * pow(radius_fraction * RADIUS, 4);
+    double expected = 0;
+    for (int b = 0; b < N - 1; b++) {
+        const double lever = (2 * (N - 1 - b) - 1) * RADIUS; // from hinge B to the end
+        expected += f * lever * lever / bending + f / glue;
+    }
+    assert_true(fabs(moved[N - 1].y / expected - 1) < 1e-9);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+enum { SIDE = 3, HIGH = 4, BLOCK = SIDE * SIDE * HIGH };
+
+static void hold_bottom(uint8_t fixed[BLOCK])
+{
+    for (int i = 0; i < BLOCK; i++)
+        fixed[i] = i < SIDE * SIDE;
+}
+
+// Squeezed from the sides and pulled up unevenly, SIZE N at most.
+static void load_block(struct vector force[BLOCK], double size)
+{
+    for (int i = 0; i < BLOCK; i++) {
+        const int x = i % SIDE - 1, y = i / SIDE % SIDE - 1;
+        force[i] =
+            (struct vector){-size * x, -0.7 * size * y, 0.1 * size * (1 + (i * 7) % 5)};
+    }
+}
+
+static double apart(const struct vector *a, const struct vector *b)
+{
+    double most = 0, size = 0;
+    for (int i = 0; i < BLOCK; i++) {
+        most = fmax(most, distance(a[i], b[i]));
+        size = fmax(size, norm(a[i]));
+    }
+    return most / size;
+}
+
+// At loads so small that grains do not turn to speak of.
+static void a_block_as_the_discrete_elements(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    const struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
+    load_block(force, 1e-13);
+    find(equilibrium, force);
+    equilibrium_displacements(equilibrium, moved);
+
+    struct dem_setup slow = {.packing = &packing,
+                             .material = setup.material,
+                             .bond = setup.bond,
+                             .fixed = fixed,
+                             .time_step_safety = 0.04,
+                             .threads = 1};
+    slow.material.density = 3230;
+    slow.material.damping_ratio = 0.7;
+    struct dem *dem;
+    struct reason reason = {""};
+    if (dem_create(&dem, &slow, &reason)) fail_msg("%s", reason.text);
+    dem_set_force(dem, force);
+    if (dem_run_until(dem, 1e-9, 2000000, &reason)) fail_msg("%s", reason.text);
+    dem_displacements(dem, still);
+    assert_true(apart(still, moved) < 1e-6);
+    dem_free(dem);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+// Every grain feels no more than the tolerance; the contacts' forces on each, added up
+// here, are the load.
+static void forces_balance(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.material.friction = 0.5;
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector force[BLOCK], sum[BLOCK];
+    for (int step = 1; step <= 3; step++) {
+        load_block(force, step * 1e-9);
+        find(equilibrium, force);
+        memcpy(sum, force, sizeof sum);
+        int count;
+        struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+        for (int c = 0; c < count; c++) {
+            const int32_t *pair = contact[c].particle;
+            sum[pair[0]] = subtract(sum[pair[0]], contact[c].force);
+            sum[pair[1]] = add(sum[pair[1]], contact[c].force);
+        }
+        free(contact);
+        for (int i = 0; i < BLOCK; i++)
+            if (!fixed[i]) assert_true(norm(sum[i]) <= 2e-10 * step * 1e-9);
+    }
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+// Of bonds in a row the one at its strength breaks, and no other: what it held leaves.
+static void one_bond_breaks(void **state)
+{
+    (void)state;
+    enum { N = 5 };
+    struct packing packing = cubic_lattice(N, 1, 1, false);
+    const uint8_t fixed[N] = {1};
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    const double f = 1e-9;
+    setup.bond.normal_strength = f / bond_area();
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector force[N] = {{0, 0, 0}};
+    force[N - 1] = (struct vector){(1 - 1e-6) * f, 0, 0};
+    int cracks;
+    find(equilibrium, force);
+    equilibrium_cracks(equilibrium, &cracks);
+    assert_int_equal(cracks, 0);
+    force[N - 1].x = f; // exactly
+    find(equilibrium, force);
+    const struct dem_crack *crack = equilibrium_cracks(equilibrium, &cracks);
+    assert_int_equal(cracks, 1);
+    assert_int_equal(crack[0].mode, DEM_CRACK_NORMAL);
+    assert_int_equal(equilibrium_gone(equilibrium), N - 1 - crack[0].bond);
+    force[N - 1].x = 100 * f; // on what has left
+    find(equilibrium, force);
+    equilibrium_cracks(equilibrium, &cracks);
+    assert_int_equal(cracks, 1);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+// A grain pressed on the wall sinks in by F/k, as a wall is rigid [K 4.22].
+static void a_wall_is_rigid(void **state)
+{
+    (void)state;
+    struct packing packing = new_packing(1, 0);
+    packing.position[0] = (struct vector){RADIUS, RADIUS, RADIUS};
+    packing.upper = (struct vector){2 * RADIUS, 2 * RADIUS, 2 * RADIUS};
+    const uint8_t fixed[1] = {0};
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.has_wall = true;
+    setup.material.friction = 0.5;
+    struct equilibrium *equilibrium = make(&setup);
+    const struct vector press = {0, 0, -1e-8};
+    struct vector moved;
+    find(equilibrium, &press);
+    equilibrium_displacements(equilibrium, &moved);
+    assert_true(fabs(moved.z * contact_stiffness / -1e-8 - 1) < 1e-9);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_row_as_its_hinges_say),
+        cmocka_unit_test(a_block_as_the_discrete_elements),
+        cmocka_unit_test(forces_balance), cmocka_unit_test(one_bond_breaks),
+        cmocka_unit_test(a_wall_is_rigid)};
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
