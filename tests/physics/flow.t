@@ -172,4 +172,13 @@ with scratch() as folder:
     result = flow(overlapping)
     ok(result["summary"].attrs["closed_throats"] > 0 and np.abs(total(result)).max() < 1e-12,
        "overlap closes throats, and the forces still sum up", total(result))
+
+    # What dem-replay takes.
+    run("pack", "-q", "--set=method=cubic", "--set=counts=[3,3,4]", "-o", at("lattice"))
+    run("flow", "-q", "--set=write=forces", at("lattice"), "-o", at("forces"))
+    run("dem-replay", "-q", "--set=cycles=20", at("forces"), "-o", at("response"))
+    with h5py.File(at("forces")) as forces:
+        edge = forces["domain/upper"][:] - forces["domain/lower"][:]
+        last = forces["force"][-1].sum(axis=0)
+        ok(0 < last[2] < edge[0] * edge[1], "the forces are replayed", last)
 done()
