@@ -234,7 +234,7 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 .PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
-	bench-viscous bench-flow \
+	bench-viscous bench-flow bench-dry \
 	sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
