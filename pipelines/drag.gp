@@ -9,11 +9,11 @@ blue = "#0a4a96"; pale = "#a9c1dd"; red = "#d6201c"; grey = "#777777"
 file(name) = tables . "/" . name
 
 set title "Nine spheres: permeability [C Fig. 10]"
-set xlabel "d / D"; set ylabel "K / l^2"; set format y "%.0e"; set key top right opaque
-plot [0:0.75] [0:1.5e-3] file("nine.tsv") using 1:2 with lines linewidth 2 linecolor rgb blue title "symmetric", \
-    '' using 1:6 with lines linewidth 2 linecolor rgb pale title "symmetric as in Yade", \
-    '' using 1:4 with lines linewidth 2 linecolor rgb red title "no-slip", \
-    '' using 1:8 with lines linewidth 2 linecolor rgb grey title "no-slip, ER"
+set xlabel "d / D"; set ylabel "K / l^2, 10^{-4}"; set format y "%g"; set key top right opaque
+plot [0:0.75] [0:10] file("nine.tsv") using 1:($2 * 1e4) with lines linewidth 2 linecolor rgb blue title "symmetric", \
+    '' using 1:($6 * 1e4) with lines linewidth 2 linecolor rgb pale title "symmetric as in Yade", \
+    '' using 1:($4 * 1e4) with lines linewidth 2 linecolor rgb red title "no-slip", \
+    '' using 1:($8 * 1e4) with lines linewidth 2 linecolor rgb grey title "no-slip, ER"
 
 set title "Force on the small sphere [C Fig. 12]"
 set ylabel "F / (S drop)"; set key top left opaque; set logscale xy; set format y "10^{%T}"

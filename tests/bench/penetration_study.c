@@ -2,7 +2,7 @@
 // A steel ball shot into a bed of beads: the third case of Dosta et al. (2024), Comput.
 // Phys. Commun. 296, 109066. Prints time, height and velocity of the ball.
 //
-//     penetration_study BED.h5 M1|M2 [SECONDS [THREADS]]
+//     penetration_study BED.h5 M1|M2 [SECONDS [THREADS [TIME_STEP]]]
 //
 // BED.h5 is a packing of beads at rest in the box below, by pack.
 #include "artifacts/artifact.h"
@@ -19,7 +19,7 @@
 static const struct vector box_lower = {-0.049, -0.03, -0.0902431};
 static const struct vector box_upper = {0.049, 0.03, 0.107757};
 static const struct vector ball_start = {0, 0, 0.06}, ball_velocity = {0, 0, -5};
-static const double ball_radius = 0.01, time_step = 5e-7, gravity = 9.81;
+static const double ball_radius = 0.01, gravity = 9.81;
 
 struct beads {
     const char *name;
@@ -87,7 +87,7 @@ static void make_walls(struct dem_wall wall[5])
 }
 
 static struct dem *build(const struct packing *packing, const struct beads *beads,
-                         int threads)
+                         int threads, double time_step)
 {
     const struct dem_material steel = material(7200, 210e9);
     struct dem_wall wall[5];
@@ -134,27 +134,29 @@ static void print_ball(const struct dem *dem, int n, struct vector *scratch)
     dem_positions(dem, scratch);
     const double height = scratch[n - 1].z;
     dem_velocities(dem, scratch);
-    printf("%.4f %.7f %.5f\n", (double)dem_cycle(dem) * time_step, height,
+    printf("%.4f %.7f %.5f\n", (double)dem_cycle(dem) * dem_time_step(dem), height,
            scratch[n - 1].z);
     fflush(stdout);
 }
 
 int main(int argc, char **argv)
 {
-    if (argc < 3 || argc > 5)
-        die(STATUS_USAGE, "penetration_study BED.h5 M1|M2 [SECONDS [THREADS]]");
+    if (argc < 3 || argc > 6)
+        die(STATUS_USAGE,
+            "penetration_study BED.h5 M1|M2 [SECONDS [THREADS [TIME_STEP]]]");
     const struct beads *beads = beads_of(argv[2]);
     const double seconds = argc > 3 ? atof(argv[3]) : 0.1;
+    const double time_step = argc > 5 ? atof(argv[5]) : 5e-7; // s, as the benchmark's
     struct packing packing = read_bed(argv[1]);
     add_ball(&packing);
     const int n = packing.n_particle;
-    struct dem *dem = build(&packing, beads, argc > 4 ? atoi(argv[4]) : 1);
+    struct dem *dem = build(&packing, beads, argc > 4 ? atoi(argv[4]) : 1, time_step);
     shoot(dem, n);
     printf("# %d beads of %s; stable below %.3g s\n# time (s), height of the ball "
            "(m), velocity (m/s)\n",
            n - 1, beads->name, dem_time_step_limit(dem));
 
-    const int64_t between = 1000; // half a millisecond
+    const int64_t between = llround(5e-4 / time_step);
     struct vector *scratch = NEW_ARRAY(struct vector, n);
     struct reason reason;
     print_ball(dem, n, scratch);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that talks to CGAL.
+// CGAL's exact numbers, for the signs that rounding must not decide.
 #include "geometry/exact.h"
 
 #define CGAL_NDEBUG
