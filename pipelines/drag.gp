@@ -10,7 +10,7 @@ file(name) = tables . "/" . name
 
 set title "Nine spheres: permeability [C Fig. 10]"
 set xlabel "d / D"; set ylabel "K / l^2, 10^{-4}"; set format y "%g"; set key top right opaque
-plot [0:0.75] [0:10] file("nine.tsv") using 1:($2 * 1e4) with lines linewidth 2 linecolor rgb blue title "symmetric", \
+plot [0:0.75] [0:12] file("nine.tsv") using 1:($2 * 1e4) with lines linewidth 2 linecolor rgb blue title "symmetric", \
     '' using 1:($6 * 1e4) with lines linewidth 2 linecolor rgb pale title "symmetric as in Yade", \
     '' using 1:($4 * 1e4) with lines linewidth 2 linecolor rgb red title "no-slip", \
     '' using 1:($8 * 1e4) with lines linewidth 2 linecolor rgb grey title "no-slip, ER"
