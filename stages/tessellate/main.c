@@ -13,7 +13,8 @@ enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
 enum throat_volume { VOLUME_CYLINDER, VOLUME_VOID };
 
 struct tessellate_parameters {
-    int diagram, clearance, volume, boundary, dimensions;
+    int diagram, clearance, volume, boundary;
+    int64_t dimensions;
 };
 
 static const struct parameter table[] = {
