@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fragments.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 
 #include <stdlib.h>
@@ -15,14 +16,6 @@ void fragments_free(struct fragments *fragments)
 {
     free(fragments->of);
     free(fragments->is_held);
-}
-
-// With the way there made half as long.
-static int32_t root_of(int32_t *of, int32_t grain)
-{
-    while (of[grain] != grain)
-        grain = of[grain] = of[of[grain]];
-    return grain;
 }
 
 static void hold_largest(struct fragments *fragments, const bool *is_gone)
@@ -47,13 +40,11 @@ void fragments_find(struct fragments *fragments, const struct joint *joint, int 
     }
     for (int j = 0; j < n_joint; j++) {
         if (!joint[j].is_bonded || joint[j].is_gone) continue;
-        const int32_t a = root_of(of, joint[j].grain[0]);
-        const int32_t b = root_of(of, joint[j].grain[1]);
-        of[a > b ? a : b] = a > b ? b : a;
+        unite_sets(of, joint[j].grain[0], joint[j].grain[1]);
     }
     bool any = false;
     for (int i = 0; i < fragments->n; i++) {
-        of[i] = root_of(of, i);
+        of[i] = set_root(of, i);
         if (fixed[i]) any = fragments->is_held[of[i]] = true;
     }
     if (!any) hold_largest(fragments, is_gone);

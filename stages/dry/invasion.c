@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "invasion.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "ranks.h"
 
@@ -80,24 +81,6 @@ static void front_free(struct front *front)
 
 // --- trapping, backwards -----------------------------------------------------------
 
-static int root_of(int *parent, int node)
-{
-    while (parent[node] != node)
-        node = parent[node] = parent[parent[node]];
-    return node;
-}
-
-static void unite(int *parent, int a, int b)
-{
-    a = root_of(parent, a);
-    b = root_of(parent, b);
-    // The lower one is the outlet's, where it has one.
-    if (a < b)
-        parent[b] = a;
-    else
-        parent[a] = b;
-}
-
 // Liquid that returns to NODE, number N_NODE below, joins that in its throats.
 static void restore_node(const struct front *front, const bool *liquid, int *parent,
                          bool *has_liquid, int node)
@@ -109,7 +92,7 @@ static void restore_node(const struct front *front, const bool *liquid, int *par
         if (!liquid[throat]) continue;
         const int32_t *ends = front->network->throat_nodes[throat];
         const int other = ends[0] == node ? ends[1] : ends[0];
-        if (has_liquid[other]) unite(parent, node + 1, other + 1);
+        if (has_liquid[other]) unite_sets(parent, node + 1, other + 1);
     }
 }
 
@@ -129,7 +112,7 @@ static void remove_trapped(const struct front *front, unsigned inlet, unsigned o
         parent[i] = i;
     for (int i = 0; i < n_node; i++) {
         entered[i] = network->node_walls[i] & inlet ? -1 : invasion->n;
-        if (network->node_walls[i] & outlet) unite(parent, 0, i + 1);
+        if (network->node_walls[i] & outlet) unite_sets(parent, 0, i + 1);
     }
     for (int k = invasion->n - 1; k >= 0; k--)
         for (int end = 0; end < 2; end++) {
@@ -147,7 +130,7 @@ static void remove_trapped(const struct front *front, unsigned inlet, unsigned o
         }
         for (int end = 0; end < 2; end++) {
             const int node = network->throat_nodes[throat][end];
-            if (has_liquid[node] && root_of(parent, node + 1) == 0) trapped[k] = false;
+            if (has_liquid[node] && set_root(parent, node + 1) == 0) trapped[k] = false;
         }
     }
     int n = 0, breakthrough = -1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "profiles.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 
 #include <stdlib.h>
@@ -92,13 +93,6 @@ static void cut_profile(const struct scene *scene, double *slice, double *surfac
     *surface = full > 0 ? fmin(1, liquid / full) : 0;
 }
 
-static int root_of(int *parent, int throat)
-{
-    while (parent[throat] != throat)
-        throat = parent[throat] = parent[parent[throat]];
-    return throat;
-}
-
 static void join(struct scene *scene, int throat, int node)
 {
     if (scene->gas_parts && scene->gas[node]) return;
@@ -106,8 +100,8 @@ static void join(struct scene *scene, int throat, int node)
         scene->first[node] = throat;
         return;
     }
-    const int a = root_of(scene->parent, throat);
-    const int b = root_of(scene->parent, scene->first[node]);
+    const int a = set_root(scene->parent, throat);
+    const int b = set_root(scene->parent, scene->first[node]);
     if (a == b) return;
     scene->parent[b] = a;
     scene->size[a] += scene->size[b];

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sets without common members, each a tree: PARENT[i] is i at a root.
+#ifndef CRAQUELURE_DISJOINT_SETS_H
+#define CRAQUELURE_DISJOINT_SETS_H
+
+// The root of I's set, with the way there made half as long.
+static inline int set_root(int *parent, int i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+// Makes the sets of A and B one, whose root is the lower of the two.
+static inline void unite_sets(int *parent, int a, int b)
+{
+    a = set_root(parent, a);
+    b = set_root(parent, b);
+    if (a < b)
+        parent[b] = a;
+    else
+        parent[a] = b;
+}
+
+#endif
