@@ -23,8 +23,7 @@ struct equilibrium {
     struct joint *joint;
     double (*strain)[STRAINS];     // (n_joint) of the trial
     struct resistance *resistance; // (n_joint) of the trial
-    struct displacement *place;    // (n) of the last equilibrium
-    struct displacement *trial;    // (n)
+    struct displacement *trial;    // (n) and once found, the equilibrium
     struct displacement *load;     // (n) from outside
     struct displacement *left;     // (n) what is not balanced at the trial
     struct displacement *step;     // (n)
@@ -102,8 +101,8 @@ enum status equilibrium_new(struct equilibrium **result,
     e->joint = make_joints(&joints, &e->n_joint);
     e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
     e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
-    struct displacement **const of_grains[] = {&e->place, &e->trial, &e->load,
-                                               &e->left,  &e->step,  &e->before};
+    struct displacement **const of_grains[] = {&e->trial, &e->load, &e->left, &e->step,
+                                               &e->before};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
     e->is_gone = NEW_ARRAY(bool, n);
@@ -120,9 +119,9 @@ void equilibrium_free(struct equilibrium *e)
     if (!e) return;
     fragments_free(&e->fragments);
     stiffness_free(e->matrix);
-    void *const owned[] = {e->joint,  e->strain,  e->resistance, e->place,
-                           e->trial,  e->load,    e->left,       e->step,
-                           e->before, e->is_gone, e->is_loose,   e->crack};
+    void *const owned[] = {e->joint,   e->strain,   e->resistance, e->trial,
+                           e->load,    e->left,     e->step,       e->before,
+                           e->is_gone, e->is_loose, e->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);
@@ -142,7 +141,9 @@ static void resist(struct equilibrium *e)
     memcpy(e->left, e->load, (size_t)e->n * sizeof *e->left);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
-        joint_strains(joint, e->trial, e->strain[j]);
+        const int32_t second = joint->grain[1];
+        joint_strains(joint, &e->trial[joint->grain[0]],
+                      second < 0 ? NULL : &e->trial[second], e->strain[j]);
         e->resistance[j] = joint_resistance(joint, e->strain[j]);
         for (int end = 0; end < 2; end++)
             if (joint->grain[end] >= 0)
@@ -386,7 +387,6 @@ static bool break_one(struct equilibrium *e)
 
 static void keep_history(struct equilibrium *e)
 {
-    memcpy(e->place, e->trial, (size_t)e->n * sizeof *e->place);
     for (int j = 0; j < e->n_joint; j++) {
         memcpy(e->joint[j].strain, e->strain[j], sizeof e->joint[j].strain);
         e->joint[j].contact = e->resistance[j].contact;
@@ -431,7 +431,7 @@ int equilibrium_gone(const struct equilibrium *e)
 void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
 {
     for (int i = 0; i < e->n; i++)
-        displacement[i] = scale(e->length, e->place[i].shift);
+        displacement[i] = scale(e->length, e->trial[i].shift);
 }
 
 void equilibrium_bonds_intact(const struct equilibrium *e, uint8_t *intact)
@@ -455,7 +455,7 @@ static struct dem_contact contact_of(const struct equilibrium *e, int j)
     const int i = joint->grain[0];
     const struct displacement on_first = joint_loads(joint, 0, e->resistance[j].load);
     const struct vector from =
-        add(e->place[i].shift, scale(joint->arm[0], joint->axis[0]));
+        add(e->trial[i].shift, scale(joint->arm[0], joint->axis[0]));
     return (struct dem_contact){
         .particle = {i, joint->grain[1]},
         .bond = joint->is_bonded ? joint->bond : -1,

@@ -32,17 +32,16 @@ struct displacement joint_arm(const struct joint *joint, int end, int strain)
     return arm;
 }
 
-void joint_strains(const struct joint *joint, const struct displacement *of_grain,
-                   double strain[STRAINS])
+void joint_strains(const struct joint *joint, const struct displacement *first,
+                   const struct displacement *second, double strain[STRAINS])
 {
     const struct vector *axis = joint->axis;
-    const struct displacement first = of_grain[joint->grain[0]];
-    const struct displacement second =
-        joint->grain[1] < 0 ? no_displacement() : of_grain[joint->grain[1]];
-    const struct vector shift = subtract(second.shift, first.shift);
-    const struct vector turn = subtract(second.turn, first.turn);
+    const struct displacement i = first ? *first : no_displacement();
+    const struct displacement j = second ? *second : no_displacement();
+    const struct vector shift = subtract(j.shift, i.shift);
+    const struct vector turn = subtract(j.turn, i.turn);
     const struct vector rolling =
-        add(scale(joint->arm[0], first.turn), scale(joint->arm[1], second.turn));
+        add(scale(joint->arm[0], i.turn), scale(joint->arm[1], j.turn));
     strain[STRAIN_ALONG] = dot(axis[0], shift);
     strain[STRAIN_ACROSS] = dot(axis[1], shift) - dot(axis[2], rolling);
     strain[STRAIN_ACROSS + 1] = dot(axis[2], shift) + dot(axis[1], rolling);

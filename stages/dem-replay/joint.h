@@ -53,9 +53,10 @@ struct resistance {
     struct contact contact;    // as it would be
 };
 
-// Strains of [K 4.7, 4.15, 4.17], all linear: a wall neither moves nor turns.
-void joint_strains(const struct joint *joint, const struct displacement *of_grain,
-                   double strain[STRAINS]);
+// Strains of [K 4.7, 4.15, 4.17], all linear, when the grains move so; NULL: one that
+// does not, as the wall.
+void joint_strains(const struct joint *joint, const struct displacement *first,
+                   const struct displacement *second, double strain[STRAINS]);
 // Slip limit and anchor as they are at STRAIN; the limit goes there by SHARE only.
 void joint_hold_friction(struct joint *joint, const double strain[STRAINS],
                          double share);

@@ -2,8 +2,8 @@
 #include "stiffness.h"
 
 #include "basics/memory.h"
+#include "sparse/plain_cholmod.h"
 
-#include <cholmod.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +29,6 @@ struct stiffness {
     cholmod_sparse *matrix;
     cholmod_factor *factor;
     bool is_factorised;
-    int factors;
     // Of conjugate gradients, (n_moving * DEGREES); solved: CHOLMOD's own.
     double *residual, *direction, *image;
     cholmod_dense *right, *solved, *work[2];
@@ -112,7 +111,7 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
     list_blocks(s);
     for (int j = 0; j < n_joint; j++)
         s->block_of[j] = find_block(s, block_between(s, &joint[j]));
-    cholmod_start(&s->common);
+    plain_cholmod_start(&s->common);
     lay_out(s);
     const size_t size = (size_t)s->n_moving * DEGREES;
     if (size > 0) s->factor = cholmod_analyze(s->matrix, &s->common);
@@ -138,11 +137,6 @@ void stiffness_free(struct stiffness *s)
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
-}
-
-int stiffness_factors(const struct stiffness *stiffness)
-{
-    return stiffness->factors;
 }
 
 // ---- numbers ------------------------------------------------------------------------
@@ -221,7 +215,6 @@ static bool factorise(struct stiffness *s, const struct resistance *resistance,
         for (int r = 0; r < DEGREES; r++)
             numbers[r * stride + r] += soft;
     }
-    s->factors++;
     s->is_factorised = cholmod_factorize(s->matrix, s->factor, &s->common) &&
                        s->common.status == CHOLMOD_OK;
     return s->is_factorised;
@@ -249,28 +242,20 @@ static void resist(const struct stiffness *s, const struct resistance *resistanc
                    int j, double *direction, double *image)
 {
     const struct joint *joint = &s->joint[j];
-    struct displacement *move[2], *load[2],
-        both[2] = {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
-    for (int end = 0; end < 2; end++) {
-        move[end] = of_grain(s, direction, joint->grain[end]);
-        load[end] = of_grain(s, image, joint->grain[end]);
-        if (move[end]) both[end] = *move[end];
-    }
-    struct joint pair = *joint;
-    pair.grain[0] = 0;
-    pair.grain[1] = 1;
     double strain[STRAINS], force[STRAINS];
-    joint_strains(&pair, both, strain);
+    joint_strains(joint, of_grain(s, direction, joint->grain[0]),
+                  of_grain(s, direction, joint->grain[1]), strain);
     for (int k = 0; k < STRAINS; k++)
         force[k] = resistance->tangent[k] * strain[k];
     for (int k = 0; k < 2; k++)
         force[STRAIN_ACROSS + k] +=
             resistance->tangent_across * strain[STRAIN_ACROSS + 1 - k];
     for (int end = 0; end < 2; end++) {
-        if (!load[end]) continue;
-        const struct displacement sum = joint_loads(joint, end, force);
-        load[end]->shift = add(load[end]->shift, sum.shift);
-        load[end]->turn = add(load[end]->turn, sum.turn);
+        struct displacement *load = of_grain(s, image, joint->grain[end]);
+        if (!load) continue;
+        const struct displacement part = joint_loads(joint, end, force);
+        load->shift = add(load->shift, part.shift);
+        load->turn = add(load->turn, part.turn);
     }
 }
 

@@ -24,6 +24,4 @@ bool stiffness_solve(struct stiffness *stiffness, const struct resistance *resis
                      double soft, const struct displacement *load,
                      struct displacement *answer);
 
-int stiffness_factors(const struct stiffness *stiffness); // made so far
-
 #endif

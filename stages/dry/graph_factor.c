@@ -2,8 +2,8 @@
 #include "graph_factor.h"
 
 #include "basics/memory.h"
+#include "sparse/plain_cholmod.h"
 
-#include <cholmod.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,12 +50,7 @@ struct graph_factor *graph_factor_make(int n_node, int n_link)
     factor->n_link_total = n_link;
     for (int i = 0; i < n_node; i++)
         factor->place[i] = -1;
-    cholmod_start(&factor->common);
-    factor->common.print = 0;
-    factor->common.supernodal =
-        CHOLMOD_SIMPLICIAL; // no BLAS: the same bytes everywhere
-    factor->common.nmethods = 1;
-    factor->common.method[0].ordering = CHOLMOD_AMD;
+    plain_cholmod_start(&factor->common);
     return factor;
 }
 

@@ -4,8 +4,8 @@
 #include "basics/memory.h"
 #include "graph_factor.h"
 #include "losses.h"
+#include "sparse/plain_cholmod.h"
 
-#include <cholmod.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,12 +92,7 @@ struct liquid_flow liquid_flow_make(const struct network *network, double length
     solver->factor = graph_factor_make(network->n_node, 3 * network->n_throat);
     for (int i = 0; i < network->n_node; i++)
         solver->unknown[i] = -1;
-    cholmod_start(&solver->common);
-    solver->common.print = 0;
-    solver->common.supernodal =
-        CHOLMOD_SIMPLICIAL; // no BLAS: the same bytes everywhere
-    solver->common.nmethods = 1;
-    solver->common.method[0].ordering = CHOLMOD_AMD;
+    plain_cholmod_start(&solver->common);
     return flow;
 }
 

@@ -2,8 +2,8 @@
 #include "cholesky.h"
 
 #include "basics/memory.h"
+#include "sparse/plain_cholmod.h"
 
-#include <cholmod.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,12 +48,7 @@ enum status cholesky_make(const struct matrix *matrix, struct cholesky **made,
 {
     struct cholesky *cholesky = *made = NEW_ARRAY(struct cholesky, 1);
     cholmod_common *common = &cholesky->common;
-    cholmod_start(common);
-    common->print = 0;
-    // Simplicial, and always the same ordering: no BLAS, so the same bytes everywhere.
-    common->supernodal = CHOLMOD_SIMPLICIAL;
-    common->nmethods = 1;
-    common->method[0].ordering = CHOLMOD_AMD;
+    plain_cholmod_start(common);
     cholmod_sparse *lower = lower_triangle(matrix, common);
     if (lower) cholesky->factor = cholmod_analyze(lower, common);
     if (cholesky->factor) cholmod_factorize(lower, cholesky->factor, common);
