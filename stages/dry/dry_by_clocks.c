@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Liquid without viscosity, or immobile: on to the moment at which the next throat has
+// emptied.
+#include "run.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void record_change(struct run *run, int throat)
+{
+    const double saturation = clocks_saturation(&run->clocks, throat);
+    if (!(saturation < run->saturation[throat])) return; // too little to show
+    recorder_add_change(&run->recorder, throat, saturation);
+    run->saturation[throat] = saturation;
+}
+
+static int compare_throats(const void *a, const void *b)
+{
+    const int *t = a, *s = b;
+    return (*t > *s) - (*t < *s);
+}
+
+// Of all throats that lose or have lost since the last step, in ascending order.
+static void record_changes(struct run *run)
+{
+    const struct clocks *clocks = &run->clocks;
+    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, compare_throats);
+    int k = 0;
+    for (int l = 0; l < clocks->n; l++) {
+        for (; k < run->n_ended && run->ended[k] < clocks->losing[l]; k++)
+            record_change(run, run->ended[k]);
+        record_change(run, clocks->losing[l]);
+    }
+    for (; k < run->n_ended; k++)
+        record_change(run, run->ended[k]);
+    run->n_ended = 0;
+}
+
+// A step if it is time for one. Where events were passed over, the rate of the last
+// step becomes the mean until this.
+static void record_step(struct run *run)
+{
+    const double saturation = network_saturation(run);
+    const double fallen = run->step_saturation - saturation;
+    if (fallen < run->conditions->step_interval && run->phases.n_full > 0) {
+        run->n_skipped++;
+        return;
+    }
+    if (run->n_skipped > 0) {
+        const double evaporated =
+            compensated_difference(run->evaporated, run->step_evaporated);
+        const double time = compensated_difference(run->time, run->step_time);
+        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
+    }
+    record_changes(run);
+    record_state(run);
+    run->imbalance = fmax(run->imbalance, fabs(clocks_imbalance(&run->clocks)));
+    run->n_skipped = 0;
+    run->step_saturation = saturation;
+    run->step_time = run->time;
+    run->step_evaporated = run->evaporated;
+}
+
+enum status dry_by_clocks(struct run *run, struct reason *reason)
+{
+    struct clocks *clocks = &run->clocks;
+    const double rate = rate_now(run);
+    const double duration = clocks_advance(clocks);
+    if (duration < 0)
+        return refuse(
+            reason, STATUS_NOT_CONVERGED,
+            "nothing evaporates any more with %d throats still wet (rates too "
+            "small for the arithmetic)",
+            run->phases.n_full);
+    compensated_add(&run->time, duration);
+    compensated_add(&run->evaporated, rate * duration);
+    const double time = compensated_value(run->time) * run->scale.time;
+    for (int k = 0; k < clocks->n_ended; k++) {
+        recorder_add_event(&run->recorder, time, clocks->ended[k], EVENT_EMPTIED);
+        run->ended[run->n_ended++] = clocks->ended[k];
+    }
+    clocks_empty_ended(clocks);
+    note_breakthrough(run);
+    record_step(run);
+    return STATUS_OK;
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Viscous liquid: on to the moment at which a throat has emptied or filled, or changed.
+#include "run.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+
+// Throats that have this part of their volume left, or less, when another empties would
+// have emptied with it but for rounding.
+static const double TIE = 1e-12;
+
+// When the first throat has emptied or filled, or changed by saturation_step.
+static double time_to_first(const struct run *run)
+{
+    double shortest = INFINITY;
+    for (int k = 0; k < run->losses.n; k++) {
+        const struct loss *loss = &run->losses.loss[k];
+        const double volume = run->phases.volume[loss->throat];
+        const double left = compensated_value(run->phases.liquid[loss->throat]);
+        shortest = fmin(shortest, loss->rate > 0 ? left / loss->rate
+                                                 : (volume - left) / -loss->rate);
+        if (run->conditions->liquid == LIQUID_VISCOUS)
+            shortest = fmin(shortest, run->conditions->saturation_step * volume /
+                                          fabs(loss->rate));
+    }
+    return shortest;
+}
+
+// THROAT loses AMOUNT, or all it has if that is all but TIE of its volume: then it ties
+// with the first. Likewise one that fills.
+static void lose(struct phases *phases, int throat, double amount)
+{
+    struct compensated *liquid = &phases->liquid[throat];
+    const double before = compensated_value(*liquid);
+    const double volume = phases->volume[throat];
+    if (amount < 0 && before - amount > volume * (1 - TIE)) {
+        *liquid = (struct compensated){.value = volume};
+        compensated_add(&phases->total_liquid, volume - before);
+    } else if (before - amount > TIE * volume) {
+        compensated_add(liquid, -amount);
+        compensated_add(&phases->total_liquid, -amount);
+    } else {
+        *liquid = (struct compensated){0};
+        compensated_add(&phases->total_liquid, -before);
+    }
+}
+
+static double throat_saturation(const struct phases *phases, int throat)
+{
+    return compensated_value(phases->liquid[throat]) / phases->volume[throat];
+}
+
+// Time passes until the first throat has emptied.
+static void advance(struct run *run, double duration)
+{
+    struct phases *phases = &run->phases;
+    compensated_add(&run->time, duration);
+    compensated_add(&run->evaporated, vapour_rate(&phases->vapour) * duration);
+    for (int k = 0; k < run->losses.n; k++) {
+        const struct loss *loss = &run->losses.loss[k];
+        const double before = throat_saturation(phases, loss->throat);
+        lose(phases, loss->throat, loss->rate * duration);
+        const double after = throat_saturation(phases, loss->throat);
+        if (after != before) // too little to show, now and then
+            recorder_add_change(&run->recorder, loss->throat, after);
+    }
+}
+
+static void note_refills(struct run *run, double time)
+{
+    const struct phases *phases = &run->phases;
+    for (int k = 0; k < run->losses.n; k++) {
+        const struct loss *loss = &run->losses.loss[k];
+        if (loss->rate < 0 && throat_saturation(phases, loss->throat) == 1)
+            recorder_add_event(&run->recorder, time, loss->throat, EVENT_REFILLED);
+    }
+}
+
+// Gas fills what has emptied [K 3.4.2, step 6].
+static void empty_throats(struct run *run)
+{
+    struct phases *phases = &run->phases;
+    const double time = compensated_value(run->time) * run->scale.time;
+    note_refills(run, time);
+    for (int k = 0; k < run->losses.n; k++) {
+        const int throat = run->losses.loss[k].throat;
+        if (phases->liquid[throat].value != 0) continue;
+        phases_empty_throat(phases, throat);
+        recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
+    }
+    note_breakthrough(run);
+}
+
+static bool snapshot_is_due(const struct run *run)
+{
+    const int next = run->recorder.history->n_pressure;
+    return next < run->conditions->n_snapshot &&
+           network_saturation(run) <= run->conditions->snapshot[next];
+}
+
+static void keep_pressures(struct run *run)
+{
+    struct drying_history *history = run->recorder.history;
+    const size_t n = (size_t)run->phases.network->n_node;
+    if (!history->pressure)
+        history->pressure = NEW_ARRAY(double, n *(size_t)run->conditions->n_snapshot);
+    double *pressure = history->pressure + n * (size_t)history->n_pressure++;
+    for (size_t i = 0; i < n; i++)
+        pressure[i] = run->flow.pressure[i] * run->flow.menisci.pressure;
+}
+
+// Throats may refill in turn, but not for ever.
+static enum status note_idle(struct run *run, bool idle, struct reason *reason)
+{
+    run->n_idle = idle ? run->n_idle + 1 : 0;
+    const double most =
+        100.0 * (run->phases.n_full + 10) / run->conditions->saturation_step;
+    if (run->n_idle < most) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "throats refilled %d times over, and none has emptied, with %d still "
+                  "wet (a smaller saturation_step may help)",
+                  run->n_idle, run->phases.n_full);
+}
+
+enum status dry_by_flow(struct run *run, struct reason *reason)
+{
+    struct phases *phases = &run->phases;
+    run->flow.wants_pressures = snapshot_is_due(run);
+    enum status status = losses_find(&run->losses, phases, &run->flow, reason);
+    if (status) return status;
+    while (snapshot_is_due(run))
+        keep_pressures(run);
+    if (run->losses.n == 0)
+        return refuse(
+            reason, STATUS_NOT_CONVERGED,
+            "nothing evaporates any more with %d throats still wet (rates too "
+            "small for the arithmetic)",
+            phases->n_full);
+    advance(run, time_to_first(run));
+    const int n_before = phases->n_full;
+    empty_throats(run);
+    record_state(run);
+    return note_idle(run, phases->n_full == n_before, reason);
+}

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "parameters.h"
+
+#include <stddef.h>
+
+#define AT(member) offsetof(struct dry_parameters, member)
+#define WALLS "-x|+x|-y|+y|-z|+z"
+
+const struct parameter dry_table[] = {
+    {"liquid", PARAMETER_CHOICE, "1", "\"inviscid\"", BOUND_NONE, 0, 0,
+     "inviscid|immobile|viscous",
+     "liquid of negligible viscosity (very slow drying), immobile (very fast) [K 5.4], "
+     "or between the two, as viscosity says [K 3.10]",
+     AT(liquid)},
+    {"viscosity", PARAMETER_NUMBER, "m2 s-1", "1e-6", BOUND_ABOVE, 0, 0, NULL,
+     "kinematic, of viscous liquid [K Table 3.1]", AT(conditions.viscosity)},
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid; of no effect in inviscid liquid without gravity [K Table 3.1]",
+     AT(conditions.surface_tension)},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
+     "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) / r",
+     AT(conditions.contact_angle)},
+    {"gravity", PARAMETER_NUMBER, "m s-2", "0", BOUND_MINIMUM, 0, 0, NULL,
+     "towards -z: liquid higher up gives way to gas more easily; 0: none",
+     AT(conditions.gravity)},
+    {"knudsen", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "vapour is held up by the walls of narrow throats too: 1/D + 1/D_K, D_K = (2/3) r "
+     "sqrt(8 R T / (pi M))",
+     AT(conditions.knudsen)},
+    {"saturation_step", PARAMETER_NUMBER, "1", "1", BOUND_BETWEEN, 1e-6, 1, NULL,
+     "viscous: flow is solved anew when a throat's saturation has changed by this; 1: "
+     "when one has emptied or filled",
+     AT(conditions.saturation_step)},
+    {"open", PARAMETER_CHOICES, "1", "[\"+z\"]", BOUND_NONE, 0, 0, WALLS,
+     "the wall that is open to the drying air", AT(open_walls)},
+    {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0,
+     WALLS "|outer|inner",
+     "walls whose throats hold no liquid and let nothing through [K 5.4]; outer and "
+     "inner: those of a cylinder or sphere around the grains, and of what is cut out",
+     AT(imposed_empty)},
+    {"throat_radius.distribution", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0,
+     0, "network|normal|lognormal|uniform|two_mode",
+     "throat radii: as in the network, or drawn [K 2.2, 3.11]; drawn ones make the "
+     "throats cylinders",
+     AT(distribution)},
+    {"throat_radius.mean", PARAMETER_NUMBER, "m", "103e-9", BOUND_ABOVE, 0, 0, NULL,
+     "mean of drawn radii; two_mode: of the first mode", AT(radii.mean)},
+    {"throat_radius.standard_deviation", PARAMETER_NUMBER, "m", "1e-9", BOUND_MINIMUM,
+     0, 0, NULL, "their standard deviation", AT(radii.deviation)},
+    {"throat_radius.second_mean", PARAMETER_NUMBER, "m", "40e-9", BOUND_ABOVE, 0, 0,
+     NULL, "two_mode: mean of the second mode", AT(radii.second_mean)},
+    {"throat_radius.second_standard_deviation", PARAMETER_NUMBER, "m", "2e-9",
+     BOUND_MINIMUM, 0, 0, NULL, "its standard deviation", AT(radii.second_deviation)},
+    {"throat_radius.second_share", PARAMETER_NUMBER, "1", "0.5", BOUND_BETWEEN, 0, 1,
+     NULL, "share of the throats in it", AT(radii.second_share)},
+    {"throat_radius.correlation_length", PARAMETER_NUMBER, "m", "0", BOUND_MINIMUM, 0,
+     0, NULL,
+     "drawn radii are alike within this distance, their distribution the same; 0: "
+     "independent",
+     AT(radii.correlation_length)},
+    {"throat_radius.seed", PARAMETER_INTEGER, "1", "1", BOUND_BETWEEN, 0, 4294967295.0,
+     NULL, "seed of drawn radii", AT(seed)},
+    {"temperature", PARAMETER_NUMBER, "K", "293.15", BOUND_ABOVE, 0, 0, NULL,
+     "temperature [K Table 3.1]", AT(conditions.temperature)},
+    {"gas_pressure", PARAMETER_NUMBER, "Pa", "1e5", BOUND_ABOVE, 0, 0, NULL,
+     "pressure of the gas", AT(conditions.gas_pressure)},
+    {"saturation_pressure", PARAMETER_NUMBER, "Pa", "2339", BOUND_ABOVE, 0, 0, NULL,
+     "equilibrium vapour pressure", AT(conditions.saturation_pressure)},
+    {"air_vapour_pressure", PARAMETER_NUMBER, "Pa", "0", BOUND_MINIMUM, 0, 0, NULL,
+     "vapour pressure in the drying air", AT(conditions.air_vapour_pressure)},
+    {"diffusivity", PARAMETER_NUMBER, "m2 s-1", "2.5685e-5", BOUND_ABOVE, 0, 0, NULL,
+     "of vapour in the gas", AT(conditions.diffusivity)},
+    {"molar_mass", PARAMETER_NUMBER, "kg mol-1", "0.01802", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid", AT(conditions.molar_mass)},
+    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid", AT(conditions.liquid_density)},
+    {"boundary_layer.from", PARAMETER_CHOICE, "1", "\"mass_transfer\"", BOUND_NONE, 0,
+     0, "mass_transfer|thickness|sherwood|plate|sphere",
+     "what its thickness is found from: the parameters so named, or air that flows "
+     "along a plate [K 3.6] or around a sphere (Ranz and Marshall)",
+     AT(transfer_law)},
+    {"boundary_layer.mass_transfer", PARAMETER_NUMBER, "m s-1", "5.1", BOUND_ABOVE, 0,
+     0, NULL,
+     "mass transfer coefficient: the layer is diffusivity / this thick [K 3.3.5]",
+     AT(air.coefficient)},
+    {"boundary_layer.thickness", PARAMETER_NUMBER, "m", "5e-6", BOUND_ABOVE, 0, 0, NULL,
+     "thickness", AT(air.thickness)},
+    {"boundary_layer.sherwood", PARAMETER_NUMBER, "1", "2", BOUND_ABOVE, 0, 0, NULL,
+     "Sherwood number: the layer is flow_length / this thick", AT(air.sherwood)},
+    {"boundary_layer.flow_length", PARAMETER_NUMBER, "m", "0", BOUND_MINIMUM, 0, 0,
+     NULL,
+     "sherwood, plate, sphere: length of the body along the flow, or its diameter; 0: "
+     "the longer edge of the open side of the box",
+     AT(air.length)},
+    {"boundary_layer.air_velocity", PARAMETER_NUMBER, "m s-1", "1", BOUND_MINIMUM, 0, 0,
+     NULL, "plate, sphere: of the air", AT(air.velocity)},
+    {"boundary_layer.kinematic_viscosity", PARAMETER_NUMBER, "m2 s-1", "1.53e-5",
+     BOUND_ABOVE, 0, 0, NULL, "plate, sphere: of the air; dry, 293 K, 1 bar",
+     AT(air.kinematic_viscosity)},
+    {"boundary_layer.exchange", PARAMETER_CHOICE, "1", "\"lattice\"", BOUND_NONE, 0, 0,
+     "lattice|lumped",
+     "layers of nodes between which vapour also goes sideways, or none: each node of "
+     "the surface exchanges with the air by the mass transfer coefficient",
+     AT(exchange)},
+    {"boundary_layer.columns", PARAMETER_CHOICE, "1", "\"surface\"", BOUND_NONE, 0, 0,
+     "surface|auxiliary",
+     "nodes it stands on: all of the surface, or those where throats of an auxiliary "
+     "layer of grains begin (pack.extra_layer) [K 3.3.5]",
+     AT(feet)},
+    {"boundary_layer.layers", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 10000,
+     NULL, "layers of nodes in it; 0: spaced as throats are long", AT(layers)},
+    {"step_interval", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
+     "fall of the saturation from one recorded step to the next, for large networks; "
+     "0: "
+     "every event is a step; of no effect in viscous liquid",
+     AT(conditions.step_interval)},
+    {"snapshots", PARAMETER_LIST, "1", "[]", BOUND_BETWEEN, 0, 1, NULL,
+     "saturations, falling, at which the state of every throat is written, and the "
+     "pressures of viscous liquid",
+     AT(snapshots)},
+    {"first_period_rate", PARAMETER_NUMBER, "1", "0.9", BOUND_BETWEEN, 0.01, 0.999,
+     NULL,
+     "the first drying period ends when the rate falls below this share of its start",
+     AT(conditions.first_period_rate_fraction)},
+    {0}};
+
+void complete_conditions(struct dry_parameters *parameters)
+{
+    struct drying_conditions *conditions = &parameters->conditions;
+    conditions->liquid = (enum liquid_limit)parameters->liquid;
+    conditions->open_walls = parameters->open_walls;
+    conditions->n_snapshot = parameters->snapshots.count;
+    conditions->snapshot = parameters->snapshots.value;
+    conditions->layers = (int)parameters->layers;
+    conditions->feet = (enum boundary_feet)parameters->feet;
+    conditions->lumped = parameters->exchange == EXCHANGE_LUMPED;
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run on its way, and what its two ways of going on share.
+#ifndef CRAQUELURE_RUN_H
+#define CRAQUELURE_RUN_H
+
+#include "basics/compensated.h"
+#include "clocks.h"
+#include "conditions.h"
+#include "history.h"
+#include "losses.h"
+#include "phases.h"
+
+struct run {
+    const struct drying_conditions *conditions;
+    struct drying_scale scale;
+    struct phases phases;
+    struct clocks clocks;    // empty if the liquid is viscous
+    struct losses losses;    // empty unless it is
+    struct liquid_flow flow; // empty unless it is
+    int n_idle;              // viscous: steps since a throat has emptied
+    struct recorder recorder;
+    struct compensated time, evaporated; // scaled
+    double imbalance;                    // largest at a step
+
+    // Since the last step was recorded.
+    double step_saturation;
+    struct compensated step_time, step_evaporated;
+    int n_skipped;      // events
+    int n_ended;        // throats that have emptied
+    int *ended;         // (n_ended)
+    double *saturation; // (n_throat) at that step
+};
+
+// From 1 at the start to exactly 0 at the end.
+double network_saturation(const struct run *run);
+
+// Into the drying air, scaled; 0 when all is dry.
+double rate_now(const struct run *run);
+
+// Adds a step to the history, with the changes recorded since the last.
+void record_state(struct run *run);
+
+// Keeps the saturation when gas first reaches the wall opposite the open one.
+void note_breakthrough(struct run *run);
+
+// One event on: liquid without viscosity, or immobile; viscous liquid.
+// STATUS_NOT_CONVERGED: nothing evaporates any more, or the flow is not found.
+enum status dry_by_clocks(struct run *run, struct reason *reason);
+enum status dry_by_flow(struct run *run, struct reason *reason);
+
+#endif

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "write_drying.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "describe.h"
+#include "profiles.h"
+#include "write_layer.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static double first_period_end_time(const struct drying_history *history)
+{
+    for (int k = 0; k < history->n_step; k++)
+        if (history->saturation[k] <= history->first_period_end_saturation)
+            return history->time[k];
+    return history->time[history->n_step - 1];
+}
+
+static void put_normalised_rate(struct artifact *artifact,
+                                const struct drying_history *history)
+{
+    double *rate = NEW_ARRAY(double, history->n_step);
+    for (int k = 0; k < history->n_step; k++)
+        rate[k] = history->rate[k] / history->rate[0];
+    artifact_put(artifact, "/history/normalised_rate", rate, history->n_step);
+    free(rate);
+}
+
+// At the steps of the profiles.
+static void put_moments(struct artifact *artifact, const char *group,
+                        const struct drying_history *history,
+                        const struct profiles *profiles)
+{
+    const int n = profiles->n_level;
+    double *time = NEW_ARRAY(double, n), *saturation = NEW_ARRAY(double, n);
+    for (int k = 0; k < n; k++) {
+        time[k] = history->time[profiles->step[k]];
+        saturation[k] = history->saturation[profiles->step[k]];
+    }
+    char name[64];
+    snprintf(name, sizeof name, "/%s/time", group);
+    artifact_put(artifact, name, time, n);
+    snprintf(name, sizeof name, "/%s/saturation", group);
+    artifact_put(artifact, name, saturation, n);
+    free(time);
+    free(saturation);
+}
+
+static void put_profiles(struct artifact *artifact, const struct network *network,
+                         const struct drying_history *history,
+                         const struct drying_conditions *conditions)
+{
+    static const double level[] = {0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
+    const int n_level = sizeof level / sizeof *level;
+    struct profiles profiles =
+        profiles_make(network, history, conditions->open_walls,
+                      conditions->liquid != LIQUID_IMMOBILE, n_level, level, false);
+    put_moments(artifact, "profiles", history, &profiles);
+    artifact_put(artifact, "/profiles/depth", profiles.depth, PROFILE_SLICES);
+    artifact_put_table(artifact, "/profiles/slice_saturation", profiles.slice, n_level,
+                       PROFILE_SLICES);
+    artifact_put(artifact, "/profiles/surface_saturation", profiles.surface, n_level);
+    artifact_put_table(artifact, "/profiles/clusters", profiles.clusters, n_level,
+                       PROFILE_CLASSES);
+    profiles_free(&profiles);
+}
+
+static void put_snapshots(struct artifact *artifact, const struct network *network,
+                          const struct drying_history *history,
+                          const struct dry_parameters *parameters)
+{
+    const struct drying_conditions *conditions = &parameters->conditions;
+    struct profiles profiles = profiles_make(
+        network, history, conditions->open_walls, conditions->liquid != LIQUID_IMMOBILE,
+        parameters->snapshots.count, parameters->snapshots.value, true);
+    put_moments(artifact, "snapshots", history, &profiles);
+    artifact_put_table(artifact, "/snapshots/throat_saturation",
+                       profiles.throat_saturation, profiles.n_level, network->n_throat);
+    if (history->pressure)
+        artifact_put_table(artifact, "/snapshots/liquid_pressure", history->pressure,
+                           profiles.n_level, network->n_node);
+    profiles_free(&profiles);
+}
+
+static void put_history(struct artifact *artifact, const struct drying_history *history)
+{
+    const int n_step = history->n_step, n_event = history->n_event;
+    if (history->change_offset[n_step] > INT_MAX)
+        die(STATUS_BAD_DATA,
+            "/changes/throat: %lld rows are more than an artifact holds",
+            (long long)history->change_offset[n_step]);
+    const int n_change = (int)history->change_offset[n_step];
+    artifact_put(artifact, "/history/time", history->time, n_step);
+    artifact_put(artifact, "/history/saturation", history->saturation, n_step);
+    artifact_put(artifact, "/history/rate", history->rate, n_step);
+    artifact_put(artifact, "/history/clusters", history->clusters, n_step);
+    put_normalised_rate(artifact, history);
+    artifact_put(artifact, "/events/time", history->event_time, n_event);
+    artifact_put(artifact, "/events/throat", history->event_throat, n_event);
+    artifact_put(artifact, "/events/kind", history->event_kind, n_event);
+    artifact_put(artifact, "/changes/offset", history->change_offset, n_step + 1);
+    artifact_put(artifact, "/changes/throat", history->change_throat, n_change);
+    artifact_put(artifact, "/changes/saturation", history->change_saturation, n_change);
+}
+
+static void put_summary(struct artifact *artifact, const struct drying_history *history,
+                        unsigned open_walls)
+{
+    artifact_put_number(artifact, "/summary/open_walls", open_walls);
+    artifact_put_number(artifact, "/summary/breakthrough_saturation",
+                        history->breakthrough_saturation);
+    artifact_put_number(artifact, "/summary/first_period_end_saturation",
+                        history->first_period_end_saturation);
+    artifact_put_number(artifact, "/summary/first_period_end_time",
+                        first_period_end_time(history));
+    artifact_put_number(artifact, "/summary/liquid_mass", history->initial_liquid);
+    artifact_put_number(artifact, "/summary/balance_error",
+                        fabs(history->evaporated - history->initial_liquid) /
+                            history->initial_liquid);
+    artifact_put_number(artifact, "/summary/residual", history->vapour_residual);
+    artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
+}
+
+void write_drying(const struct network *network, const struct drying_history *history,
+                  const struct invocation *invocation, const struct artifact *input,
+                  const struct dry_parameters *parameters,
+                  const struct mass_transfer *transfer)
+{
+    const struct drying_conditions *conditions = &parameters->conditions;
+    const enum transfer_law law = (enum transfer_law)parameters->transfer_law;
+    char model[2000], layer[300], flow[200], liquid[300], switches[500];
+    snprintf(model, sizeof model,
+             "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
+             "boundary layer: %s\n"
+             "boundary layer: %.17g m thick, from %s\n"
+             "liquid: %s\n"
+             "throats shut in by those imposed empty, and empty as well: %d\n"
+             "%s\n",
+             describe_layer(conditions, history, layer),
+             history->boundary_layer_thickness, describe_flow(law, transfer, flow),
+             describe_liquid(conditions, history, liquid, sizeof liquid),
+             parameters->enclosed,
+             describe_switches(conditions, switches, sizeof switches));
+    struct artifact *artifact = artifact_create("drying");
+    artifact_put_network(artifact, network);
+    put_history(artifact, history);
+    put_summary(artifact, history, parameters->conditions.open_walls);
+    put_boundary_layer(artifact, network, &parameters->conditions, history);
+    put_profiles(artifact, network, history, conditions);
+    if (parameters->snapshots.count > 0)
+        put_snapshots(artifact, network, history, parameters);
+    artifact_finish(artifact, invocation, one_input(input), model);
+}
