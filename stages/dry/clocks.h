@@ -39,7 +39,8 @@ struct clocks {
     int *ended; // (n_ended) throats that empty now, ascending
 };
 
-// For PHASES as they are; they must live as long, and throats be emptied only here.
+// For PHASES as they are, with the liquid there is in each throat; they must live as
+// long, and throats be emptied only here.
 struct clocks clocks_make(struct phases *phases, bool by_throat);
 
 // Goes to the moment at which the first throat, or several that tie to rounding, lose

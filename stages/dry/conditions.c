@@ -96,6 +96,10 @@ enum status check_conditions(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "open walls: must be exactly one, are %d",
                       __builtin_popcount(conditions->open_walls));
+    if (!(conditions->start_saturation > 0 && conditions->start_saturation <= 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "start_saturation: must be above 0 and at most 1, is %g",
+                      conditions->start_saturation);
     if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "step_interval: must be from 0 to 1, is %g",

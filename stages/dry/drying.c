@@ -5,6 +5,7 @@
 #include "basics/memory.h"
 #include "boundary_layer.h"
 #include "run.h"
+#include "start.h"
 
 #include <stdlib.h>
 
@@ -25,7 +26,7 @@ double network_saturation(const struct run *run)
 {
     if (run->phases.n_full == 0) return 0;
     const double liquid = compensated_value(run->phases.total_liquid);
-    return fmin(1, fmax(0, liquid / run->phases.initial_liquid));
+    return fmin(1, fmax(0, liquid / run->phases.capacity));
 }
 
 double rate_now(const struct run *run)
@@ -63,6 +64,7 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
     const int n = run->phases.n_full;
     const double first_rate = rate_now(run);
     enum status status = STATUS_OK;
+    note_breakthrough(run);
     record_state(run);
     while (!status && run->phases.n_full > 0) {
         status = run->conditions->liquid == LIQUID_VISCOUS ? dry_by_flow(run, reason)
@@ -86,6 +88,23 @@ static void summarise(const struct run *run, struct drying_history *history)
     history->flow_rounds = run->flow.rounds;
 }
 
+// Takes the liquid that is not there at the start.
+static void start(struct run *run)
+{
+    const struct drying_conditions *conditions = run->conditions;
+    struct phases *phases = &run->phases;
+    if (!conditions->start && conditions->start_saturation == 1) return;
+    double *invaded = conditions->start
+                          ? NULL
+                          : invaded_saturations(phases, conditions->start_saturation);
+    const double *left = invaded ? invaded : conditions->start;
+    start_from(phases, left);
+    for (int t = 0; t < phases->network->n_throat; t++)
+        if (phases->volume[t] > 0 && left[t] < 1)
+            recorder_add_change(&run->recorder, t, left[t]);
+    free(invaded);
+}
+
 // What the liquid needs.
 static void prepare(struct run *run)
 {
@@ -98,11 +117,11 @@ static void prepare(struct run *run)
         return;
     }
     run->clocks = clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
-    run->step_saturation = 1;
+    run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, network->n_throat);
     run->saturation = NEW_ARRAY(double, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
-        run->saturation[t] = 1;
+        run->saturation[t] = clocks_saturation(&run->clocks, t);
 }
 
 // How easily gas enters each throat against gravity. The caller frees it.
@@ -152,6 +171,7 @@ enum status dry_network(const struct network *network,
     status = phases_make(network, wall, &form, layer, &run.phases, reason);
     free(ease);
     if (!status) {
+        start(&run);
         prepare(&run);
         status = dry_all(&run, progress, reason);
     }

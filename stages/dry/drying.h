@@ -59,6 +59,11 @@ struct drying_conditions {
     bool lumped;             // no lattice of layers and columns, only beta
     unsigned open_walls;     // bits of enum wall; exactly one now
     enum liquid_limit liquid;
+    // Liquid at the start, of the throats' volume, in (0,1]: what is left when gas has
+    // come in through the open walls, the widest throat it touches first. Or by
+    // throats.
+    double start_saturation;
+    const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
     // Fall of the network's saturation from one recorded step to the next; 0: each
     // event is a step. Not where the liquid is viscous.
     double step_interval;
@@ -71,7 +76,7 @@ enum event_kind {
     EVENT_REFILLED = 1 // by flow from its cluster, after it was partly empty
 };
 
-// What happened, from the full network to the dry one. Step 0 is the initial state;
+// What happened, from the start to the dry network. Step 0 is the initial state;
 // each later step is the moment at which a throat has just emptied, or several that tie
 // to rounding (as all do that recede at one speed from one node). In viscous liquid it
 // may also be that of a throat that has filled again, or of a change of
@@ -80,20 +85,19 @@ enum event_kind {
 struct drying_history {
     int n_step;
     double *time;       // (n_step) s, increasing (as far as its digits reach) from 0
-    double *saturation; // (n_step) liquid over initial liquid; from 1 to exactly 0
+    double *saturation; // (n_step) liquid over the throats' volume; to exactly 0
     double *rate;       // (n_step) kg/s into the drying air from this step to the next;
                         // the last is 0
     int32_t *clusters;  // (n_step) connected pieces of liquid
 
-    int n_event;        // one for each throat of kind THROAT_NETWORK, and the refills
-    double *event_time; // (n_event) s
+    int n_event;           // one for each throat that held liquid, and the refills
+    double *event_time;    // (n_event) s
     int32_t *event_throat; // (n_event) index in the network
     uint8_t *event_kind;   // (n_event) enum event_kind
 
     // Throats whose saturation at step k differs from that at step k-1, ascending
-    // within a step: entries change_offset[k] .. change_offset[k+1]-1. None at step 0,
-    // where every throat of kind THROAT_NETWORK has saturation 1 (and the others have
-    // none).
+    // within a step: entries change_offset[k] .. change_offset[k+1]-1. At step 0 those
+    // of kind THROAT_NETWORK that do not begin full (the others never hold liquid).
     int64_t *change_offset;    // (n_step+1)
     int32_t *change_throat;    // (change_offset[n_step])
     double *change_saturation; // of the throat, 0 to 1; exactly 0 once empty

@@ -7,10 +7,13 @@
 #include "mass_transfer.h"
 #include "network/throat_radius.h"
 #include "parameters.h"
+#include "start.h"
 #include "write_drying.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const struct stage stage = {
     .name = "dry",
@@ -28,6 +31,42 @@ static void check_snapshots(const struct number_list *snapshots)
             die(STATUS_BAD_DATA,
                 "dry.snapshots: must fall from one to the next, got %g after %g",
                 snapshots->value[k], snapshots->value[k - 1]);
+}
+
+// A network, or a drying to begin within.
+static struct artifact *open_input(const char *path)
+{
+    struct artifact *input = artifact_open(path, NULL);
+    const char *schema = input->schema->name;
+    if (strcmp(schema, "network") && strcmp(schema, "drying"))
+        die(STATUS_BAD_DATA, "%s: must be a network, is a %s", input_name(path),
+            schema);
+    return input;
+}
+
+// Throat by throat, from a drying; NULL from a network.
+static double *read_start(const struct artifact *input, const struct network *network,
+                          double saturation)
+{
+    if (strcmp(input->schema->name, "drying")) return NULL;
+    int n_step;
+    double *history = artifact_get(input, "/history/saturation", &n_step);
+    int64_t *offset = artifact_get(input, "/changes/offset", NULL);
+    int32_t *throat = artifact_get(input, "/changes/throat", NULL);
+    double *throat_saturation = artifact_get(input, "/changes/saturation", NULL);
+    if (n_step < 1 || !(saturation <= history[0]))
+        die(STATUS_BAD_DATA,
+            "dry.start_saturation: must be at most that at which %s begins, %g, is %g",
+            input_name(input->path), n_step > 0 ? history[0] : 0, saturation);
+    double *start = recorded_saturations(
+        network,
+        &(struct drying_record){n_step, history, offset, throat, throat_saturation},
+        saturation);
+    free(history);
+    free(offset);
+    free(throat);
+    free(throat_saturation);
+    return start;
 }
 
 static void show(void *bar, double fraction)
@@ -95,7 +134,7 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check_snapshots(&parameters.snapshots);
     complete_conditions(&parameters);
-    struct artifact *input = artifact_open(invocation.inputs[0], "network");
+    struct artifact *input = open_input(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);
 
     const struct mass_transfer transfer =
@@ -105,11 +144,14 @@ int main(int argc, char **argv)
     if (parameters.imposed_empty && __builtin_popcount(parameters.open_walls) == 1)
         parameters.enclosed = empty_enclosed_throats(
             &network, __builtin_ctz(parameters.open_walls), parameters.conditions.feet);
+    double *start = read_start(input, &network, parameters.conditions.start_saturation);
+    parameters.conditions.start = start;
     struct drying_history history;
     dry(&network, &parameters, &invocation, input->path, &history);
     write_drying(&network, &history, &invocation, input, &parameters, &transfer);
 
     drying_history_free(&history);
+    free(start);
     network_free(&network);
     artifact_close(input);
     invocation_free(&invocation);

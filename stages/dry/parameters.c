@@ -109,6 +109,12 @@ const struct parameter dry_table[] = {
      AT(feet)},
     {"boundary_layer.layers", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 10000,
      NULL, "layers of nodes in it; 0: spaced as throats are long", AT(layers)},
+    {"start_saturation", PARAMETER_NUMBER, "1", "1", BOUND_BETWEEN, 1e-9, 1, NULL,
+     "liquid at the start, of the throats' volume: what is left when gas has come in "
+     "through the open walls, always into the throat it enters most easily; where "
+     "INPUT "
+     "is a drying, its state when it had as much",
+     AT(conditions.start_saturation)},
     {"step_interval", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
      "fall of the saturation from one recorded step to the next, for large networks; "
      "0: "

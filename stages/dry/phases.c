@@ -21,7 +21,7 @@ static void fill_throats(struct phases *phases, double length)
         for (int end = 0; end < 2; end++)
             phases->liquid_beside[network->throat_nodes[t][end]]++;
     }
-    phases->initial_liquid = compensated_value(total);
+    phases->capacity = phases->initial_liquid = compensated_value(total);
     phases->total_liquid.value = phases->initial_liquid;
 }
 

@@ -19,6 +19,7 @@ struct phases {
 
     double *volume;             // (n_throat) scaled; 0 where no throat takes part
     struct compensated *liquid; // (n_throat) of the volume
+    double capacity;            // volume of all
     double initial_liquid;
     struct compensated total_liquid;
     int n_full; // throats not yet empty

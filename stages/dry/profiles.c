@@ -130,16 +130,19 @@ static void count_clusters(struct scene *scene, int32_t *count)
             count[31 - __builtin_clz((unsigned)scene->size[t])]++;
 }
 
+static void apply_changes(struct scene *scene, const struct drying_history *history,
+                          int step)
+{
+    for (int64_t c = history->change_offset[step]; c < history->change_offset[step + 1];
+         c++)
+        scene->saturation[history->change_throat[c]] = history->change_saturation[c];
+}
+
 static int go_on_to(struct scene *scene, const struct drying_history *history, int step,
                     double level)
 {
-    while (history->saturation[step] > level && step < history->n_step - 1) {
-        step++;
-        for (int64_t c = history->change_offset[step];
-             c < history->change_offset[step + 1]; c++)
-            scene->saturation[history->change_throat[c]] =
-                history->change_saturation[c];
-    }
+    while (history->saturation[step] > level && step < history->n_step - 1)
+        apply_changes(scene, history, ++step);
     return step;
 }
 
@@ -161,6 +164,7 @@ struct profiles profiles_make(const struct network *network,
         profiles.depth[s] = (s + 0.5) / PROFILE_SLICES;
     struct scene scene = make_scene(network, open_walls, gas_parts);
     int step = 0;
+    apply_changes(&scene, history, step);
     for (int k = 0; k < n_level; k++) {
         step = go_on_to(&scene, history, step, level[k]);
         profiles.step[k] = step;

@@ -146,6 +146,7 @@ struct drying_conditions kharaghani_conditions(enum liquid_limit liquid)
                                       .viscosity = 1e-6,
                                       .surface_tension = 0.07274,
                                       .saturation_step = 1,
+                                      .start_saturation = 1,
                                       .liquid = liquid,
                                       .first_period_rate_fraction = 0.9};
 }
