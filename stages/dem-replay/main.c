@@ -164,7 +164,7 @@ static void write_response(const struct packing *packing, const struct load *loa
         "support: %s\n"
         "left out: gravity, liquid bridges at contacts, moments of capillary forces\n",
         engines[settings->engine], supports[settings->support]);
-    struct artifact *artifact = artifact_create("response");
+    struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, response);
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         artifact_get_number(input, "/summary/first_period_end_time"));

@@ -145,7 +145,7 @@ void write_drying(const struct network *network, const struct drying_history *hi
              describe_liquid(conditions, history, liquid, sizeof liquid),
              parameters->enclosed,
              describe_switches(conditions, switches, sizeof switches));
-    struct artifact *artifact = artifact_create("drying");
+    struct artifact *artifact = artifact_create("drying", invocation->output);
     artifact_put_network(artifact, network);
     put_history(artifact, history);
     put_summary(artifact, history, parameters->conditions.open_walls);

@@ -259,7 +259,8 @@ static void write(const struct computation *computation,
         flow.cells->n_flat, flow.throats->n_closed, flow.pressures->n_pocket,
         flow.opening ? "" : ", motion of the grains");
     const bool all = parameters->product == PRODUCT_FLOW;
-    struct artifact *artifact = artifact_create(all ? "flow" : "forces");
+    struct artifact *artifact =
+        artifact_create(all ? "flow" : "forces", invocation->output);
     if (all)
         put_flow(artifact, &flow);
     else

@@ -103,7 +103,7 @@ static void write_forces(const struct packing *packing, const struct protocol *p
                          double largest, const struct invocation *invocation,
                          const struct artifact *input)
 {
-    struct artifact *artifact = artifact_create("forces");
+    struct artifact *artifact = artifact_create("forces", invocation->output);
     artifact_put_packing(artifact, packing);
     artifact_put(artifact, "/time", protocol->time, protocol->n_time);
     artifact_put(artifact, "/saturation", protocol->saturation, protocol->n_time);

@@ -192,7 +192,7 @@ static void write_packing(const struct packing *packing, const struct domain *do
     report_number(&said, "/summary/porosity", porosity);
     report_number(&said, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
 
-    struct artifact *artifact = artifact_create("packing");
+    struct artifact *artifact = artifact_create("packing", invocation->output);
     artifact_put_packing(artifact, packing);
     report_put(&said, artifact);
     artifact_put_vtk(artifact, "/particles/position", packing->n_particle,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Artifacts: HDF5 files held as images in memory, so that files and pipes are the same.
+// Artifacts: HDF5 files. Those that are read are held as images in memory, so that
+// files and pipes are the same.
 //
 // Types, units and shapes of what is written come from the schema, and everything that
 // is read has been checked against it, so that a stage can trust what it gets. All
@@ -19,7 +20,12 @@ struct artifact {
     hid_t file;
     struct bytes image; // of one that was read
     char sha256[65];    // of one that was read
+    int descriptor;     // of one that is being written
 };
+
+// Before any other call of HDF5: it keeps silent, and does not write on at an exit what
+// could not be written.
+void hdf5_begin(void);
 
 // ---- reading ------------------------------------------------------------------------
 
@@ -61,8 +67,8 @@ struct network artifact_get_periodic_network(const struct artifact *artifact);
 
 // ---- writing ------------------------------------------------------------------------
 
-// An empty artifact of schema NAME.
-struct artifact *artifact_create(const char *name);
+// An empty artifact of schema NAME, to be written to PATH ("-": standard output).
+struct artifact *artifact_create(const char *name, const char *path);
 
 // Writes a whole dataset of ROWS rows; the other extents are those of the schema, where
 // a symbol among them ("n_particle") takes COLUMNS.
@@ -83,7 +89,7 @@ void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point
 
 // Provenance: from the call, the digests of its inputs (a list, taken over), and MODEL
 // (one line a feature that was modelled or left out). Then writes the artifact, which
-// must keep its own schema, to the output of the call, whole or not at all. Closes it.
+// must keep its own schema, to its path, whole or not at all. Closes it.
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
                      json_t *inputs, const char *model);
 

@@ -136,7 +136,7 @@ static void write_state(const struct checkpoint *checkpoint,
 {
     struct invocation there = *checkpoint->invocation;
     there.output = there.checkpoint;
-    struct artifact *artifact = artifact_create("restart");
+    struct artifact *artifact = artifact_create("restart", there.output);
     uint8_t sum[32];
     digest_state(state, sum);
     artifact_put(artifact, "/digest", sum, sizeof sum);

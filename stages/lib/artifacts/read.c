@@ -23,8 +23,7 @@ static hid_t open_image(const char *path, const struct bytes *image)
                                                '\r', '\n', 0x1a, '\n'};
     if (image->size < 8 || memcmp(image->data, signature, 8))
         die(STATUS_BAD_DATA, "%s: is not an HDF5 file", input_name(path));
-    H5Eset_auto2(H5E_DEFAULT, NULL,
-                 NULL); // our own one line instead of the library's stack
+    hdf5_begin();
     const hid_t file =
         H5LTopen_file_image(image->data, image->size,
                             H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE);

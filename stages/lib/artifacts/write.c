@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Artifacts out. Same input, same bytes: no time stamps, and the oldest file layout,
-// set explicitly (HDF5 1.10 writes a wrong checksum into images of newer ones).
+// Artifacts out, straight to the disk where they go to one. Same input, same bytes: no
+// time stamps, and the oldest file layout, set explicitly.
 #include "artifacts/artifact.h"
 #include "artifacts/check.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { IMAGE_INCREMENT = 1 << 20 };
 
 static hid_t untimed(hid_t class)
 {
@@ -18,7 +17,7 @@ static hid_t untimed(hid_t class)
     return list;
 }
 
-// Ends the program when an HDF5 call fails while writing to memory: nothing the user
+// Ends the program when an HDF5 call fails that writes nothing yet: nothing the user
 // did.
 static hid_t done(hid_t result, const char *what)
 {
@@ -26,18 +25,33 @@ static hid_t done(hid_t result, const char *what)
     return result;
 }
 
-struct artifact *artifact_create(const char *name)
+// Ends the program when bytes cannot be written, on a full disk.
+static void wrote(const struct artifact *artifact, herr_t result)
+{
+    if (result >= 0) return;
+    const bool to_file = strcmp(artifact->path, "-");
+    die(STATUS_IO, "%s: %s", to_file ? artifact->path : "standard output",
+        strerror(errno));
+}
+
+struct artifact *artifact_create(const char *name, const char *path)
 {
     struct artifact *artifact = NEW_ARRAY(struct artifact, 1);
     artifact->schema = schema_find(name);
     if (!artifact->schema) die(STATUS_INTERNAL, "%s: no such schema", name);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    artifact->path = path;
+    artifact->descriptor = open_unnamed(path);
+    hdf5_begin();
 
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
-    H5Pset_fapl_core(access, IMAGE_INCREMENT, 0);
+    // The usual driver wants to know the real name, and there is none.
+    H5Pset_fapl_stdio(access);
     const hid_t creation = untimed(H5P_FILE_CREATE);
-    artifact->file = done(H5Fcreate(name, H5F_ACC_TRUNC, creation, access), name);
+    char file[DESCRIPTOR_NAME];
+    name_of_descriptor(artifact->descriptor, file);
+    artifact->file = H5Fcreate(file, H5F_ACC_TRUNC, creation, access);
+    wrote(artifact, artifact->file < 0 ? -1 : 0);
     H5Pclose(creation);
     H5Pclose(access);
     return artifact;
@@ -73,16 +87,19 @@ static void make_groups(hid_t file, const char *name)
     }
 }
 
-static hid_t put_array(hid_t file, const char *name, hid_t file_type, hid_t memory_type,
-                       int rank, const hsize_t *extent, const void *data)
+static hid_t put_array(const struct artifact *artifact, const char *name,
+                       hid_t file_type, hid_t memory_type, int rank,
+                       const hsize_t *extent, const void *data)
 {
+    const hid_t file = artifact->file;
     make_groups(file, name);
     const hid_t space = H5Screate_simple(rank, extent, NULL);
     const hid_t creation = untimed(H5P_DATASET_CREATE);
     const hid_t dataset = done(
         H5Dcreate2(file, name, file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
         name);
-    done(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
+    wrote(artifact,
+          H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
     H5Pclose(creation);
     H5Sclose(space);
     return dataset;
@@ -102,8 +119,8 @@ void artifact_put_table(struct artifact *artifact, const char *name, const void 
                                                : (hsize_t)columns;
     }
     const hid_t dataset =
-        put_array(artifact->file, name, entry_file_type(entry),
-                  entry_memory_type(entry), (int)json_array_size(shape), extent, data);
+        put_array(artifact, name, entry_file_type(entry), entry_memory_type(entry),
+                  (int)json_array_size(shape), extent, data);
     put_text_attribute(dataset, "units",
                        json_string_value(json_object_get(entry, "units")));
     put_text_attribute(dataset, "long_name",
@@ -195,11 +212,30 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
 
 // ---- ParaView -----------------------------------------------------------------------
 
-static void put_integers(hid_t file, const char *name, hid_t file_type,
-                         const int64_t *data, int count)
+static void put_count(const struct artifact *artifact, const char *name, int64_t count)
 {
-    H5Dclose(put_array(file, name, file_type, H5T_NATIVE_INT64, 1,
-                       &(hsize_t){(hsize_t)count}, data));
+    H5Dclose(put_array(artifact, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1,
+                       &(hsize_t){1}, &count));
+}
+
+static void put_indices(const struct artifact *artifact, const char *name,
+                        const int32_t *index, int count)
+{
+    H5Dclose(put_array(artifact, name, H5T_STD_I32LE, H5T_NATIVE_INT32, 1,
+                       &(hsize_t){(hsize_t)count}, index));
+}
+
+// A byte that all have in common, and which takes no room.
+static void put_types(hid_t file, int count, uint8_t type)
+{
+    const hid_t space = H5Screate_simple(1, &(hsize_t){(hsize_t)count}, NULL);
+    const hid_t creation = untimed(H5P_DATASET_CREATE);
+    H5Pset_fill_value(creation, H5T_NATIVE_UINT8, &type);
+    H5Dclose(done(H5Dcreate2(file, "/VTKHDF/Types", H5T_STD_U8LE, space, H5P_DEFAULT,
+                             creation, H5P_DEFAULT),
+                  "/VTKHDF/Types"));
+    H5Pclose(creation);
+    H5Sclose(space);
 }
 
 // Type must be ASCII, of exactly its length, padded with nulls: the readers of ParaView
@@ -228,22 +264,19 @@ static void put_vtk_header(hid_t file)
 }
 
 // Cells of SIZE points each: vertices (1) or lines (2).
-static void put_vtk_cells(hid_t file, const int64_t *connectivity, int n_cell, int size)
+static void put_vtk_cells(const struct artifact *artifact, const int32_t *connectivity,
+                          int n_cell, int size)
 {
-    int64_t *offsets = NEW_ARRAY(int64_t, n_cell + 1);
-    int64_t *types = NEW_ARRAY(int64_t, n_cell);
-    for (int c = 0; c < n_cell; c++) {
-        offsets[c + 1] = (int64_t)size * (c + 1);
-        types[c] = size == 1 ? 1 : 3; // VTK_VERTEX, VTK_LINE
-    }
-    put_integers(file, "/VTKHDF/NumberOfCells", H5T_STD_I64LE, &(int64_t){n_cell}, 1);
-    put_integers(file, "/VTKHDF/NumberOfConnectivityIds", H5T_STD_I64LE,
-                 &(int64_t){(int64_t)size * n_cell}, 1);
-    put_integers(file, "/VTKHDF/Connectivity", H5T_STD_I64LE, connectivity,
-                 size * n_cell);
-    put_integers(file, "/VTKHDF/Offsets", H5T_STD_I64LE, offsets, n_cell + 1);
-    put_integers(file, "/VTKHDF/Types", H5T_STD_U8LE, types, n_cell);
-    free(types);
+    enum { VTK_VERTEX = 1, VTK_LINE = 3 };
+    int32_t *offsets = NEW_ARRAY(int32_t, n_cell + 1);
+    for (int c = 0; c < n_cell; c++)
+        offsets[c + 1] = size * (c + 1);
+    put_count(artifact, "/VTKHDF/NumberOfCells", n_cell);
+    put_count(artifact, "/VTKHDF/NumberOfConnectivityIds", (int64_t)size * n_cell);
+    put_indices(artifact, "/VTKHDF/Connectivity", size == 1 ? offsets : connectivity,
+                size * n_cell);
+    put_indices(artifact, "/VTKHDF/Offsets", offsets, n_cell + 1);
+    put_types(artifact->file, n_cell, size == 1 ? VTK_VERTEX : VTK_LINE);
     free(offsets);
 }
 
@@ -263,18 +296,14 @@ void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point
                       int n_line, const char *const *cell_data)
 {
     const hid_t file = artifact->file;
-    const int n_cell = lines ? n_line : n_point, size = lines ? 2 : 1;
-    int64_t *connectivity = NEW_ARRAY(int64_t, (size_t)size * (size_t)n_cell);
-    for (int k = 0; k < size * n_cell; k++)
-        connectivity[k] = lines ? lines[k / 2][k % 2] : k;
     put_vtk_header(file);
-    put_integers(file, "/VTKHDF/NumberOfPoints", H5T_STD_I64LE, &(int64_t){n_point}, 1);
-    put_vtk_cells(file, connectivity, n_cell, size);
+    put_count(artifact, "/VTKHDF/NumberOfPoints", n_point);
+    put_vtk_cells(artifact, lines ? lines[0] : NULL, lines ? n_line : n_point,
+                  lines ? 2 : 1);
     done(H5Lcreate_hard(file, points, file, "/VTKHDF/Points", H5P_DEFAULT, H5P_DEFAULT),
          points);
     link_data(file, "PointData", point_data);
     link_data(file, "CellData", cell_data);
-    free(connectivity);
 }
 
 // ---- provenance and the end ---------------------------------------------------------
@@ -316,26 +345,28 @@ static void put_provenance(struct artifact *artifact, json_t *members)
     json_decref(members);
 }
 
+void hdf5_begin(void)
+{
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
                      json_t *inputs, const char *model)
 {
     put_provenance(artifact, provenance(invocation, inputs, model));
 
-    done(H5Fflush(artifact->file, H5F_SCOPE_GLOBAL), "flush");
-    const ssize_t size = H5Fget_file_image(artifact->file, NULL, 0);
-    done((hid_t)size, "image");
+    wrote(artifact, H5Fflush(artifact->file, H5F_SCOPE_GLOBAL));
+    hsize_t size;
+    done(H5Fget_filesize(artifact->file, &size), "size");
     struct reason reason;
-    if (check_file(artifact->file, artifact->schema, (size_t)size, &reason))
+    if (check_file(artifact->file, artifact->schema, size, &reason))
         die(STATUS_INTERNAL, "would write a %s that breaks its own schema: %s",
             artifact->schema->name, reason.text);
-    // The core driver holds the whole file: no need for H5Fget_file_image to copy it.
-    // Only the flags of superblock 0 say that it is open.
-    enum { FLAGS = 20 };
-    unsigned char **image;
-    done(H5Fget_vfd_handle(artifact->file, H5P_DEFAULT, (void **)&image), "image");
-    memset(*image + FLAGS, 0, sizeof(uint32_t));
-    write_whole(invocation->output, *image, (size_t)size);
-    artifact_close(artifact);
+    wrote(artifact, H5Fclose(artifact->file));
+    publish(artifact->descriptor, artifact->path);
+    schema_free(artifact->schema);
+    free(artifact);
 }
 
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,

@@ -1,5 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "artifacts/write_network.h"
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// The ends of throats as they are drawn: one that leads into another repetition of the
+// box is a point, not a line across the box.
+static int32_t (*drawn_throats(const struct network *network))[2]
+{
+    int32_t(*ends)[2] =
+        duplicate(network->throat_nodes, (size_t)network->n_throat, sizeof *ends);
+    for (int t = 0; t < network->n_throat; t++)
+        if (!same_image(network->throat_image[t], (struct image){0}))
+            ends[t][1] = ends[t][0];
+    return ends;
+}
+
+static void put_drawing(struct artifact *artifact, const struct network *network)
+{
+    int32_t(*drawn)[2] = network->throat_image ? drawn_throats(network) : NULL;
+    artifact_put_vtk(
+        artifact, "/nodes/position", network->n_node,
+        (const char *const[]){"/nodes/kind", NULL},
+        (const int32_t(*)[2])(drawn ? drawn : network->throat_nodes), network->n_throat,
+        (const char *const[]){"/throats/radius", "/throats/kind",
+                              network->throat_volume ? "/throats/volume" : NULL, NULL});
+    free(drawn);
+}
 
 void write_network_of(const struct network *network,
                       const struct invocation *invocation, json_t *inputs,
@@ -9,7 +36,7 @@ void write_network_of(const struct network *network,
     for (int t = 0; t < network->n_throat; t++)
         void_volume += throat_volume(network, t);
 
-    struct artifact *artifact = artifact_create("network");
+    struct artifact *artifact = artifact_create("network", invocation->output);
     artifact_put_network(artifact, network);
     artifact_put_number(artifact, "/summary/coordination",
                         network->n_node ? 2.0 * network->n_throat / network->n_node
@@ -21,12 +48,7 @@ void write_network_of(const struct network *network,
         artifact_put_number(artifact, "/summary/unmerged_length",
                             network->unmerged_length);
     }
-    artifact_put_vtk(
-        artifact, "/nodes/position", network->n_node,
-        (const char *const[]){"/nodes/kind", NULL},
-        (const int32_t(*)[2])network->throat_nodes, network->n_throat,
-        (const char *const[]){"/throats/radius", "/throats/kind",
-                              network->throat_volume ? "/throats/volume" : NULL, NULL});
+    put_drawing(artifact, network);
     artifact_finish(artifact, invocation, inputs, model);
 }
 

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -79,9 +80,6 @@ static void grant_usual_rights(int descriptor)
 
 static void write_file(const char *path, const void *data, size_t size)
 {
-    struct stat information;
-    if (!stat(path, &information) && S_ISDIR(information.st_mode))
-        die(STATUS_CANNOT_CREATE, "%s: is a directory", path);
     char *temporary = allocate(strlen(path) + 8, 1);
     sprintf(temporary, "%s.XXXXXX", path);
     const int descriptor = mkstemp(temporary);
@@ -128,26 +126,40 @@ static void write_device(const char *path, const void *data, size_t size)
         die(STATUS_IO, "%s: %s", path, strerror(errno));
 }
 
-void write_whole(const char *path, const void *data, size_t size)
+// The signals that were let through before: until they are again, nothing ends the
+// program between the create and the rename.
+static sigset_t hold_interrupts(void)
 {
-    if (!strcmp(path, "-")) {
-        write_standard_output(data, size);
-        return;
-    }
-    if (!access(path, F_OK) && access(path, W_OK))
-        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
-    if (is_device(path)) {
-        write_device(path, data, size);
-        return;
-    }
-    // With the signals held back, no half file can be left behind: nothing ends the
-    // program between the create and the rename.
     sigset_t interrupts, before;
     sigemptyset(&interrupts);
     sigaddset(&interrupts, SIGINT);
     sigaddset(&interrupts, SIGTERM);
     sigaddset(&interrupts, SIGHUP);
     sigprocmask(SIG_BLOCK, &interrupts, &before);
+    return before;
+}
+
+static void check_replaceable(const char *path)
+{
+    struct stat information;
+    if (!access(path, F_OK) && access(path, W_OK))
+        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    if (!stat(path, &information) && S_ISDIR(information.st_mode))
+        die(STATUS_CANNOT_CREATE, "%s: is a directory", path);
+}
+
+void write_whole(const char *path, const void *data, size_t size)
+{
+    if (!strcmp(path, "-")) {
+        write_standard_output(data, size);
+        return;
+    }
+    check_replaceable(path);
+    if (is_device(path)) {
+        write_device(path, data, size);
+        return;
+    }
+    const sigset_t before = hold_interrupts();
     signal(SIGXFSZ, SIG_IGN); // past the file size limit: an error, as on a full disk
     char *target = follow_link(path);
     write_file(target, data, size);
@@ -155,19 +167,90 @@ void write_whole(const char *path, const void *data, size_t size)
     sigprocmask(SIG_SETMASK, &before, NULL);
 }
 
+// ---- files without a name -----------------------------------------------------------
+
+// The folder that PATH is in. The caller frees it.
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash) return strdup(".");
+    return strndup(path, slash == path ? 1 : (size_t)(slash - path)); // "/x": in "/"
+}
+
+int open_unnamed(const char *path)
+{
+    int descriptor = -1;
+    if (!strcmp(path, "-") && fcntl(STDOUT_FILENO, F_GETFD) < 0) // would become ours
+        die(STATUS_IO, "standard output: %s", strerror(errno));
+    signal(SIGXFSZ, SIG_IGN);
+    if (strcmp(path, "-") && !is_device(path)) {
+        char *target = follow_link(path), *folder = folder_of(target);
+        descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+        free(folder);
+        free(target);
+    }
+    if (descriptor < 0) descriptor = memfd_create("output", MFD_CLOEXEC);
+    if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    return descriptor;
+}
+
+void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME])
+{
+    snprintf(name, DESCRIPTOR_NAME, "/proc/self/fd/%d", descriptor);
+}
+
+// Under another name first: a link replaces nothing. False when it cannot be linked,
+// being in memory.
+static bool give_name(int descriptor, const char *path)
+{
+    char *temporary = allocate(strlen(path) + 16, 1), from[DESCRIPTOR_NAME];
+    sprintf(temporary, "%s.%d", path, (int)getpid());
+    name_of_descriptor(descriptor, from);
+    const bool linked = !linkat(AT_FDCWD, from, AT_FDCWD, temporary, AT_SYMLINK_FOLLOW);
+    const bool synced = !linked || !fsync(descriptor);
+    if (linked && (!synced || rename(temporary, path))) {
+        const int error = errno;
+        unlink(temporary);
+        die(synced ? STATUS_CANNOT_CREATE : STATUS_IO, "%s: %s", path, strerror(error));
+    }
+    free(temporary);
+    return linked;
+}
+
+static void copy_whole(int descriptor, const char *path)
+{
+    const off_t size = lseek(descriptor, 0, SEEK_END);
+    void *data = mmap(NULL, (size_t)size, PROT_READ, MAP_SHARED, descriptor, 0);
+    if (data == MAP_FAILED) die(STATUS_IO, "%s: %s", path, strerror(errno));
+    write_whole(path, data, (size_t)size);
+    munmap(data, (size_t)size);
+}
+
+void publish(int descriptor, const char *path)
+{
+    bool named = false;
+    if (strcmp(path, "-") && !is_device(path)) {
+        check_replaceable(path);
+        const sigset_t before = hold_interrupts();
+        char *target = follow_link(path);
+        named = give_name(descriptor, target);
+        free(target);
+        sigprocmask(SIG_SETMASK, &before, NULL);
+    }
+    if (!named) copy_whole(descriptor, path);
+    close(descriptor);
+}
+
 void check_output(const char *path)
 {
     if (!strcmp(path, "-")) return;
-    char *copy = strdup(path);
-    char *slash = strrchr(copy, '/');
-    if (slash) slash[slash == copy] = 0; // "/x" lies in "/"
-    const char *folder = slash ? copy : ".";
+    char *folder = folder_of(path);
     struct stat information;
     if (!stat(folder, &information) && !S_ISDIR(information.st_mode))
         die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(ENOTDIR));
     if (access(folder, W_OK | X_OK))
         die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
-    free(copy);
+    free(folder);
 }
 
 void sha256(const void *data, size_t size, char digest[65])

@@ -19,6 +19,17 @@ struct bytes read_whole(const char *path);
 // what stood at PATH before is then untouched. Interrupts wait until it is done.
 void write_whole(const char *path, const void *data, size_t size);
 
+// A new file that is no one's to see yet, for reading and writing, on the file system
+// of PATH; in memory where PATH is standard output or a device. However the program
+// ends, nothing is left of it, unless it is published: then it is PATH, synced, whole
+// or not at all, as if by write_whole. Publishing closes it.
+int open_unnamed(const char *path);
+void publish(int descriptor, const char *path);
+
+// A path by which libraries can open it.
+enum { DESCRIPTOR_NAME = 32 };
+void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME]);
+
 // Exits 73 at once, before any work, when the folder of PATH is not there or closed to
 // us.
 void check_output(const char *path);
