@@ -8,6 +8,7 @@
 #include <limits.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 // ---- the feet of the columns --------------------------------------------------------
 
@@ -76,6 +77,7 @@ static void keep_outermost(const struct open_face *face, int n_marked, bool *foo
 static enum status find_feet(const struct open_face *face, enum boundary_feet feet,
                              struct boundary_layer *layer, struct reason *reason)
 {
+    static const char *const names[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
     const struct network *network = face->network;
     bool *foot = NEW_ARRAY(bool, network->n_node);
     boundary_feet_mark(network, face->wall, feet, foot);
@@ -89,7 +91,8 @@ static enum status find_feet(const struct open_face *face, enum boundary_feet fe
     free(foot);
     if (n_marked) return STATUS_OK;
     return feet == FEET_SURFACE
-               ? refuse(reason, STATUS_BAD_DATA, "no throat reaches the open wall")
+               ? refuse(reason, STATUS_BAD_DATA, "no throat reaches the open wall %s",
+                        names[face->wall])
                : refuse(reason, STATUS_BAD_DATA,
                         "/throats/kind: no throat of the boundary layer begins at the "
                         "network (pack.extra_layer makes them)");
@@ -198,12 +201,67 @@ enum status boundary_layer_make(const struct network *network, int wall, double 
                                network->n_node, layer, reason);
     if (!status) find_areas(&face, !form->lumped, layer);
     open_face_free(&face);
+    layer->wall = NEW_ARRAY(uint8_t, layer->n_exposed);
+    memset(layer->wall, wall, (size_t)layer->n_exposed);
+    return status;
+}
+
+// ---- on several walls ---------------------------------------------------------------
+
+// The N_MORE rows of MORE come after the N of ARRAY.
+static void *append_rows(void *array, int n, const void *more, int n_more, size_t size)
+{
+    array = reallocate(array, (size_t)(n + n_more), size);
+    if (n_more > 0)
+        memcpy((char *)array + (size_t)n * size, more, (size_t)n_more * size);
+    return array;
+}
+
+#define APPEND(member, count)                                                          \
+    to->member = append_rows(to->member, to->count, more->member, more->count,         \
+                             sizeof *to->member)
+
+static void append_layer(struct boundary_layer *to, const struct boundary_layer *more)
+{
+    APPEND(lateral, n_lateral);
+    APPEND(lateral_conductance, n_lateral);
+    APPEND(lateral_width, n_lateral);
+    APPEND(lateral_length, n_lateral);
+    APPEND(lateral_edge, n_lateral);
+    for (int k = 0; k < more->n_lateral; k++)
+        for (int end = 0; end < 2; end++)
+            to->lateral[to->n_lateral + k][end] += to->n_exposed;
+    APPEND(exposed, n_exposed);
+    APPEND(wall, n_exposed);
+    APPEND(area, n_exposed);
+    to->n_exposed += more->n_exposed;
+    to->n_lateral += more->n_lateral;
+    to->layers = more->layers;
+    to->spacing = more->spacing;
+}
+
+enum status boundary_layers_make(const struct network *network, unsigned walls,
+                                 double length, double thickness,
+                                 const struct boundary_form *form,
+                                 struct boundary_layer *layer, struct reason *reason)
+{
+    *layer = (struct boundary_layer){0};
+    enum status status = STATUS_OK;
+    for (int wall = 0; !status && wall < WALL_COUNT; wall++) {
+        if (!(walls >> wall & 1)) continue;
+        struct boundary_layer more;
+        status =
+            boundary_layer_make(network, wall, length, thickness, form, &more, reason);
+        if (!status) append_layer(layer, &more);
+        boundary_layer_free(&more);
+    }
     return status;
 }
 
 void boundary_layer_free(struct boundary_layer *layer)
 {
     free(layer->exposed);
+    free(layer->wall);
     free(layer->area);
     free(layer->lateral);
     free(layer->lateral_conductance);

@@ -14,6 +14,8 @@
 #include "basics/status.h"
 #include "network/network.h"
 
+#include <stdint.h>
+
 // Which nodes of the network stand below a column. K has both [K 3.3.5].
 enum boundary_feet {
     FEET_SURFACE,  // all that lie on the open wall or, where cut cells are left out,
@@ -33,8 +35,10 @@ struct boundary_layer {
     double spacing; // between levels
 
     int n_exposed;
-    int *exposed; // (n_exposed) nodes of the network with a column, ascending
-    double *area; // (n_exposed) exchange area; they sum to the area of the open face
+    int *exposed;  // (n_exposed) nodes of the network with a column, ascending on each
+                   // wall; on the edge of two walls one for each
+    uint8_t *wall; // (n_exposed) 0..5
+    double *area;  // (n_exposed) exchange area; they sum to the area of the open face
 
     int n_lateral;
     int (*lateral)[2]; // (n_lateral) links along a level, as indices into exposed
@@ -62,6 +66,13 @@ void boundary_feet_mark(const struct network *network, int wall,
 enum status boundary_layer_make(const struct network *network, int wall, double length,
                                 double thickness, const struct boundary_form *form,
                                 struct boundary_layer *layer, struct reason *reason);
+
+// The same on all WALLS (bits of enum wall) that are open, as one. Those of two walls
+// are not joined around the edge.
+enum status boundary_layers_make(const struct network *network, unsigned walls,
+                                 double length, double thickness,
+                                 const struct boundary_form *form,
+                                 struct boundary_layer *layer, struct reason *reason);
 
 void boundary_layer_free(struct boundary_layer *layer);
 

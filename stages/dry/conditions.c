@@ -91,11 +91,9 @@ enum status check_conditions(const struct drying_conditions *conditions,
     if (conditions->feet != FEET_SURFACE && conditions->feet != FEET_AUXILIARY)
         return refuse(reason, STATUS_BAD_DATA, "feet: no such choice, %d",
                       (int)conditions->feet);
-    if (__builtin_popcount(conditions->open_walls) != 1 ||
-        conditions->open_walls >= 1u << WALL_COUNT)
+    if (conditions->open_walls == 0 || conditions->open_walls >= 1u << WALL_COUNT)
         return refuse(reason, STATUS_BAD_DATA,
-                      "open walls: must be exactly one, are %d",
-                      __builtin_popcount(conditions->open_walls));
+                      "open walls: must be one at least, or nothing would dry");
     if (!(conditions->start_saturation > 0 && conditions->start_saturation <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "start_saturation: must be above 0 and at most 1, is %g",
@@ -191,11 +189,6 @@ struct drying_scale drying_scale(const struct network *network,
         .boundary_layer = conditions->diffusivity / conditions->mass_transfer / length};
     scale.time = scale.mass / scale.rate;
     return scale;
-}
-
-int open_wall(const struct drying_conditions *conditions)
-{
-    return __builtin_ctz(conditions->open_walls);
 }
 
 double knudsen_radius(const struct drying_conditions *conditions)

@@ -38,7 +38,4 @@ struct drying_scale drying_scale(const struct network *network,
 // the Knudsen effect.
 double knudsen_radius(const struct drying_conditions *conditions);
 
-// Bit and number (0..5) of the one open wall.
-int open_wall(const struct drying_conditions *conditions);
-
 #endif

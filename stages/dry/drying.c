@@ -150,10 +150,9 @@ enum status dry_network(const struct network *network,
     struct run run = {.conditions = conditions,
                       .scale = drying_scale(network, conditions),
                       .recorder = recorder_make(history)};
-    const int wall = open_wall(conditions);
     struct boundary_layer layer;
-    status = boundary_layer_make(
-        network, wall, run.scale.length, run.scale.boundary_layer,
+    status = boundary_layers_make(
+        network, conditions->open_walls, run.scale.length, run.scale.boundary_layer,
         &(struct boundary_form){conditions->feet, conditions->layers,
                                 conditions->lumped},
         &layer, reason);
@@ -168,7 +167,8 @@ enum status dry_network(const struct network *network,
                                      .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
                                      .ease = ease,
                                      .knudsen_radius = knudsen_radius(conditions)};
-    status = phases_make(network, wall, &form, layer, &run.phases, reason);
+    status =
+        phases_make(network, conditions->open_walls, &form, layer, &run.phases, reason);
     free(ease);
     if (!status) {
         start(&run);

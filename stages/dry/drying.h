@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pore-network drying [K 3.4, 3.3.5, 5.4]: which throat empties when, as vapour leaves
-// a network of liquid-filled throats through one open wall.
+// a network of liquid-filled throats through its open walls.
 //
 // Model. Vapour diffuses, quasi-steadily and isothermally, through the throats that are
 // completely empty and through a boundary layer above the open wall [K 3.9]. A node
@@ -57,7 +57,7 @@ struct drying_conditions {
     int layers;              // of the boundary layer; 0: as thick as a throat is long
     enum boundary_feet feet; // where its columns stand
     bool lumped;             // no lattice of layers and columns, only beta
-    unsigned open_walls;     // bits of enum wall; exactly one now
+    unsigned open_walls;     // bits of enum wall; at least one
     enum liquid_limit liquid;
     // Liquid at the start, of the throats' volume, in (0,1]: what is left when gas has
     // come in through the open walls, the widest throat it touches first. Or by
@@ -102,8 +102,8 @@ struct drying_history {
     int32_t *change_throat;    // (change_offset[n_step])
     double *change_saturation; // of the throat, 0 to 1; exactly 0 once empty
 
-    // Saturation of the network when gas first reaches a node on the wall opposite the
-    // open one; 0 if it never does (or only as the last throat empties).
+    // Saturation of the network when gas first reaches a node on a closed wall opposite
+    // an open one; 0 if it never does (or only as the last throat empties).
     double breakthrough_saturation;
     // Saturation at which the rate first is below first_period_rate_fraction times the
     // first rate.
@@ -141,7 +141,7 @@ int impose_empty_throats(struct network *network, unsigned walls);
 // a failure. PROGRESS may be NULL.
 //
 // STATUS_BAD_DATA: conditions under which nothing would dry or that are not positive;
-// not exactly one open wall; a throat of zero length or radius (merge-nodes removes the
+// no open wall; a throat of zero length or radius (merge-nodes removes the
 // first); no throat reaches the open wall; liquid without a way to it.
 // STATUS_NOT_CONVERGED: rates too small for the arithmetic to dry anything.
 //

@@ -7,6 +7,7 @@
 
 // Imposes empty as well the throats of NETWORK from which no way through liquid leads
 // to a node with a column; none where there is no such node. Returns how many.
-int empty_enclosed_throats(struct network *network, int wall, enum boundary_feet feet);
+int empty_enclosed_throats(struct network *network, unsigned walls,
+                           enum boundary_feet feet);
 
 #endif

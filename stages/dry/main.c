@@ -141,9 +141,9 @@ int main(int argc, char **argv)
         give_mass_transfer(&network, &parameters, invocation.quiet);
     give_radii(&network, &parameters);
     impose_empty_throats(&network, parameters.imposed_empty);
-    if (parameters.imposed_empty && __builtin_popcount(parameters.open_walls) == 1)
-        parameters.enclosed = empty_enclosed_throats(
-            &network, __builtin_ctz(parameters.open_walls), parameters.conditions.feet);
+    if (parameters.imposed_empty)
+        parameters.enclosed = empty_enclosed_throats(&network, parameters.open_walls,
+                                                     parameters.conditions.feet);
     double *start = read_start(input, &network, parameters.conditions.start_saturation);
     parameters.conditions.start = start;
     struct drying_history history;

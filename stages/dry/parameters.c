@@ -32,7 +32,8 @@ const struct parameter dry_table[] = {
      "when one has emptied or filled",
      AT(conditions.saturation_step)},
     {"open", PARAMETER_CHOICES, "1", "[\"+z\"]", BOUND_NONE, 0, 0, WALLS,
-     "the wall that is open to the drying air", AT(open_walls)},
+     "walls open to the drying air, any set; the others let nothing through",
+     AT(open_walls)},
     {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0,
      WALLS "|outer|inner",
      "walls whose throats hold no liquid and let nothing through [K 5.4]; outer and "

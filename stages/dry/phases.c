@@ -60,13 +60,20 @@ static enum status expose_surface(struct phases *phases, struct reason *reason)
     return STATUS_OK;
 }
 
-enum status phases_make(const struct network *network, int wall,
+// Lower and upper change places.
+static unsigned opposite(unsigned walls)
+{
+    const unsigned lower = WALL_X_LOWER | WALL_Y_LOWER | WALL_Z_LOWER;
+    return (walls & lower) << 1 | (walls >> 1 & lower);
+}
+
+enum status phases_make(const struct network *network, unsigned open_walls,
                         const struct phases_form *form, struct boundary_layer layer,
                         struct phases *phases, struct reason *reason)
 {
     *phases = (struct phases){.network = network,
                               .incidence = network_incidence(network),
-                              .open_wall = wall,
+                              .far_walls = opposite(open_walls) & ~open_walls,
                               .layer = layer,
                               .gas = NEW_ARRAY(bool, network->n_node),
                               .wet = NEW_ARRAY(int, network->n_node),
@@ -83,7 +90,6 @@ enum status phases_make(const struct network *network, int wall,
 
 void phases_empty_throat(struct phases *phases, int throat)
 {
-    const unsigned opposite = 1u << (phases->open_wall ^ 1);
     phases->n_full--;
     phases->liquid[throat] = (struct compensated){0};
     vapour_open_throat(&phases->vapour, throat,
@@ -93,7 +99,8 @@ void phases_empty_throat(struct phases *phases, int throat)
     for (int end = 0; end < 2; end++) {
         const int node = phases->network->throat_nodes[throat][end];
         phases->gas[node] = true;
-        phases->breakthrough |= (phases->network->node_walls[node] & opposite) != 0;
+        phases->breakthrough |=
+            (phases->network->node_walls[node] & phases->far_walls) != 0;
         if (--phases->liquid_beside[node] > 0) {
             add_wet(phases, node);
         } else {

@@ -12,7 +12,7 @@
 struct phases {
     const struct network *network;
     struct incidence incidence;
-    int open_wall; // 0..5
+    unsigned far_walls; // opposite an open one, and closed: bits of enum wall
     struct boundary_layer layer;
     struct vapour vapour;
     struct clusters clusters;
@@ -29,7 +29,7 @@ struct phases {
     int n_wet;
     int *wet;          // (n_wet) nodes with liquid on one side and gas on the other
     int *wet_place;    // (n_node) in wet, -1 where not wet
-    bool breakthrough; // gas has reached the wall opposite the open one
+    bool breakthrough; // gas has reached one of the far walls
 };
 
 struct phases_form {
@@ -43,8 +43,8 @@ struct phases_form {
 // wet. Takes over LAYER. The caller frees PHASES with
 // phases_free, also after a failure.
 //
-// STATUS_BAD_DATA if a piece of the network has no way to the open wall.
-enum status phases_make(const struct network *network, int wall,
+// STATUS_BAD_DATA if a piece of the network has no way to an open wall.
+enum status phases_make(const struct network *network, unsigned open_walls,
                         const struct phases_form *form, struct boundary_layer layer,
                         struct phases *phases, struct reason *reason);
 

@@ -2,7 +2,6 @@
 #include "write_layer.h"
 
 #include "basics/status.h"
-#include "conditions.h"
 
 #include <stdio.h>
 
@@ -15,10 +14,11 @@ void put_boundary_layer(struct artifact *artifact, const struct network *network
     struct boundary_layer layer;
     struct reason reason;
     const enum status status =
-        boundary_layer_make(network, open_wall(conditions), 1,
-                            history->boundary_layer_thickness, &form, &layer, &reason);
+        boundary_layers_make(network, conditions->open_walls, 1,
+                             history->boundary_layer_thickness, &form, &layer, &reason);
     if (status) die(status, "%s", reason.text);
     artifact_put(artifact, "/boundary_layer/node", layer.exposed, layer.n_exposed);
+    artifact_put(artifact, "/boundary_layer/wall", layer.wall, layer.n_exposed);
     artifact_put(artifact, "/boundary_layer/area", layer.area, layer.n_exposed);
     artifact_put(artifact, "/boundary_layer/links", layer.lateral, layer.n_lateral);
     artifact_put(artifact, "/boundary_layer/length", layer.lateral_length,
@@ -41,8 +41,11 @@ const char *describe_layer(const struct drying_conditions *conditions,
     if (conditions->lumped)
         snprintf(text, 300, "lumped, %s exchange with the air one by one", feet);
     else
-        snprintf(text, 300, "%d layers of columns on %s, lateral diffusion included",
-                 history->boundary_layers, feet);
+        snprintf(text, 300, "%d layers of columns on %s, lateral diffusion included%s",
+                 history->boundary_layers, feet,
+                 __builtin_popcount(conditions->open_walls) > 1
+                     ? ", not around the edges between open walls"
+                     : "");
     return text;
 }
 

@@ -57,8 +57,6 @@ static void test_impossible_conditions(void **state)
     bad = good;
     bad.open_walls = 0;
     check_refused(&network, &bad, "open wall");
-    bad.open_walls = WALL_X_LOWER | WALL_Z_UPPER;
-    check_refused(&network, &bad, "open wall");
     bad.open_walls = 64;
     check_refused(&network, &bad, "open wall");
     network_free(&network);
