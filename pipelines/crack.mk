@@ -31,7 +31,7 @@ define crack_history
 $(call step,$1/drying.h5,dry,$(DRY),$2,$4,$3)
 $(call step,$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$2,,$1/drying.h5)
 $(call step,$1/response.h5,dem-replay,$(DEM_REPLAY),$2,,$1/forces.h5)
-$(call step,$1/crackstats.json,crackstats,$(CRACKSTATS),$2,,$1/response.h5)
+$(call step,$1/crackstats.json,crackstats,$(CRACKSTATS),$2,,$1/response.h5 $1/drying.h5)
 endef
 
 # --- one scene ------------------------------------------------------------------------

@@ -3,25 +3,56 @@
 
 #include "basics/memory.h"
 
-// Bonds between two layers of a lattice lie on the border of two slices but for
-// rounding.
-static const double border = 1e-9; // of the height
+#include <stdlib.h>
 
-static int slice_of(const struct cracks *cracks, double z, int n_slice)
+int class_of(double share, int n)
 {
-    const double height = (z - cracks->bottom) / (cracks->top - cracks->bottom);
-    const double place = (height - border) * n_slice;
-    return place < 0 ? 0 : place >= n_slice ? n_slice - 1 : (int)place;
+    static const double border = 1e-9;
+    const double place = (share - border) * n;
+    return place < 0 ? 0 : place >= n ? n - 1 : (int)place;
 }
 
-struct counts count_cracks(const struct cracks *cracks, int n_slice)
+double height_share(const struct packing *packing, double z)
 {
-    struct counts counts = {.slice = allocate((size_t)n_slice, sizeof *counts.slice)};
-    for (int k = 0; k < cracks->count; k++) {
-        const int period =
-            cracks->time[k] <= cracks->first_period_end ? PERIOD_FIRST : PERIOD_SECOND;
-        counts.period[period][cracks->mode[k]]++;
-        counts.slice[slice_of(cracks, cracks->height[k], n_slice)][cracks->mode[k]]++;
-    }
+    return (z - packing->lower.z) / (packing->upper.z - packing->lower.z);
+}
+
+struct counts counts_new(struct classes classes)
+{
+    const size_t n_slice = (size_t)classes.n_slice;
+    const size_t n_interval = (size_t)classes.n_interval;
+    struct counts counts = {0};
+    counts.slice = allocate(n_slice, sizeof *counts.slice);
+    counts.saturation = allocate(n_interval, sizeof *counts.saturation);
+    counts.time = allocate(n_interval, sizeof *counts.time);
+    counts.place = NEW_ARRAY(double, n_interval *n_slice);
     return counts;
+}
+
+void counts_free(struct counts *counts)
+{
+    free(counts->slice);
+    free(counts->saturation);
+    free(counts->time);
+    free(counts->place);
+    *counts = (struct counts){0};
+}
+
+void count_cracks(struct counts *counts, const struct run *run, struct classes classes)
+{
+    const struct packing *packing = &run->packing;
+    for (int k = 0; k < run->n_crack; k++) {
+        const int mode = run->mode[k], bond = run->bond[k];
+        const double z = packing->position[packing->bond[bond][0]].z +
+                         0.5 * bond_vector(packing, bond).z;
+        const int slice = class_of(height_share(packing, z), classes.n_slice);
+        const int drier = class_of(1 - run->saturation[k], classes.n_interval);
+        const double elapsed = run->end > 0 ? run->time[k] / run->end : 0;
+        counts->period[run->time[k] <= run->first_period_end ? PERIOD_FIRST
+                                                             : PERIOD_SECOND][mode]++;
+        counts->slice[slice][mode]++;
+        counts->saturation[drier][mode]++;
+        counts->time[class_of(elapsed, classes.n_interval)][mode]++;
+        counts->place[(size_t)drier * (size_t)classes.n_slice + (size_t)slice]++;
+    }
 }

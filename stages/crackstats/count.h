@@ -3,29 +3,39 @@
 #ifndef CRAQUELURE_COUNT_H
 #define CRAQUELURE_COUNT_H
 
-#include <stdint.h>
+#include "run.h"
 
-enum { MODE_NORMAL, MODE_SHEAR, MODE_COUNT };
 enum { PERIOD_FIRST, PERIOD_SECOND, PERIOD_COUNT };
 
-// The cracks of one run, as response.h5 holds them.
-struct cracks {
-    int count, bonds;
-    double *time;            // (count) s
-    uint8_t *mode;           // (count) 0 normal, 1 shear
-    double *height;          // (count) m, of the bond where it began
-    double first_period_end; // s
-    double bottom, top;      // m, z walls
+// In how many equal parts heights, saturations and times are counted.
+struct classes {
+    int n_slice;    // of the height of the box, from the bottom up
+    int n_interval; // of the saturation, from 1 down; of the drying time, from the
+                    // start
 };
 
-// How many, by mode and drying period, and by mode and slice from the bottom up.
+// How many, by mode and drying period, height, saturation and time.
 struct counts {
     double period[PERIOD_COUNT][MODE_COUNT];
-    double (*slice)[MODE_COUNT]; // (n_slice)
+    double (*slice)[MODE_COUNT];      // (n_slice)
+    double (*saturation)[MODE_COUNT]; // (n_interval)
+    double (*time)[MODE_COUNT];       // (n_interval)
+    double *place;                    // (n_interval, n_slice) of saturation; both modes
 };
 
-// A crack at the very end of the first period counts there; one on the border of two
-// slices counts in the lower. The caller frees .slice.
-struct counts count_cracks(const struct cracks *cracks, int n_slice);
+// The class of SHARE, 0 to 1, in N equal ones. On the border of two, but for rounding,
+// it is the lower: bonds between two layers of a lattice lie there.
+int class_of(double share, int n);
+
+// Height in the box, 0 to 1.
+double height_share(const struct packing *packing, double z);
+
+struct counts counts_new(struct classes classes);
+void counts_free(struct counts *counts);
+
+// Adds the cracks of RUN. Heights are those of the bonds before anything moved: a bond
+// between two layers stays on their border however the grains have shifted since. A
+// crack at the very end of the first period counts there.
+void count_cracks(struct counts *counts, const struct run *run, struct classes classes);
 
 #endif

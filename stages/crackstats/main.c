@@ -1,21 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // crackstats: cracks counted, over one run or many.
-#include "artifacts/artifact.h"
-#include "basics/memory.h"
 #include "basics/status.h"
-#include "count.h"
-#include "summarise.h"
+#include "read.h"
+#include "report.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct crackstats_parameters {
-    int64_t slices;
+    int64_t slices, intervals, first_group;
+    double confidence;
+    bool same_bonds;
 };
+
+#define AT(member) offsetof(struct crackstats_parameters, member)
 
 static const struct parameter table[] = {
     {"slices", PARAMETER_INTEGER, "1", "10", BOUND_BETWEEN, 1, 100000, NULL,
      "horizontal slices of equal thickness in the profile, from the bottom up",
-     offsetof(struct crackstats_parameters, slices)},
+     AT(slices)},
+    {"intervals", PARAMETER_INTEGER, "1", "10", BOUND_BETWEEN, 1, 10000, NULL,
+     "equal parts of the saturation, and of the drying time, that cracks are counted "
+     "in",
+     AT(intervals)},
+    {"confidence", PARAMETER_NUMBER, "1", "0.95", BOUND_BETWEEN, 0.5, 0.999999, NULL,
+     "of the intervals around the means of several runs", AT(confidence)},
+    {"first_group", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 1000000, NULL,
+     "the first so many runs are tested against the others; 0: no test",
+     AT(first_group)},
+    {"same_bonds", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
+     "all runs must have as many bonds as the first; false: runs of other packings",
+     AT(same_bonds)},
     {0}};
 
 static const struct stage stage = {
@@ -25,84 +40,119 @@ static const struct stage stage = {
     .reads = "response",
     .writes = "crackstats",
     .most_inputs = 1000000,
-    .parameters = table};
+    .parameters = table,
+    .notes = "A drying among the inputs is that of the response before it: then the "
+             "cracks are set against the liquid of their slices."};
 
-// Heights of the cracked bonds where they were before anything moved: a bond between
-// two layers stays on their border however the grains have shifted since.
-static double *bond_heights(const struct artifact *input, const struct packing *packing)
+// The inputs, and which is next.
+struct reading {
+    const struct invocation *invocation;
+    int next;
+    struct artifact *ahead; // opened already: not the drying of the last run
+    json_t *digests;
+};
+
+static struct artifact *open_next(struct reading *reading, const char *name)
 {
-    int count;
-    int32_t *bond = artifact_get(input, "/cracks/bond", &count);
-    double *height = NEW_ARRAY(double, count);
-    for (int k = 0; k < count; k++) {
-        const int32_t *pair = packing->bond[bond[k]];
-        height[k] = 0.5 * (packing->position[pair[0]].z + packing->position[pair[1]].z);
-    }
-    free(bond);
-    return height;
+    struct artifact *artifact =
+        artifact_open(reading->invocation->inputs[reading->next++], name);
+    json_array_append_new(reading->digests, input_digest(artifact));
+    return artifact;
 }
 
-static struct cracks read_cracks(const struct artifact *input)
+// The next run; false when there are no more.
+static bool next_run(struct reading *reading, struct run *run, const char **path)
 {
-    struct packing packing = artifact_get_packing(input);
-    struct cracks cracks = {.bonds = packing.n_bond,
-                            .mode = artifact_get(input, "/cracks/mode", NULL),
-                            .height = bond_heights(input, &packing),
-                            .first_period_end = artifact_get_number(
-                                input, "/summary/first_period_end_time"),
-                            .bottom = packing.lower.z,
-                            .top = packing.upper.z};
-    cracks.time = artifact_get(input, "/cracks/time", &cracks.count);
-    packing_free(&packing);
-    return cracks;
-}
-
-static void free_cracks(struct cracks *cracks)
-{
-    free(cracks->time);
-    free(cracks->mode);
-    free(cracks->height);
-}
-
-// Counts one run and keeps of the artifact only what the provenance needs.
-static struct counts count_run(const char *path, int n_slice, json_t *inputs,
-                               int *bonds)
-{
-    struct artifact *input = artifact_open(path, "response");
-    struct cracks cracks = read_cracks(input);
-    if (*bonds >= 0 && *bonds != cracks.bonds)
-        die(STATUS_BAD_DATA, "%s: has %d bonds, the runs before have %d: not one study",
-            input_name(path), cracks.bonds, *bonds);
-    *bonds = cracks.bonds;
-    struct counts counts = count_cracks(&cracks, n_slice);
-    json_array_append_new(inputs, input_digest(input));
-    free_cracks(&cracks);
+    if (!reading->ahead && reading->next == reading->invocation->n_input) return false;
+    struct artifact *input = reading->ahead;
+    reading->ahead = NULL;
+    if (!input) input = open_next(reading, "response");
+    if (strcmp(input->schema->name, "response"))
+        die(STATUS_BAD_DATA, "%s: must be a response, is a %s", input_name(input->path),
+            input->schema->name);
+    *run = read_run(input);
+    *path = input_name(input->path);
     artifact_close(input);
-    return counts;
+    return true;
+}
+
+// Its drying; false when none was given.
+static bool next_liquid(struct reading *reading, const struct run *run,
+                        struct liquid *liquid)
+{
+    if (reading->next == reading->invocation->n_input) return false;
+    struct artifact *input = open_next(reading, NULL);
+    if (strcmp(input->schema->name, "drying")) {
+        reading->ahead = input;
+        return false;
+    }
+    *liquid = read_liquid(input);
+    if (liquid->first_period_end != run->first_period_end ||
+        liquid->network.packing.n_particle != run->packing.n_particle)
+        die(STATUS_BAD_DATA, "%s: is not the drying of the response before it",
+            input_name(input->path));
+    artifact_close(input);
+    return true;
+}
+
+static void must_fit(const struct study *study, const struct run *run, const char *path,
+                     bool same_bonds)
+{
+    if (study->n_run == 0) return;
+    const double bonds = study->bonds / study->n_run;
+    if (same_bonds && bonds != run->packing.n_bond)
+        die(STATUS_BAD_DATA, "%s: has %d bonds, the runs before have %g: not one study",
+            path, run->packing.n_bond, bonds);
+    if (study->n_snapshot != run->n_snapshot)
+        die(STATUS_BAD_DATA,
+            "%s: has %d snapshots, the runs before have %d: not one study", path,
+            run->n_snapshot, study->n_snapshot);
+}
+
+static struct study read_study(const struct invocation *invocation, json_t *digests,
+                               const struct crackstats_parameters *parameters)
+{
+    struct study study =
+        study_new(invocation->n_input, (struct classes){(int)parameters->slices,
+                                                        (int)parameters->intervals});
+    struct reading reading = {.invocation = invocation, .digests = digests};
+    struct run run;
+    const char *path;
+    while (next_run(&reading, &run, &path)) {
+        must_fit(&study, &run, path, parameters->same_bonds);
+        struct liquid liquid;
+        const bool known = next_liquid(&reading, &run, &liquid);
+        study_add(&study, &run, known ? &liquid : NULL);
+        if (known) liquid_free(&liquid);
+        run_free(&run);
+    }
+    if (parameters->first_group && parameters->first_group >= study.n_run)
+        die(STATUS_BAD_DATA,
+            "crackstats.first_group: must leave runs to test against, got %d of %d",
+            (int)parameters->first_group, study.n_run);
+    return study;
 }
 
 int main(int argc, char **argv)
 {
     struct crackstats_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    const int n_run = invocation.n_input, n_slice = (int)parameters.slices;
-
-    int bonds = -1;
     json_t *inputs = json_array();
-    struct counts *runs = NEW_ARRAY(struct counts, n_run);
-    for (int r = 0; r < n_run; r++)
-        runs[r] = count_run(invocation.inputs[r], n_slice, inputs, &bonds);
-
-    json_t *report = json_pack("{s:s,s:i,s:i}", "schema", "craquelure/crackstats/1",
-                               "runs", n_run, "bonds", bonds);
-    summarise(report, runs, n_run, n_slice);
+    struct study study = read_study(&invocation, inputs, &parameters);
+    json_t *report =
+        json_pack("{s:s,s:i,s:o}", "schema", "craquelure/crackstats/1", "runs",
+                  study.n_run, "bonds", json_value(study.bonds / study.n_run));
+    report_tables(report, &study);
+    report_facts(report, &study, parameters.confidence, (int)parameters.first_group);
     finish_json(report, &invocation, inputs,
-                "counts by mode, drying period and slice\n"
-                "left out: connected cracks, orientation, strain\n");
-
-    for (int r = 0; r < n_run; r++)
-        free(runs[r].slice);
-    free(runs);
+                study.n_liquid == study.n_run
+                    ? "counts by mode, drying period, slice, saturation and time; "
+                      "connected cracks, fragments, orientation, strain\n"
+                      "cracks against the liquid of their slices\n"
+                    : "counts by mode, drying period, slice, saturation and time; "
+                      "connected cracks, fragments, orientation, strain\n"
+                      "left out: the liquid, whose drying was not given\n");
+    study_free(&study);
     invocation_free(&invocation);
     return STATUS_OK;
 }

@@ -13,14 +13,14 @@ unset SCENE RUN THREADS PACK TESSELLATE MERGE_NODES DRY FORCE_PROTOCOL DEM_REPLA
 cat >stage <<'END'
 #!/bin/bash
 # The key "unseen" of its section does not show in its output.
-name=${0##*/} sets=() input=
+name=${0##*/} sets=() inputs=()
 while (( $# )); do
     case $1 in
     --version) echo "$name $(<"$(dirname "$0")/$name.version")"; exit ;;
     -p) scene=$2; shift ;;
     --set) sets+=("$2"); shift ;;
     -o) output=$2; shift ;;
-    *) input=$1 ;;
+    *) inputs+=("$1") ;;
     esac
     shift
 done
@@ -31,7 +31,7 @@ echo "$name" >>ran
     echo "$name ${sets[*]}"
     jq -cS --arg name "$name" '.[$name] // {}
         | walk(if type == "object" then del(.comment, .unseen) else . end)' "$scene"
-    cat ${input:+"$input"}
+    cat "${inputs[@]}"
 } >"$output"
 END
 chmod +x stage

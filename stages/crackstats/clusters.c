@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "clusters.h"
+
+#include <stdlib.h>
+
+// Grains in trees, one a cluster; each knows in which repetition of the box it is, seen
+// from its parent, so that a cluster that leads around the box is noticed.
+struct tree {
+    int parent;
+    struct image image; // seen from the parent
+    // of a root:
+    int grains, bonds;
+    bool spans[3];
+    bool at_lower[3], at_upper[3];
+};
+
+static int find_root(const struct tree *trees, int grain, struct image *image)
+{
+    *image = (struct image){0};
+    while (trees[grain].parent != grain) {
+        *image = image_sum(*image, trees[grain].image);
+        grain = trees[grain].parent;
+    }
+    return grain;
+}
+
+static void join(struct tree *trees, int a, int b, struct image b_from_a)
+{
+    struct image a_from_root, b_from_root;
+    int root = find_root(trees, a, &a_from_root);
+    int other = find_root(trees, b, &b_from_root);
+    // Where the other tree's root is, seen from the first one's.
+    struct image apart =
+        image_sum(a_from_root, image_difference(b_from_a, b_from_root));
+    if (root == other) {
+        for (int axis = 0; axis < 3; axis++)
+            trees[root].spans[axis] |= apart.along[axis] != 0;
+        trees[root].bonds++;
+        return;
+    }
+    if (trees[root].grains < trees[other].grains) {
+        const int kept = root;
+        root = other;
+        other = kept;
+        apart = image_opposite(apart);
+    }
+    trees[other].parent = root;
+    trees[other].image = apart;
+    trees[root].grains += trees[other].grains;
+    trees[root].bonds += trees[other].bonds + 1;
+    for (int axis = 0; axis < 3; axis++) {
+        trees[root].spans[axis] |= trees[other].spans[axis];
+        trees[root].at_lower[axis] |= trees[other].at_lower[axis];
+        trees[root].at_upper[axis] |= trees[other].at_upper[axis];
+    }
+}
+
+static double mean_radius(const struct packing *packing)
+{
+    double sum = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        sum += packing->radius[i];
+    return sum / packing->n_particle;
+}
+
+static void mark_ends(const struct packing *packing, struct tree *trees, int axis)
+{
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (int i = 0; i < packing->n_particle; i++) {
+        if (is_auxiliary(packing, i)) continue;
+        const double x = component(packing->position[i], axis);
+        lowest = fmin(lowest, x - packing->radius[i]);
+        highest = fmax(highest, x + packing->radius[i]);
+    }
+    const double near = mean_radius(packing);
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double x = component(packing->position[i], axis);
+        trees[i].at_lower[axis] = x - packing->radius[i] < lowest + near;
+        trees[i].at_upper[axis] = x + packing->radius[i] > highest - near;
+    }
+}
+
+struct clusters find_clusters(const struct run *run, struct sizes *sizes)
+{
+    const struct packing *packing = &run->packing;
+    struct tree *trees = NEW_ARRAY(struct tree, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        trees[i] = (struct tree){.parent = i, .grains = 1};
+    for (int axis = 0; axis < 3; axis++)
+        if (!packing->periodic[axis]) mark_ends(packing, trees, axis);
+    for (int k = 0; k < run->n_crack; k++) {
+        const int32_t *pair = packing->bond[run->bond[k]];
+        join(trees, pair[0], pair[1], bond_image(packing, run->bond[k]));
+    }
+    struct clusters found = {0};
+    for (int i = 0; i < packing->n_particle; i++) {
+        const struct tree *tree = &trees[i];
+        if (tree->parent != i || tree->bonds == 0) continue;
+        found.count++;
+        if (tree->bonds > found.largest) found.largest = tree->bonds;
+        for (int axis = 0; axis < 3; axis++)
+            found.spans[axis] |=
+                tree->spans[axis] || (tree->at_lower[axis] && tree->at_upper[axis]);
+        add_size(sizes, tree->bonds);
+    }
+    free(trees);
+    return found;
+}

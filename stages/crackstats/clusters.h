@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Connected cracks: broken bonds that share a grain are one crack.
+#ifndef CRAQUELURE_CRACKSTATS_CLUSTERS_H
+#define CRAQUELURE_CRACKSTATS_CLUSTERS_H
+
+#include "run.h"
+#include "sizes.h"
+
+struct clusters {
+    int count;
+    int largest;   // broken bonds in it
+    bool spans[3]; // along x, y, z: whether any one does
+};
+
+// Appends the size of each, in broken bonds, to SIZES. A cluster spans along an axis
+// when it has grains within a mean radius of both ends of the aggregate; where the box
+// repeats, when it leads around the box, back to its own image.
+struct clusters find_clusters(const struct run *run, struct sizes *sizes);
+
+#endif

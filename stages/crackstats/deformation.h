@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the body as a whole has changed its shape [K 5.10]: shrinkage and spring-back.
+#ifndef CRAQUELURE_CRACKSTATS_DEFORMATION_H
+#define CRAQUELURE_CRACKSTATS_DEFORMATION_H
+
+#include "run.h"
+
+enum { STRAIN_COUNT = 6 }; // xx, yy, zz, yz, xz, xy
+
+struct deformation {
+    double shrinkage;            // of the volume: 1 - det(1 + G)
+    double strain[STRAIN_COUNT]; // of small displacements: (G + G^T) / 2
+};
+
+// Of the largest fragment at snapshot S: G is the displacement gradient that fits its
+// grains best, in the least squares. Along an axis in which all lie in one plane G is
+// 0. All NAN when it has fewer than four grains.
+struct deformation body_deformation(const struct run *run, int s);
+
+#endif

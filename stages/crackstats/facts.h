@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbers that one run comes down to; means, intervals and tests are over them.
+#ifndef CRAQUELURE_CRACKSTATS_FACTS_H
+#define CRAQUELURE_CRACKSTATS_FACTS_H
+
+enum fact {
+    CRACKS_NORMAL,
+    CRACKS_SHEAR,
+    CRACKS_TOTAL,
+    CRACKS_SHARE,
+    FIRST_NORMAL,
+    FIRST_SHEAR,
+    FIRST_TOTAL,
+    SECOND_NORMAL,
+    SECOND_SHEAR,
+    SECOND_TOTAL,
+    CLUSTERS_COUNT,
+    CLUSTERS_LARGEST,
+    CLUSTERS_SPAN_X,
+    CLUSTERS_SPAN_Y,
+    CLUSTERS_SPAN_Z,
+    FRAGMENTS_BEFORE,
+    FRAGMENTS_COUNT,
+    FRAGMENTS_LARGEST,
+    FRAGMENTS_SINGLE,
+    SHRINKAGE_LARGEST,
+    SHRINKAGE_LAST,
+    SPRING_BACK,
+    FRONT_CORRELATION,
+    FRONT_SATURATION,
+    FACT_COUNT
+};
+
+struct fact_name {
+    const char *group, *name; // "cracks", "total"
+};
+extern const struct fact_name fact_names[FACT_COUNT];
+
+// NAN: the run does not tell.
+struct facts {
+    double value[FACT_COUNT];
+};
+
+#endif

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether cracks open where the liquid goes [K 5.8, Fig. 5.19].
+#ifndef CRAQUELURE_CRACKSTATS_FRONT_H
+#define CRAQUELURE_CRACKSTATS_FRONT_H
+
+#include "count.h"
+#include "liquid.h"
+
+enum { LOCAL_CLASSES = 10 };
+
+// Of one run; or, added up, of many.
+struct front {
+    double *slice;               // (n_interval, n_slice) saturations, as each ends
+    double local[LOCAL_CLASSES]; // cracks in slices as dry as that: from 1 down to 0
+    double local_sum;            // of those saturations over the cracks
+    double cracks;               // of which it is the sum
+};
+
+struct front front_new(struct classes classes);
+void front_free(struct front *front);
+
+// Adds RUN, whose forces come from LIQUID.
+void add_front(struct front *front, const struct run *run, const struct liquid *liquid,
+               struct classes classes);
+
+// Adds one to another.
+void front_sum(struct front *sum, const struct front *front, struct classes classes);
+
+// Pearson's correlation, over all slices and intervals of saturation, of the cracks
+// that opened there then (count.h's PLACE) with the share of the slice's liquid that
+// left, for slice saturations and counts of RUNS runs added up. NAN when either is the
+// same everywhere.
+double front_correlation(const double *slice, const double *place,
+                         struct classes classes, int runs);
+
+#endif

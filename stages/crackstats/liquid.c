@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "liquid.h"
+
+#include "basics/memory.h"
+#include "count.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+double time_of_saturation(const struct liquid *liquid, double level)
+{
+    const double *saturation = liquid->saturation, *time = liquid->time;
+    int k = 0;
+    while (k < liquid->n_step && saturation[k] > level)
+        k++;
+    if (k == 0) return time[0];
+    if (k == liquid->n_step) return time[k - 1];
+    const double share =
+        (saturation[k - 1] - level) / (saturation[k - 1] - saturation[k]);
+    return time[k - 1] + share * (time[k] - time[k - 1]);
+}
+
+// The liquid at one step of the drying and at the next.
+struct interval {
+    const struct liquid *liquid;
+    int step;
+    double *before, *after; // (n_throat) saturations
+};
+
+static void apply_changes(const struct liquid *liquid, int step, double *saturation)
+{
+    for (int64_t k = liquid->offset[step]; k < liquid->offset[step + 1]; k++)
+        saturation[liquid->throat[k]] = liquid->throat_saturation[k];
+}
+
+static struct interval begin(const struct liquid *liquid)
+{
+    const int n = liquid->network.n_throat;
+    struct interval interval = {liquid, 0, NEW_ARRAY(double, n), NEW_ARRAY(double, n)};
+    for (int t = 0; t < n; t++)
+        interval.before[t] = liquid->network.throat_kind[t] == THROAT_NETWORK;
+    apply_changes(liquid, 0, interval.before);
+    memcpy(interval.after, interval.before, (size_t)n * sizeof(double));
+    if (liquid->n_step > 1) apply_changes(liquid, 1, interval.after);
+    return interval;
+}
+
+static void advance(struct interval *interval)
+{
+    const struct liquid *liquid = interval->liquid;
+    apply_changes(liquid, ++interval->step, interval->before);
+    if (interval->step + 1 < liquid->n_step)
+        apply_changes(liquid, interval->step + 1, interval->after);
+}
+
+// The slice of each throat's middle. (n_throat); the caller frees it.
+static int *throat_slices(const struct network *network, int n_slice)
+{
+    int *slice = NEW_ARRAY(int, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++) {
+        const double z = network->node_position[network->throat_nodes[t][0]].z +
+                         0.5 * along_throat(network, t).z;
+        slice[t] = class_of(height_share(&network->packing, z), n_slice);
+    }
+    return slice;
+}
+
+// Summed anew at each time: what is dry is 0, not what rounding leaves.
+static void sum_slices(const struct interval *interval, double share, const int *slice,
+                       int n_slice, double *saturation)
+{
+    const struct network *network = &interval->liquid->network;
+    double *full = NEW_ARRAY(double, n_slice);
+    for (int s = 0; s < n_slice; s++)
+        saturation[s] = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        const double before = interval->before[t], after = interval->after[t];
+        const double volume = throat_volume(network, t);
+        full[slice[t]] += volume;
+        saturation[slice[t]] += volume * (before + share * (after - before));
+    }
+    for (int s = 0; s < n_slice; s++)
+        saturation[s] = full[s] > 0 ? saturation[s] / full[s] : NAN;
+    free(full);
+}
+
+double *slice_saturations(const struct liquid *liquid, int n_slice, const double *time,
+                          int n_time)
+{
+    const double *at = liquid->time;
+    double *saturation = NEW_ARRAY(double, (size_t)n_time *(size_t)n_slice);
+    int *slice = throat_slices(&liquid->network, n_slice);
+    struct interval interval = begin(liquid);
+    for (int m = 0; m < n_time; m++) {
+        double *row = saturation + (size_t)m * (size_t)n_slice;
+        if (m > 0 && time[m] == time[m - 1]) { // cracks of one step of the forces
+            memcpy(row, row - n_slice, (size_t)n_slice * sizeof *row);
+            continue;
+        }
+        while (interval.step + 1 < liquid->n_step && at[interval.step + 1] <= time[m])
+            advance(&interval);
+        const int step = interval.step;
+        const double length = step + 1 < liquid->n_step ? at[step + 1] - at[step] : 0;
+        const double share = length > 0 ? (time[m] - at[step]) / length : 0;
+        sum_slices(&interval, share, slice, n_slice, row);
+    }
+    free(interval.before);
+    free(interval.after);
+    free(slice);
+    return saturation;
+}
+
+void liquid_free(struct liquid *liquid)
+{
+    network_free(&liquid->network);
+    free(liquid->time);
+    free(liquid->saturation);
+    free(liquid->offset);
+    free(liquid->throat);
+    free(liquid->throat_saturation);
+    *liquid = (struct liquid){0};
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the liquid is while cracks open: slices of the drying network over time.
+#ifndef CRAQUELURE_CRACKSTATS_LIQUID_H
+#define CRAQUELURE_CRACKSTATS_LIQUID_H
+
+#include "network/network.h"
+
+// What drying.h5 holds.
+struct liquid {
+    struct network network;
+    int n_step;
+    double *time, *saturation; // (n_step) s; of the network
+    int64_t *offset;           // (n_step+1) into the two below
+    int32_t *throat;           // whose saturation changes in a step
+    double *throat_saturation; // to what, linearly in time
+    double first_period_end;   // s
+};
+
+// When the saturation of the network first is LEVEL, s.
+double time_of_saturation(const struct liquid *liquid, double level);
+
+// Saturation of N_SLICE slices of equal height, from the bottom up, at N_TIME times
+// that do not fall. (n_time, n_slice); NAN where a slice never holds liquid. A throat
+// counts in the slice of its middle. The caller frees it.
+double *slice_saturations(const struct liquid *liquid, int n_slice, const double *time,
+                          int n_time);
+
+void liquid_free(struct liquid *liquid);
+
+#endif

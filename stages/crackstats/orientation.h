@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which way cracked bonds point; the crack itself lies across.
+#ifndef CRAQUELURE_CRACKSTATS_ORIENTATION_H
+#define CRAQUELURE_CRACKSTATS_ORIENTATION_H
+
+#include "run.h"
+
+enum { INCLINATION_CLASSES = 9 }; // of ten degrees
+
+struct orientation {
+    double bonds[INCLINATION_CLASSES];              // of all bonds, broken or not
+    double cracks[INCLINATION_CLASSES][MODE_COUNT]; // of those that broke
+    double fabric[MODE_COUNT][9]; // sum of n n over them, row by row; n: along the bond
+};
+
+// Adds the bonds of RUN, by their inclination to z from 0 to 90 degrees.
+void add_orientation(struct orientation *orientation, const struct run *run);
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pieces.h"
+
+#include "basics/disjoint_sets.h"
+
+#include <stdlib.h>
+
+// Grains of each fragment, at its lowest grain; 0 at the others. ROOT: (n_particle).
+static int *piece_sizes(const struct packing *packing, const uint8_t *intact, int *root)
+{
+    int *size = NEW_ARRAY(int, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        root[i] = i;
+    for (int b = 0; b < packing->n_bond; b++)
+        if (intact[b]) unite_sets(root, packing->bond[b][0], packing->bond[b][1]);
+    for (int i = 0; i < packing->n_particle; i++) {
+        root[i] = set_root(root, i);
+        if (!is_auxiliary(packing, i)) size[root[i]]++;
+    }
+    return size;
+}
+
+uint8_t *largest_piece(const struct packing *packing, const uint8_t *intact)
+{
+    int *root = NEW_ARRAY(int, packing->n_particle);
+    int *size = piece_sizes(packing, intact, root);
+    int largest = 0;
+    for (int i = 1; i < packing->n_particle; i++)
+        if (size[i] > size[largest]) largest = i;
+    uint8_t *is_in = NEW_ARRAY(uint8_t, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        is_in[i] = root[i] == largest && !is_auxiliary(packing, i);
+    free(root);
+    free(size);
+    return is_in;
+}
+
+struct pieces find_pieces(const struct packing *packing, const uint8_t *intact,
+                          struct sizes *sizes)
+{
+    int *root = NEW_ARRAY(int, packing->n_particle);
+    int *size = piece_sizes(packing, intact, root);
+    struct pieces found = {0};
+    for (int i = 0; i < packing->n_particle; i++) {
+        if (size[i] == 0) continue;
+        found.count++;
+        found.single += size[i] == 1;
+        if (size[i] > found.largest) found.largest = size[i];
+        if (sizes) add_size(sizes, size[i]);
+    }
+    free(root);
+    free(size);
+    return found;
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "read.h"
+
+#include "basics/status.h"
+
+#include <stdlib.h>
+
+static double end_of_drying(const struct artifact *response)
+{
+    int n_time;
+    double *time = artifact_get(response, "/history/time", &n_time);
+    const double end = n_time ? time[n_time - 1] : 0;
+    free(time);
+    return end;
+}
+
+struct run read_run(const struct artifact *response)
+{
+    struct run run = {.packing = artifact_get_packing(response)};
+    run.bond = artifact_get(response, "/cracks/bond", &run.n_crack);
+    run.time = artifact_get(response, "/cracks/time", NULL);
+    run.saturation = artifact_get(response, "/cracks/saturation", NULL);
+    run.mode = artifact_get(response, "/cracks/mode", NULL);
+    run.first_period_end =
+        artifact_get_number(response, "/summary/first_period_end_time");
+    run.end = end_of_drying(response);
+    run.snapshot_saturation =
+        artifact_get(response, "/snapshots/saturation", &run.n_snapshot);
+    run.displacement = artifact_get(response, "/snapshots/displacement", NULL);
+    run.intact = artifact_get(response, "/snapshots/bond_intact", NULL);
+    return run;
+}
+
+struct liquid read_liquid(const struct artifact *drying)
+{
+    struct liquid liquid = {.network = artifact_get_periodic_network(drying)};
+    liquid.time = artifact_get(drying, "/history/time", &liquid.n_step);
+    if (liquid.n_step < 1)
+        die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
+            input_name(drying->path));
+    liquid.saturation = artifact_get(drying, "/history/saturation", NULL);
+    liquid.offset = artifact_get(drying, "/changes/offset", NULL);
+    liquid.throat = artifact_get(drying, "/changes/throat", NULL);
+    liquid.throat_saturation = artifact_get(drying, "/changes/saturation", NULL);
+    liquid.first_period_end =
+        artifact_get_number(drying, "/summary/first_period_end_time");
+    return liquid;
+}

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "basics/memory.h"
+#include "report.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+json_t *json_value(double value)
+{
+    if (!isfinite(value)) return json_null();
+    return fabs(value) < 1e15 && value == (double)(json_int_t)value
+               ? json_integer((json_int_t)value)
+               : json_real(value);
+}
+
+static json_t *by_mode(const double of[MODE_COUNT], double runs)
+{
+    return json_pack("{s:o,s:o,s:o}", "normal", json_value(of[MODE_NORMAL] / runs),
+                     "shear", json_value(of[MODE_SHEAR] / runs), "total",
+                     json_value((of[MODE_NORMAL] + of[MODE_SHEAR]) / runs));
+}
+
+// ---- counts -------------------------------------------------------------------------
+
+static json_t *periods(const struct counts *counts, double runs)
+{
+    static const char *const names[PERIOD_COUNT] = {"first", "second"};
+    json_t *list = json_array();
+    for (int period = 0; period < PERIOD_COUNT; period++) {
+        json_t *entry = by_mode(counts->period[period], runs);
+        json_object_set_new(entry, "name", json_string(names[period]));
+        json_array_append_new(list, entry);
+    }
+    return list;
+}
+
+// Classes of equal width, from START to END.
+static json_t *classes(const double (*of)[MODE_COUNT], int n, double start, double end,
+                       double runs)
+{
+    json_t *list = json_array();
+    for (int k = 0; k < n; k++) {
+        json_t *entry = by_mode(of[k], runs);
+        json_object_set_new(entry, "from", json_real((start * (n - k) + end * k) / n));
+        json_object_set_new(entry, "to",
+                            json_real((start * (n - k - 1) + end * (k + 1)) / n));
+        json_array_append_new(list, entry);
+    }
+    return list;
+}
+
+// At the end of each interval of saturation: cracks so far in every slice, and the
+// saturation of the slices.
+static json_t *profiles(const struct study *study)
+{
+    const int n_slice = study->classes.n_slice, n = study->classes.n_interval;
+    const bool known = study->n_liquid == study->n_run;
+    double *so_far = NEW_ARRAY(double, n_slice);
+    json_t *list = json_array();
+    for (int k = 0; k < n; k++) {
+        json_t *cracks = json_array(), *liquid = json_array();
+        for (int s = 0; s < n_slice; s++) {
+            const size_t at = (size_t)k * (size_t)n_slice + (size_t)s;
+            so_far[s] += study->counts.place[at];
+            json_array_append_new(cracks, json_value(so_far[s] / study->n_run));
+            json_array_append_new(liquid,
+                                  json_value(study->front.slice[at] / study->n_run));
+        }
+        json_array_append_new(list, json_pack("{s:f,s:o,s:o}", "saturation",
+                                              (n - k - 1.0) / n, "cracks", cracks,
+                                              "liquid", known ? liquid : json_null()));
+        if (!known) json_decref(liquid);
+    }
+    free(so_far);
+    return list;
+}
+
+// ---- sizes --------------------------------------------------------------------------
+
+static int by_size(const void *a, const void *b)
+{
+    const int x = *(const int *)a, y = *(const int *)b;
+    return (x > y) - (x < y);
+}
+
+// [{"size":…, "count":…}, …], rising sizes, those that occur. Sorts them.
+static json_t *size_distribution(struct sizes sizes, double runs)
+{
+    json_t *list = json_array();
+    if (sizes.count)
+        qsort(sizes.size, (size_t)sizes.count, sizeof *sizes.size, by_size);
+    for (int first = 0, end; first < sizes.count; first = end) {
+        for (end = first; end < sizes.count && sizes.size[end] == sizes.size[first];)
+            end++;
+        json_array_append_new(list,
+                              json_pack("{s:i,s:o}", "size", sizes.size[first], "count",
+                                        json_value((end - first) / runs)));
+    }
+    return list;
+}
+
+// ---- orientation --------------------------------------------------------------------
+
+static json_t *fabric(const double sum[9])
+{
+    const double trace = sum[0] + sum[4] + sum[8];
+    if (!(trace > 0)) return json_null();
+    json_t *rows = json_array();
+    for (int i = 0; i < 3; i++)
+        json_array_append_new(rows, json_pack("[f,f,f]", sum[3 * i] / trace,
+                                              sum[3 * i + 1] / trace,
+                                              sum[3 * i + 2] / trace));
+    return rows;
+}
+
+static json_t *orientation(const struct orientation *of, double runs)
+{
+    json_t *list = classes(of->cracks, INCLINATION_CLASSES, 0, 90, runs);
+    size_t k;
+    json_t *entry;
+    json_array_foreach(list, k, entry)
+        json_object_set_new(entry, "bonds", json_value(of->bonds[k] / runs));
+    double both[9];
+    for (int c = 0; c < 9; c++)
+        both[c] = of->fabric[MODE_NORMAL][c] + of->fabric[MODE_SHEAR][c];
+    return json_pack("{s:o,s:{s:o,s:o,s:o}}", "inclination", list, "fabric", "normal",
+                     fabric(of->fabric[MODE_NORMAL]), "shear",
+                     fabric(of->fabric[MODE_SHEAR]), "total", fabric(both));
+}
+
+// ---- deformation, front -------------------------------------------------------------
+
+static json_t *deformation(const struct study *study)
+{
+    static const char *const names[STRAIN_COUNT] = {"xx", "yy", "zz", "yz", "xz", "xy"};
+    const double runs = study->n_run;
+    json_t *list = json_array();
+    for (int s = 0; s < study->n_snapshot; s++) {
+        const struct deformation *sum = &study->deformation[s];
+        json_t *strain = json_object();
+        for (int k = 0; k < STRAIN_COUNT; k++)
+            json_object_set_new(strain, names[k], json_value(sum->strain[k] / runs));
+        json_array_append_new(
+            list, json_pack("{s:f,s:o,s:o}", "saturation",
+                            study->snapshot_saturation[s], "shrinkage",
+                            json_value(sum->shrinkage / runs), "strain", strain));
+    }
+    return list;
+}
+
+static json_t *front(const struct study *study)
+{
+    if (study->n_liquid < study->n_run) return json_null();
+    const double runs = study->n_run;
+    json_t *local = json_array();
+    for (int k = 0; k < LOCAL_CLASSES; k++)
+        json_array_append_new(
+            local, json_pack("{s:f,s:f,s:o}", "from",
+                             (double)(LOCAL_CLASSES - k) / LOCAL_CLASSES, "to",
+                             (LOCAL_CLASSES - k - 1.0) / LOCAL_CLASSES, "cracks",
+                             json_value(study->front.local[k] / runs)));
+    const double correlation = front_correlation(
+        study->front.slice, study->counts.place, study->classes, study->n_run);
+    return json_pack("{s:o,s:o}", "correlation", json_value(correlation),
+                     "slice_saturation", local);
+}
+
+void report_tables(json_t *report, const struct study *study)
+{
+    const struct counts *counts = &study->counts;
+    const double runs = study->n_run;
+    const double *first = counts->period[PERIOD_FIRST];
+    const double *second = counts->period[PERIOD_SECOND];
+    const double both[MODE_COUNT] = {first[MODE_NORMAL] + second[MODE_NORMAL],
+                                     first[MODE_SHEAR] + second[MODE_SHEAR]};
+    const int n_slice = study->classes.n_slice, n = study->classes.n_interval;
+    json_object_set_new(report, "cracks", by_mode(both, runs));
+    json_object_set_new(report, "periods", periods(counts, runs));
+    json_object_set_new(report, "profile", classes(counts->slice, n_slice, 0, 1, runs));
+    json_object_set_new(report, "by_saturation",
+                        classes(counts->saturation, n, 1, 0, runs));
+    json_object_set_new(report, "by_time", classes(counts->time, n, 0, 1, runs));
+    json_object_set_new(report, "profiles", profiles(study));
+    json_object_set_new(report, "clusters", size_distribution(study->clusters, runs));
+    json_object_set_new(report, "fragments", size_distribution(study->fragments, runs));
+    json_object_set_new(report, "orientation", orientation(&study->orientation, runs));
+    json_object_set_new(report, "deformation", deformation(study));
+    json_object_set_new(report, "front", front(study));
+}

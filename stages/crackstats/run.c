@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct image bond_image(const struct packing *packing, int bond)
+{
+    const int32_t *pair = packing->bond[bond];
+    const struct vector apart =
+        subtract(packing->position[pair[1]], packing->position[pair[0]]);
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    struct image image = {0};
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis])
+            image.along[axis] =
+                (int8_t)-nearbyint(component(apart, axis) / component(edge, axis));
+    return image;
+}
+
+struct vector bond_vector(const struct packing *packing, int bond)
+{
+    const int32_t *pair = packing->bond[bond];
+    return image_apart(packing, packing->position[pair[0]], packing->position[pair[1]],
+                       bond_image(packing, bond));
+}
+
+uint8_t *bonds_left(const struct run *run)
+{
+    uint8_t *left = NEW_ARRAY(uint8_t, run->packing.n_bond);
+    if (run->packing.n_bond) memset(left, 1, (size_t)run->packing.n_bond);
+    for (int k = 0; k < run->n_crack; k++)
+        left[run->bond[k]] = 0;
+    return left;
+}
+
+void run_free(struct run *run)
+{
+    packing_free(&run->packing);
+    free(run->bond);
+    free(run->time);
+    free(run->saturation);
+    free(run->mode);
+    free(run->snapshot_saturation);
+    free(run->displacement);
+    free(run->intact);
+    *run = (struct run){0};
+}

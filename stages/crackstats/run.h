@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One run, as far as crackstats looks at it: what response.h5 holds.
+#ifndef CRAQUELURE_CRACKSTATS_RUN_H
+#define CRAQUELURE_CRACKSTATS_RUN_H
+
+#include "geometry/packing.h"
+
+enum { MODE_NORMAL, MODE_SHEAR, MODE_COUNT };
+
+struct run {
+    struct packing packing;
+    int n_crack;
+    int32_t *bond;                // (n_crack)
+    double *time;                 // (n_crack) s, nondecreasing
+    double *saturation;           // (n_crack) of the network
+    uint8_t *mode;                // (n_crack) 0 normal, 1 shear
+    double first_period_end, end; // s
+    int n_snapshot;
+    double *snapshot_saturation; // (n_snapshot)
+    struct vector *displacement; // (n_snapshot * n_particle) m
+    uint8_t *intact;             // (n_snapshot * n_bond)
+};
+
+// Which repetition of the box the second grain of BOND is in, seen from the first: the
+// nearest one.
+struct image bond_image(const struct packing *packing, int bond);
+
+// From the first grain of BOND to the second, where nothing has moved; m.
+struct vector bond_vector(const struct packing *packing, int bond);
+
+// 1 for each bond that no crack broke. (n_bond); the caller frees it.
+uint8_t *bonds_left(const struct run *run);
+
+// Frees what the run owns and empties it.
+void run_free(struct run *run);
+
+#endif

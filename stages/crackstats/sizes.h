@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sizes of clusters or fragments, collected over runs.
+#ifndef CRAQUELURE_CRACKSTATS_SIZES_H
+#define CRAQUELURE_CRACKSTATS_SIZES_H
+
+#include "basics/memory.h"
+
+struct sizes {
+    int *size;
+    int count, capacity;
+};
+
+static inline void add_size(struct sizes *sizes, int size)
+{
+    GROW_ARRAY(sizes->size, sizes->count, sizes->capacity);
+    sizes->size[sizes->count++] = size;
+}
+
+#endif

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Confidence intervals and tests of two samples, against published outcomes: Student's
+// sleep data, Hollander and Wolfe's membranes, the manual of scipy; and U by counting
+// all orders.
+#include "crackstats/sample.h"
+
+#include <math.h>
+
+// clang-format off
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+// clang-format on
+
+static void assert_close(double got, double wanted, double tolerance)
+{
+    if (!(fabs(got - wanted) <= tolerance))
+        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, tolerance);
+}
+
+// WANTED is published to so many digits.
+static void assert_digits(double got, double wanted, double last_digit)
+{
+    if (!(fabs(got - wanted) <= 0.5000001 * last_digit))
+        fail_msg("got %.17g, published %.17g", got, wanted);
+}
+
+#define SAMPLE(values) ((struct sample){values, sizeof(values) / sizeof *(values)})
+
+// Extra hours of sleep with two drugs (Student 1908, after Cushny and Peebles);
+// outcomes as R prints them for t.test(extra ~ group) and wilcox.test(extra ~ group).
+static const double first_drug[] = {0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0, 2};
+static const double second_drug[] = {1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+
+static void test_welch_on_student_sleep(void **state)
+{
+    (void)state;
+    const struct welch found = welch_test(SAMPLE(first_drug), SAMPLE(second_drug));
+    assert_digits(found.t, -1.8608, 1e-4);
+    assert_digits(found.degrees, 17.776, 1e-3);
+    assert_digits(found.p, 0.07939, 1e-5);
+}
+
+static void test_interval_of_student_sleep(void **state)
+{
+    (void)state;
+    const struct sample sample = SAMPLE(first_drug);
+    const double half = half_width(sample, 0.95);
+    assert_digits(sample_mean(sample) - half, -0.5297804, 1e-7);
+    assert_digits(sample_mean(sample) + half, 2.0297804, 1e-7);
+}
+
+static void test_ranks_of_student_sleep_with_ties(void **state)
+{
+    (void)state;
+    const struct mann_whitney found =
+        mann_whitney_test(SAMPLE(first_drug), SAMPLE(second_drug));
+    assert_close(found.u, 25.5, 0);
+    assert_digits(found.p, 0.06933, 1e-5);
+    assert_false(found.exact);
+}
+
+// Permeability of the human chorioamnion (Hollander and Wolfe 1973, p. 69); R gives
+// W = 35 and 0.1272 for one side.
+static void test_ranks_of_hollander_and_wolfe(void **state)
+{
+    (void)state;
+    static const double at_term[] = {0.80, 0.83, 1.89, 1.04, 1.45,
+                                     1.38, 1.91, 1.64, 0.73, 1.46};
+    static const double earlier[] = {1.15, 0.88, 0.90, 0.74, 1.21};
+    const struct mann_whitney found =
+        mann_whitney_test(SAMPLE(at_term), SAMPLE(earlier));
+    assert_close(found.u, 35, 0);
+    assert_digits(found.p / 2, 0.1272, 1e-4);
+    assert_true(found.exact);
+}
+
+// Ages at diagnosis, in scipy's manual of mannwhitneyu: U = 17, p = 0.1111111111111111.
+static void test_ranks_of_the_manual_of_scipy(void **state)
+{
+    (void)state;
+    static const double males[] = {19, 22, 16, 29, 24}, females[] = {20, 11, 17, 12};
+    const struct mann_whitney found = mann_whitney_test(SAMPLE(males), SAMPLE(females));
+    assert_close(found.u, 17, 0);
+    assert_close(found.p, 1. / 9, 1e-15);
+}
+
+// U of every choice of four ranks of nine, counted one by one.
+static void test_exact_ranks_by_counting(void **state)
+{
+    (void)state;
+    enum { N = 9, FEW = 4 };
+    int count[FEW * (N - FEW) + 1] = {0}, all = 0;
+    for (unsigned chosen = 0; chosen < 1u << N; chosen++) {
+        if (__builtin_popcount(chosen) != FEW) continue;
+        int u = 0;
+        for (int i = 0; i < N; i++)
+            for (int j = 0; j < i; j++)
+                u += (chosen >> i & 1) && !(chosen >> j & 1);
+        count[u]++;
+        all++;
+    }
+    for (unsigned chosen = 0; chosen < 1u << N; chosen++) {
+        if (__builtin_popcount(chosen) != FEW) continue;
+        double a[FEW], b[N - FEW];
+        int n_a = 0, n_b = 0;
+        for (int i = 0; i < N; i++)
+            *(chosen >> i & 1 ? &a[n_a++] : &b[n_b++]) = 10 + i;
+        const struct mann_whitney found = mann_whitney_test(SAMPLE(a), SAMPLE(b));
+        double beyond = 0;
+        const double distance = fabs(found.u - FEW * (N - FEW) / 2.);
+        for (int u = 0; u <= FEW * (N - FEW); u++)
+            if (fabs(u - FEW * (N - FEW) / 2.) >= distance) beyond += count[u];
+        assert_close(found.p, beyond / all, 1e-14);
+    }
+}
+
+static void test_what_tells_nothing(void **state)
+{
+    (void)state;
+    static const double one[] = {1}, same[] = {2, 2, 2}, more[] = {3, 3};
+    static const double unknown[] = {1, NAN, 2};
+    assert_true(isnan(welch_test(SAMPLE(unknown), SAMPLE(same)).p));
+    assert_true(isnan(half_width(SAMPLE(one), 0.95)));
+    assert_true(isnan(welch_test(SAMPLE(one), SAMPLE(same)).p));
+    assert_close(half_width(SAMPLE(same), 0.95), 0, 0);
+    assert_close(welch_test(SAMPLE(same), SAMPLE(same)).p, 1, 0);
+    assert_close(welch_test(SAMPLE(same), SAMPLE(more)).p, 0, 0);
+    assert_true(welch_test(SAMPLE(same), SAMPLE(more)).t < -1e300);
+    assert_close(mann_whitney_test(SAMPLE(same), SAMPLE(same)).p, 1, 0);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_welch_on_student_sleep),
+        cmocka_unit_test(test_interval_of_student_sleep),
+        cmocka_unit_test(test_ranks_of_student_sleep_with_ties),
+        cmocka_unit_test(test_ranks_of_hollander_and_wolfe),
+        cmocka_unit_test(test_ranks_of_the_manual_of_scipy),
+        cmocka_unit_test(test_exact_ranks_by_counting),
+        cmocka_unit_test(test_what_tells_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Connected cracks and fragments against a search from grain to grain, cracks that span
+// or lead around a box that repeats, strains put in and found again.
+#include "basics/memory.h"
+#include "crackstats/clusters.h"
+#include "crackstats/deformation.h"
+#include "crackstats/orientation.h"
+#include "crackstats/pieces.h"
+
+#include <gsl/gsl_rng.h>
+#include <stdlib.h>
+#include <string.h>
+
+// clang-format off
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+// clang-format on
+
+static void assert_close(double got, double wanted, double tolerance)
+{
+    if (!(fabs(got - wanted) <= tolerance))
+        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, tolerance);
+}
+
+// ---- a lattice of grains ------------------------------------------------------------
+
+// NX x NY x NZ grains of radius 1/2; bonded to their neighbours, around the box along x
+// when it repeats there. Unit spacing.
+static struct run lattice(int nx, int ny, int nz, bool periodic_x)
+{
+    const int n = nx * ny * nz;
+    struct run run = {.packing = {.n_particle = n,
+                                  .position = NEW_ARRAY(struct vector, n),
+                                  .radius = NEW_ARRAY(double, n),
+                                  .upper = {nx, ny, nz},
+                                  .periodic = {periodic_x, 0, 0},
+                                  .bond = allocate(3 * (size_t)n, sizeof(int32_t[2]))}};
+    struct packing *packing = &run.packing;
+    for (int i = 0; i < n; i++) {
+        const int x = i % nx, y = i / nx % ny, z = i / nx / ny;
+        packing->position[i] = (struct vector){x + 0.5, y + 0.5, z + 0.5};
+        packing->radius[i] = 0.5;
+        const int next[3] = {x + 1 < nx             ? i + 1
+                             : periodic_x && nx > 2 ? i - x
+                                                    : -1,
+                             y + 1 < ny ? i + nx : -1, z + 1 < nz ? i + nx * ny : -1};
+        for (int axis = 0; axis < 3; axis++) {
+            if (next[axis] < 0) continue;
+            int32_t *bond = packing->bond[packing->n_bond++];
+            bond[0] = i < next[axis] ? i : next[axis];
+            bond[1] = i < next[axis] ? next[axis] : i;
+        }
+    }
+    run.bond = NEW_ARRAY(int32_t, packing->n_bond);
+    run.mode = NEW_ARRAY(uint8_t, packing->n_bond);
+    return run;
+}
+
+static void crack(struct run *run, int bond)
+{
+    run->bond[run->n_crack++] = bond;
+}
+
+static int bond_between(const struct run *run, int a, int b)
+{
+    for (int k = 0; k < run->packing.n_bond; k++)
+        if (run->packing.bond[k][0] == a && run->packing.bond[k][1] == b) return k;
+    fail_msg("no bond between %d and %d", a, b);
+    return -1;
+}
+
+// ---- brute force --------------------------------------------------------------------
+
+static bool share_a_grain(const int32_t a[2], const int32_t b[2])
+{
+    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
+// Marks all cracks that hang together with crack K, and counts them.
+static int visit_cracks(const struct run *run, int k, bool *seen)
+{
+    seen[k] = true;
+    int count = 1;
+    for (int j = 0; j < run->n_crack; j++)
+        if (!seen[j] && share_a_grain(run->packing.bond[run->bond[k]],
+                                      run->packing.bond[run->bond[j]]))
+            count += visit_cracks(run, j, seen);
+    return count;
+}
+
+static int visit_grains(const struct packing *packing, const uint8_t *intact, int i,
+                        bool *seen)
+{
+    seen[i] = true;
+    int count = 1;
+    for (int b = 0; b < packing->n_bond; b++) {
+        const int32_t *pair = packing->bond[b];
+        if (!intact[b] || (pair[0] != i && pair[1] != i)) continue;
+        const int other = pair[0] == i ? pair[1] : pair[0];
+        if (!seen[other]) count += visit_grains(packing, intact, other, seen);
+    }
+    return count;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    return *(const int *)a - *(const int *)b;
+}
+
+static void assert_same_sizes(struct sizes found, struct sizes wanted)
+{
+    assert_int_equal(found.count, wanted.count);
+    if (!found.count) return;
+    qsort(found.size, (size_t)found.count, sizeof(int), by_size);
+    qsort(wanted.size, (size_t)wanted.count, sizeof(int), by_size);
+    assert_memory_equal(found.size, wanted.size, (size_t)found.count * sizeof(int));
+}
+
+static void compare_with_brute_force(const struct run *run)
+{
+    struct sizes found = {0}, wanted = {0};
+    bool seen[1000] = {false};
+    const struct clusters clusters = find_clusters(run, &found);
+    for (int k = 0; k < run->n_crack; k++)
+        if (!seen[k]) add_size(&wanted, visit_cracks(run, k, seen));
+    assert_same_sizes(found, wanted);
+    assert_int_equal(clusters.count, found.count);
+    assert_int_equal(clusters.largest, found.count ? found.size[found.count - 1] : 0);
+
+    found.count = wanted.count = 0;
+    memset(seen, 0, sizeof seen);
+    uint8_t *intact = bonds_left(run);
+    const struct pieces pieces = find_pieces(&run->packing, intact, &found);
+    for (int i = 0; i < run->packing.n_particle; i++)
+        if (!seen[i]) add_size(&wanted, visit_grains(&run->packing, intact, i, seen));
+    assert_same_sizes(found, wanted);
+    assert_int_equal(pieces.count, found.count);
+    assert_int_equal(pieces.largest, found.size[found.count - 1]);
+    int single = 0;
+    while (single < found.count && found.size[single] == 1)
+        single++;
+    assert_int_equal(pieces.single, single);
+    free(intact);
+    free(found.size);
+    free(wanted.size);
+}
+
+static void test_clusters_and_fragments_by_brute_force(void **state)
+{
+    (void)state;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int trial = 0; trial < 60; trial++) {
+        struct run run = lattice(4, 3, 5, trial % 2);
+        const double share = gsl_rng_uniform(rng);
+        for (int b = 0; b < run.packing.n_bond; b++)
+            if (gsl_rng_uniform(rng) < share) crack(&run, b);
+        compare_with_brute_force(&run);
+        run_free(&run);
+    }
+    gsl_rng_free(rng);
+}
+
+// ---- spanning -----------------------------------------------------------------------
+
+static struct clusters clusters_of(const struct run *run)
+{
+    struct sizes sizes = {0};
+    const struct clusters found = find_clusters(run, &sizes);
+    free(sizes.size);
+    return found;
+}
+
+// All bonds between the first two layers: spans both ways along them, not across.
+static void test_a_layer_of_cracks_spans_along_itself(void **state)
+{
+    (void)state;
+    struct run run = lattice(5, 4, 6, false);
+    for (int i = 0; i < 20; i++)
+        crack(&run, bond_between(&run, i, i + 20));
+    // Parallel bonds share no grain: one bond across holds each row together.
+    struct clusters found = clusters_of(&run);
+    assert_int_equal(found.count, 20);
+    assert_false(found.spans[0] || found.spans[1] || found.spans[2]);
+    for (int y = 0; y < 4; y++)
+        for (int x = 0; x < 4; x++)
+            crack(&run, bond_between(&run, 5 * y + x, 5 * y + x + 1));
+    for (int y = 0; y < 3; y++)
+        crack(&run, bond_between(&run, 5 * y, 5 * y + 5));
+    found = clusters_of(&run);
+    assert_int_equal(found.count, 1);
+    assert_int_equal(found.largest, 20 + 16 + 3);
+    assert_true(found.spans[0] && found.spans[1] && !found.spans[2]);
+    run_free(&run);
+}
+
+// A row of broken bonds through a box that repeats spans once it comes back to itself.
+static void test_cracks_that_lead_around_the_box(void **state)
+{
+    (void)state;
+    struct run run = lattice(5, 2, 2, true);
+    for (int x = 0; x < 4; x++)
+        crack(&run, bond_between(&run, x, x + 1));
+    assert_false(clusters_of(&run).spans[0]);
+    crack(&run, bond_between(&run, 0, 4));
+    assert_true(clusters_of(&run).spans[0]);
+    run_free(&run);
+    // Back and forth across the side of the box, around no box.
+    run = lattice(5, 2, 2, true);
+    crack(&run, bond_between(&run, 0, 4));
+    crack(&run, bond_between(&run, 4, 9));
+    crack(&run, bond_between(&run, 5, 9));
+    crack(&run, bond_between(&run, 0, 5));
+    assert_int_equal(clusters_of(&run).count, 1);
+    assert_false(clusters_of(&run).spans[0]);
+    run_free(&run);
+}
+
+// ---- deformation --------------------------------------------------------------------
+
+static const double stretch[3][3] = {
+    {-0.02, 0.003, 0.001}, {-0.001, -0.05, 0.004}, {0.002, -0.006, 0.01}};
+
+static struct vector displaced(struct vector x, double times)
+{
+    struct vector u = {0.3, -0.2, 0.1};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            set_component(&u, i,
+                          component(u, i) + times * stretch[i][j] * component(x, j));
+    return u;
+}
+
+static void displace(struct run *run, double times)
+{
+    const int n = run->packing.n_particle;
+    run->n_snapshot = 1;
+    run->displacement = NEW_ARRAY(struct vector, n);
+    run->intact = bonds_left(run);
+    for (int i = 0; i < n; i++)
+        run->displacement[i] = displaced(run->packing.position[i], times);
+}
+
+static void test_a_homogeneous_strain_is_found_again(void **state)
+{
+    (void)state;
+    struct run run = lattice(4, 3, 5, false);
+    displace(&run, 1);
+    const struct deformation found = body_deformation(&run, 0);
+    const double strain[STRAIN_COUNT] = {-0.02, -0.05, 0.01, -0.001, 0.0015, 0.001};
+    for (int k = 0; k < STRAIN_COUNT; k++)
+        assert_close(found.strain[k], strain[k], 1e-14);
+    // 1 - det of 1 + stretch, by hand.
+    const double determinant = 0.98 * (0.95 * 1.01 + 0.006 * 0.004) -
+                               0.003 * (-0.001 * 1.01 - 0.004 * 0.002) +
+                               0.001 * (0.001 * 0.006 - 0.95 * 0.002);
+    assert_close(found.shrinkage, 1 - determinant, 1e-14);
+    run_free(&run);
+}
+
+static void test_small_strains_keep_their_digits(void **state)
+{
+    (void)state;
+    struct run run = lattice(4, 3, 5, false);
+    displace(&run, 1e-9);
+    for (int i = 0; i < run.packing.n_particle; i++) // the shift alone would drown them
+        run.displacement[i] =
+            subtract(run.displacement[i], (struct vector){0.3, -0.2, 0.1});
+    const double trace = 1e-9 * (-0.02 - 0.05 + 0.01);
+    assert_close(body_deformation(&run, 0).shrinkage / -trace, 1, 2e-6);
+    run_free(&run);
+}
+
+// Grains broken off do not count, however far they fly; in one layer the strain across
+// it is not known and 0.
+static void test_only_the_largest_fragment_counts(void **state)
+{
+    (void)state;
+    struct run run = lattice(4, 1, 5, false);
+    crack(&run, bond_between(&run, 0, 1));
+    crack(&run, bond_between(&run, 0, 4));
+    displace(&run, 1);
+    run.displacement[0] = (struct vector){1e6, -1e7, 1e5};
+    const struct deformation found = body_deformation(&run, 0);
+    assert_close(found.strain[0], -0.02, 1e-14);
+    assert_close(found.strain[2], 0.01, 1e-14);
+    assert_close(found.strain[1], 0, 1e-14);
+    run_free(&run);
+}
+
+static void test_three_grains_have_no_strain(void **state)
+{
+    (void)state;
+    struct run run = lattice(3, 1, 1, false);
+    displace(&run, 1);
+    assert_true(isnan(body_deformation(&run, 0).shrinkage));
+    run_free(&run);
+}
+
+// ---- orientation --------------------------------------------------------------------
+
+static void test_upright_and_level_cracks(void **state)
+{
+    (void)state;
+    struct run run = lattice(3, 3, 3, false);
+    crack(&run, bond_between(&run, 0, 9));
+    crack(&run, bond_between(&run, 0, 1));
+    run.mode[1] = MODE_SHEAR;
+    struct orientation found = {0};
+    add_orientation(&found, &run);
+    assert_close(found.bonds[0], 18, 0);
+    assert_close(found.bonds[INCLINATION_CLASSES - 1], 36, 0);
+    assert_close(found.cracks[0][MODE_NORMAL], 1, 0);
+    assert_close(found.cracks[INCLINATION_CLASSES - 1][MODE_SHEAR], 1, 0);
+    assert_close(found.fabric[MODE_NORMAL][8], 1, 0);
+    assert_close(found.fabric[MODE_SHEAR][0], 1, 0);
+    run_free(&run);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_clusters_and_fragments_by_brute_force),
+        cmocka_unit_test(test_a_layer_of_cracks_spans_along_itself),
+        cmocka_unit_test(test_cracks_that_lead_around_the_box),
+        cmocka_unit_test(test_a_homogeneous_strain_is_found_again),
+        cmocka_unit_test(test_small_strains_keep_their_digits),
+        cmocka_unit_test(test_only_the_largest_fragment_counts),
+        cmocka_unit_test(test_three_grains_have_no_strain),
+        cmocka_unit_test(test_upright_and_level_cracks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

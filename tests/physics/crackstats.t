@@ -1,0 +1,196 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# crackstats on responses made by hand: counts, borders of classes, many runs, tests of two
+# groups against published outcomes, and the liquid of slices against sums over the throats.
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, SCENE, done, ok, run, scratch
+
+
+def crackstats(*arguments):
+    return json.loads(run("crackstats", *arguments))
+
+
+def refused(says, *arguments):
+    tried = subprocess.run([f"{BIN}/crackstats", *arguments], stdout=subprocess.PIPE,
+                           stderr=subprocess.PIPE)
+    return tried.returncode == 65 and says in tried.stderr.decode() and not tried.stdout
+
+
+def by_hand(path, bond, time, saturation, mode, first_period_end=None):
+    """Replaces the cracks of the response at PATH."""
+    with h5py.File(path, "r+") as file:
+        position = file["particles/position"][:][file["bonds/particles"][:][bond]].mean(axis=1)
+        for name, value in [("bond", bond), ("time", time), ("saturation", saturation),
+                            ("mode", mode), ("position", position.reshape(-1, 3))]:
+            old = file[f"cracks/{name}"]
+            kind, units = old.dtype, dict(old.attrs)
+            del file[f"cracks/{name}"]
+            new = file.create_dataset(f"cracks/{name}", data=np.asarray(value, kind))
+            for key, unit in units.items():
+                new.attrs[key] = unit
+        if first_period_end is not None:
+            file["summary"].attrs["first_period_end_time"] = first_period_end
+
+
+def modes(entry):
+    return entry["normal"], entry["shear"], entry["total"]
+
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    run("pack", "--set", "counts=[3,3,5]", "-o", at("packing"))
+    run("tessellate", at("packing"), "-o", at("tessellation"))
+    run("merge-nodes", at("tessellation"), "-o", at("network"))
+    run("dry", "-p", SCENE, at("network"), "-o", at("drying"))
+    run("force-protocol", "-p", SCENE, "--set", "steps=5", at("drying"), "-o", at("forces"))
+    run("dem-replay", "-p", SCENE, "--set", "cycles=1", at("forces"), "-o", at("response"))
+    with h5py.File(at("response")) as file:
+        bonds = file["bonds/particles"][:]
+        position = file["particles/position"][:]
+        end = file["history/time"][-1]
+        first_end = file["summary"].attrs["first_period_end_time"]
+        d = 2 * file["particles/radius"][0]
+    upright = np.abs(np.diff(position[bonds][..., 2])[:, 0]) > 0.5 * d
+    layer = np.rint(position[bonds].min(axis=1)[:, 2] / d - 0.5).astype(int)
+
+    # ---- counts ---------------------------------------------------------------------
+    # Between layers 0 and 1, in layer 4, in layer 2, between 2 and 3, in layer 0.
+    chosen = [np.flatnonzero(upright & (layer == 0))[0], np.flatnonzero(~upright & (layer == 4))[0],
+              np.flatnonzero(~upright & (layer == 2))[0], np.flatnonzero(upright & (layer == 2))[0],
+              np.flatnonzero(~upright & (layer == 0))[0]]
+    shutil.copy(at("response"), at("hand"))
+    by_hand(at("hand"), chosen, np.array([0, 0.25, 0.25, 0.5, 1]) * end,
+            [1, 0.8, 0.75, 0.5, 0], [1, 0, 1, 1, 0], 0.25 * end)
+    stats = crackstats("--set", "slices=5", "--set", "intervals=5", at("hand"))
+    ok(modes(stats["cracks"]) == (2, 3, 5) and abs(stats["mean"]["cracks"]["share"]
+       - 5 / len(bonds)) < 1e-15, "cracks by mode, and their share of the bonds", stats["mean"])
+    ok([modes(p) for p in stats["periods"]] == [(1, 2, 3), (1, 1, 2)],
+       "periods: the very end of the first counts there", stats["periods"])
+    ok([s["total"] for s in stats["profile"]] == [2, 0, 2, 0, 1],
+       "slices: a bond on the border of two counts in the lower", stats["profile"])
+    ok([s["total"] for s in stats["by_saturation"]] == [2, 1, 1, 0, 1]
+       and [(s["from"], s["to"]) for s in stats["by_saturation"]][1] == (0.8, 0.6),
+       "intervals of saturation: 0.8 is the end of the first of five", stats["by_saturation"])
+    ok([s["total"] for s in stats["by_time"]] == [1, 2, 1, 0, 1], "intervals of time",
+       stats["by_time"])
+    ok(stats["profiles"][0]["cracks"] == [1, 0, 0, 0, 1]
+       and stats["profiles"][-1]["cracks"] == [2, 0, 2, 0, 1]
+       and stats["profiles"][0]["liquid"] is None and stats["front"] is None,
+       "profiles: cracks so far; no liquid without the drying", stats["profiles"])
+    ok(sum(s["size"] * s["count"] for s in stats["clusters"]) == 5
+       and sum(s["size"] * s["count"] for s in stats["fragments"]) == len(position),
+       "clusters hold all cracks, fragments all grains", stats["clusters"])
+    ok(stats["sd"] is None and stats["confidence_interval"] is None and stats["test"] is None,
+       "one run has no scatter")
+
+    # ---- many runs ------------------------------------------------------------------
+    # Hours of sleep (Student 1908), ten times as many and 20 more, as numbers of cracks: t
+    # and the ranks are those of R's sleep data.
+    first = [27, 4, 18, 8, 19, 54, 57, 28, 20, 40]
+    second = [39, 28, 31, 21, 19, 64, 75, 36, 66, 54]
+    paths = []
+    for n in first + second:
+        paths.append(at(f"run-{len(paths)}"))
+        shutil.copy(at("response"), paths[-1])
+        by_hand(paths[-1], list(range(n)), [end] * n, [0.5] * n, [0] * n)
+    stats = crackstats("--set", "first_group=10", *paths)
+    test = stats["test"]["cracks"]["total"]
+    ok(stats["test"]["groups"] == [10, 10] and test["mean"] == [np.mean(first), np.mean(second)],
+       "two groups of ten runs", test)
+    ok(round(test["welch"]["t"], 4) == -1.8608
+       and round(test["welch"]["degrees_of_freedom"], 3) == 17.776
+       and round(test["welch"]["p"], 5) == 0.07939, "Welch's t test, as published", test)
+    ok(test["mann_whitney"]["u"] == 25.5 and round(test["mann_whitney"]["p"], 5) == 0.06933
+       and not test["mann_whitney"]["exact"], "Mann and Whitney's test, as published", test)
+    ok(stats["test"]["cracks"]["shear"]["welch"]["p"] == 1
+       and stats["test"]["cracks"]["shear"]["mann_whitney"]["p"] == 1,
+       "what is the same in all runs does not differ")
+    ok(stats["test"]["front"]["correlation"] is None and stats["mean"]["front"]["correlation"]
+       is None, "what no run tells is null")
+    interval = crackstats(*paths[:10])["confidence_interval"]["cracks"]["total"]
+    ok(np.allclose(interval, 20 + 10 * np.array([-0.5297804, 2.0297804]), atol=1e-6),
+       "the interval of the mean, as published", interval)
+    ok(np.isclose(stats["sd"]["cracks"]["total"], np.std(first + second, ddof=1))
+       and [e["cracks"]["total"] for e in stats["each"]] == first + second,
+       "standard deviation, and each run's own")
+    ok(crackstats(*paths[::-1])["mean"]["cracks"] == stats["mean"]["cracks"],
+       "the order of the runs does not matter to the means")
+
+    # ---- liquid ---------------------------------------------------------------------
+    slices, intervals = 5, 10
+    shutil.copy(at("response"), at("wet"))
+    with h5py.File(at("drying")) as file:
+        step_time, step_saturation = file["history/time"][:], file["history/saturation"][:]
+        kind = file["throats/kind"][:]
+        offset, throat = file["changes/offset"][:], file["changes/throat"][:]
+        to = file["changes/saturation"][:]
+        ends = file["nodes/position"][:][file["throats/nodes"][:]]
+        volume = np.pi * file["throats/radius"][:] ** 2 * file["throats/length"][:]
+    states = [np.where(kind == 0, 1.0, 0.0)]
+    for k in range(len(offset) - 1):
+        state = states[-1].copy()
+        state[throat[offset[k]:offset[k + 1]]] = to[offset[k]:offset[k + 1]]
+        states.append(state)
+    states = np.array(states[1:])
+    height = 5 * d
+    place = np.clip(np.ceil(ends[..., 2].mean(axis=1) / height * slices - 1e-6) - 1, 0,
+                    slices - 1).astype(int)
+
+    def liquid(time):
+        state = np.array([np.interp(time, step_time, states[:, t]) for t in range(len(kind))])
+        return np.array([(state * volume)[(place == s) & (kind == 0)].sum()
+                         / volume[(place == s) & (kind == 0)].sum() for s in range(slices)])
+
+    times = np.array([0.1, 0.3, 0.3, 0.5, 0.7]) * end
+    reached = np.interp(times, step_time, step_saturation)
+    by_hand(at("wet"), chosen, times, reached, [0, 0, 1, 1, 0])
+    stats = crackstats("--set", f"slices={slices}", at("wet"), at("drying"))
+    levels = [np.interp(-(1 - (k + 1) / intervals), -step_saturation, step_time)
+              for k in range(intervals)]
+    wanted = np.array([liquid(time) for time in levels])
+    got = np.array([p["liquid"] for p in stats["profiles"]])
+    ok(np.allclose(got, wanted, atol=1e-9), "the saturation of the slices",
+       np.abs(got - wanted).max())
+    local = [liquid(t)[s] for t, s in zip(times, [0, 4, 2, 2, 0])]
+    ok(abs(stats["mean"]["front"]["saturation"] - np.mean(local)) < 1e-9,
+       "how wet the slices are in which cracks open", local)
+    cracks = np.diff([[0] * slices] + [p["cracks"] for p in stats["profiles"]], axis=0)
+    lost = -np.diff(np.vstack([np.ones(slices), wanted]), axis=0)
+    ok(abs(stats["front"]["correlation"] - np.corrcoef(cracks.ravel(), lost.ravel())[0, 1]) < 1e-9
+       and stats["front"]["correlation"] == stats["mean"]["front"]["correlation"],
+       "the correlation of cracks with the liquid that leaves", stats["front"])
+    ok(crackstats(at("wet"), at("drying"), at("wet"))["front"] is None
+       and crackstats(at("wet"), at("drying"), at("wet"), at("drying"))["runs"] == 2,
+       "the drying may be left out of some runs")
+
+    # ---- refusals -------------------------------------------------------------------
+    ok(refused("drying: is not the drying of the response before it", at("hand"), at("drying")),
+       "the drying of another response is refused")
+    ok(refused("drying: must be a response, is a drying", at("drying")), "and one alone")
+    ok(refused("drying: must be a response, is a drying", at("wet"), at("drying"), at("drying")),
+       "and a second one")
+    ok(refused("first_group: must leave runs to test against, got 2 of 2", "--set",
+               "first_group=2", at("hand"), at("hand")), "a group must leave another")
+    run("dem-replay", "-p", SCENE, "--set", "cycles=1", "--set", "snapshots=[1]", at("forces"),
+        "-o", at("one"))
+    ok(refused("one: has 1 snapshots, the runs before have 6: not one study", at("wet"), at("one")),
+       "runs with other snapshots are refused")
+    run("pack", "--set", "counts=[2,2,3]", "-o", at("packing"))
+    run("tessellate", at("packing"), "-o", at("tessellation"))
+    run("merge-nodes", at("tessellation"), "-o", at("network"))
+    run("dry", "-p", SCENE, at("network"), "-o", at("drying"))
+    run("force-protocol", "-p", SCENE, "--set", "steps=5", at("drying"), "-o", at("forces"))
+    run("dem-replay", "-p", SCENE, "--set", "cycles=1", at("forces"), "-o", at("smaller"))
+    both = crackstats("--set", "same_bonds=false", at("wet"), at("smaller"))
+    ok(both["bonds"] == (len(bonds) + 20) / 2, "runs of other packings, when asked for",
+       both["bonds"])
+done()
