@@ -2,7 +2,7 @@
 #include "clusters.h"
 
 #include "basics/memory.h"
-#include "ranks.h"
+#include "basics/ranks.h"
 
 #include <stdlib.h>
 

@@ -9,7 +9,7 @@
 // print throats, seconds, throats a second and what rounding leaves of the balances; or
 // throats, seconds, throats invaded, and those when gas first reaches the far side.
 #include "dry/drying.h"
-#include "dry/invasion.h"
+#include "invade/invasion.h"
 
 #include "basics/memory.h"
 
@@ -113,7 +113,10 @@ static int invade_lattice(const int n[3], bool trapping)
     struct reason reason;
     const double start = seconds();
     const enum status status =
-        invade(&network, WALL_Z_UPPER, WALL_Z_LOWER, trapping, &invasion, &reason);
+        invade(&network,
+               &(struct invasion_conditions){
+                   .inlet = WALL_Z_UPPER, .outlet = WALL_Z_LOWER, .trapping = trapping},
+               &invasion, &reason);
     printf("%d %.4f %d %d\n", network.n_throat, seconds() - start, invasion.n,
            invasion.breakthrough);
     invasion_free(&invasion);

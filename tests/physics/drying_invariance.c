@@ -2,6 +2,7 @@
 // What drying must not depend on: how nodes and throats are numbered, the unit of
 // length, and, while the liquid is in one piece, how fast it dries.
 #include "dry/clusters.h"
+#include "invade/invasion.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
@@ -200,12 +201,85 @@ static void test_order_within_a_cluster_does_not_depend_on_the_rate(void **state
     network_free(&network);
 }
 
+// Whether the cluster of THROAT holds liquid at a node on the lower wall. GAS: nodes at
+// which a throat has emptied.
+static bool leads_down(const struct network *network, const struct clusters *clusters,
+                       const bool *gas, int throat)
+{
+    for (int t = 0; t < network->n_throat; t++)
+        for (int end = 0; end < 2; end++) {
+            const int node = network->throat_nodes[t][end];
+            if (clusters->of_throat[t] == clusters->of_throat[throat] && !gas[node] &&
+                (network->node_walls[node] & WALL_Z_LOWER))
+                return true;
+        }
+    return false;
+}
+
+// Until gas reaches the wall opposite the open one, one cluster stands on it, and
+// empties as if it did not evaporate but was pushed out there, with all else trapped.
+static void check_drying_is_invasion(double gravity)
+{
+    struct network network = lattice_network(7, 7, 9, spacing);
+    randomise_radii(&network, spacing, 0.3, 32);
+    impose_empty_throats(&network, WALL_Z_UPPER); // at the surface one throat a node
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    conditions.gravity = gravity;
+    conditions.surface_tension = 0.07;
+    struct drying_history history = dry_and_check(&network, &conditions);
+
+    double *ease = NEW_ARRAY(double, network.n_throat);
+    for (int t = 0; t < network.n_throat; t++) {
+        const int32_t *node = network.throat_nodes[t];
+        ease[t] =
+            conditions.liquid_density * gravity / 2 *
+                (network.node_position[node[0]].z + network.node_position[node[1]].z) -
+            2 * conditions.surface_tension / network.throat_radius[t];
+    }
+    struct invasion invasion;
+    struct reason reason;
+    const struct invasion_conditions rule = {
+        .ease = ease, .inlet = WALL_Z_UPPER, .outlet = WALL_Z_LOWER, .trapping = true};
+    assert_int_equal(invade(&network, &rule, &invasion, &reason), 0);
+
+    struct incidence incidence = network_incidence(&network);
+    struct clusters clusters = clusters_make(&network, &incidence, NULL, true);
+    bool *gas = NEW_ARRAY(bool, network.n_node);
+    int n = 0;
+    for (int k = 0; k < history.n_event; k++) {
+        const int throat = history.event_throat[k];
+        if (n < invasion.breakthrough && leads_down(&network, &clusters, gas, throat)) {
+            assert_int_equal(invasion.throat[n++], throat);
+        }
+        clusters_empty_throat(&clusters, throat);
+        for (int end = 0; end < 2; end++)
+            gas[network.throat_nodes[throat][end]] = true;
+    }
+    assert_int_equal(n, invasion.breakthrough);
+    assert_true(n > history.n_event / 10);
+    free(gas);
+    free(ease);
+    clusters_free(&clusters);
+    incidence_free(&incidence);
+    invasion_free(&invasion);
+    drying_history_free(&history);
+    network_free(&network);
+}
+
+static void test_one_cluster_empties_as_invasion_says(void **state)
+{
+    (void)state;
+    check_drying_is_invasion(0);
+    check_drying_is_invasion(1e7);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbering_does_not_matter),
         cmocka_unit_test(test_unit_of_length_does_not_matter),
-        cmocka_unit_test(test_order_within_a_cluster_does_not_depend_on_the_rate)};
+        cmocka_unit_test(test_order_within_a_cluster_does_not_depend_on_the_rate),
+        cmocka_unit_test(test_one_cluster_empties_as_invasion_says)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ranks.h"
+#include "basics/ranks.h"
 
 #include "basics/memory.h"
 
