@@ -2,7 +2,7 @@
 #include "start.h"
 
 #include "basics/memory.h"
-#include "ranks.h"
+#include "basics/ranks.h"
 
 #include <math.h>
 #include <stdlib.h>
