@@ -3,6 +3,7 @@
 
 #include "basics/memory.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -371,4 +372,37 @@ void clocks_empty_ended(struct clocks *clocks)
                     vapour_evaporation(&phases->vapour, mesh->changed[k]));
     star_mesh_forget_changes(mesh);
     set_touched(clocks);
+}
+
+// --- state -------------------------------------------------------------------------
+
+static void accounts_state(struct clocks *clocks, struct state *state)
+{
+    int64_t n = clocks->n_account;
+    clocks->account = state_room(state, clocks->account, &n, sizeof *clocks->account);
+    if (state->restoring) clocks->n_account = clocks->account_capacity = (int)n;
+    for (int k = 0; k < clocks->n_account; k++) {
+        struct account *account = &clocks->account[k];
+        state_integer(state, &account->n_charge, 0, INT_MAX);
+        state_sums(state, &account->rate, 1);
+        state_integer(state, &account->clock, -1, clocks->n - 1);
+        account->touched = false;
+    }
+}
+
+void clocks_state(struct clocks *clocks, struct state *state)
+{
+    const struct network *network = clocks->phases->network;
+    state_integer(state, &clocks->n, 0, network->n_throat);
+    accounts_state(clocks, state);
+    state_numbers(state, clocks->charged, network->n_node);
+    state_integers(state, clocks->sole, network->n_node, -1, clocks->n_account - 1);
+    state_numbers(state, clocks->share, 2 * (int64_t)network->n_throat);
+    state_integers(state, clocks->owner, clocks->n, 0, clocks->n_account - 1);
+    state_integers(state, clocks->throat, clocks->n, 0, network->n_throat - 1);
+    state_integers(state, clocks->losing, clocks->n, 0, network->n_throat - 1);
+    state_numbers(state, clocks->rate, clocks->n);
+    state_numbers(state, clocks->left, clocks->n);
+    state_numbers(state, clocks->left_lost, clocks->n);
+    state_numbers(state, clocks->saturation, network->n_throat);
 }

@@ -57,6 +57,9 @@ double clocks_saturation(const struct clocks *clocks, int throat);
 // What the throats lose, all together, less what goes into the air; of the latter.
 double clocks_imbalance(const struct clocks *clocks);
 
+// Between two events.
+void clocks_state(struct clocks *clocks, struct state *state);
+
 void clocks_free(struct clocks *clocks);
 
 #endif

@@ -5,6 +5,7 @@
 #include "basics/ranks.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // What one search has found, in order; those before NEXT have been looked around from.
 struct search {
@@ -305,4 +306,47 @@ void clusters_free(struct clusters *clusters)
     free(clusters->found_by);
     free(clusters->search);
     *clusters = (struct clusters){0};
+}
+
+// --- state -------------------------------------------------------------------------
+
+static void heap_state(struct rank_heap *heap, int n_throat, struct state *state)
+{
+    int64_t n = heap->n;
+    heap->rank = state_room(state, heap->rank, &n, sizeof *heap->rank);
+    if (state->restoring) heap->n = heap->capacity = (int)n;
+    state_integers(state, heap->rank, heap->n, 0, n_throat - 1);
+}
+
+static void identities_state(struct clusters *clusters, struct state *state)
+{
+    int64_t n = clusters->n_id;
+    if (state->restoring)
+        for (int c = 0; c < clusters->n_id; c++)
+            free(clusters->heap[c].rank);
+    clusters->size = state_room(state, clusters->size, &n, sizeof *clusters->size);
+    clusters->heap = state_room(state, clusters->heap, &n, sizeof *clusters->heap);
+    if (state->restoring) {
+        memset(clusters->heap, 0, (size_t)n * sizeof *clusters->heap);
+        clusters->n_id = clusters->capacity = (int)n;
+    }
+    const int n_throat = clusters->network->n_throat;
+    state_integers(state, clusters->size, n, 0, n_throat);
+    for (int c = 0; c < clusters->n_id; c++)
+        heap_state(&clusters->heap[c], n_throat, state);
+    n = clusters->n_unused;
+    clusters->unused = state_room(state, clusters->unused, &n, sizeof(int));
+    if (state->restoring) clusters->n_unused = clusters->unused_capacity = (int)n;
+    state_integers(state, clusters->unused, n, 0, clusters->n_id - 1);
+}
+
+void clusters_state(struct clusters *clusters, struct state *state)
+{
+    const struct network *network = clusters->network;
+    identities_state(clusters, state);
+    state_integer(state, &clusters->count, 0, clusters->n_id);
+    state_flags(state, clusters->joins, network->n_node);
+    state_integers(state, clusters->of_throat, network->n_throat, -1,
+                   clusters->n_id - 1);
+    state_flags(state, clusters->meniscus, network->n_throat);
 }

@@ -9,6 +9,7 @@
 #define CRAQUELURE_CLUSTERS_H
 
 #include "network/network.h"
+#include "state.h"
 
 #include <stdbool.h>
 
@@ -63,6 +64,8 @@ void clusters_empty_throat(struct clusters *clusters, int throat);
 // The meniscus throat of CLUSTER that gas enters most easily, the lowest index among
 // equals; -1 if no gas touches the cluster.
 int clusters_invasion_throat(struct clusters *clusters, int cluster);
+
+void clusters_state(struct clusters *clusters, struct state *state);
 
 void clusters_free(struct clusters *clusters);
 

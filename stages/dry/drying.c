@@ -4,6 +4,7 @@
 
 #include "basics/memory.h"
 #include "boundary_layer.h"
+#include "resume.h"
 #include "run.h"
 #include "start.h"
 
@@ -49,29 +50,35 @@ void note_breakthrough(struct run *run)
         history->breakthrough_saturation = network_saturation(run);
 }
 
-static void note_first_period(struct run *run, double first_rate)
+static void note_first_period(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
     const double fraction = run->conditions->first_period_rate_fraction;
     if (history->first_period_end_saturation == 0 &&
-        rate_now(run) < fraction * first_rate)
+        rate_now(run) < fraction * run->first_rate)
         history->first_period_end_saturation = network_saturation(run);
+}
+
+static void begin(struct run *run)
+{
+    run->n_at_start = run->phases.n_full;
+    run->first_rate = rate_now(run);
+    note_breakthrough(run);
+    record_state(run);
 }
 
 static enum status dry_all(struct run *run, const struct drying_progress *progress,
                            struct reason *reason)
 {
-    const int n = run->phases.n_full;
-    const double first_rate = rate_now(run);
     enum status status = STATUS_OK;
-    note_breakthrough(run);
-    record_state(run);
     while (!status && run->phases.n_full > 0) {
         status = run->conditions->liquid == LIQUID_VISCOUS ? dry_by_flow(run, reason)
                                                            : dry_by_clocks(run, reason);
-        note_first_period(run, first_rate);
+        note_first_period(run);
         if (progress && progress->report)
-            progress->report(progress->context, 1 - (double)run->phases.n_full / n);
+            progress->report(progress->context,
+                             1 - (double)run->phases.n_full / run->n_at_start);
+        if (!status) keep_if_due(run, progress ? progress->keeper : NULL);
     }
     return status;
 }
@@ -171,8 +178,16 @@ enum status dry_network(const struct network *network,
         phases_make(network, conditions->open_walls, &form, layer, &run.phases, reason);
     free(ease);
     if (!status) {
-        start(&run);
+        const struct keeper *keeper = progress ? progress->keeper : NULL;
+        const bool goes_on = keeper && keeper->begin;
+        if (!goes_on) start(&run);
         prepare(&run);
+        if (goes_on)
+            status = go_on_from(&run, keeper->begin, reason);
+        else
+            begin(&run);
+    }
+    if (!status) {
         status = dry_all(&run, progress, reason);
     }
     if (!status) summarise(&run, history);

@@ -17,6 +17,7 @@
 
 #include "basics/status.h"
 #include "boundary_layer.h"
+#include "dem/keeper.h"
 #include "network/network.h"
 
 // How the liquid moves between the throats of a cluster.
@@ -128,6 +129,7 @@ struct drying_history {
 struct drying_progress {
     void (*report)(void *context, double fraction); // may be NULL
     void *context;
+    const struct keeper *keeper; // keeps the state on the way; may be NULL
 };
 
 // Marks as THROAT_IMPOSED_EMPTY the throats that lie in one of WALLS (bits of enum

@@ -70,6 +70,65 @@ void recorder_set_last_rate(struct recorder *recorder, double rate)
     recorder->history->rate[recorder->history->n_step - 1] = rate;
 }
 
+// --- state -------------------------------------------------------------------------
+
+static void events_state(struct recorder *recorder, int n_throat, struct state *state)
+{
+    struct drying_history *history = recorder->history;
+    int64_t n = history->n_event;
+    history->event_time = state_room(state, history->event_time, &n, sizeof(double));
+    history->event_throat = state_room(state, history->event_throat, &n, sizeof(int));
+    history->event_kind = state_room(state, history->event_kind, &n, 1);
+    if (state->restoring) history->n_event = recorder->event_capacity = (int)n;
+    state_numbers(state, history->event_time, n);
+    state_integers(state, history->event_throat, n, 0, n_throat - 1);
+    state_bytes(state, history->event_kind, n, EVENT_REFILLED);
+}
+
+static void changes_state(struct recorder *recorder, int n_throat, struct state *state)
+{
+    struct drying_history *history = recorder->history;
+    int64_t n = recorder->n_change;
+    history->change_throat = state_room(state, history->change_throat, &n, sizeof(int));
+    history->change_saturation =
+        state_room(state, history->change_saturation, &n, sizeof(double));
+    if (state->restoring) recorder->n_change = recorder->change_capacity = n;
+    state_integers(state, history->change_throat, n, 0, n_throat - 1);
+    state_numbers(state, history->change_saturation, n);
+}
+
+static void steps_state(struct recorder *recorder, int n_throat, struct state *state)
+{
+    struct drying_history *history = recorder->history;
+    int64_t n = history->n_step;
+    history->time = state_room(state, history->time, &n, sizeof(double));
+    history->saturation = state_room(state, history->saturation, &n, sizeof(double));
+    history->rate = state_room(state, history->rate, &n, sizeof(double));
+    history->clusters = state_room(state, history->clusters, &n, sizeof(int32_t));
+    history->change_offset = // there is room for one more
+        state_room(state, history->change_offset, &n, sizeof(int64_t));
+    if (state->restoring) history->n_step = recorder->step_capacity = (int)n;
+    state_numbers(state, history->time, n);
+    state_numbers(state, history->saturation, n);
+    state_numbers(state, history->rate, n);
+    state_integers(state, history->clusters, n, 0, n_throat);
+    for (int64_t k = 0; k <= n; k++) {
+        state_long(state, &history->change_offset[k]);
+        state->failed |= history->change_offset[k] > recorder->n_change;
+    }
+}
+
+void recorder_state(struct recorder *recorder, int n_throat, struct state *state)
+{
+    events_state(recorder, n_throat, state);
+    changes_state(recorder, n_throat, state);
+    steps_state(recorder, n_throat, state);
+    state_numbers(state, &recorder->history->breakthrough_saturation, 1);
+    state_numbers(state, &recorder->history->first_period_end_saturation, 1);
+}
+
+// -----------------------------------------------------------------------------------
+
 void drying_history_free(struct drying_history *history)
 {
     free(history->time);

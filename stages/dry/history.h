@@ -4,6 +4,7 @@
 #define CRAQUELURE_HISTORY_H
 
 #include "drying.h"
+#include "state.h"
 
 // A history that grows; it has no step yet.
 struct recorder {
@@ -25,5 +26,8 @@ void recorder_add_step(struct recorder *recorder, double time, double saturation
 
 // Of the step added last.
 void recorder_set_last_rate(struct recorder *recorder, double rate);
+
+// For a network of N_THROAT throats. Pressures are not in it.
+void recorder_state(struct recorder *recorder, int n_throat, struct state *state);
 
 #endif

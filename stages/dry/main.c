@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // dry: which throat empties when.
 #include "artifacts/artifact.h"
+#include "artifacts/checkpoint.h"
 #include "basics/status.h"
 #include "drying.h"
 #include "enclosed.h"
@@ -22,7 +23,8 @@ static const struct stage stage = {
     .reads = "network",
     .writes = "drying",
     .most_inputs = 1,
-    .parameters = dry_table};
+    .parameters = dry_table,
+    .checkpoints = true};
 
 static void check_snapshots(const struct number_list *snapshots)
 {
@@ -76,14 +78,16 @@ static void show(void *bar, double fraction)
 
 static void dry(const struct network *network, const struct dry_parameters *parameters,
                 const struct invocation *invocation, const char *path,
-                struct drying_history *history)
+                const struct keeper *keeper, struct drying_history *history)
 {
     struct progress bar = progress_begin(invocation->progress, invocation->quiet);
     struct reason reason;
     const enum status status =
         dry_network(network, &parameters->conditions,
-                    &(struct drying_progress){show, &bar}, history, &reason);
+                    &(struct drying_progress){show, &bar, keeper}, history, &reason);
     progress_end(&bar);
+    // Only a state that was kept can be at fault for bad data after another run.
+    if (status == STATUS_BAD_DATA && keeper->begin) path = invocation->checkpoint;
     if (status) die(status, "%s: %s", input_name(path), reason.text);
 }
 
@@ -146,10 +150,15 @@ int main(int argc, char **argv)
                                                      parameters.conditions.feet);
     double *start = read_start(input, &network, parameters.conditions.start_saturation);
     parameters.conditions.start = start;
+    json_t *digest = one_input(input);
+    struct checkpoint checkpoint;
+    checkpoint_begin(&checkpoint, &invocation, digest);
     struct drying_history history;
-    dry(&network, &parameters, &invocation, input->path, &history);
+    dry(&network, &parameters, &invocation, input->path, &checkpoint.keeper, &history);
     write_drying(&network, &history, &invocation, input, &parameters, &transfer);
 
+    checkpoint_end(&checkpoint);
+    json_decref(digest);
     drying_history_free(&history);
     free(start);
     network_free(&network);

@@ -124,3 +124,20 @@ void phases_free(struct phases *phases)
     free(phases->wet_place);
     *phases = (struct phases){0};
 }
+
+void phases_state(struct phases *phases, struct state *state)
+{
+    const int n_node = phases->network->n_node, n_throat = phases->network->n_throat;
+    state_sums(state, phases->liquid, n_throat);
+    state_sums(state, &phases->total_liquid, 1);
+    state_numbers(state, &phases->initial_liquid, 1);
+    state_integer(state, &phases->n_full, 0, n_throat);
+    state_flags(state, phases->gas, n_node);
+    state_integers(state, phases->liquid_beside, n_node, 0, n_throat);
+    state_integer(state, &phases->n_wet, 0, n_node);
+    state_integers(state, phases->wet, phases->n_wet, 0, n_node - 1);
+    state_integers(state, phases->wet_place, n_node, -1, phases->n_wet - 1);
+    state_flags(state, &phases->breakthrough, 1);
+    star_mesh_state(&phases->vapour.mesh, state);
+    clusters_state(&phases->clusters, state);
+}

@@ -51,6 +51,8 @@ enum status phases_make(const struct network *network, unsigned open_walls,
 // THROAT has lost its last liquid: gas fills it and both its nodes.
 void phases_empty_throat(struct phases *phases, int throat);
 
+void phases_state(struct phases *phases, struct state *state);
+
 void phases_free(struct phases *phases);
 
 #endif

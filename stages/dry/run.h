@@ -20,6 +20,8 @@ struct run {
     int n_idle;              // viscous: steps since a throat has emptied
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
+    double first_rate;                   // scaled
+    int n_at_start;                      // throats with liquid
     double imbalance;                    // largest at a step
 
     // Since the last step was recorded.

@@ -347,3 +347,68 @@ void star_mesh_forget_changes(struct star_mesh *mesh)
         mesh->is_changed[mesh->changed[k]] = false;
     mesh->n_changed = 0;
 }
+
+// --- state -------------------------------------------------------------------------
+
+static void front_state(struct front *front, int n_site, int n_front,
+                        struct state *state)
+{
+    state_integer(state, &front->n, 0, n_site);
+    state_integer(state, &front->next_unused, -1, n_front - 1);
+    state_integer(state, &front->n_waiting, 0, MOST_SOURCES);
+    const size_t n = (size_t)front->n;
+    int64_t n_link = (int64_t)triangle_size(front->n);
+    front->triangle = state_room(state, front->triangle, &n_link, sizeof(double));
+    if (state->restoring) {
+        state->failed |= n_link != (int64_t)triangle_size(front->n);
+        front->capacity = front->n;
+        front->triangle_capacity = (size_t)n_link;
+        front->site = NEW_ARRAY(int, n);
+        if (front->n_waiting > 0)
+            front->waiting = NEW_ARRAY(double, (size_t)MOST_SOURCES *n);
+    }
+    state_integers(state, front->site, front->n, 0, n_site - 1);
+    state_numbers(state, front->triangle, n_link);
+    state_numbers(state, front->factor, front->n_waiting);
+    for (int k = 0; k < front->n_waiting; k++)
+        state_numbers(state, waiting_row(front, k), front->n);
+}
+
+static void fronts_state(struct star_mesh *mesh, struct state *state)
+{
+    int64_t n = mesh->n_front;
+    if (state->restoring)
+        for (int f = 0; f < mesh->n_front; f++)
+            empty_front(&mesh->front[f]);
+    mesh->front = state_room(state, mesh->front, &n, sizeof *mesh->front);
+    if (state->restoring) {
+        memset(mesh->front, 0, (size_t)n * sizeof *mesh->front);
+        mesh->n_front = mesh->front_capacity = (int)n;
+    }
+    state_integer(state, &mesh->unused_front, -1, (int)n - 1);
+    for (int f = 0; f < mesh->n_front; f++)
+        front_state(&mesh->front[f], mesh->n_site, mesh->n_front, state);
+}
+
+static void memberships_state(struct star_mesh *mesh, struct state *state)
+{
+    int64_t n = mesh->n_membership;
+    mesh->membership =
+        state_room(state, mesh->membership, &n, sizeof *mesh->membership);
+    if (state->restoring) mesh->n_membership = mesh->membership_capacity = (int)n;
+    state_integer(state, &mesh->unused_membership, -1, (int)n - 1);
+    state_integers(state, mesh->first, mesh->n_site, -1, (int)n - 1);
+    for (int k = 0; k < mesh->n_membership; k++) {
+        state_integer(state, &mesh->membership[k].front, 0, mesh->n_front - 1);
+        state_integer(state, &mesh->membership[k].next, -1, (int)n - 1);
+    }
+}
+
+void star_mesh_state(struct star_mesh *mesh, struct state *state)
+{
+    state_numbers(state, mesh->air, mesh->n_site);
+    state_sums(state, &mesh->all_air, 1);
+    state_numbers(state, &mesh->summed_air, 1);
+    fronts_state(mesh, state);
+    memberships_state(mesh, state);
+}

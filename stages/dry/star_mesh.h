@@ -14,6 +14,7 @@
 #define CRAQUELURE_STAR_MESH_H
 
 #include "basics/compensated.h"
+#include "state.h"
 
 #include <stdbool.h>
 
@@ -55,6 +56,9 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
 void star_mesh_eliminate(struct star_mesh *mesh, int site);
 
 void star_mesh_forget_changes(struct star_mesh *mesh);
+
+// When no changes are noted.
+void star_mesh_state(struct star_mesh *mesh, struct state *state);
 
 void star_mesh_free(struct star_mesh *mesh);
 

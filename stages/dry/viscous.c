@@ -733,3 +733,8 @@ enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phas
     }
     return status;
 }
+
+void liquid_flow_forget(struct liquid_flow *flow)
+{
+    graph_factor_forget(flow->solver->factor);
+}

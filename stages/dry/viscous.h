@@ -51,6 +51,10 @@ enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phas
                              const double *charge, struct loss *loss, int *n_loss,
                              struct reason *reason);
 
+// What is remembered from call to call only to be faster is not any more: the next
+// goes on from the menisci alone.
+void liquid_flow_forget(struct liquid_flow *flow);
+
 void liquid_flow_free(struct liquid_flow *flow);
 
 #endif

@@ -3,6 +3,7 @@
 # A run that was stopped and gone on with writes the bytes of one that never was, and a
 # checkpoint that is damaged or of another run is refused and left where it is.
 import os
+import random
 import shutil
 import signal
 import subprocess
@@ -73,6 +74,37 @@ def make_forces(folder):
     return path
 
 
+def killed(title, command):
+    """Kills without a warning, at any time; what was kept last is gone on from."""
+    with scratch() as folder:
+        whole, cut, kept = (os.path.join(folder, name) for name in ("whole", "cut", "kept"))
+        began = time.monotonic()
+        run(*command, "-o", whole)
+        piece = time.monotonic() - began
+        any_time = random.Random(1)
+        kills, kept_once = 0, False
+        for _ in range(MOST_STOPS):
+            status, said = stopped_after(any_time.uniform(0.2, 0.9) * piece, "SIGKILL", [
+                *command, "--checkpoint", kept, "--checkpoint-every", 0.05, "-o", cut])
+            if status == 0:
+                break
+            kills += 1
+            kept_once = kept_once or os.path.exists(kept)
+            piece *= 1.1
+        ok(status == 0 and kept_once and read(whole) == read(cut),
+           f"{title}: killed without a warning, the same bytes", f"{kills} kills: {said}")
+
+
+def make_network(folder, name, count):
+    made = run("pack", "-p", SCENE, "--set", f"counts=[{count},{count},{count}]")
+    for stage in ["tessellate", "merge-nodes"]:
+        made = run(stage, "-p", SCENE, input=made)
+    path = os.path.join(folder, name)
+    with open(path, "wb") as file:
+        file.write(made)
+    return path
+
+
 def refused(title, kept, command, status, says):
     before = read(kept) if os.path.exists(kept) else None
     end = call(*command, "--checkpoint", kept, "-o", kept + ".out")
@@ -120,6 +152,15 @@ with scratch() as folder:
     in_pieces("pack in a box that closes in",
               [*pack, "method=domain_contraction", "--set", "count=400", "--set",
                "periodic=[true,true,true]", "--set", "dynamics.friction=0"])
+
+    dry = ["dry", "-p", SCENE, "--set", "step_interval=0.01"]
+    large, small = make_network(folder, "large", 18), make_network(folder, "small", 7)
+    for liquid, network in [("inviscid", large), ("immobile", large), ("viscous", small)]:
+        this = [*dry, "--set", f"liquid={liquid}", network]
+        in_pieces(f"dry, {liquid} liquid", this)
+        killed(f"dry, {liquid} liquid", this)
+    in_pieces("dry, viscous liquid with snapshots",
+              [*dry, "--set", "liquid=viscous", "--set", "snapshots=[0.9,0.6,0.3]", small])
 
     # By the clock as often as can be.
     kept = os.path.join(folder, "kept")
@@ -183,5 +224,5 @@ with scratch() as folder:
     made = call("pack", "--checkpoint", kept, "-o", kept + ".out")
     ok(made.returncode == 0 and b"none is kept" in made.stderr,
        "a method without dynamics says that it keeps none", made.stderr.decode())
-    ok(call("dry", "--checkpoint", "x").returncode == 64, "a stage without checkpoints says so")
+    ok(call("merge-nodes", "--checkpoint", "x").returncode == 64, "a stage without checkpoints says so")
 done()

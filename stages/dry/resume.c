@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "resume.h"
+
+#include "basics/memory.h"
+
+#include <limits.h>
+
+// A factorisation costs as much as some ten steps.
+enum { STEPS_BETWEEN_CUTS = 256 };
+
+static void pressures_state(struct run *run, struct state *state)
+{
+    struct drying_history *history = run->recorder.history;
+    state_integer(state, &history->n_pressure, 0, run->conditions->n_snapshot);
+    const int64_t n_node = run->phases.network->n_node;
+    if (state->restoring && history->n_pressure > 0)
+        history->pressure =
+            NEW_ARRAY(double, n_node *(int64_t)run->conditions->n_snapshot);
+    state_numbers(state, history->pressure, n_node * history->n_pressure);
+}
+
+static void flow_state(struct run *run, struct state *state)
+{
+    struct liquid_flow *flow = &run->flow;
+    state_flags(state, flow->moving, run->phases.network->n_throat);
+    state_numbers(state, &flow->residual, 1);
+    state_long(state, &flow->rounds);
+    state_long(state, &flow->solutions);
+    state_integer(state, &run->n_idle, 0, INT_MAX);
+    pressures_state(run, state);
+}
+
+static void steps_state(struct run *run, struct state *state)
+{
+    const int n_throat = run->phases.network->n_throat;
+    clocks_state(&run->clocks, state);
+    state_numbers(state, &run->step_saturation, 1);
+    state_sums(state, &run->step_time, 1);
+    state_sums(state, &run->step_evaporated, 1);
+    state_integer(state, &run->n_skipped, 0, INT_MAX);
+    state_integer(state, &run->n_ended, 0, n_throat);
+    state_integers(state, run->ended, run->n_ended, 0, n_throat - 1);
+    state_numbers(state, run->saturation, n_throat);
+}
+
+static void run_state(struct run *run, struct state *state)
+{
+    state_sums(state, &run->time, 1);
+    state_sums(state, &run->evaporated, 1);
+    state_numbers(state, &run->imbalance, 1);
+    state_numbers(state, &run->first_rate, 1);
+    state_integer(state, &run->n_at_start, 0, run->phases.network->n_throat);
+    recorder_state(&run->recorder, run->phases.network->n_throat, state);
+    phases_state(&run->phases, state);
+    if (run->conditions->liquid == LIQUID_VISCOUS)
+        flow_state(run, state);
+    else
+        steps_state(run, state);
+}
+
+void keep_if_due(struct run *run, const struct keeper *keeper)
+{
+    if (run->conditions->liquid == LIQUID_VISCOUS) {
+        if (run->recorder.history->n_step % STEPS_BETWEEN_CUTS != 0) return;
+        liquid_flow_forget(&run->flow);
+    }
+    if (!is_due(keeper)) return;
+    struct state state = state_to_keep();
+    run_state(run, &state);
+    struct kept_state kept = {.stage = state_list(&state)};
+    state_free(&state);
+    keeper->keep(keeper->context, &kept);
+    free_kept_state(&kept);
+}
+
+enum status go_on_from(struct run *run, const struct kept_state *kept,
+                       struct reason *reason)
+{
+    struct state state = state_to_restore(&kept->stage);
+    run_state(run, &state);
+    if (state_is_whole(&state)) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "/stage: is not the state of a drying of this network");
+}
