@@ -6,12 +6,13 @@
 #include "replay.h"
 #include "write_response.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 struct replay_parameters {
     struct replay_settings settings;
-    int support, engine;
+    int support, engine, bridge_model;
     struct number_list snapshots;
 };
 
@@ -65,6 +66,24 @@ static const struct parameter table[] = {
     {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "1000", BOUND_BETWEEN, 1,
      1e9, NULL, "more than these at one equilibrium: not converged",
      AT(settings.most_iterations)},
+    {"bridges.volume", PARAMETER_NUMBER, "m3", "0", BOUND_MINIMUM, 0, 0, NULL,
+     "of a liquid bridge between each two grains that touch [G 2], or with shared on "
+     "each grain; 0: none",
+     AT(settings.liquid.volume)},
+    {"bridges.shared", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "each grain parts its liquid evenly among its bridges",
+     AT(settings.liquid.shared)},
+    {"bridges.surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0,
+     NULL, "of their liquid", AT(settings.liquid.surface_tension)},
+    {"bridges.contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 170,
+     NULL, "of their liquid", AT(settings.liquid.contact_angle)},
+    {"bridges.model", PARAMETER_CHOICE, "1", "\"willett-full\"", BOUND_NONE, 0, 0,
+     BRIDGE_MODEL_CHOICES,
+     "of their force; table, of the exact solution, needs grains of one radius",
+     AT(bridge_model)},
+    {"bridges.pull_in_contact", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
+     "also where grains overlap; false: only apart [G 4]",
+     AT(settings.liquid.pulls_in_contact)},
     {"time_step_safety", PARAMETER_NUMBER, "1", "0.045", BOUND_ABOVE, 0, 0, NULL,
      "time step, of the critical one of two grains [K 4.47]",
      AT(settings.time_step_safety)},
@@ -158,12 +177,16 @@ static void write_response(const struct packing *packing, const struct load *loa
         "4], "
         "small displacements; what nothing holds leaves"};
     char model[700];
-    snprintf(
-        model, sizeof model,
-        "%s\n"
-        "support: %s\n"
-        "left out: gravity, liquid bridges at contacts, moments of capillary forces\n",
-        engines[settings->engine], supports[settings->support]);
+    snprintf(model, sizeof model,
+             "%s\n"
+             "support: %s\n"
+             "%s"
+             "left out: gravity, %smoments of capillary forces\n",
+             engines[settings->engine], supports[settings->support],
+             settings->liquid.volume > 0
+                 ? "liquid bridges between grains that have touched [G 2]\n"
+                 : "",
+             settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, response);
     artifact_put_number(artifact, "/summary/first_period_end_time",
@@ -197,12 +220,17 @@ int main(int argc, char **argv)
     struct replay_settings *settings = &parameters.settings;
     settings->support = (enum support)parameters.support;
     settings->engine = (enum engine)parameters.engine;
+    settings->liquid.model = (enum bridge_model)parameters.bridge_model;
+    settings->liquid.contact_angle *= M_PI / 180;
     settings->n_snapshot = parameters.snapshots.count;
     settings->snapshot = parameters.snapshots.value;
     settings->threads = invocation.threads;
     if (settings->engine == ENGINE_QUASI_STATIC && invocation.checkpoint)
         die(STATUS_USAGE, "--checkpoint is for engine=explicit: an equilibrium has no "
                           "state between steps that is kept");
+    if (settings->engine == ENGINE_QUASI_STATIC && settings->liquid.volume > 0)
+        die(STATUS_BAD_DATA, "dem-replay.bridges.volume: equilibria know no liquid "
+                             "bridges, engine=explicit does");
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
     struct packing packing = artifact_get_packing(input);
     struct load load = read_load(input);

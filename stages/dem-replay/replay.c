@@ -59,15 +59,17 @@ static enum status begin_dem(struct run *run, const uint8_t *fixed,
     const struct replay_settings *settings = run->settings;
     const struct packing *packing = run->packing;
     const struct dem_wall beneath = {.point = packing->lower, .normal = {0, 0, 1}};
-    const struct dem_setup setup = {.packing = packing,
-                                    .material = settings->material,
-                                    .bond = settings->bond,
-                                    .fixed = fixed,
-                                    .n_wall = settings->support == SUPPORT_WALL,
-                                    .wall = &beneath,
-                                    .time_step_safety = settings->time_step_safety,
-                                    .force_time_step = settings->force_time_step,
-                                    .threads = settings->threads};
+    const struct dem_setup setup = {
+        .packing = packing,
+        .material = settings->material,
+        .bond = settings->bond,
+        .liquid = settings->liquid.volume > 0 ? &settings->liquid : NULL,
+        .fixed = fixed,
+        .n_wall = settings->support == SUPPORT_WALL,
+        .wall = &beneath,
+        .time_step_safety = settings->time_step_safety,
+        .force_time_step = settings->force_time_step,
+        .threads = settings->threads};
     const enum status status = dem_create(&run->dem, &setup, reason);
     if (status) return status;
     run->response->time_step = dem_time_step(run->dem);

@@ -30,6 +30,7 @@ struct load {
 struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
+    struct dem_liquid liquid; // of no volume: none
     enum support support;
     enum engine engine;
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load

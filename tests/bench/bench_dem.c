@@ -246,7 +246,14 @@ static int one_packing(const char *path, const char *kind, int threads)
     struct packing packing = read_packing(path);
     if (strcmp(kind, "bonded") == 0)
         packing.bond = neighbour_pairs(&packing, 0, &packing.n_bond);
-    const struct dem_setup setup = at_rest(&packing, kind, threads);
+    struct dem_setup setup = at_rest(&packing, kind, threads);
+    const bool exact = strcmp(kind, "wet-exact") == 0;
+    const struct dem_liquid liquid = {.model = exact ? BRIDGE_TABLE
+                                                     : BRIDGE_WILLETT_FULL,
+                                      .surface_tension = 0.0728,
+                                      .volume = 1e-12, // 1e-3 of the radius cubed
+                                      .pulls_in_contact = true};
+    if (exact || strcmp(kind, "wet") == 0) setup.liquid = &liquid;
     struct dem *dem;
     struct reason reason;
     if (dem_create(&dem, &setup, &reason) != STATUS_OK)

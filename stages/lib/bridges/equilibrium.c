@@ -267,7 +267,7 @@ static struct problem problem_at(const struct bodies *bodies, double volume, dou
 {
     return (struct problem){.bodies = bodies,
                             .volume = volume,
-                            .shared = overlap_of(bodies, gap).volume,
+                            .shared = bodies_overlap(bodies, gap).volume,
                             .gap = gap,
                             .symmetric = equal(bodies->curvature) &&
                                          equal(bodies->contact_angle)};

@@ -305,7 +305,7 @@ void arc_profile(const struct bodies *bodies, const struct arc *arc, int count,
     }
 }
 
-struct overlap overlap_of(const struct bodies *bodies, double gap)
+struct overlap bodies_overlap(const struct bodies *bodies, double gap)
 {
     if (gap >= 0) return (struct overlap){0};
     const double depth = -gap;

@@ -73,6 +73,6 @@ void arc_profile(const struct bodies *bodies, const struct arc *arc, int count,
 struct overlap {
     double volume, radius_squared;
 };
-struct overlap overlap_of(const struct bodies *bodies, double gap);
+struct overlap bodies_overlap(const struct bodies *bodies, double gap);
 
 #endif

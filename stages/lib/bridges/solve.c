@@ -39,7 +39,7 @@ static struct bridge_state state_of(const struct bridge *bridge,
     const double tension = bridge->surface_tension;
     const struct arc *arc = &found->arc;
     const double curvature = arc->turn / arc->length;
-    const double shared = overlap_of(bodies, found->gap).radius_squared;
+    const double shared = bodies_overlap(bodies, found->gap).radius_squared;
     struct bridge_state state = {.separation = found->gap * scale,
                                  .force = 2 * M_PI * tension * scale *
                                           (arc_force(bodies, arc) - curvature * shared),

@@ -118,10 +118,26 @@ static enum status check_bonds(const struct dem_setup *setup, struct reason *rea
     return STATUS_OK;
 }
 
+static enum status check_liquid(const struct dem_liquid *l, struct reason *reason)
+{
+    const double no_limit = INFINITY;
+    const struct quantity quantity[] = {
+        {"surface tension", l->surface_tension, 0, no_limit, true, false},
+        {"contact angle", l->contact_angle, 0, M_PI * (1 - 1e-9), false, false},
+        {"volume of bridges", l->volume, 0, no_limit, true, false}};
+    if (l->model == BRIDGE_EXACT)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "the exact solution is too slow for each bridge in each cycle: "
+                      "its table is as good");
+    return CHECK(quantity, reason);
+}
+
 static enum status check_numbers(const struct dem_setup *setup, struct reason *reason)
 {
     enum status status = check_materials(setup, reason);
     if (status == STATUS_OK) status = check_bonds(setup, reason);
+    if (status == STATUS_OK && setup->liquid)
+        status = check_liquid(setup->liquid, reason);
     if (status != STATUS_OK) return status;
     const double no_limit = INFINITY;
     const struct quantity step[] = {

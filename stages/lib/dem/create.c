@@ -296,7 +296,7 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
 // Each pair must meet in one image only.
 static enum status check_periods(const struct dem *dem, struct reason *reason)
 {
-    const double least = 2 * (2 * dem->largest_radius + FIRST_SKIN);
+    const double least = 2 * (2 * dem->largest_radius + FIRST_SKIN + bridge_reach(dem));
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] != 0 && !(dem->period[axis] >= least))
             return refuse(reason, STATUS_BAD_DATA,
@@ -364,12 +364,15 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     dem->features = choose_features(dem, setup);
     dem->sweep = choose_sweep(dem->features);
     choose_time_step(dem, setup);
-    enum status status = check_periods(dem, reason);
+    enum status status =
+        setup->liquid ? take_liquid(dem, setup->liquid, reason) : STATUS_OK;
+    if (status == STATUS_OK) status = check_periods(dem, reason);
     if (status != STATUS_OK) return status;
     renumber_grains(dem);
     find_pairs(dem);
     status = check_pairs(dem, reason);
     if (status != STATUS_OK) return status;
+    if (dem->liquid) form_bridges(dem);
     dem->time_step_limit = stability_limit(dem, false);
     if (setup->force_time_step) return STATUS_OK;
     return check_time_step(dem, setup, reason);

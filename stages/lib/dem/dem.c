@@ -45,6 +45,7 @@ void dem_free(struct dem *dem)
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free_pairs(&dem->pairs);
+    free_liquid(dem->liquid);
     free(dem);
 }
 
@@ -134,6 +135,7 @@ static struct outcome sweep_share(struct dem *dem, int begin, int end)
     int grain = begin > 0 ? first_unfinished(dem, begin) : 0;
     for (int block = begin; block < end; block += BLOCK) {
         const int next = block + BLOCK < end ? block + BLOCK : end;
+        if (dem->liquid) wet_groups(dem, block, next);
         outcome.n_broken += dem->sweep(dem, block, next);
         const int finished = first_unfinished(dem, next);
         add_pace(&outcome, move_grains(dem, grain, finished));
@@ -229,6 +231,7 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
         sweep_walls(dem);
         const struct outcome outcome = sweep(dem);
         if (outcome.n_broken > 0) record_cracks(dem);
+        if (dem->liquid) settle_bridges(dem);
         move_walls(dem);
         const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
         dem->travelled += dem->time_step * fastest;

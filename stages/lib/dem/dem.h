@@ -17,6 +17,7 @@
 #define CRAQUELURE_DEM_H
 
 #include "basics/status.h"
+#include "bridges/bridges.h"
 #include "geometry/packing.h"
 
 #include <stdbool.h>
@@ -64,6 +65,18 @@ struct dem_bond_material {
     enum dem_bond_kind kind;
 };
 
+// Liquid bridges between grains [G 2]: one forms where two touch and lasts until it
+// ruptures, for the models at the distance of [G 2]. Walls hold none.
+struct dem_liquid {
+    enum bridge_model model; // not BRIDGE_EXACT; BRIDGE_TABLE, which is as exact, only
+                             // for grains of one radius
+    double surface_tension;  // N/m, > 0
+    double contact_angle;    // rad, in [0,pi)
+    double volume;           // m3, > 0: of each bridge [G 4.1], or on each grain
+    bool shared;             // each grain parts its own volume evenly among its bridges
+    bool pulls_in_contact;   // false: only apart [G 4]; true: also in overlap, as at 0
+};
+
 enum dem_wall_shape {
     DEM_PLANE,    // a half space: grains stay on the side NORMAL points to
     DEM_CYLINDER, // endless, about the axis through POINT along NORMAL
@@ -108,6 +121,7 @@ struct dem_setup {
     struct dem_bond_material bond;
     // (n_bond) NULL: those of `bond`
     const double *normal_strength, *shear_strength;
+    const struct dem_liquid *liquid; // NULL: dry
     const uint8_t *fixed; // (n_particle) 1: neither moves nor turns; NULL: none
     int n_wall;
     const struct dem_wall *wall; // (n_wall)
@@ -152,6 +166,7 @@ struct dem_energy {
     double gained; // work of gravity, of external forces and of walls that move
     double dashpots, slip, local_damping; // lost
     double broken;                        // elastic energy of bonds when they broke
+    double bridges; // that liquid bridges took up, and lost when they ruptured
 };
 
 struct dem_momentum {
@@ -193,7 +208,7 @@ void dem_set_local_damping(struct dem *dem, double share);
 
 // The box with all centres, stretched along x, y and z about its lower corner, and all
 // radii by GROWTH; densities stay. Velocities and shear forces stay as they are. Only
-// without bonds. O(pairs).
+// without bonds and liquid. O(pairs).
 void dem_rescale(struct dem *dem, const double stretch[3], double growth);
 
 // CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would move
@@ -218,6 +233,16 @@ double dem_time_step_limit_now(const struct dem *dem);
 // [K 4.20]; 0 when nothing pulls, infinite when nothing resists. O(pairs).
 double dem_unbalanced_ratio(const struct dem *dem);
 struct dem_energy dem_energy(const struct dem *dem);
+
+// A liquid bridge as it was in the last cycle.
+struct dem_bridge {
+    int32_t particle[2]; // lower first
+    double volume;       // m3
+    double separation;   // m, < 0 in overlap
+    double force;        // N, > 0 when it pulls
+};
+// All, by first, then second grain; a new array of *COUNT that the caller frees.
+struct dem_bridge *dem_bridges(const struct dem *dem, int *count);
 struct dem_momentum dem_momentum(const struct dem *dem);
 
 // How grains touch each other, in the last cycle, and the stress that they and walls

@@ -75,6 +75,7 @@ static struct dem_energy energy_in_books(const struct dem *dem)
         books.dashpots += loss->dashpots[p % PAIRS_IN_GROUP];
         books.slip += loss->slip[p % PAIRS_IN_GROUP];
         books.broken += loss->broken[p % PAIRS_IN_GROUP];
+        books.bridges += loss->bridges[p % PAIRS_IN_GROUP];
     }
     for (int i = 0; dem->grain_books && i < dem->n_particle; i++) {
         // The places are a step ahead of the other energies.
@@ -105,7 +106,7 @@ struct dem_energy dem_energy(const struct dem *dem)
     const double unit = dem->unit.stiffness * dem->unit.length * dem->unit.length;
     double *const part[] = {&energy.kinetic,  &energy.elastic, &energy.gained,
                             &energy.dashpots, &energy.slip,    &energy.local_damping,
-                            &energy.broken};
+                            &energy.broken,   &energy.bridges};
     for (size_t k = 0; k < sizeof part / sizeof *part; k++)
         *part[k] *= unit;
     return energy;

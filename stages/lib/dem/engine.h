@@ -18,6 +18,7 @@
 #ifndef CRAQUELURE_DEM_ENGINE_H
 #define CRAQUELURE_DEM_ENGINE_H
 
+#include "bridges/table.h"
 #include "dem/dem.h"
 
 #include <stddef.h>
@@ -106,6 +107,13 @@ struct loss_group {
     _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
     double slip[PAIRS_IN_GROUP];
     double broken[PAIRS_IN_GROUP];
+    double bridges[PAIRS_IN_GROUP];
+};
+struct liquid_group {
+    _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
+    double radius[PAIRS_IN_GROUP];                    // effective [G 1]
+    double volume[PAIRS_IN_GROUP];                    // over its cube; 0: no bridge
+    double rupture[PAIRS_IN_GROUP]; // the gap at which it ruptures, over the radius
 };
 
 // The numbers of a contact with overlap U. Linear: normal force = stiffness U, shear
@@ -137,6 +145,7 @@ struct pair_list {
     struct own_group *own;
     struct bond_group *bonds;
     struct loss_group *loss;
+    struct liquid_group *liquid;
 };
 
 // A material in scaled units.
@@ -144,6 +153,17 @@ struct material {
     double density;
     double normal_stiffness, shear_stiffness, damping_ratio; // linear
     double young_modulus, poisson_ratio;                     // Hertz
+};
+
+// The liquid of a wet scene, and what holds for all of it.
+struct liquid {
+    struct dem_liquid is;       // scaled
+    struct bridge_table *table; // of BRIDGE_TABLE
+    double reach;               // the longest gap that any bridge can have
+    // (n_particle) bridges of each grain, at the end of the last cycle and as they come
+    // and go in this one; whether the two differ.
+    int32_t *bridges, *next;
+    int changed;
 };
 
 // A grain that is near a wall.
@@ -229,6 +249,7 @@ struct dem {
     double *bond_strength[2];    // (n_bond) by enum dem_crack_mode; -1 once broken
 
     struct pair_list pairs;
+    struct liquid *liquid; // NULL: dry
     int n_wall;
     struct rigid_wall *wall;
     int n_wall_pair;
@@ -316,6 +337,20 @@ void weigh_grains(struct dem *dem, const uint8_t *fixed);
 // External forces from what is applied and gravity.
 void set_external(struct dem *dem);
 void compare_mobilities(struct dem *dem); // sets moves_alike
+
+// Liquid bridges [liquid.c]; all but the first two only in wet scenes.
+double bridge_reach(const struct dem *dem); // 0 in dry ones
+void free_liquid(struct liquid *liquid);    // or NULL
+// Scales LIQUID; before pairs are sought.
+enum status take_liquid(struct dem *dem, const struct dem_liquid *liquid,
+                        struct reason *reason);
+void set_bridge_radius(const struct dem *dem, int pair);
+void form_bridges(struct dem *dem);  // where grains touch as they lie
+void count_bridges(struct dem *dem); // of each grain, from the pairs
+// Makes, keeps and ruptures the bridges of groups BEGIN..END-1 and finds how they pull;
+// before the pair sweep.
+void wet_groups(const struct dem *dem, int begin, int end);
+void settle_bridges(struct dem *dem); // at the end of a cycle
 
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);

@@ -34,7 +34,7 @@ static int32_t (*seek_near(const struct dem *dem, int *count))[2]
     double *reach = NEW_ARRAY(double, dem->n_particle);
     for (int i = 0; i < dem->n_particle; i++) {
         position[i] = position_now(dem, i);
-        reach[i] = dem->place[i].radius + 0.5 * dem->skin;
+        reach[i] = dem->place[i].radius + 0.5 * (dem->skin + bridge_reach(dem));
     }
     struct spheres spheres = {.count = dem->n_particle,
                               .position = position,
@@ -182,6 +182,7 @@ static void set_nobody(struct dem *dem, int pair)
     group->separation[0][to.at] = 1;
     group->distance[to.at] = 1;
     group->overlap[to.at] = -1;
+    if (dem->pairs.liquid) dem->pairs.liquid[to.group].radius[to.at] = 1;
     if (dem->pairs.bonds) set_bond(dem, to, -1);
 }
 
@@ -206,6 +207,10 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
     }
     group->distance[to.at] = was->distance[from.at];
     group->overlap[to.at] = was->overlap[from.at];
+    if (!new->liquid) return;
+    struct liquid_group *liquid = &new->liquid[to.group];
+    liquid->volume[to.at] = old->liquid[from.group].volume[from.at];
+    liquid->rupture[to.at] = old->liquid[from.group].rupture[from.at];
 }
 
 static void fill_pairs(struct dem *dem, const struct pair_list *old)
@@ -218,6 +223,7 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
         group->first[to.at] = pairs->particle[p][0];
         group->second[to.at] = pairs->particle[p][1];
         if (pairs->own) set_pair_law(dem, p);
+        if (pairs->liquid) set_bridge_radius(dem, p);
         if (pairs->bonds) set_bond(dem, to, pairs->bond[p]);
         int order = -1;
         while (before < old->n_pair && order < 0) {
@@ -355,6 +361,7 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
     if (dem->features & FEATURE_BOND)
         pairs->bonds = allocate_aligned(n, sizeof *pairs->bonds);
     if (dem->balance_energy) pairs->loss = allocate_aligned(n, sizeof *pairs->loss);
+    if (dem->liquid) pairs->liquid = allocate_aligned(n, sizeof *pairs->liquid);
 }
 
 void free_pairs(struct pair_list *pairs)
@@ -371,6 +378,7 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->own);
     free(pairs->bonds);
     free(pairs->loss);
+    free(pairs->liquid);
 }
 
 void close_pair_books(struct dem *dem)
@@ -382,6 +390,7 @@ void close_pair_books(struct dem *dem)
         dem->books.dashpots += loss->dashpots[at.at];
         dem->books.slip += loss->slip[at.at];
         dem->books.broken += loss->broken[at.at];
+        dem->books.bridges += loss->bridges[at.at];
     }
     memset(dem->pairs.loss, 0, (size_t)dem->pairs.n_group * sizeof *dem->pairs.loss);
 }
@@ -421,7 +430,8 @@ static void tune_skin(struct dem *dem)
     double skin = fmin(best, sqrt(dem->skin * best)); // deeper in small steps only
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] > 0)
-            skin = fmin(skin, 0.5 * dem->period[axis] - 2 * dem->largest_radius);
+            skin = fmin(skin, 0.5 * dem->period[axis] - 2 * dem->largest_radius -
+                                  bridge_reach(dem));
     dem->skin = fmax(skin, 1e-3);
 }
 
@@ -434,6 +444,7 @@ void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bo
     list_pairs_of_grains(dem);
     assign_groups(dem);
     assign_sums(dem);
+    if (dem->liquid) count_bridges(dem);
 }
 
 void find_pairs(struct dem *dem)

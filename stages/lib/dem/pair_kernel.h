@@ -774,10 +774,12 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *l
     mask held = (mask)zero;
     if (features & FEATURE_BOND)
         held = load(dem->pairs.bonds[k].normal_strength + at) >= 0.0;
-    const bool keep = dem->keeps_loads;
-    if (!any(touch | held) && dem->pairs.idle[k] && !keep) return 0;
+    const bool keep = dem->keeps_loads, wet = dem->pairs.liquid;
+    const lanes pull = wet ? load(dem->pairs.liquid[k].pull + at) : zero;
+    const mask acts = touch | held | (pull != 0.0);
+    if (!any(acts) && dem->pairs.idle[k] && !keep) return 0;
 
-    *busy |= any(touch | held);
+    *busy |= any(acts);
     int n_broken = 0;
     struct law law = law_at(dem, k, at, &m, touch, time_step, features);
     if (features & FEATURE_CONTACT_BOND)
@@ -789,6 +791,12 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *l
         total.moment = (struct lanes3){zero, zero, zero};
         if (any(held))
             n_broken = add_bond_load(&total, dem, k, at, &m, held, time_step);
+    }
+    if (wet) {
+        total.normal -= pull;
+        if (dem->pairs.loss)
+            book(dem->pairs.loss[k].bridges + at, acts,
+                 pull * m.normal_velocity * time_step);
     }
     put_loads(dem, k, at, &m, &total, keep, features);
     return n_broken;

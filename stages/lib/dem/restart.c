@@ -104,7 +104,7 @@ static void add_scalars(struct column_list *list, struct dem *dem)
               {"gravity", DEM_FLOAT64, 3, &dem->gravity, -largest, largest},
               {"friction", DEM_FLOAT64, 1, dem->pair_friction, 0, largest},
               {"local_damping", DEM_FLOAT64, 1, &dem->local_damping, 0, 1},
-              {"books", DEM_FLOAT64, 7, &dem->books, -largest, largest}};
+              {"books", DEM_FLOAT64, 8, &dem->books, -largest, largest}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++)
         add_column(list, (struct column){.name = of[k].name,
                                          .type = of[k].type,
@@ -247,6 +247,10 @@ static void add_pairs(struct column_list *list, struct dem *dem)
     LANES("loss_dashpots", loss, struct loss_group, dashpots, 1);
     LANES("loss_slip", loss, struct loss_group, slip, 1);
     LANES("loss_broken", loss, struct loss_group, broken, 1);
+    LANES("loss_bridges", loss, struct loss_group, bridges, 1);
+    LANES("bridge_pull", liquid, struct liquid_group, pull, 1);
+    LANES("bridge_volume", liquid, struct liquid_group, volume, 1);
+    LANES("bridge_rupture", liquid, struct liquid_group, rupture, 1);
 #undef LANES
 }
 
@@ -517,6 +521,7 @@ static void derive(struct dem *dem)
         set_pair_law(dem, p);
     set_wall_laws(dem);
     list_walls_of_grains(dem);
+    if (dem->liquid) count_bridges(dem);
     set_external(dem);
     compare_mobilities(dem);
 }

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Liquid bridges between grains [G 2]: made where two touch, kept until they rupture.
+// Before the pair sweep comes to a group, how its bridges pull is found here, many at
+// once; the sweep takes that off the normal force.
+//
+// Who shares liquid with how many is taken as of the end of the cycle before, so that
+// the order in which bridges come and go, and with it the number of threads, does not
+// matter.
+#include "dem/engine.h"
+
+#include "basics/memory.h"
+#include "geometry/neighbours.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Groups at once: few enough for what they touch to stay cached.
+enum { BATCH = 32 * PAIRS_IN_GROUP };
+
+// Bridges that pull; lengths in effective radii [G 1].
+struct pulling {
+    int count;
+    int pair[BATCH];
+    double volume[BATCH], gap[BATCH], force[BATCH];
+};
+
+double bridge_reach(const struct dem *dem)
+{
+    return dem->liquid ? dem->liquid->reach : 0;
+}
+
+// In effective radii [G 2]; of the table, where the exact bridge ruptures.
+static double rupture_gap(const struct liquid *liquid, double volume)
+{
+    if (liquid->table) return bridge_table_rupture(liquid->table, volume);
+    const struct bridge bridge = {
+        {1, 1}, {liquid->is.contact_angle, liquid->is.contact_angle}, 1, volume};
+    return bridge_rupture_distance(&bridge);
+}
+
+// What grain I gives to each of its bridges; all of it to the first.
+static double share_of(const struct liquid *liquid, int i)
+{
+    const int bridges = liquid->bridges[i];
+    return liquid->is.volume / (bridges > 0 ? bridges : 1);
+}
+
+static double volume_between(const struct liquid *liquid, int i, int j)
+{
+    return liquid->is.shared ? share_of(liquid, i) + share_of(liquid, j)
+                             : liquid->is.volume;
+}
+
+static void set_volume(const struct dem *dem, struct liquid_group *group, int lane,
+                       int i, int j)
+{
+    const double radius = group->radius[lane];
+    const double volume =
+        volume_between(dem->liquid, i, j) / (radius * radius * radius);
+    if (!(volume < group->volume[lane]) && !(volume > group->volume[lane])) return;
+    group->volume[lane] = volume;
+    group->rupture[lane] = rupture_gap(dem->liquid, volume);
+}
+
+static void count_bridge(struct liquid *liquid, int i, int j, int by)
+{
+    const int end[2] = {i, j};
+    for (int k = 0; k < 2; k++) {
+#pragma omp atomic
+        liquid->next[end[k]] += by;
+    }
+#pragma omp atomic write
+    liquid->changed = 1;
+}
+
+// How far the surfaces are apart in effective radii, with the digits of the overlap
+// (pair_kernel.h). Without branches: the compiler makes vectors of it.
+static void gaps_of(const struct dem *dem, const struct pair_group *group,
+                    const struct liquid_group *liquid, double gap[PAIRS_IN_GROUP])
+{
+    double square[PAIRS_IN_GROUP] = {0}, grown[PAIRS_IN_GROUP] = {0};
+    for (int axis = 0; axis < 3; axis++)
+        for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
+            const double start = group->separation[axis][lane];
+            const double apart = dem->place[group->second[lane]].displacement[axis] -
+                                 dem->place[group->first[lane]].displacement[axis];
+            const double now = start + apart;
+            square[lane] += now * now;
+            grown[lane] += apart * (start + now);
+        }
+    for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
+        const double sum = sqrt(square[lane]) + group->distance[lane];
+        gap[lane] =
+            (grown[lane] - group->overlap[lane] * sum) / (sum * liquid->radius[lane]);
+    }
+}
+
+// Makes, keeps or ruptures the bridge in lane LANE of group K, at GAP; lists it if it
+// pulls.
+static void keep_bridge(const struct dem *dem, int k, int lane, double gap,
+                        struct pulling *pulling)
+{
+    struct liquid_group *liquid = &dem->pairs.liquid[k];
+    const struct dem_liquid *is = &dem->liquid->is;
+    const int i = dem->pairs.group[k].first[lane], j = dem->pairs.group[k].second[lane];
+    const bool were = liquid->volume[lane] > 0;
+    const bool are = gap <= 0 || (were && gap <= liquid->rupture[lane]);
+    if (are != were) count_bridge(dem->liquid, i, j, are - were);
+    if (!are)
+        liquid->volume[lane] = 0;
+    else if (!were || is->shared)
+        set_volume(dem, liquid, lane, i, j);
+    if (!are || (gap <= 0 && !is->pulls_in_contact)) return;
+    pulling->pair[pulling->count] = k * PAIRS_IN_GROUP + lane;
+    pulling->volume[pulling->count] = liquid->volume[lane];
+    pulling->gap[pulling->count++] = gap;
+}
+
+static void find_forces(const struct liquid *liquid, struct pulling *pulling)
+{
+    if (liquid->table)
+        bridge_table_forces(liquid->table, pulling->count, pulling->volume,
+                            pulling->gap, pulling->force);
+    else
+        bridge_model_forces(liquid->is.model, liquid->is.contact_angle, pulling->count,
+                            pulling->volume, pulling->gap, pulling->force);
+}
+
+static void wet_batch(const struct dem *dem, int begin, int end)
+{
+    struct pulling pulling;
+    pulling.count = 0;
+    for (int k = begin; k < end; k++) {
+        double gap[PAIRS_IN_GROUP];
+        gaps_of(dem, &dem->pairs.group[k], &dem->pairs.liquid[k], gap);
+        memset(dem->pairs.liquid[k].pull, 0, sizeof dem->pairs.liquid[k].pull);
+        for (int lane = 0; lane < PAIRS_IN_GROUP; lane++)
+            keep_bridge(dem, k, lane, gap[lane], &pulling);
+    }
+    find_forces(dem->liquid, &pulling);
+    for (int k = 0; k < pulling.count; k++) {
+        const int p = pulling.pair[k], lane = p % PAIRS_IN_GROUP;
+        struct liquid_group *group = &dem->pairs.liquid[p / PAIRS_IN_GROUP];
+        group->pull[lane] =
+            dem->liquid->is.surface_tension * group->radius[lane] * pulling.force[k];
+    }
+}
+
+void wet_groups(const struct dem *dem, int begin, int end)
+{
+    const int step = BATCH / PAIRS_IN_GROUP;
+    for (int k = begin; k < end; k += step)
+        wet_batch(dem, k, k + step < end ? k + step : end);
+}
+
+void settle_bridges(struct dem *dem)
+{
+    struct liquid *liquid = dem->liquid;
+    if (!liquid->changed) return;
+    liquid->changed = 0;
+    memcpy(liquid->bridges, liquid->next,
+           (size_t)dem->n_particle * sizeof *liquid->bridges);
+}
+
+void count_bridges(struct dem *dem)
+{
+    struct liquid *liquid = dem->liquid;
+    memset(liquid->next, 0, (size_t)dem->n_particle * sizeof *liquid->next);
+    for (int p = 0; p < dem->pairs.n_pair; p++) {
+        const int32_t *end = dem->pairs.particle[p];
+        if (dem->pairs.liquid[p / PAIRS_IN_GROUP].volume[p % PAIRS_IN_GROUP] > 0)
+            count_bridge(liquid, end[0], end[1], 1);
+    }
+    liquid->changed = 1;
+    settle_bridges(dem);
+}
+
+void set_bridge_radius(const struct dem *dem, int pair)
+{
+    const struct pair_group *group = &dem->pairs.group[pair / PAIRS_IN_GROUP];
+    const int lane = pair % PAIRS_IN_GROUP;
+    const double a = dem->place[group->first[lane]].radius;
+    const double b = dem->place[group->second[lane]].radius;
+    dem->pairs.liquid[pair / PAIRS_IN_GROUP].radius[lane] = 2 / (1 / a + 1 / b);
+}
+
+void form_bridges(struct dem *dem)
+{
+    for (int turn = 0; turn < 2; turn++) { // the second with everybody's shares
+        wet_groups(dem, 0, dem->pairs.n_group);
+        settle_bridges(dem);
+    }
+}
+
+// The longest gap that a bridge of any two grains can have.
+static double longest_gap(const struct dem *dem, const struct liquid *liquid)
+{
+    double reach = 0;
+    const double radius[2] = {dem->smallest_radius, dem->largest_radius};
+    for (int k = 0; k < 2; k++) {
+        const double cube = radius[k] * radius[k] * radius[k];
+        const double volume = (liquid->is.shared ? 2 : 1) * liquid->is.volume / cube;
+        reach = fmax(reach, radius[k] * rupture_gap(liquid, volume));
+    }
+    return reach;
+}
+
+static enum status make_table(struct dem *dem, struct liquid *liquid,
+                              struct reason *reason)
+{
+    const double one[2] = {1, 1}, angle = liquid->is.contact_angle;
+    if (dem->largest_radius - dem->smallest_radius > 1e-12 * dem->largest_radius)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "the table of exact bridges is for grains of one radius, these "
+                      "are from %g to %g m: another model will do",
+                      dem->smallest_radius * dem->unit.length,
+                      dem->largest_radius * dem->unit.length);
+    return bridge_table_create(one, (double[2]){angle, angle}, &liquid->table, reason);
+}
+
+enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
+                        struct reason *reason)
+{
+    const double length = dem->unit.length;
+    struct liquid *liquid = dem->liquid = NEW_ARRAY(struct liquid, 1);
+    liquid->is = *is;
+    liquid->is.surface_tension /= dem->unit.stiffness;
+    liquid->is.volume /= length * length * length;
+    liquid->bridges = NEW_ARRAY(int32_t, dem->n_particle);
+    liquid->next = NEW_ARRAY(int32_t, dem->n_particle);
+    if (is->model == BRIDGE_TABLE) {
+        const enum status status = make_table(dem, liquid, reason);
+        if (status) return status;
+    }
+    liquid->reach = longest_gap(dem, liquid);
+    return STATUS_OK;
+}
+
+void free_liquid(struct liquid *liquid)
+{
+    if (!liquid) return;
+    bridge_table_free(liquid->table);
+    free(liquid->bridges);
+    free(liquid->next);
+    free(liquid);
+}
+
+struct dem_bridge *dem_bridges(const struct dem *dem, int *count)
+{
+    *count = 0;
+    if (!dem->liquid) return NULL;
+    const double length = dem->unit.length, force = dem->unit.stiffness * length;
+    struct dem_bridge *bridge = NEW_ARRAY(struct dem_bridge, dem->pairs.n_pair);
+    for (int p = 0; p < dem->pairs.n_pair; p++) {
+        const int lane = p % PAIRS_IN_GROUP;
+        const struct liquid_group *group = &dem->pairs.liquid[p / PAIRS_IN_GROUP];
+        const double radius = group->radius[lane] * length;
+        if (!(group->volume[lane] > 0)) continue;
+        const int32_t a = dem->identity[dem->pairs.particle[p][0]];
+        const int32_t b = dem->identity[dem->pairs.particle[p][1]];
+        bridge[(*count)++] = (struct dem_bridge){
+            .particle = {a < b ? a : b, a < b ? b : a},
+            .volume = group->volume[lane] * radius * radius * radius,
+            .separation = -length * pair_geometry(dem, p, places_ahead(dem)).overlap,
+            .force = group->pull[lane] * force};
+    }
+    qsort(bridge, (size_t)*count, sizeof *bridge, compare_pairs);
+    return bridge;
+}

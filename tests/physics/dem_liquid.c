@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Liquid bridges between moving grains: formed by touch, kept until rupture, pulling as
+// the models and the exact solution say; their liquid shared.
+#include "dem_scene.h"
+
+#include "bridges/bridges.h"
+
+static struct dem_liquid some_liquid(enum bridge_model model)
+{
+    return (struct dem_liquid){.model = model,
+                               .surface_tension = 0.07,
+                               .contact_angle = 0.2,
+                               .volume = 1e-3 * RADIUS * RADIUS * RADIUS,
+                               .pulls_in_contact = true};
+}
+
+static struct dem_setup loose_setup(const struct packing *packing,
+                                    const struct dem_liquid *liquid)
+{
+    return (struct dem_setup){.packing = packing,
+                              .material = {.density = 2500,
+                                           .normal_stiffness = 100,
+                                           .shear_stiffness = 100 * 2.0 / 7,
+                                           .damping_ratio = 0.1},
+                              .liquid = liquid,
+                              .time_step_safety = 0.02,
+                              .threads = 1};
+}
+
+// Grains in a row that touch.
+static struct packing row_of(int n, const double *radius)
+{
+    struct packing packing = new_packing(n, 0);
+    double x = 0;
+    for (int i = 0; i < n; i++) {
+        packing.radius[i] = radius[i];
+        packing.position[i] = (struct vector){x + radius[i], RADIUS, RADIUS};
+        x += 2 * radius[i];
+    }
+    packing.upper = (struct vector){x, 2 * RADIUS, 2 * RADIUS};
+    return packing;
+}
+
+static double force_now(const struct dem *dem, double *separation)
+{
+    int count;
+    struct dem_bridge *bridge = dem_bridges(dem, &count);
+    const double force = count > 0 ? bridge->force : NAN;
+    if (count > 0) *separation = bridge->separation;
+    free(bridge);
+    return force;
+}
+
+// The force of another place: the model, or the exact solution for its table.
+static double wanted(const struct bridge *bridge, enum bridge_model model, double a)
+{
+    if (model != BRIDGE_TABLE) return bridge_model_force(bridge, model, a, NULL);
+    struct bridge_state state;
+    struct reason reason;
+    assert_int_equal(bridge_solve(bridge, a, &state, &reason), STATUS_OK);
+    return state.force;
+}
+
+// So fast that the bridge does not matter; back again, the grains never touch.
+static void pull_apart(enum bridge_model model, double other_radius)
+{
+    const double radius[2] = {RADIUS, other_radius};
+    struct packing packing = row_of(2, radius);
+    const struct dem_liquid liquid = some_liquid(model);
+    const struct dem_setup setup = loose_setup(&packing, &liquid);
+    const struct bridge bridge = {
+        {radius[0], radius[1]}, {0.2, 0.2}, 0.07, liquid.volume};
+    struct dem *dem = create(&setup);
+    const double step = 0.002 * RADIUS, speed = step / dem_time_step(dem);
+    double rupture = bridge_rupture_distance(&bridge), a = 0;
+    if (model == BRIDGE_TABLE) {
+        struct bridge_state last;
+        struct reason reason;
+        assert_int_equal(bridge_solve_rupture(&bridge, &last, &reason), STATUS_OK);
+        rupture = last.separation;
+    }
+    int seen = 0;
+    for (int cycle = 0; cycle < 200; cycle++) {
+        const double sign = cycle < 100 ? 1 : -0.5;
+        dem_set_velocity(dem, (struct vector[2]){{0, 0, 0}, {sign * speed, 0, 0}},
+                         NULL);
+        run(dem, 1);
+        const double force = force_now(dem, &a);
+        if (isnan(force)) continue;
+        seen++;
+        assert_true(cycle < 100 && a <= rupture * (1 + 1e-12));
+        assert_close(force, wanted(&bridge, model, a),
+                     model == BRIDGE_TABLE ? 1e-5 : 1e-11);
+    }
+    assert_true(a > rupture - 1.1 * step && seen < 100);
+    dem_free(dem);
+    packing_free(&packing);
+}
+
+static void test_pulls_as_the_models_until_rupture(void **state)
+{
+    (void)state;
+    for (int model = BRIDGE_WEIGERT; model < BRIDGE_MODELS; model++)
+        pull_apart((enum bridge_model)model, 0.5 * RADIUS);
+    pull_apart(BRIDGE_TABLE, RADIUS);
+}
+
+// At rest the contact carries what the bridge pulls with at a = 0, if it pulls there.
+static void test_presses_grains_together(void **state)
+{
+    (void)state;
+    const double radius[2] = {RADIUS, RADIUS};
+    struct packing packing = row_of(2, radius);
+    for (int pulls = 0; pulls < 2; pulls++) {
+        struct dem_liquid liquid = some_liquid(BRIDGE_RABINOVICH_LAMBERT);
+        liquid.pulls_in_contact = pulls;
+        const struct dem_setup setup = loose_setup(&packing, &liquid);
+        struct dem *dem = create(&setup);
+        run(dem, 30000);
+        double a = 1;
+        const double force = force_now(dem, &a),
+                     at_contact = 2 * M_PI * RADIUS * 0.07 * cos(0.2);
+        if (pulls) {
+            assert_close(force, at_contact, 1e-12);
+            assert_close(-a, at_contact / 50, 1e-9); // two grains of 100 N/m in series
+        } else
+            assert_true(force == 0 && a == 0);
+        dem_free(dem);
+    }
+    packing_free(&packing);
+}
+
+// Volumes of the bridges 0-1, 1-2, or 0.
+static void volumes_of(const struct dem *dem, double volume[2])
+{
+    int count;
+    struct dem_bridge *bridge = dem_bridges(dem, &count);
+    volume[0] = volume[1] = 0;
+    for (int k = 0; k < count; k++)
+        volume[bridge[k].particle[0]] = bridge[k].volume;
+    free(bridge);
+}
+
+static void test_shares_its_liquid(void **state)
+{
+    (void)state;
+    const double radius[3] = {RADIUS, 0.8 * RADIUS, RADIUS};
+    struct packing packing = row_of(3, radius);
+    struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_FULL);
+    liquid.shared = true;
+    const struct dem_setup setup = loose_setup(&packing, &liquid);
+    struct dem *dem = create(&setup);
+    double volume[2];
+    volumes_of(dem, volume); // the grain in the middle halves its own
+    assert_close(volume[0], 1.5 * liquid.volume, 1e-14);
+    assert_close(volume[1], 1.5 * liquid.volume, 1e-14);
+    const double speed = 0.002 * RADIUS / dem_time_step(dem);
+    dem_set_velocity(dem, (struct vector[3]){{0, 0, 0}, {0, 0, 0}, {speed, 0, 0}},
+                     NULL);
+    run(dem, 300);
+    volumes_of(dem, volume);
+    assert_close(volume[0], 2 * liquid.volume, 1e-14);
+    assert_true(volume[1] == 0);
+    dem_free(dem);
+    packing_free(&packing);
+}
+
+// Wet grains of two sizes, thrown about where the box repeats along x.
+enum { SIDE = 14, MANY = SIDE * SIDE * SIDE };
+
+static struct packing wet_grains(void)
+{
+    struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
+    packing.n_bond = 0;
+    packing.periodic[0] = true;
+    for (int i = 0; i < MANY; i++)
+        packing.radius[i] = i % 7 ? RADIUS : 0.9 * RADIUS;
+    return packing;
+}
+
+static struct dem *thrown(const struct packing *packing,
+                          const struct dem_liquid *liquid, int threads, double safety)
+{
+    struct dem_setup setup = loose_setup(packing, liquid);
+    setup.threads = threads;
+    setup.time_step_safety = safety;
+    setup.balance_energy = true;
+    struct dem *dem = create(&setup);
+    struct vector *velocity = random_vectors(MANY, 0.5, 5);
+    dem_set_velocity(dem, velocity, NULL);
+    free(velocity);
+    return dem;
+}
+
+static int bridges_in(const struct dem *dem)
+{
+    int count;
+    free(dem_bridges(dem, &count));
+    return count;
+}
+
+static void assert_same(const struct dem *a, const struct dem *b)
+{
+    struct vector *x = NEW_ARRAY(struct vector, MANY),
+                  *y = NEW_ARRAY(struct vector, MANY);
+    dem_displacements(a, x);
+    dem_displacements(b, y);
+    assert_memory_equal(x, y, MANY * sizeof *x);
+    assert_int_equal(bridges_in(a), bridges_in(b));
+    free(x);
+    free(y);
+}
+
+static void test_same_bytes_whoever_computes(void **state)
+{
+    (void)state;
+    struct packing packing = wet_grains();
+    struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_REDUCED);
+    liquid.shared = true;
+    struct dem *one = thrown(&packing, &liquid, 1, 0.02);
+    const int began = bridges_in(one);
+    run(one, 1000);
+    assert_true(bridges_in(one) != began && bridges_in(one) > MANY);
+    for (int threads = 2; threads < 4; threads++) {
+        struct dem *more = thrown(&packing, &liquid, threads, 0.02);
+        run(more, 400);
+        int count; // stop, and go on in another
+        struct dem_array *kept = dem_save(more, &count);
+        struct dem *again = thrown(&packing, &liquid, threads, 0.02);
+        struct reason reason = {""};
+        if (dem_restore(again, kept, count, &reason)) fail_msg("%s", reason.text);
+        run(again, 600);
+        assert_same(one, again);
+        dem_free_arrays(kept, count);
+        dem_free(more);
+        dem_free(again);
+    }
+    dem_free(one);
+    packing_free(&packing);
+}
+
+static double norm_of_momentum(const struct dem *dem, double *all)
+{
+    double size = 0;
+    for (int i = 0; i < dem->n_particle; i++)
+        size += dem->mass[i] * norm(as_vector(dem->motion[i].linear));
+    *all = size * dem->unit.mass * dem->unit.length / dem->unit.time;
+    return norm(dem_momentum(dem).linear);
+}
+
+// Momentum stays; energy is in the books, the better the shorter the steps.
+static void test_conserves(void **state)
+{
+    (void)state;
+    struct packing packing = wet_grains();
+    const struct dem_liquid liquid = some_liquid(BRIDGE_RABINOVICH);
+    double missing[2];
+    for (int fine = 0; fine < 2; fine++) {
+        const double safety = fine ? 0.005 : 0.02;
+        struct dem *dem = thrown(&packing, &liquid, 2, safety);
+        double all, began_all;
+        const double began = dem_energy(dem).kinetic;
+        const struct vector before = dem_momentum(dem).linear;
+        norm_of_momentum(dem, &began_all);
+        run(dem, (int64_t)(10 / safety));
+        const struct dem_energy now = dem_energy(dem);
+        norm_of_momentum(dem, &all);
+        assert_true(norm(subtract(dem_momentum(dem).linear, before)) <
+                    1e-11 * began_all);
+        missing[fine] =
+            fabs(now.kinetic + now.elastic + now.dashpots + now.bridges - began) /
+            began;
+        assert_true(fabs(now.bridges) > 0.05 * began);
+        dem_free(dem);
+    }
+    if (!(missing[1] < 0.01 && missing[1] < 0.3 * missing[0])) // of first order
+        fail_msg("missing %g, in longer steps %g", missing[1], missing[0]);
+    packing_free(&packing);
+}
+
+// The same from nm to km.
+static void test_is_scale_free(void **state)
+{
+    (void)state;
+    struct vector moved[2];
+    for (int large = 0; large < 2; large++) {
+        const double scale = large ? 4e12 : 4e-2; // 1e6 m or 1e-8 m
+        const double radius[3] = {RADIUS * scale, 0.8 * RADIUS * scale, RADIUS * scale};
+        struct packing packing = row_of(3, radius);
+        struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_FULL);
+        liquid.volume *= scale * scale * scale;
+        const struct dem_setup setup = loose_setup(&packing, &liquid);
+        struct dem *dem = create(&setup);
+        run(dem, 200);
+        moved[large] = displacement_of(dem, 2);
+        moved[large].x /= RADIUS * scale;
+        dem_free(dem);
+        packing_free(&packing);
+    }
+    assert_close(moved[1].x, moved[0].x, 1e-11);
+    assert_true(moved[0].x < -1e-4);
+}
+
+static void refuses(const struct packing *packing, struct dem_liquid liquid,
+                    const char *why)
+{
+    const struct dem_setup setup = loose_setup(packing, &liquid);
+    struct dem *dem;
+    struct reason reason = {""};
+    assert_int_equal(dem_create(&dem, &setup, &reason), STATUS_BAD_DATA);
+    assert_null(dem);
+    if (!strstr(reason.text, why)) fail_msg("%s", reason.text);
+}
+
+static void test_refuses_what_it_cannot(void **state)
+{
+    (void)state;
+    const double radius[2] = {RADIUS, 0.5 * RADIUS};
+    struct packing packing = row_of(2, radius);
+    refuses(&packing, some_liquid(BRIDGE_EXACT), "too slow");
+    refuses(&packing, some_liquid(BRIDGE_TABLE), "one radius");
+    struct dem_liquid liquid = some_liquid(BRIDGE_SOULIE);
+    liquid.volume = -1;
+    refuses(&packing, liquid, "volume of bridges must be > 0");
+    liquid = some_liquid(BRIDGE_SOULIE);
+    liquid.contact_angle = NAN;
+    refuses(&packing, liquid, "contact angle must be in");
+    packing_free(&packing);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pulls_as_the_models_until_rupture),
+        cmocka_unit_test(test_presses_grains_together),
+        cmocka_unit_test(test_shares_its_liquid),
+        cmocka_unit_test(test_same_bytes_whoever_computes),
+        cmocka_unit_test(test_conserves),
+        cmocka_unit_test(test_is_scale_free),
+        cmocka_unit_test(test_refuses_what_it_cannot)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
