@@ -230,8 +230,9 @@ refused_in_shell("a closed standard input is refused", IO, "$BIN/tessellate -o o
 
 for reader, given in [("tessellate", "network"), ("merge-nodes", "packing"),
                       ("dry", "packing"), ("force-protocol", "forces"),
-                      ("dem-replay", "drying"), ("crackstats", "forces")]:
-    wanted = {"dry": "network"} | {r: name for name, r in READER.items()}
+                      ("dem-replay", "drying"), ("crackstats", "forces"),
+                      ("invade", "drying")]:
+    wanted = {"dry": "network", "invade": "network"} | {r: name for name, r in READER.items()}
     refused(f"{reader} refuses a {given}", BAD_DATA, [reader, given],
             f"{given}: must be a {wanted[reader]}, is a {given}")
 refused("a JSON artifact is not an HDF5 file", BAD_DATA, ["crackstats", "crackstats"],
@@ -902,7 +903,7 @@ setting("a tolerance that is not met is reported", UNSTABLE, "tolerance=1e-12",
 # ---- the command line -------------------------------------------------------------------
 
 for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
-                "crackstats", "bridge", "flow", "inspect"]:
+                "crackstats", "bridge", "flow", "invade", "inspect"]:
     refused_in_shell(f"{program} refuses an unknown option", USAGE,
                      f"$BIN/{program} --nonsense", ".*: unrecognized option '--nonsense'")
 refused_in_shell("an option without its argument is refused", USAGE, "$BIN/pack --set",
@@ -938,7 +939,7 @@ refused("inspect refuses JSON without a schema", BAD_DATA,
 # ---- output -----------------------------------------------------------------------------
 
 for program, source in [("pack", ""), ("tessellate", "packing"), ("merge-nodes", "network"),
-                        ("dry", "network"), ("force-protocol", "drying"),
+                        ("dry", "network"), ("invade", "network"), ("force-protocol", "drying"),
                         ("crackstats", "response")]:
     refused_in_shell(f"{program} reports a full disk", IO,
                      f"$BIN/{program} {source} -o /dev/full",

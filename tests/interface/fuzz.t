@@ -48,7 +48,7 @@ READERS = {
     "packing": [["tessellate"], ["pack", "--set", "method=import"]],
     "degenerate": [["merge-nodes"]],
     "network": [["merge-nodes", "--set", "measure=mean_length", "--set", "threshold=1"], ["dry"],
-                ["dry", "--set", "liquid=immobile"]],
+                ["dry", "--set", "liquid=immobile"], ["invade"]],
     "drying": [["force-protocol", "--set", "steps=5"]],
     "forces": [["dem-replay", *REPLAY]],
     "response": [["crackstats"]],
@@ -125,7 +125,7 @@ SCENE = {
     program: json.loads(subprocess.run([f"{BIN}/{program}", "--parameters"], check=True,
                                        stdout=subprocess.PIPE).stdout)
     for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
-                    "crackstats"]
+                    "crackstats", "invade"]
 }
 SCENE["pack"]["counts"] = [2, 2, 3]
 SCENE["dry"]["boundary_layer"]["layers"] = 2

@@ -17,5 +17,6 @@
     schema schema_restart, "schemas/restart.json"
     schema schema_bridge, "schemas/bridge.json"
     schema schema_flow, "schemas/flow.json"
+    schema schema_invasion, "schemas/invasion.json"
 
     .section .note.GNU-stack, "", @progbits

@@ -16,7 +16,7 @@
 static const char *const sections[] = {
     "pack",       "tessellate",     "merge-nodes", "dry",       "force-protocol",
     "dem-replay", "crackstats",     "bridge",      "dem-shear", "shearstats",
-    "flow",       "import-network", NULL};
+    "flow",       "import-network", "invade",      NULL};
 
 enum {
     KEY_THREADS = 256,

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// At which pressure gas enters throats and nodes.
+#ifndef CRAQUELURE_ENTRY_H
+#define CRAQUELURE_ENTRY_H
+
+#include "invasion.h"
+
+struct entry_conditions {
+    double surface_tension; // N/m, above 0
+    double contact_angle;   // degrees, from 0 to below 90
+    double liquid_density;  // kg/m3, above that of the gas
+    double gravity;         // towards -z, m/s2; 0: none
+};
+
+// A node is as wide as its widest throat.
+struct entry {
+    int n;            // throats, or nodes
+    double *pressure; // (n) Pa, of the gas above that of the liquid at the box's floor
+    double *ease;     // (n) for invade: radii without gravity, so that equal ones tie
+};
+
+// The pressure is 2 sigma cos(theta) / r - rho g z with z above the floor of the box:
+// gas that comes from above is held back (stable), from below driven on. The caller
+// frees it with entry_free, also after a failure.
+//
+// STATUS_BAD_DATA with the dataset, the row, the rule and the value: a throat of kind
+// THROAT_NETWORK without radius or with less than no volume, or none of that kind; or
+// gravity along an axis on which the box repeats.
+enum status entry_make(const struct network *network, enum invasion_rule rule,
+                       const struct entry_conditions *conditions, struct entry *entry,
+                       struct reason *reason);
+
+void entry_free(struct entry *entry);
+
+#endif

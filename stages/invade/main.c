@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// invade: which throat or node gas enters when, pressed in slowly through some walls.
+#include "artifacts/artifact.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "entry.h"
+#include "outcome.h"
+
+#include <stdio.h>
+
+struct invade_parameters {
+    struct invasion_conditions invasion;
+    struct entry_conditions entry;
+    int rule, until;
+};
+
+enum { UNTIL_END, UNTIL_BREAKTHROUGH };
+
+#define AT(member) offsetof(struct invade_parameters, member)
+#define WALLS "-x|+x|-y|+y|-z|+z"
+
+static const struct parameter table[] = {
+    {"rule", PARAMETER_CHOICE, "1", "\"throats\"", BOUND_NONE, 0, 0, "throats|nodes",
+     "what holds gas up: throats by their radii (drainage), or nodes, as wide as their "
+     "widest throat",
+     AT(rule)},
+    {"trapping", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
+     "liquid leaves only through the outlet: what gas has cut off from it stays",
+     AT(invasion.trapping)},
+    {"until", PARAMETER_CHOICE, "1", "\"end\"", BOUND_NONE, 0, 0, "end|breakthrough",
+     "when to stop: when gas can enter nothing more, or first touches the outlet",
+     AT(until)},
+    {"inlet", PARAMETER_CHOICES, "1", "[\"+z\"]", BOUND_NONE, 0, 0, WALLS,
+     "walls through which gas comes in", AT(invasion.inlet)},
+    {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", BOUND_NONE, 0, 0, WALLS,
+     "walls through which liquid leaves", AT(invasion.outlet)},
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid [K Table 3.1]", AT(entry.surface_tension)},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
+     "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) / r",
+     AT(entry.contact_angle)},
+    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2", BOUND_ABOVE, 0, 0, NULL,
+     "of the liquid, above that of the gas", AT(entry.liquid_density)},
+    {"gravity", PARAMETER_NUMBER, "m s-2", "0", BOUND_MINIMUM, 0, 0, NULL,
+     "towards -z: liquid higher up gives way to gas more easily; 0: none",
+     AT(entry.gravity)},
+    {0}};
+
+static const struct stage stage = {
+    .name = "invade",
+    .version = STAGE_VERSION,
+    .summary = "invade -- invasion percolation: press gas slowly into a full network",
+    .reads = "network",
+    .writes = "invasion",
+    .most_inputs = 1,
+    .parameters = table};
+
+// Share of what takes part that is as easy to enter as PRESSURE says.
+static double share_up_to(const struct network *network, const struct entry *entry,
+                          enum invasion_rule rule, double pressure)
+{
+    int n = 0, all = 0;
+    for (int i = 0; i < entry->n; i++) {
+        const bool takes_part = rule == INVADE_THROATS
+                                    ? network->throat_kind[i] == THROAT_NETWORK
+                                    : isfinite(entry->pressure[i]); // has a throat
+        all += takes_part;
+        n += takes_part && entry->pressure[i] <= pressure;
+    }
+    return (double)n / all;
+}
+
+static void put_summary(struct artifact *artifact, const struct network *network,
+                        const struct invasion_conditions *conditions,
+                        const struct invasion *invasion, const struct outcome *outcome,
+                        const struct entry *entry)
+{
+    const int n = invasion->breakthrough;
+    double trapped = 0, left = 0;
+    for (int c = 0; c < outcome->n_cluster; c++) {
+        left += outcome->cluster_volume[c];
+        if (outcome->cluster_trapped[c]) trapped += outcome->cluster_volume[c];
+    }
+    const double saturation = outcome->n ? outcome->saturation[outcome->n - 1] : 1;
+    artifact_put_number(artifact, "/summary/inlet", conditions->inlet);
+    artifact_put_number(artifact, "/summary/outlet", conditions->outlet);
+    artifact_put_number(artifact, "/summary/residual_saturation", saturation);
+    artifact_put_number(artifact, "/summary/trapped_saturation",
+                        left > 0 ? saturation * (trapped / left) : 0);
+    if (n < 0) return;
+    artifact_put_number(artifact, "/summary/breakthrough_event", n);
+    artifact_put_number(artifact, "/summary/breakthrough_saturation",
+                        n ? outcome->saturation[n - 1] : 1);
+    if (n == 0) return;
+    double highest = outcome->pressure[0];
+    for (int k = 1; k < n; k++)
+        highest = fmax(highest, outcome->pressure[k]);
+    artifact_put_number(artifact, "/summary/breakthrough_pressure", highest);
+    artifact_put_number(artifact, "/summary/breakthrough_share",
+                        share_up_to(network, entry, conditions->rule, highest));
+}
+
+static void put_outcome(struct artifact *artifact, const struct network *network,
+                        const struct invasion *invasion, const struct outcome *outcome)
+{
+    const int n = outcome->n, n_cluster = outcome->n_cluster;
+    if (invasion->throat) artifact_put(artifact, "/events/throat", invasion->throat, n);
+    artifact_put(artifact, "/events/node", invasion->node, n);
+    artifact_put(artifact, "/events/pressure", outcome->pressure, n);
+    artifact_put(artifact, "/events/saturation", outcome->saturation, n);
+    artifact_put(artifact, "/throats/event", outcome->throat_event, network->n_throat);
+    artifact_put(artifact, "/nodes/event", outcome->node_event, network->n_node);
+    artifact_put(artifact, "/throats/cluster", outcome->throat_cluster,
+                 network->n_throat);
+    artifact_put(artifact, "/clusters/throats", outcome->cluster_throats, n_cluster);
+    artifact_put(artifact, "/clusters/volume", outcome->cluster_volume, n_cluster);
+    artifact_put(artifact, "/clusters/trapped", outcome->cluster_trapped, n_cluster);
+    artifact_put(artifact, "/curve/pressure", outcome->curve_pressure,
+                 outcome->n_curve);
+    artifact_put(artifact, "/curve/saturation", outcome->curve_saturation,
+                 outcome->n_curve);
+    artifact_put_vtk(artifact, "/nodes/position", network->n_node,
+                     (const char *const[]){"/nodes/kind", "/nodes/event", NULL},
+                     (const int32_t(*)[2])network->throat_nodes, network->n_throat,
+                     (const char *const[]){"/throats/radius", "/throats/kind",
+                                           "/throats/event", "/throats/cluster", NULL});
+}
+
+static const char *describe(const struct invade_parameters *parameters, char text[600])
+{
+    char gravity[60];
+    snprintf(gravity, sizeof gravity, "gravity: %.17g m/s2\n",
+             parameters->entry.gravity);
+    snprintf(
+        text, 600,
+        "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
+        "touches that takes the least pressure, of equals that with the lowest number\n"
+        "%s\n%s"
+        "left out: viscosity, evaporation, compressibility, films, snap-off%s",
+        parameters->rule == INVADE_THROATS ? "throat" : "node",
+        parameters->invasion.trapping
+            ? "trapping: liquid leaves only through the outlet (Masson 2016)"
+            : "no trapping: liquid leaves from anywhere",
+        parameters->entry.gravity > 0 ? gravity : "",
+        parameters->entry.gravity > 0 ? "" : ", gravity");
+    return text;
+}
+
+static void check_walls(const struct invasion_conditions *conditions)
+{
+    if (conditions->inlet == 0)
+        die(STATUS_BAD_DATA, "invade.inlet: must name a wall, names none");
+    if (conditions->inlet & conditions->outlet)
+        die(STATUS_BAD_DATA,
+            "invade.outlet: must have no wall in common with the inlet");
+}
+
+int main(int argc, char **argv)
+{
+    struct invade_parameters parameters = {0};
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    struct invasion_conditions *conditions = &parameters.invasion;
+    conditions->rule = (enum invasion_rule)parameters.rule;
+    conditions->until_breakthrough = parameters.until == UNTIL_BREAKTHROUGH;
+    check_walls(conditions);
+    struct artifact *input = artifact_open(invocation.inputs[0], "network");
+    struct network network = artifact_get_periodic_network(input);
+
+    struct entry entry;
+    struct invasion invasion = {0};
+    struct reason reason;
+    enum status status =
+        entry_make(&network, conditions->rule, &parameters.entry, &entry, &reason);
+    conditions->ease = entry.ease;
+    if (!status) status = invade(&network, conditions, &invasion, &reason);
+    if (status) die(status, "%s: %s", input_name(input->path), reason.text);
+    struct outcome outcome =
+        outcome_make(&network, conditions, &invasion, entry.pressure);
+
+    char model[600];
+    struct artifact *artifact = artifact_create("invasion", invocation.output);
+    artifact_put_network(artifact, &network);
+    put_outcome(artifact, &network, &invasion, &outcome);
+    put_summary(artifact, &network, conditions, &invasion, &outcome, &entry);
+    artifact_finish(artifact, &invocation, one_input(input),
+                    describe(&parameters, model));
+
+    outcome_free(&outcome);
+    invasion_free(&invasion);
+    entry_free(&entry);
+    network_free(&network);
+    artifact_close(input);
+    invocation_free(&invocation);
+    return STATUS_OK;
+}

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "outcome.h"
+
+#include "basics/compensated.h"
+#include "basics/disjoint_sets.h"
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+enum { GAS_FROM_THE_START = 0, LIQUID = -1 };
+
+// --- events ------------------------------------------------------------------------
+
+static int32_t earlier(int32_t a, int32_t b)
+{
+    if (a == LIQUID || b == LIQUID) return a == LIQUID ? b : a;
+    return a < b ? a : b;
+}
+
+static void number_events(const struct network *network,
+                          const struct invasion_conditions *conditions,
+                          const struct invasion *invasion, struct outcome *outcome)
+{
+    const bool throats = conditions->rule == INVADE_THROATS;
+    int32_t *node_event = outcome->node_event, *throat_event = outcome->throat_event;
+    for (int i = 0; i < network->n_node; i++)
+        node_event[i] = throats && (network->node_walls[i] & conditions->inlet)
+                            ? GAS_FROM_THE_START
+                            : LIQUID;
+    for (int k = 0; k < invasion->n; k++)
+        if (invasion->node[k] >= 0) node_event[invasion->node[k]] = k + 1;
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *ends = network->throat_nodes[t];
+        throat_event[t] = network->throat_kind[t] != THROAT_NETWORK ? GAS_FROM_THE_START
+                          : throats                                 ? LIQUID
+                                    : earlier(node_event[ends[0]], node_event[ends[1]]);
+    }
+    for (int k = 0; throats && k < invasion->n; k++)
+        throat_event[invasion->throat[k]] = k + 1;
+}
+
+// --- saturation and pressure -------------------------------------------------------
+
+static void find_saturations(const struct network *network, struct outcome *outcome)
+{
+    double *lost = NEW_ARRAY(double, outcome->n);
+    int last = -1; // after which nothing is left; n: never
+    struct compensated all = {0}, gone = {0};
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        const double volume = throat_volume(network, t);
+        compensated_add(&all, volume);
+        const int event = outcome->throat_event[t];
+        last = event == LIQUID ? outcome->n : last > event - 1 ? last : event - 1;
+        if (event > 0) lost[event - 1] += volume;
+    }
+    const double total = compensated_value(all);
+    for (int k = 0; k < outcome->n; k++) {
+        compensated_add(&gone, lost[k]);
+        outcome->saturation[k] =
+            k < last ? fmax(0, compensated_difference(all, gone) / total) : 0;
+    }
+    free(lost);
+}
+
+static void find_curve(struct outcome *outcome)
+{
+    for (int k = 0; k < outcome->n; k++) {
+        int *n = &outcome->n_curve;
+        if (*n == 0 || outcome->pressure[k] > outcome->curve_pressure[*n - 1])
+            outcome->curve_pressure[(*n)++] = outcome->pressure[k];
+        outcome->curve_saturation[*n - 1] = outcome->saturation[k];
+    }
+}
+
+// --- what stays --------------------------------------------------------------------
+
+// A node in the set of liquid that THROAT belongs to, -1 if it is alone.
+static int liquid_end(const struct network *network, const struct outcome *outcome,
+                      int throat)
+{
+    for (int end = 0; end < 2; end++) {
+        const int node = network->throat_nodes[throat][end];
+        if (outcome->node_event[node] == LIQUID) return node;
+    }
+    return -1;
+}
+
+static void add_to_cluster(const struct network *network, struct outcome *outcome,
+                           int throat, int cluster)
+{
+    outcome->throat_cluster[throat] = cluster;
+    outcome->cluster_throats[cluster]++;
+    outcome->cluster_volume[cluster] += throat_volume(network, throat);
+    outcome->cluster_trapped[cluster] = 1;
+}
+
+static void find_clusters(const struct network *network, unsigned outlet,
+                          struct outcome *outcome)
+{
+    const int n_node = network->n_node;
+    int *parent = NEW_ARRAY(int, n_node), *cluster = NEW_ARRAY(int, n_node);
+    for (int i = 0; i < n_node; i++) {
+        parent[i] = i;
+        cluster[i] = -1;
+    }
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *ends = network->throat_nodes[t];
+        if (outcome->throat_event[t] == LIQUID &&
+            outcome->node_event[ends[0]] == LIQUID &&
+            outcome->node_event[ends[1]] == LIQUID)
+            unite_sets(parent, ends[0], ends[1]);
+    }
+    for (int t = 0; t < network->n_throat; t++) {
+        outcome->throat_cluster[t] = -1;
+        if (outcome->throat_event[t] != LIQUID) continue;
+        const int node = liquid_end(network, outcome, t);
+        int alone = -1;
+        int *number = node < 0 ? &alone : &cluster[set_root(parent, node)];
+        if (*number < 0) *number = outcome->n_cluster++;
+        add_to_cluster(network, outcome, t, *number);
+    }
+    for (int i = 0; i < n_node; i++) {
+        const int number = cluster[set_root(parent, i)];
+        if ((network->node_walls[i] & outlet) && number >= 0)
+            outcome->cluster_trapped[number] = 0;
+    }
+    free(parent);
+    free(cluster);
+}
+
+// --- the whole ---------------------------------------------------------------------
+
+struct outcome outcome_make(const struct network *network,
+                            const struct invasion_conditions *conditions,
+                            const struct invasion *invasion, const double *pressure)
+{
+    const int n = invasion->n, n_throat = network->n_throat;
+    struct outcome outcome = {.throat_event = NEW_ARRAY(int32_t, n_throat),
+                              .node_event = NEW_ARRAY(int32_t, network->n_node),
+                              .n = n,
+                              .pressure = NEW_ARRAY(double, n),
+                              .saturation = NEW_ARRAY(double, n),
+                              .curve_pressure = NEW_ARRAY(double, n),
+                              .curve_saturation = NEW_ARRAY(double, n),
+                              .throat_cluster = NEW_ARRAY(int32_t, n_throat),
+                              .cluster_throats = NEW_ARRAY(int32_t, n_throat),
+                              .cluster_volume = NEW_ARRAY(double, n_throat),
+                              .cluster_trapped = NEW_ARRAY(uint8_t, n_throat)};
+    const int32_t *entered = invasion->throat ? invasion->throat : invasion->node;
+    for (int k = 0; k < n; k++)
+        outcome.pressure[k] = pressure[entered[k]];
+    number_events(network, conditions, invasion, &outcome);
+    find_saturations(network, &outcome);
+    find_curve(&outcome);
+    find_clusters(network, conditions->outlet, &outcome);
+    return outcome;
+}
+
+void outcome_free(struct outcome *outcome)
+{
+    free(outcome->throat_event);
+    free(outcome->node_event);
+    free(outcome->pressure);
+    free(outcome->saturation);
+    free(outcome->curve_pressure);
+    free(outcome->curve_saturation);
+    free(outcome->throat_cluster);
+    free(outcome->cluster_throats);
+    free(outcome->cluster_volume);
+    free(outcome->cluster_trapped);
+    *outcome = (struct outcome){0};
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an invasion says of throats, nodes and the liquid that stays.
+#ifndef CRAQUELURE_OUTCOME_H
+#define CRAQUELURE_OUTCOME_H
+
+#include "invasion.h"
+
+// Events count from 1; 0: gas from the start; -1: liquid in the end. Where gas enters
+// nodes, a throat empties with the first of its two.
+struct outcome {
+    int32_t *throat_event; // (n_throat)
+    int32_t *node_event;   // (n_node)
+
+    int n;
+    double *pressure;   // (n) Pa, at which gas enters
+    double *saturation; // (n) after the event, of the liquid volume at the start
+
+    // Pressures higher than any before, and the saturation when the next one comes.
+    int n_curve;
+    double *curve_pressure, *curve_saturation; // (n_curve)
+
+    int32_t *throat_cluster; // (n_throat) -1: gas; clusters by their lowest throat
+    int n_cluster;
+    int32_t *cluster_throats; // (n_cluster) how many
+    double *cluster_volume;   // (n_cluster) m3
+    uint8_t *cluster_trapped; // (n_cluster) 1: no liquid leads to the outlet
+};
+
+// PRESSURE: at which gas enters each throat, or node, Pa. The caller frees the outcome
+// with outcome_free.
+struct outcome outcome_make(const struct network *network,
+                            const struct invasion_conditions *conditions,
+                            const struct invasion *invasion, const double *pressure);
+
+void outcome_free(struct outcome *outcome);
+
+#endif

@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What invade says of a random network, counted anew: pressures, saturations, curve, clusters;
+# gravity; what it refuses.
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, read, run, scratch
+
+TENSION, DENSITY = 0.07274, 998.2
+
+
+def labels(n, ends):
+    """The lowest node that each of N nodes is joined with."""
+    label = np.arange(n)
+    while True:
+        new = label.copy()
+        np.minimum.at(new, ends[:, 0], label[ends[:, 1]])
+        np.minimum.at(new, ends[:, 1], label[ends[:, 0]])
+        if (new == label).all():
+            return label
+        label = new
+
+
+def pressures(file, rule, gravity):
+    ends, radius = file["throats/nodes"][:], file["throats/radius"][:]
+    z = file["nodes/position"][:, 2] - file["domain/lower"][2]
+    if rule == "nodes":
+        widest = np.zeros(len(z))
+        np.maximum.at(widest, ends.ravel(), np.repeat(radius, 2))
+        radius = widest
+    else:
+        z = z[ends].mean(axis=1)
+    return 2 * TENSION / radius - DENSITY * gravity * z
+
+
+def check(name, file, rule, trapping, gravity):
+    ends, kind = file["throats/nodes"][:], file["nodes/kind"][:]
+    volume = np.pi * file["throats/radius"][:] ** 2 * file["throats/length"][:]
+    entered = file["events/throat" if rule == "throats" else "events/node"][:]
+    pressure, saturation = file["events/pressure"][:], file["events/saturation"][:]
+    ok(np.allclose(pressure, pressures(file, rule, gravity)[entered], rtol=1e-12),
+       f"{name}: pressures are those of Young and Laplace, and weight")
+
+    throat, node = file["throats/event"][:], file["nodes/event"][:]
+    left = [volume[(throat < 0) | (throat > k + 1)].sum() for k in range(len(entered))]
+    ok(np.allclose(saturation, np.array(left) / volume.sum(), rtol=0, atol=1e-13),
+       f"{name}: saturations are what throats hold that are still full")
+    if rule == "throats":
+        ok((throat[entered] == np.arange(len(entered)) + 1).all()
+           and (node[kind & 32 > 0] == 0).all(), f"{name}: throats are numbered by their events")
+    else:
+        either = np.where(node[ends] < 0, 10 ** 9, node[ends]).min(axis=1)
+        ok((throat == np.where(either == 10 ** 9, -1, either)).all(),
+           f"{name}: throats empty with the first of their nodes")
+
+    record = np.maximum.accumulate(pressure)
+    rises = np.flatnonzero(np.r_[True, np.diff(record) > 0])
+    ok(np.array_equal(file["curve/pressure"], record[rises])
+       and np.array_equal(file["curve/saturation"], saturation[np.r_[rises[1:] - 1, -1]]),
+       f"{name}: the curve is the record pressures and what is left before the next")
+
+    wet, full = node < 0, throat < 0
+    label = labels(len(kind), ends[full & wet[ends].all(axis=1)])
+    own = np.where(wet[ends[:, 0]], label[ends[:, 0]], label[ends[:, 1]])
+    own = np.where(wet[ends].any(axis=1), own, len(kind) + np.arange(len(ends)))
+    cluster = file["throats/cluster"][:]
+    pairs = {(a, b) for a, b in zip(own[full], cluster[full])}
+    count = len(file["clusters/throats"])
+    ok(((cluster >= 0) == full).all() and len(pairs) == count == len({a for a, _ in pairs}),
+       f"{name}: clusters are those of liquid that touches", f"{len(pairs)} {count}")
+    ok(np.array_equal(np.bincount(cluster[full], minlength=count), file["clusters/throats"])
+       and np.allclose(np.bincount(cluster[full], volume[full], count), file["clusters/volume"]),
+       f"{name}: with their throats and volumes")
+    out = set(label[wet & (kind & 16 > 0)])
+    reaches = {b: a not in out for a, b in pairs}
+    ok(all(file["clusters/trapped"][b] == trapped for b, trapped in reaches.items()),
+       f"{name}: trapped are those that no liquid leads out of")
+
+    summary = file["summary"].attrs
+    first = summary["breakthrough_event"]
+    reached = file["events/node"][:]
+    ok(kind[reached[first - 1]] & 16
+       and not (kind[reached[:first - 1][reached[:first - 1] >= 0]] & 16).any(),
+       f"{name}: breakthrough is when gas first touches the outlet")
+    ok(summary["breakthrough_pressure"] == pressure[:first].max()
+       and summary["breakthrough_saturation"] == saturation[first - 1]
+       and summary["residual_saturation"] == saturation[-1], f"{name}: its pressure and saturation")
+    joined = np.ones(len(volume), bool) if rule == "throats" else np.isin(np.arange(len(kind)), ends)
+    easy = pressures(file, rule, gravity)[joined] <= pressure[:first].max() * (1 + 1e-14)
+    ok(abs(summary["breakthrough_share"] - easy.mean()) < 1.5 / len(easy),
+       f"{name}: and the share of all that are as easy")
+    if not trapping:
+        ok((node[np.isin(np.arange(len(kind)), ends)] >= 0).all() and saturation[-1] == 0,
+           f"{name}: nothing stays where nothing is trapped")
+
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    run("pack", "--quiet", "--set", "method=random_sequential", "--set", "count=150", "--set",
+        "upper=[4e-6,4e-6,5e-6]", "-o", at("packing.h5"))
+    run("tessellate", at("packing.h5"), "-o", at("tessellation.h5"))
+    run("merge-nodes", "--set", "measure=fraction", "--set", "threshold=0.05",
+        at("tessellation.h5"), "-o", at("network.h5"))
+    for rule in "throats", "nodes":
+        for trapping in True, False:
+            for gravity in 0, 1e7:
+                run("invade", "--set", f"rule={rule}", "--set", f"trapping={str(trapping).lower()}",
+                    "--set", f"gravity={gravity}", at("network.h5"), "-o", at("invasion.h5"))
+                with h5py.File(at("invasion.h5")) as file:
+                    check(f"{rule}, {'trapping' if trapping else 'none trapped'}, gravity {gravity:g}",
+                          file, rule, trapping, gravity)
+
+    # Gas from above is held back by weight, from below driven on.
+    at_breakthrough = {}
+    for inlet, outlet in ("+z", "-z"), ("-z", "+z"):
+        for gravity in 0, 1e10: # against weight radii are nothing
+            run("invade", "--set", f'inlet=["{inlet}"]', "--set", f'outlet=["{outlet}"]', "--set",
+                f"gravity={gravity}", "--set", "until=breakthrough", "--set", "trapping=false", at("network.h5"), "-o",
+                at("invasion.h5"))
+            with h5py.File(at("invasion.h5")) as file:
+                s = file["summary"].attrs
+                at_breakthrough[inlet, gravity] = s["breakthrough_saturation"]
+                volume = file["throats/radius"][:] ** 2 * file["throats/length"][:]
+                below = pressures(file, "throats", gravity) > s["breakthrough_pressure"]
+                level = volume[below].sum() / volume.sum()
+                ok(s["breakthrough_event"] == len(file["events/node"])
+                   and s["residual_saturation"] == s["breakthrough_saturation"],
+                   f"from {inlet}, gravity {gravity:g}: ends at breakthrough")
+                if (inlet, gravity) == ("+z", 1e10):
+                    ok(abs(s["breakthrough_saturation"] - level) < 1e-3,
+                       "weight flattens the front of gas from above: full is what lies below it")
+    ok(at_breakthrough["-z", 1e10] > 0.9, "and draws gas from below straight up", at_breakthrough)
+
+    network = read(at("network.h5"))
+    ok(run("invade", input=network) == run("invade", "--threads", "2", at("network.h5")),
+       "the same bytes through a pipe and by two threads")
+
+    def refused(title, says, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        ended = subprocess.run([f"{BIN}/invade", *words, at("network.h5"), "-o", at("none.h5")],
+                               capture_output=True, text=True)
+        ok(ended.returncode == 65 and says in ended.stderr and ended.stderr.count("\n") == 1
+           and not os.path.exists(at("none.h5")), title, ended.stderr)
+
+    refused("no inlet is refused", "invade.inlet: must name a wall", "inlet=[]")
+    refused("a wall for both is refused", "invade.outlet: must have no wall in common",
+            'outlet=["+z","-z"]')
+    refused("trapping without an outlet is refused", "no throat reaches the outlet", "outlet=[]")
+    with h5py.File(at("network.h5"), "a") as file:
+        file["throats/radius"][5] = 0
+    refused("a closed throat is refused", "/throats/radius: row 5: must be above 0, is 0")
+done()
