@@ -5,35 +5,71 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "protocol.h"
+#include "read_record.h"
+#include "rings.h"
+#include "times.h"
 
+#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
 
 struct force_parameters {
-    double surface_tension, force_scale;
-    int open_surface;
+    double surface_tension, contact_angle, force_scale, largest_change, ring_volume;
+    int open_surface, form, suction, rings;
     int64_t steps;
 };
+#define AT(member) offsetof(struct force_parameters, member)
 
 static const struct parameter table[] = {
     {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
-     "of the liquid against the gas [K Table 3.1]",
-     offsetof(struct force_parameters, surface_tension)},
+     "of the liquid against the gas [K Table 3.1]", AT(surface_tension)},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
+     "imperfect wetting: menisci are less curved, and the contact line pulls the "
+     "grains "
+     "towards the middle of the throat [K 3.14-3.18]",
+     AT(contact_angle)},
     {"force_scale", PARAMETER_NUMBER, "1", "1", BOUND_MINIMUM, 0, 0, NULL,
      "factor on the physical force; K's own was chosen and is not given",
-     offsetof(struct force_parameters, force_scale)},
+     AT(force_scale)},
+    {"form", PARAMETER_CHOICE, "1", "\"solid-angle\"", BOUND_NONE, 0, 0,
+     "solid-angle|faces|centres|arcs",
+     "what the liquid of a throat pulls with: its suction on the part of the grain "
+     "that "
+     "faces it; that and the pull of the menisci, so that grains pull each other in "
+     "pairs; K's plain sums: towards the middles of the throats [K 5.1], or in a layer "
+     "over the arcs of a circle [K 3.20]",
+     AT(form)},
+    {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", BOUND_NONE, 0, 0,
+     "uniform|clusters|field",
+     "suction of the liquid: that of a throat of mean radius everywhere; of each "
+     "connected piece of liquid by its widest meniscus; or the pressures of viscous "
+     "liquid, from the snapshots of the drying (dry.snapshots)",
+     AT(suction)},
     {"open_surface", PARAMETER_CHOICE, "1", "\"idle\"", BOUND_NONE, 0, 0, "idle|pulls",
      "throats that lie in the open wall: their liquid has its menisci over the grains "
      "and "
      "does not pull them outwards (K 5.4: a full network presses its open top as "
      "well), or "
      "it pulls like any other",
-     offsetof(struct force_parameters, open_surface)},
+     AT(open_surface)},
     {"steps", PARAMETER_INTEGER, "1", "550", BOUND_BETWEEN, 2, 1e7, NULL,
      "uniform times from the start to the end of drying, both included [K 5.2]",
-     offsetof(struct force_parameters, steps)},
+     AT(steps)},
+    {"largest_change", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
+     "0: uniform times; else as few times as it takes for no force on a grain to "
+     "change "
+     "by more than this from one to the next, of the largest force",
+     AT(largest_change)},
+    {"rings.left", PARAMETER_CHOICE, "1", "\"none\"", BOUND_NONE, 0, 0,
+     "none|volume|suction",
+     "liquid that stays at contacts as throats empty: none, a given volume, or as much "
+     "as is in equilibrium with liquid in a throat of mean radius",
+     AT(rings)},
+    {"rings.volume", PARAMETER_NUMBER, "1", "1e-3", BOUND_BETWEEN, 1e-9, 1, NULL,
+     "volume: of one ring, of the cube of the effective radius 2 R1 R2/(R1 + R2)",
+     AT(ring_volume)},
     {0}};
 
 static const struct stage stage = {
@@ -46,36 +82,16 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table};
 
-static struct drying_record read_record(const struct artifact *input, double steps)
+static void check_end(const struct drying_record *record, double steps,
+                      const char *path)
 {
-    struct drying_record record;
-    record.time = artifact_get(input, "/history/time", &record.n_step);
-    record.saturation = artifact_get(input, "/history/saturation", NULL);
-    record.offset = artifact_get(input, "/changes/offset", NULL);
-    record.throat = artifact_get(input, "/changes/throat", NULL);
-    record.throat_saturation = artifact_get(input, "/changes/saturation", NULL);
-    if (record.n_step < 1)
-        die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
-            input_name(input->path));
-    if (!(record.time[record.n_step - 1] / steps > 0))
+    const double end = record->time[record->n_step - 1];
+    if (!(end / steps > 0))
         die(STATUS_BAD_DATA, "%s: /history/time: must end above 0, got %g",
-            input_name(input->path), record.time[record.n_step - 1]);
-    return record;
+            input_name(path), end);
 }
 
-static void free_record(struct drying_record *record)
-{
-    free(record->time);
-    free(record->saturation);
-    free(record->offset);
-    free(record->throat);
-    free(record->throat_saturation);
-}
-
-// One pressure in all the liquid, that of a throat of mean radius [K 5.3]: p_c = 2
-// sigma/r.
-static double capillary_pressure(const struct network *network, double surface_tension,
-                                 const char *path)
+static double mean_radius(const struct network *network, const char *path)
 {
     double sum = 0;
     int count = 0;
@@ -87,20 +103,149 @@ static double capillary_pressure(const struct network *network, double surface_t
     if (!(sum > 0))
         die(STATUS_BAD_DATA, "%s: /throats/radius: no open throat to hold liquid",
             input_name(path));
-    return 2 * surface_tension / (sum / count);
+    return sum / count;
 }
 
-static double largest_force(const struct protocol *protocol, int n_particle)
+// Without a contact angle the contact line pulls along the grain only [K 3.6].
+static struct suction_law find_law(const struct network *network,
+                                   const struct force_parameters *parameters,
+                                   const char *path)
 {
-    double largest = 0;
-    for (size_t k = 0; k < (size_t)protocol->n_time * (size_t)n_particle; k++)
-        largest = fmax(largest, norm(protocol->force[k]));
-    return largest;
+    const double angle = parameters->contact_angle * (M_PI / 180);
+    const double meniscus = 2 * parameters->surface_tension * cos(angle);
+    const struct suction_law law = {.rule = (enum suction_rule)parameters->suction,
+                                    .uniform = meniscus / mean_radius(network, path),
+                                    .meniscus = meniscus,
+                                    .contact_line =
+                                        parameters->surface_tension * sin(angle)};
+    if (!(law.uniform * fmax(1, parameters->force_scale) <= 1e150))
+        die(STATUS_BAD_DATA,
+            "%s: the forces overflow at a capillary pressure of %g Pa and "
+            "force_scale = %g",
+            input_name(path), law.uniform, parameters->force_scale);
+    return law;
+}
+
+static enum status find_action(struct wedges *wedges,
+                               const struct force_parameters *parameters,
+                               double suction, unsigned open_walls,
+                               struct action *action, struct rings *rings,
+                               struct reason *reason)
+{
+    const struct ring_law law = {.rule = (enum ring_rule)parameters->rings,
+                                 .volume = parameters->ring_volume,
+                                 .suction = suction,
+                                 .surface_tension = parameters->surface_tension,
+                                 .contact_angle =
+                                     parameters->contact_angle * (M_PI / 180)};
+    *action = (struct action){.scale = parameters->force_scale};
+    *rings = (struct rings){0};
+    struct patches *of = action->patches;
+    of[LOAD_SUCTION] = find_patches(wedges, (enum form)parameters->form);
+    if (parameters->contact_angle > 0)
+        of[LOAD_CONTACT_LINE] = find_contact_lines(wedges);
+    for (int l = 0; l < LOAD_EMPTINESS; l++) {
+        const enum status status = check_patches(&of[l], reason);
+        if (status) return status;
+        if (parameters->open_surface == OPEN_SURFACE_IDLE)
+            drop_patches_in_walls(wedges, open_walls, &of[l]);
+    }
+    if (law.rule == RING_NONE) return STATUS_OK;
+    const enum status status = find_rings(wedges, &law, rings, reason);
+    of[LOAD_EMPTINESS] = rings->patches;
+    return status;
+}
+
+static struct protocol find_protocol(const struct process *process,
+                                     const struct force_parameters *parameters)
+{
+    static const int most = 10000000;
+    int count = (int)parameters->steps;
+    double *times;
+    if (parameters->largest_change > 0)
+        times = adaptive_times(process, parameters->largest_change, most, &count);
+    else
+        times = uniform_times(process->record, count);
+    if (!times)
+        die(STATUS_BAD_DATA,
+            "force-protocol.largest_change: %g takes more than %d times",
+            parameters->largest_change, most);
+    return make_protocol(process, times, count);
+}
+
+// What is said of the forces.
+struct findings {
+    double largest, change, error; // N
+    double net_force, net_moment;
+};
+
+static struct findings examine(const struct process *process,
+                               const struct protocol *protocol, const char *path)
+{
+    const struct packing *packing = &process->network->packing;
+    struct findings found = {.largest = largest_force(protocol, packing->n_particle)};
+    if (!(found.largest <= 1e150))
+        die(STATUS_BAD_DATA,
+            "%s: the forces overflow at a capillary pressure of %g Pa and "
+            "force_scale = %g",
+            input_name(path), process->law->uniform, process->action->scale);
+    found.change = largest_change(protocol, packing->n_particle);
+    found.error = interpolation_error(process, protocol);
+    net_load(protocol, packing, &found.net_force, &found.net_moment);
+    return found;
+}
+
+static void put_summary(struct artifact *artifact, const struct process *process,
+                        const struct findings *found, const struct artifact *input)
+{
+    const double unit = found->largest > 0 ? found->largest : 1;
+    artifact_put_number(artifact, "/summary/capillary_pressure", process->law->uniform);
+    artifact_put_number(artifact, "/summary/force_scale", process->action->scale);
+    artifact_put_number(artifact, "/summary/largest_force", found->largest);
+    artifact_put_number(artifact, "/summary/largest_change", found->change / unit);
+    artifact_put_number(artifact, "/summary/interpolation_error", found->error / unit);
+    artifact_put_number(artifact, "/summary/net_force", found->net_force);
+    artifact_put_number(artifact, "/summary/net_moment", found->net_moment);
+    artifact_put_number(artifact, "/summary/first_period_end_time",
+                        artifact_get_number(input, "/summary/first_period_end_time"));
+}
+
+static void describe(const struct force_parameters *parameters,
+                     const struct rings *rings, char *text, size_t size)
+{
+    static const char *const forms[] = {
+        "S p_c R^2 n over the patch facing each throat",
+        "S p_c over the faces between grains, menisci included",
+        "S p_c R^2 towards the middle of each throat [K 5.1]",
+        "S p_c R^2 n over the arc facing each throat [K 3.20]"};
+    static const char *const suctions[] = {
+        "one capillary pressure, that of a throat of mean radius",
+        "capillary pressure of each connected piece of liquid, by its widest meniscus",
+        "capillary pressures of viscous liquid, from snapshots of the drying"};
+    char left[200] = "no liquid stays at contacts";
+    if (parameters->rings != RING_NONE)
+        snprintf(left, sizeof left,
+                 "rings stay at %d contacts as throats empty, pull with at most %.6g N "
+                 "and do not evaporate",
+                 rings->count, rings->largest);
+    snprintf(text, size,
+             "capillary force: %s\n"
+             "throats in the open wall: %s\n"
+             "%s\n"
+             "contact line: %s\n"
+             "%s\n"
+             "left out: weight of the liquid\n",
+             forms[parameters->form],
+             parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull",
+             suctions[parameters->suction],
+             parameters->contact_angle > 0 ? "pulls grains towards throats with menisci"
+                                           : "none (perfect wetting)",
+             left);
 }
 
 static void write_forces(const struct packing *packing, const struct protocol *protocol,
-                         double pressure, const struct force_parameters *parameters,
-                         double largest, const struct invocation *invocation,
+                         const struct process *process, const struct findings *found,
+                         const char *model, const struct invocation *invocation,
                          const struct artifact *input)
 {
     struct artifact *artifact = artifact_create("forces", invocation->output);
@@ -109,21 +254,7 @@ static void write_forces(const struct packing *packing, const struct protocol *p
     artifact_put(artifact, "/saturation", protocol->saturation, protocol->n_time);
     artifact_put_table(artifact, "/force", protocol->force, protocol->n_time,
                        packing->n_particle);
-    artifact_put_number(artifact, "/summary/capillary_pressure", pressure);
-    artifact_put_number(artifact, "/summary/force_scale", parameters->force_scale);
-    artifact_put_number(artifact, "/summary/largest_force", largest);
-    artifact_put_number(artifact, "/summary/first_period_end_time",
-                        artifact_get_number(input, "/summary/first_period_end_time"));
-    char model[600];
-    snprintf(
-        model, sizeof model,
-        "capillary force: S p_c R^2 n over the patch facing each throat\n"
-        "throats in the open wall: %s\n"
-        "one capillary pressure, that of a throat of mean radius\n"
-        "forces linear in time between events: exact\n"
-        "left out: contact-line term (perfect wetting), pressure differences between "
-        "clusters, bridges left at contacts\n",
-        parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull");
+    put_summary(artifact, process, found, input);
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
@@ -131,38 +262,38 @@ int main(int argc, char **argv)
 {
     struct force_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_periodic_network(input);
-    struct drying_record record = read_record(input, (double)parameters.steps);
+    struct drying_record record =
+        read_record(input, &network, parameters.suction == SUCTION_FIELD);
+    check_end(&record, (double)parameters.steps, input->path);
+    const struct suction_law law = find_law(&network, &parameters, input->path);
 
-    struct patch *patches;
-    int n_patch;
+    struct wedges wedges;
+    struct action action = {0};
+    struct rings rings;
     struct reason reason;
-    enum status status = find_patches(&network, &patches, &n_patch, &reason);
-    if (!status) status = check_closed(patches, n_patch, &reason);
+    enum status status = wedges_find(&network, &wedges, &reason);
+    if (!status)
+        status =
+            find_action(&wedges, &parameters, law.uniform,
+                        (unsigned)artifact_get_number(input, "/summary/open_walls"),
+                        &action, &rings, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
+    wedges_free(&wedges);
 
-    if (parameters.open_surface == OPEN_SURFACE_IDLE)
-        n_patch = drop_patches_in_walls(
-            &network, (unsigned)artifact_get_number(input, "/summary/open_walls"),
-            patches, n_patch);
-    const double pressure =
-        capillary_pressure(&network, parameters.surface_tension, input->path);
-    struct protocol protocol =
-        make_protocol(&network, &record, patches, n_patch,
-                      pressure * parameters.force_scale, (int)parameters.steps);
+    const struct process process = {&network, &record, &law, &action};
+    struct protocol protocol = find_protocol(&process, &parameters);
+    const struct findings found = examine(&process, &protocol, input->path);
     drop_auxiliary(&network.packing, &protocol);
-    const double largest = largest_force(&protocol, network.packing.n_particle);
-    if (!(fmax(largest, pressure) <= 1e150))
-        die(STATUS_BAD_DATA,
-            "%s: the forces overflow at a capillary pressure of %g Pa and "
-            "force_scale = %g",
-            input_name(input->path), pressure, parameters.force_scale);
-    write_forces(&network.packing, &protocol, pressure, &parameters, largest,
-                 &invocation, input);
+    char model[900];
+    describe(&parameters, &rings, model, sizeof model);
+    write_forces(&network.packing, &protocol, &process, &found, model, &invocation,
+                 input);
 
     protocol_free(&protocol);
-    free(patches);
+    action_free(&action);
     free_record(&record);
     network_free(&network);
     artifact_close(input);

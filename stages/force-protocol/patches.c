@@ -3,7 +3,6 @@
 
 #include "basics/memory.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 
 // theta times the unit normal of the plane through the arc from direction A to
@@ -30,195 +29,196 @@ static struct vector direction(struct vector from, struct vector to)
     return scale(1 / norm(apart), apart);
 }
 
-// Where the line between the two sides of a face crosses it. Between grains that is the
-// point of equal power, the middle for equal radii.
-static struct vector foot_of_face(const struct network *network, int face)
+// Where the face's foot is the centre of the grain itself, any direction would do.
+static struct vector towards_foot(const struct wedge *wedge)
 {
-    const struct packing *packing = &network->packing;
-    const int i = network->face_particles[face][0],
-              j = network->face_particles[face][1];
-    const struct vector foot = packing->position[i];
-    if (j < 0) return nearest_on_wall(packing, -1 - j, foot);
-    const struct vector apart = subtract(second_grain(network, face), foot);
-    const double ri = packing->radius[i], rj = packing->radius[j];
-    const double share =
-        0.5 + 0.5 * (ri - rj) * (ri + rj) / dot(apart, apart); // [K 3.2]
-    return add(foot, scale(share, apart));
+    return direction(wedge->centre, distance(wedge->foot, wedge->centre) > 0
+                                        ? wedge->foot
+                                        : wedge->across);
 }
 
-// The grain on SIDE of the face, in the repetition of the box where the first one is.
-static struct vector centre_of(const struct network *network, int face, int side)
+// In the plane of a layer, to the right of A: outwards where A runs from one end of a
+// throat to the other.
+static struct vector turned(struct vector a)
 {
-    return side ? second_grain(network, face)
-                : network->packing.position[network->face_particles[face][0]];
+    return cross(a, (struct vector){.y = 1});
 }
 
-// From the grain on SIDE towards what lies behind the face. Not towards the foot: a
-// grain whose centre another one has engulfed lies beyond its own face.
-static struct vector outwards(const struct network *network, int face, int side)
+static struct vector arc_in_plane(const struct wedge *wedge)
 {
-    const bool is_wall = network->face_particles[face][1] < 0;
-    return subtract(is_wall ? foot_of_face(network, face)
-                            : centre_of(network, face, !side),
-                    centre_of(network, face, side));
+    return turned(subtract(direction(wedge->centre, wedge->to),
+                           direction(wedge->centre, wedge->from)));
 }
 
-// The patches one face gives the grain on one of its sides, a triangle a throat,
-// written to PATCHES. Turned around when the loop runs clockwise seen from that grain's
-// outside. False when the grain's centre is on the face: there is no direction to it.
-static bool fan(const struct network *network, int face, int side, const int *throats,
-                struct patch *patches)
+static double thickness(const struct wedges *wedges)
 {
-    const int64_t begin = network->face_offset[face];
-    const int count = (int)(network->face_offset[face + 1] - begin);
-    const int grain = network->face_particles[face][side];
-    const struct vector centre = centre_of(network, face, side);
-    const struct vector foot = direction(centre, foot_of_face(network, face));
-    struct vector sum = {0};
-    for (int k = 0; k < count; k++) {
-        const struct vector a = direction(centre, face_corner(network, begin + k));
-        const struct vector b =
-            direction(centre, face_corner(network, begin + (k + 1) % count));
-        patches[k] = (struct patch){throats[k], grain, triangle_normal(foot, a, b)};
-        sum = add(sum, patches[k].normal);
-    }
-    const double sign = dot(sum, outwards(network, face, side)) < 0 ? -1 : 1;
-    for (int k = 0; k < count; k++)
-        patches[k].normal = scale(sign, patches[k].normal);
-    return isfinite(dot(sum, foot));
+    const struct packing *packing = &wedges->network->packing;
+    return packing->upper.y - packing->lower.y;
 }
 
-// The patches of a grain of a layer, whose cell FACE is: lunes between the half planes
-// through its axis, along y, and the two ends of each throat [K 3.21]. The arc from A
-// to B in the plane has the integral (B - A) turned by a right angle, and across the
-// plane a sphere adds a factor of pi/2.
-static bool slice(const struct network *network, int face, const int *throats,
-                  struct patch *patches)
+// --- forms -------------------------------------------------------------------------
+
+static double radius_squared(const struct wedges *wedges, const struct wedge *wedge)
 {
-    const int64_t begin = network->face_offset[face];
-    const int count = (int)(network->face_offset[face + 1] - begin);
-    struct vector centre = centre_of(network, face, 0);
-    centre.y = network->node_position[network->face_nodes[begin]].y; // staggered
-    double area = 0;
-    for (int k = 0; k < count; k++) {
-        const struct vector from = face_corner(network, begin + k);
-        const struct vector to = face_corner(network, begin + (k + 1) % count);
-        const struct vector apart =
-            subtract(direction(centre, to), direction(centre, from));
-        area += cross(subtract(from, centre), subtract(to, centre)).y;
-        patches[k] =
-            (struct patch){throats[k], network->face_particles[face][0],
-                           scale(M_PI / 2, cross(apart, (struct vector){.y = 1}))};
-    }
-    for (int k = 0; k < count && area < 0; k++)
-        patches[k].normal = scale(-1, patches[k].normal);
-    return isfinite(patches[0].normal.x) && area != 0;
+    const double radius = wedges->network->packing.radius[wedge->grain];
+    return radius * radius;
 }
 
-static int compare_patches(const void *a, const void *b)
+// Across the plane of a layer a sphere adds pi/2 to the arc.
+static struct vector solid_angle(const struct wedges *wedges, const struct wedge *wedge,
+                                 const void *unused)
 {
-    const struct patch *first = a, *second = b;
-    if (first->particle != second->particle)
-        return first->particle < second->particle ? -1 : 1;
-    return (first->throat > second->throat) - (first->throat < second->throat);
+    (void)unused;
+    const struct vector unit =
+        wedges->layer ? scale(M_PI / 2, arc_in_plane(wedge))
+                      : triangle_normal(towards_foot(wedge),
+                                        direction(wedge->centre, wedge->from),
+                                        direction(wedge->centre, wedge->to));
+    return scale(radius_squared(wedges, wedge), unit);
 }
 
-// One patch a throat and grain, out of the two triangles.
-static int unite(struct patch *patches, int count)
+static struct vector face_area(const struct wedges *wedges, const struct wedge *wedge,
+                               const void *unused)
 {
-    int kept = 0;
-    for (int k = 0; k < count; k++) {
-        struct patch *last = kept ? &patches[kept - 1] : NULL;
-        if (last && !compare_patches(last, &patches[k]))
-            last->normal = add(last->normal, patches[k].normal);
-        else
-            patches[kept++] = patches[k];
-    }
-    return kept;
+    (void)unused;
+    const struct vector from = subtract(wedge->from, wedge->foot);
+    const struct vector to = subtract(wedge->to, wedge->foot);
+    return wedges->layer ? scale(thickness(wedges), turned(subtract(to, from)))
+                         : scale(0.5, cross(from, to));
 }
 
-static enum status find_throats(const struct network *network,
-                                const struct incidence *incidence, int face,
-                                int *throats, struct reason *reason)
+// Half of it with each of the two faces beside the throat; in a layer there is one.
+static struct vector to_centre(const struct wedges *wedges, const struct wedge *wedge,
+                               const void *unused)
 {
-    const int32_t *loop = network->face_nodes + network->face_offset[face];
-    const int count =
-        (int)(network->face_offset[face + 1] - network->face_offset[face]);
-    if (network->face_particles[face][0] < 0)
-        return refuse(
-            reason, STATUS_BAD_DATA,
-            "/faces/particles: row %d: the first side must be a grain, got %d", face,
-            network->face_particles[face][0]);
-    for (int k = 0; k < count; k++) {
-        const int next = (k + 1) % count;
-        throats[k] = face_throat(network, incidence, face, k);
-        if (throats[k] < 0)
-            return refuse(reason, STATUS_BAD_DATA,
-                          "/faces/nodes: face %d: no throat between nodes %d and %d",
-                          face, loop[k], loop[next]);
-    }
-    return STATUS_OK;
+    (void)unused;
+    const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
+    return scale((wedges->layer ? 1 : 0.5) * radius_squared(wedges, wedge),
+                 direction(wedge->centre, middle));
 }
 
-enum status check_closed(const struct patch *patches, int count, struct reason *reason)
+static struct vector in_plane(const struct wedges *wedges, const struct wedge *wedge,
+                              const void *unused)
 {
-    static const double rounding = 1e-6; // of a whole sphere, 4 pi
-    struct vector sum = {0};
-    for (int k = 0; k < count; k++) {
-        sum = add(sum, patches[k].normal);
-        const int32_t grain = patches[k].particle;
-        if (k + 1 < count && patches[k + 1].particle == grain) continue;
-        if (norm(sum) > rounding)
-            return refuse(reason, STATUS_BAD_DATA,
-                          "/faces/particles: the cell of grain %d is open: tessellate "
-                          "with boundary=truncate",
-                          grain);
-        sum = (struct vector){0};
-    }
-    return STATUS_OK;
+    (void)unused;
+    return scale(radius_squared(wedges, wedge), arc_in_plane(wedge));
 }
 
-enum status find_patches(const struct network *network, struct patch **patches,
-                         int *count, struct reason *reason)
+// A layer has the throat above and below it, half of each circle faces the grain.
+static struct vector contact_line(const struct wedges *wedges,
+                                  const struct wedge *wedge, const void *unused)
 {
-    const size_t n_face_node = (size_t)network->face_offset[network->n_face];
-    struct incidence incidence = network_incidence(network);
-    int *throats = NEW_ARRAY(int, n_face_node);
-    const bool layer = is_layer(network);
-    enum status status = STATUS_OK;
-    *patches = NEW_ARRAY(struct patch, 2 * n_face_node);
-    *count = 0;
-    for (int face = 0; face < network->n_face && !status; face++) {
-        status = find_throats(network, &incidence, face, throats, reason);
-        for (int side = 0; side < 2 && !status; side++) {
-            const int grain = network->face_particles[face][side];
-            if (grain < 0) continue;
-            if (!(layer ? slice(network, face, throats, *patches + *count)
-                        : fan(network, face, side, throats, *patches + *count)))
-                status = refuse(reason, STATUS_BAD_DATA,
-                                "/faces/nodes: face %d: meets the centre of grain %d",
-                                face, grain);
-            *count +=
-                (int)(network->face_offset[face + 1] - network->face_offset[face]);
+    (void)unused;
+    if (!wedges->layer) return direction(wedge->centre, wedge->across);
+    const struct vector outwards = turned(subtract(wedge->to, wedge->from));
+    return scale(2 / norm(outwards), outwards);
+}
+
+// --- lists -------------------------------------------------------------------------
+
+// Of the wedges of one throat, one patch a grain.
+static void append_patches(const struct wedges *wedges, int n, struct patches *patches,
+                           int *capacity, pull_of_wedge *make, const void *context)
+{
+    const int first = patches->n;
+    for (int k = 0; k < n; k++) {
+        const struct wedge *wedge = &wedges->wedge[k];
+        if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
+        const struct vector pull = make(wedges, wedge, context);
+        int p = first;
+        while (p < patches->n && patches->patch[p].particle != wedge->grain)
+            p++;
+        if (p < patches->n) {
+            patches->patch[p].pull = add(patches->patch[p].pull, pull);
+            continue;
         }
+        GROW_ARRAY(patches->patch, patches->n, *capacity);
+        patches->patch[patches->n++] =
+            (struct patch){wedge->throat, wedge->grain, pull};
     }
-    if (*count) qsort(*patches, (size_t)*count, sizeof **patches, compare_patches);
-    *count = unite(*patches, *count);
-    free(throats);
-    incidence_free(&incidence);
-    if (status) free(*patches);
-    return status;
 }
 
-int drop_patches_in_walls(const struct network *network, unsigned walls,
-                          struct patch *patches, int count)
+static void find_begins(struct patches *patches, int n_particle)
 {
+    free(patches->begin);
+    patches->begin = NEW_ARRAY(int, n_particle + 1);
+    for (int k = 0; k < patches->n; k++)
+        patches->begin[patches->patch[k].particle + 1]++;
+    for (int i = 0; i < n_particle; i++)
+        patches->begin[i + 1] += patches->begin[i];
+}
+
+// From the order of throats, which stays that of each grain.
+static void sort_by_grain(struct patches *patches, int n_particle)
+{
+    find_begins(patches, n_particle);
+    struct patch *sorted = NEW_ARRAY(struct patch, patches->n);
+    int *next = duplicate(patches->begin, (size_t)n_particle + 1, sizeof *next);
+    for (int k = 0; k < patches->n; k++)
+        sorted[next[patches->patch[k].particle]++] = patches->patch[k];
+    free(next);
+    free(patches->patch);
+    patches->patch = sorted;
+}
+
+struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
+                               const void *context)
+{
+    struct patches patches = {0};
+    int capacity = 0;
+    for (int t = 0; t < wedges->network->n_throat; t++) {
+        const int n = wedges_at(wedges, t);
+        append_patches(wedges, n, &patches, &capacity, make, context);
+    }
+    sort_by_grain(&patches, wedges->network->packing.n_particle);
+    return patches;
+}
+
+struct patches find_patches(struct wedges *wedges, enum form form)
+{
+    return collect_patches(wedges,
+                           form == FORM_SOLID_ANGLE ? solid_angle
+                           : form == FORM_FACES     ? face_area
+                           : form == FORM_CENTRES   ? to_centre
+                                                    : in_plane,
+                           NULL);
+}
+
+struct patches find_contact_lines(struct wedges *wedges)
+{
+    return collect_patches(wedges, contact_line, NULL);
+}
+
+void patches_free(struct patches *patches)
+{
+    free(patches->patch);
+    free(patches->begin);
+    *patches = (struct patches){0};
+}
+
+enum status check_patches(const struct patches *patches, struct reason *reason)
+{
+    for (int k = 0; k < patches->n; k++)
+        if (!isfinite(norm(patches->patch[k].pull)))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/throats/nodes: throat %d meets the centre of grain %d",
+                          patches->patch[k].throat, patches->patch[k].particle);
+    return STATUS_OK;
+}
+
+void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
+                           struct patches *patches)
+{
+    const struct network *network = wedges->network;
     int kept = 0;
-    for (int k = 0; k < count; k++) {
-        const int32_t *ends = network->throat_nodes[patches[k].throat];
+    for (int k = 0; k < patches->n; k++) {
+        const int throat = patches->patch[k].throat;
+        const int32_t *ends = network->throat_nodes[throat];
         const unsigned common =
             network->node_walls[ends[0]] & network->node_walls[ends[1]];
-        if (!(common & walls)) patches[kept++] = patches[k];
+        if (wedges->open[throat] || !(common & walls))
+            patches->patch[kept++] = patches->patch[k];
     }
-    return kept;
+    patches->n = kept;
+    find_begins(patches, network->packing.n_particle);
 }

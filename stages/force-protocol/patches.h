@@ -1,38 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which patch of each grain's surface faces each throat [K 3.21, 5.1; in three
-// dimensions].
+// How what is in each throat acts on each grain beside it [K 3.13-3.21, 5.1].
 #ifndef CRAQUELURE_PATCHES_H
 #define CRAQUELURE_PATCHES_H
 
 #include "basics/status.h"
-#include "network/network.h"
+#include "wedges.h"
 
-// The integral of the unit normal over the patch of a grain's unit sphere that faces a
-// throat; its length is at most pi. Those of one grain sum to zero to rounding,
-// whatever the cell looks like, so a grain with liquid all around feels nothing
-// [K 3.22].
-struct patch {
-    int32_t throat, particle;
-    struct vector normal;
+enum form {
+    // The suction on the patch of the grain's surface that faces the throat: R^2 times
+    // the integral of the unit normal over it. In a layer it is the lune of the sphere
+    // between the two ends of the throat. Those of one grain sum to zero to rounding,
+    // whatever the cell looks like [K 3.22].
+    FORM_SOLID_ANGLE,
+    // The same and the pull of the menisci where the liquid ends, along the contact
+    // lines and as large as the suction over the opening between two grains: together
+    // they are the suction over the part of the cell's faces beside the throat, so that
+    // two grains pull each other equally.
+    FORM_FACES,
+    FORM_CENTRES, // [K 5.1] R^2 times the direction to the middle of the throat
+    FORM_ARCS     // [K 3.20, 3.21] R times the arc of the circle, in a layer; times R
 };
 
-// Every patch, by grain, then by throat. Each face of a grain's cell is fanned from
-// where the line between the two grains crosses it (for a wall: the grain's foot on
-// it); the triangles are projected on the sphere, and the two on both sides of a throat
-// are its patch. In a layer of grains it is the lune of the sphere between the two ends
-// of the throat, which is K's form times pi/2. STATUS_BAD_DATA when two neighbours in a
-// face's loop are not joined by a throat. The caller frees *PATCHES.
-enum status find_patches(const struct network *network, struct patch **patches,
-                         int *count, struct reason *reason);
+// What one throat does to one grain, for a unit of what is in the throat.
+struct patch {
+    int32_t throat, particle;
+    struct vector pull;
+};
 
-// The normals of a closed cell add up to nothing. STATUS_BAD_DATA when a grain has a
-// cell that the tessellation left open (boundary=eliminate): it would be pulled
-// by liquid all around it.
-enum status check_closed(const struct patch *patches, int count, struct reason *reason);
+// By grain, then by throat; one for each pair. Auxiliary grains have none.
+struct patches {
+    int n;
+    struct patch *patch;
+    int *begin; // (n_particle+1) patches of each grain
+};
 
-// Takes out the patches of throats that lie in one of WALLS (bits of enum wall);
-// returns how many are left.
-int drop_patches_in_walls(const struct network *network, unsigned walls,
-                          struct patch *patches, int count);
+// The pull of a unit of suction (m2).
+struct patches find_patches(struct wedges *wedges, enum form form);
+
+// The pull of a unit contact line in each throat: a circle around it, of radius r, that
+// pulls with sigma sin(theta) towards the middle of the throat [K 3.16]. Each grain has
+// the arc between the faces on both sides, and the integral over that is r times the
+// sum of the unit vectors towards both neighbours, whatever the angle: two grains pull
+// each other equally here as well. For a unit of r sigma sin(theta) (1).
+struct patches find_contact_lines(struct wedges *wedges);
+
+// Patches of what MAKE returns for each wedge.
+typedef struct vector pull_of_wedge(const struct wedges *, const struct wedge *,
+                                    const void *context);
+struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
+                               const void *context);
+void patches_free(struct patches *patches);
+
+// STATUS_BAD_DATA when a node lies in the centre of a grain: it is in no direction.
+enum status check_patches(const struct patches *patches, struct reason *reason);
+
+// Takes out the patches of throats that lie in one of WALLS (bits of enum wall). Not of
+// those that only face it, between grains whose cells were left out.
+void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
+                           struct patches *patches);
 
 #endif

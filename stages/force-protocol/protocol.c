@@ -4,99 +4,23 @@
 #include "basics/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-// The liquid between two steps of the drying.
-struct interval {
-    const struct drying_record *drying;
-    int step;               // from this step to the next
-    double *before, *after; // (n_throat) saturations at both
-};
-
-static void apply_changes(const struct drying_record *drying, int step,
-                          double *saturation)
+struct protocol make_protocol(const struct process *process, double *times, int n_time)
 {
-    for (int64_t k = drying->offset[step]; k < drying->offset[step + 1]; k++)
-        saturation[drying->throat[k]] = drying->throat_saturation[k];
-}
-
-static void advance(struct interval *interval)
-{
-    apply_changes(interval->drying, interval->step + 1, interval->before);
-    interval->step++;
-    if (interval->step + 1 < interval->drying->n_step)
-        apply_changes(interval->drying, interval->step + 1, interval->after);
-}
-
-static void add_forces(const struct network *network, const struct patch *patches,
-                       int n_patch, double pressure, const struct interval *interval,
-                       double share, struct vector *force)
-{
-    for (int k = 0; k < n_patch; k++) {
-        const double before = interval->before[patches[k].throat];
-        const double after = interval->after[patches[k].throat];
-        const double saturation = before + share * (after - before);
-        const double radius = network->packing.radius[patches[k].particle];
-        struct vector *on = &force[patches[k].particle];
-        *on =
-            add(*on, scale(saturation * pressure * radius * radius, patches[k].normal));
-    }
-}
-
-static struct interval begin(const struct network *network,
-                             const struct drying_record *drying)
-{
-    struct interval interval = {.drying = drying,
-                                .before = NEW_ARRAY(double, network->n_throat),
-                                .after = NEW_ARRAY(double, network->n_throat)};
-    for (int t = 0; t < network->n_throat; t++)
-        interval.before[t] = network->throat_kind[t] == THROAT_NETWORK;
-    apply_changes(drying, 0, interval.before);
-    memcpy(interval.after, interval.before, (size_t)network->n_throat * sizeof(double));
-    if (drying->n_step > 1) apply_changes(drying, 1, interval.after);
-    return interval;
-}
-
-// How far TIME lies between the steps of the interval, 0 to 1.
-static double share_of(const struct interval *interval, double time)
-{
-    const struct drying_record *drying = interval->drying;
-    const int next = interval->step + 1;
-    if (next >= drying->n_step) return 0;
-    const double length = drying->time[next] - drying->time[interval->step];
-    return length > 0 ? (time - drying->time[interval->step]) / length : 1;
-}
-
-struct protocol make_protocol(const struct network *network,
-                              const struct drying_record *drying,
-                              const struct patch *patches, int n_patch, double pressure,
-                              int n_time)
-{
-    const size_t n_particle = (size_t)network->packing.n_particle;
+    const size_t n_particle = (size_t)process->network->packing.n_particle;
     struct protocol protocol = {
         .n_time = n_time,
-        .time = NEW_ARRAY(double, n_time),
+        .time = times,
         .saturation = NEW_ARRAY(double, n_time),
         .force = NEW_ARRAY(struct vector, (size_t)n_time * n_particle)};
-    const double end = drying->time[drying->n_step - 1];
-    struct interval interval = begin(network, drying);
+    struct filling filling =
+        filling_begin(process->network, process->record, process->law);
     for (int m = 0; m < n_time; m++) {
-        const double time = m + 1 < n_time ? end * m / (n_time - 1) : end;
-        while (interval.step + 1 < drying->n_step &&
-               drying->time[interval.step + 1] <= time)
-            advance(&interval);
-        const double share = share_of(&interval, time);
-        const double before = drying->saturation[interval.step];
-        const double after = interval.step + 1 < drying->n_step
-                                 ? drying->saturation[interval.step + 1]
-                                 : before;
-        protocol.time[m] = time;
-        protocol.saturation[m] = before + share * (after - before);
-        add_forces(network, patches, n_patch, pressure, &interval, share,
-                   protocol.force + (size_t)m * n_particle);
+        filling_to(&filling, times[m]);
+        protocol.saturation[m] = filling_saturation(&filling);
+        find_forces(process->action, &filling, protocol.force + (size_t)m * n_particle);
     }
-    free(interval.before);
-    free(interval.after);
+    filling_free(&filling);
     return protocol;
 }
 
@@ -106,4 +30,125 @@ void protocol_free(struct protocol *protocol)
     free(protocol->saturation);
     free(protocol->force);
     *protocol = (struct protocol){0};
+}
+
+// --- what is said of it ------------------------------------------------------------
+
+double largest_force(const struct protocol *protocol, int n_particle)
+{
+    double largest = 0;
+    for (size_t k = 0; k < (size_t)protocol->n_time * (size_t)n_particle; k++)
+        largest = fmax(largest, norm(protocol->force[k]));
+    return largest;
+}
+
+double largest_change(const struct protocol *protocol, int n_particle)
+{
+    const size_t n = (size_t)n_particle;
+    double largest = 0;
+    for (size_t k = n; k < (size_t)protocol->n_time * n; k++)
+        largest = fmax(largest, distance(protocol->force[k], protocol->force[k - n]));
+    return largest;
+}
+
+// Where in the protocol a moment lies.
+struct moment {
+    double time;
+    int after; // the first time of the protocol later than that, or the last
+};
+
+static struct moment moment_at(const struct protocol *protocol, struct moment earlier,
+                               double time)
+{
+    struct moment moment = {time, earlier.after};
+    while (moment.after + 1 < protocol->n_time && protocol->time[moment.after] <= time)
+        moment.after++;
+    return moment;
+}
+
+// How far FORCE on GRAIN is from the one interpolated.
+static double deviation(const struct protocol *protocol, int n_particle,
+                        struct moment moment, int grain, struct vector force)
+{
+    const struct vector *to =
+        protocol->force + (size_t)moment.after * (size_t)n_particle + grain;
+    const struct vector *from = to - n_particle;
+    const double begin = protocol->time[moment.after - 1];
+    const double share = (moment.time - begin) / (protocol->time[moment.after] - begin);
+    return distance(force, add(*from, scale(share, subtract(*to, *from))));
+}
+
+// Of the grains that the walk's last move changed: as they were BEFORE, and are NOW.
+static double worst_deviation(const struct walk *walk, const struct protocol *protocol,
+                              struct moment before, struct moment now)
+{
+    const int n = walk->filling.network->packing.n_particle;
+    double worst = 0;
+    for (int k = 0; k < walk->n_changed; k++) {
+        const int i = walk->changed[k];
+        const double then = deviation(protocol, n, before, i, walk->former[k]);
+        worst = fmax(worst, fmax(then, deviation(protocol, n, now, i, walk->force[i])));
+    }
+    return worst;
+}
+
+// A force bends only where a step ends or begins in which it changes.
+double interpolation_error(const struct process *process,
+                           const struct protocol *protocol)
+{
+    const struct drying_record *record = process->record;
+    struct walk walk =
+        walk_begin(process->action, process->network, record, process->law);
+    double worst = 0;
+    struct moment now = moment_at(protocol, (struct moment){0, 1}, record->time[0]);
+    for (int step = 0; step + 1 < record->n_step; step++) {
+        const struct moment next = moment_at(protocol, now, record->time[step + 1]);
+        if (walk.far_reaching) {
+            walk_to_end_of_step(&walk);
+            worst = fmax(worst, worst_deviation(&walk, protocol, now, next));
+            now = next; // what changes yet, changes there
+        }
+        walk_advance(&walk);
+        worst = fmax(worst, worst_deviation(&walk, protocol, now, next));
+        now = next;
+    }
+    walk_free(&walk);
+    return worst;
+}
+
+// Of one time: sums of forces and moments, and of their magnitudes.
+struct sums {
+    struct vector force, moment;
+    double forces, moments;
+};
+
+static struct sums sum_up(const struct packing *packing, struct vector middle,
+                          const struct vector *force)
+{
+    struct sums sums = {0};
+    for (int i = 0; i < packing->n_particle; i++) {
+        const struct vector arm = subtract(packing->position[i], middle);
+        sums.force = add(sums.force, force[i]);
+        sums.moment = add(sums.moment, cross(arm, force[i]));
+        sums.forces += norm(force[i]);
+        sums.moments += norm(arm) * norm(force[i]);
+    }
+    return sums;
+}
+
+void net_load(const struct protocol *protocol, const struct packing *packing,
+              double *force, double *moment)
+{
+    const struct vector middle = scale(0.5, add(packing->lower, packing->upper));
+    const size_t n = (size_t)packing->n_particle;
+    double most_force = 0, most_moment = 0, forces = 0, moments = 0;
+    for (size_t m = 0; m < (size_t)protocol->n_time; m++) {
+        const struct sums sums = sum_up(packing, middle, protocol->force + m * n);
+        most_force = fmax(most_force, norm(sums.force));
+        most_moment = fmax(most_moment, norm(sums.moment));
+        forces = fmax(forces, sums.forces);
+        moments = fmax(moments, sums.moments);
+    }
+    *force = forces > 0 ? most_force / forces : 0;
+    *moment = moments > 0 && !is_periodic(packing) ? most_moment / moments : 0;
 }

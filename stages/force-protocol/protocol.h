@@ -3,33 +3,42 @@
 #ifndef CRAQUELURE_PROTOCOL_H
 #define CRAQUELURE_PROTOCOL_H
 
-#include "patches.h"
+#include "action.h"
 
-// What the drying artifact says happened, as it lies there (schemas/drying.json).
-struct drying_record {
-    int n_step;
-    double *time, *saturation; // (n_step)
-    int64_t *offset;           // (n_step+1)
-    int32_t *throat;           // (offset[n_step])
-    double *throat_saturation; // (offset[n_step])
+// Everything that the forces of one run follow from.
+struct process {
+    const struct network *network;
+    const struct drying_record *record;
+    const struct suction_law *law;
+    const struct action *action;
 };
 
-// Forces on a uniform grid of times from the start to the end of drying. In between,
-// saturations are linear in time, and so are the forces: the interpolation adds no
-// error.
 struct protocol {
     int n_time;
     double *time, *saturation; // (n_time) s, 1
     struct vector *force;      // (n_time * n_particle) N
 };
 
-// F = sum over the grain's throats of S p_c R^2 n. PRESSURE is p_c in Pa, times any
-// scale; liquid under suction pulls the grain towards it. n_time >= 2. The caller frees
-// with protocol_free.
-struct protocol make_protocol(const struct network *network,
-                              const struct drying_record *drying,
-                              const struct patch *patches, int n_patch, double pressure,
-                              int n_time);
+// The forces at the N_TIME TIMES, increasing, which it takes over. Between steps of the
+// drying they are linear in time, but for SUCTION_FIELD. The caller frees with
+// protocol_free.
+struct protocol make_protocol(const struct process *process, double *times, int n_time);
 void protocol_free(struct protocol *protocol);
+
+// The largest force on a grain at any time (N).
+double largest_force(const struct protocol *protocol, int n_particle);
+
+// By how much the force on a grain changes at most from one time to the next (N).
+double largest_change(const struct protocol *protocol, int n_particle);
+
+// How far the true force on a grain is at most from the one interpolated between two
+// times (N): measured at all steps of the drying, on both sides where forces jump.
+double interpolation_error(const struct process *process,
+                           const struct protocol *protocol);
+
+// Net force and moment about the middle of the box at any time, at most, of the largest
+// sums of their parts' magnitudes. A box that repeats has no moment: 0.
+void net_load(const struct protocol *protocol, const struct packing *packing,
+              double *force, double *moment);
 
 #endif

@@ -484,10 +484,10 @@ damage("a wall as the first side of a face is refused", "drying",
        "/faces/particles: row 5: the first side must be a grain, got -3")
 damage("a drying that takes no time is refused", "drying",
        value("history/time", slice(None), 0), "/history/time: must end above 0, got 0")
-damage("a face through the centre of its grain is refused", "drying",
+damage("a node in the centre of a grain is refused", "drying",
        lambda file: value("particles/position", file["faces/particles"][0, 0],
                           file["nodes/position"][file["faces/nodes"][0]])(file),
-       r"/faces/nodes: face \d+: meets the centre of grain \d+")
+       r"/throats/nodes: throat \d+ meets the centre of grain \d+")
 refused("forces that overflow are refused", BAD_DATA,
         ["force-protocol", "drying", "--set", "surface_tension=1e150"],
         r"drying: the forces overflow at a capillary pressure of \S+ Pa and force_scale = 1")

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "read_record.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <stdlib.h>
+
+// The nodes under the boundary layer; a foreign program need not say which: then those
+// on the open walls.
+static bool *find_exposed(const struct artifact *input, const struct network *network)
+{
+    bool *exposed = NEW_ARRAY(bool, network->n_node);
+    if (artifact_has_dataset(input, "/boundary_layer/node")) {
+        int n;
+        int32_t *node = artifact_get(input, "/boundary_layer/node", &n);
+        for (int k = 0; k < n; k++)
+            exposed[node[k]] = true;
+        free(node);
+        return exposed;
+    }
+    const unsigned walls = (unsigned)artifact_get_number(input, "/summary/open_walls");
+    for (int i = 0; i < network->n_node; i++)
+        exposed[i] = network->node_walls[i] & walls;
+    return exposed;
+}
+
+static void read_pressures(const struct artifact *input, struct drying_record *record)
+{
+    static const char name[] = "/snapshots/liquid_pressure";
+    if (artifact_has_dataset(input, name)) {
+        record->pressure = artifact_get(input, name, &record->n_snapshot);
+        record->snapshot_time = artifact_get(input, "/snapshots/time", NULL);
+    }
+    if (record->n_snapshot == 0)
+        die(STATUS_BAD_DATA,
+            "%s: %s: pressure=field needs it: dry with liquid=viscous and snapshots",
+            input_name(input->path), name);
+}
+
+struct drying_record read_record(const struct artifact *input,
+                                 const struct network *network, bool field)
+{
+    struct drying_record record = {0};
+    record.time = artifact_get(input, "/history/time", &record.n_step);
+    record.saturation = artifact_get(input, "/history/saturation", NULL);
+    record.offset = artifact_get(input, "/changes/offset", NULL);
+    record.throat = artifact_get(input, "/changes/throat", NULL);
+    record.throat_saturation = artifact_get(input, "/changes/saturation", NULL);
+    record.exposed = find_exposed(input, network);
+    if (record.n_step < 1)
+        die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
+            input_name(input->path));
+    if (field) read_pressures(input, &record);
+    return record;
+}
+
+void free_record(struct drying_record *record)
+{
+    free(record->time);
+    free(record->saturation);
+    free(record->offset);
+    free(record->throat);
+    free(record->throat_saturation);
+    free(record->exposed);
+    free(record->snapshot_time);
+    free(record->pressure);
+    *record = (struct drying_record){0};
+}

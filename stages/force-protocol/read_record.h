@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#ifndef CRAQUELURE_READ_RECORD_H
+#define CRAQUELURE_READ_RECORD_H
+
+#include "artifacts/artifact.h"
+#include "filling.h"
+
+// What INPUT, a drying of NETWORK, says happened, with the pressures of its snapshots
+// if FIELD; ends the program when there are none. The caller frees it.
+struct drying_record read_record(const struct artifact *input,
+                                 const struct network *network, bool field);
+void free_record(struct drying_record *record);
+
+#endif

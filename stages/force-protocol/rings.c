@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rings.h"
+
+#include "basics/memory.h"
+#include "bridges/bridges.h"
+
+#include <stdlib.h>
+
+// Dimensionless volumes between which the one in equilibrium is looked for.
+static const double LEAST = 1e-9, MOST = 1;
+
+static double cubed(double x)
+{
+    return x * x * x;
+}
+
+static struct bridge bridge_of(const double radius[2], const struct ring_law *law,
+                               double volume)
+{
+    struct bridge bridge = {.radius = {radius[0], radius[1]},
+                            .contact_angle = {law->contact_angle, law->contact_angle},
+                            .surface_tension = law->surface_tension};
+    bridge.volume = volume * cubed(bridge_effective_radius(&bridge));
+    return bridge;
+}
+
+// --- one ring ----------------------------------------------------------------------
+
+// Smaller bridges have more suction. Those too small for the separation have none; if
+// the least that holds has less than the liquid around it, there is none in equilibrium
+// and *VOLUME is 0.
+static enum status find_volume(const double radius[2], double separation,
+                               const struct ring_law *law, double *volume,
+                               struct reason *reason)
+{
+    static const double accuracy = 1e-10;
+    double low = LEAST, high = MOST;
+    bool in_reach = false; // whether LOW is a bridge of more suction
+    *volume = 0;
+    // Between plates this far apart no liquid has that suction, still less between
+    // spheres.
+    if (separation * law->suction >= 2 * law->surface_tension * cos(law->contact_angle))
+        return STATUS_OK;
+    while (high / low > 1 + accuracy) {
+        const double middle = sqrt(low * high);
+        const struct bridge bridge = bridge_of(radius, law, middle);
+        struct bridge_state state;
+        const enum status status = bridge_solve(&bridge, separation, &state, reason);
+        if (status && status != STATUS_NO) return status;
+        const bool more = !status && state.suction > law->suction;
+        if (more || status) {
+            low = middle;
+            in_reach = more;
+        } else {
+            high = middle;
+        }
+    }
+    if (in_reach) *volume = low;
+    return STATUS_OK;
+}
+
+enum status solve_ring(const double radius[2], double separation,
+                       const struct ring_law *law, double *volume, double *force,
+                       struct reason *reason)
+{
+    double part = law->volume;
+    *volume = *force = 0;
+    if (law->rule == RING_SUCTION) {
+        const enum status status = find_volume(radius, separation, law, &part, reason);
+        if (status) return status;
+    }
+    if (!(part > 0)) return STATUS_OK;
+    const struct bridge bridge = bridge_of(radius, law, part);
+    if (separation > 2 * bridge_rupture_distance(&bridge)) return STATUS_OK; // [G 2]
+    struct bridge_state state;
+    const enum status status = bridge_solve(&bridge, separation, &state, reason);
+    if (status == STATUS_NO) return STATUS_OK; // it ruptures
+    if (status) return status;
+    *volume = bridge.volume;
+    *force = state.force;
+    return STATUS_OK;
+}
+
+// --- all of them -------------------------------------------------------------------
+
+// Between two grains that share a face.
+struct ring {
+    int32_t grain[2]; // the lower first; the second below 0: none
+    double gap;       // m; 0 where they overlap
+    double angle;     // of all throats beside the face, each from both its sides; 4 pi
+                      // where the foot lies within it
+    double force;     // N
+};
+
+// In a layer each throat is a face, and so it is where the network has lost the face.
+static int ring_at(const struct wedges *wedges, const struct wedge *wedge)
+{
+    return wedges->layer || wedge->face < 0 ? wedges->network->n_face + wedge->throat
+                                            : wedge->face;
+}
+
+// The angle at the foot between the two ends of the throat.
+static double angle_of(const struct wedge *wedge)
+{
+    const struct vector from = subtract(wedge->from, wedge->foot);
+    const struct vector to = subtract(wedge->to, wedge->foot);
+    return atan2(norm(cross(from, to)), dot(from, to));
+}
+
+// Neither walls nor grains that are not there hold one.
+static bool has_ring(const struct wedges *wedges, const struct wedge *wedge)
+{
+    const struct packing *packing = &wedges->network->packing;
+    return wedge->beyond >= 0 && !is_auxiliary(packing, wedge->grain) &&
+           !is_auxiliary(packing, wedge->beyond);
+}
+
+static void add_to_ring(const struct wedges *wedges, const struct wedge *wedge,
+                        struct ring *ring)
+{
+    const double *radius = wedges->network->packing.radius;
+    const int low = wedge->grain < wedge->beyond ? wedge->grain : wedge->beyond;
+    const int high = wedge->grain < wedge->beyond ? wedge->beyond : wedge->grain;
+    ring->grain[0] = low;
+    ring->grain[1] = high;
+    ring->gap =
+        fmax(0, distance(wedge->across, wedge->centre) - (radius[low] + radius[high]));
+    ring->angle += angle_of(wedge);
+    if (!wedges->layer && wedge->face < 0) ring->angle = 4 * M_PI;
+}
+
+// For each face, then for each throat. The caller frees them.
+static struct ring *survey(struct wedges *wedges, int n)
+{
+    struct ring *ring = NEW_ARRAY(struct ring, n);
+    for (int r = 0; r < n; r++)
+        ring[r].grain[1] = -1;
+    for (int t = 0; t < wedges->network->n_throat; t++) {
+        const int count = wedges_at(wedges, t);
+        for (int k = 0; k < count; k++)
+            if (has_ring(wedges, &wedges->wedge[k]))
+                add_to_ring(wedges, &wedges->wedge[k],
+                            &ring[ring_at(wedges, &wedges->wedge[k])]);
+    }
+    return ring;
+}
+
+static enum status solve(const struct wedges *wedges, const struct ring_law *law,
+                         struct ring *ring, struct reason *reason)
+{
+    const double *of = wedges->network->packing.radius;
+    const double radius[2] = {of[ring->grain[0]], of[ring->grain[1]]};
+    double volume;
+    return solve_ring(radius, ring->gap, law, &volume, &ring->force, reason);
+}
+
+static enum status solve_all(const struct wedges *wedges, const struct ring_law *law,
+                             int n, struct ring *ring, struct reason *reason)
+{
+    int failed = n;
+#pragma omp parallel for schedule(dynamic, 64) reduction(min : failed)
+    for (int r = 0; r < n; r++) {
+        struct reason unused;
+        if (ring[r].grain[1] >= 0 && solve(wedges, law, &ring[r], &unused))
+            failed = r < failed ? r : failed;
+    }
+    if (failed == n) return STATUS_OK;
+    struct reason why;
+    const enum status status = solve(wedges, law, &ring[failed], &why);
+    return refuse(reason, status, "ring between grains %d and %d: %.400s",
+                  ring[failed].grain[0], ring[failed].grain[1], why.text);
+}
+
+static struct vector part_of_ring(const struct wedges *wedges,
+                                  const struct wedge *wedge, const void *rings)
+{
+    if (!has_ring(wedges, wedge)) return (struct vector){0};
+    const struct ring *ring = (const struct ring *)rings + ring_at(wedges, wedge);
+    if (!(ring->angle > 0)) return (struct vector){0};
+    const double share = 2 * angle_of(wedge) / ring->angle;
+    const struct vector apart = subtract(wedge->across, wedge->centre);
+    return scale(share * ring->force / norm(apart), apart);
+}
+
+enum status find_rings(struct wedges *wedges, const struct ring_law *law,
+                       struct rings *rings, struct reason *reason)
+{
+    const int n = wedges->network->n_face + wedges->network->n_throat;
+    struct ring *ring = survey(wedges, n);
+    *rings = (struct rings){0};
+    const enum status status = solve_all(wedges, law, n, ring, reason);
+    for (int r = 0; r < n && !status; r++) {
+        rings->count += ring[r].force != 0;
+        rings->largest = fmax(rings->largest, fabs(ring[r].force));
+    }
+    if (!status) rings->patches = collect_patches(wedges, part_of_ring, ring);
+    free(ring);
+    return status;
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "times.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static double end_of(const struct drying_record *record)
+{
+    return record->time[record->n_step - 1];
+}
+
+double *uniform_times(const struct drying_record *record, int count)
+{
+    double *times = NEW_ARRAY(double, count);
+    for (int m = 0; m < count; m++)
+        times[m] = end_of(record) * m / (count - 1);
+    times[count - 1] = end_of(record);
+    return times;
+}
+
+// Times chosen so far, and how far forces have moved since the last of them.
+struct choice {
+    struct walk walk;
+    double bound;        // N
+    struct vector *last; // (n_particle) forces at the last time
+    double moved;        // largest change of a force since
+    double *time;
+    int n, capacity, most;
+};
+
+static void choose(struct choice *choice, double time)
+{
+    if (choice->n > choice->most) return; // too many already
+    if (choice->n > 0 && !(time > choice->time[choice->n - 1])) return;
+    GROW_ARRAY(choice->time, choice->n, choice->capacity);
+    choice->time[choice->n++] = time;
+}
+
+static void remember(struct choice *choice)
+{
+    const int n = choice->walk.filling.network->packing.n_particle;
+    memcpy(choice->last, choice->walk.force, (size_t)n * sizeof *choice->last);
+    choice->moved = 0;
+}
+
+// Largest change of the last move's forces since the last time.
+static double movement(const struct choice *choice)
+{
+    double most = 0;
+    for (int k = 0; k < choice->walk.n_changed; k++) {
+        const int i = choice->walk.changed[k];
+        most = fmax(most, distance(choice->walk.force[i], choice->last[i]));
+    }
+    return most;
+}
+
+// The forces before the last move become those of the last time.
+static void remember_former(struct choice *choice)
+{
+    remember(choice);
+    for (int k = 0; k < choice->walk.n_changed; k++)
+        choice->last[choice->walk.changed[k]] = choice->walk.former[k];
+}
+
+// The walk has gone from time FROM to TO. If that was too much, FROM becomes a time;
+// where it alone was too much, it is parted evenly.
+static void follow(struct choice *choice, double from, double to)
+{
+    choice->moved = fmax(choice->moved, movement(choice));
+    if (choice->moved <= choice->bound) return;
+    choose(choice, from);
+    remember_former(choice);
+    choice->moved = movement(choice);
+    if (choice->moved <= choice->bound) return;
+    const double parts = fmin(ceil(choice->moved / choice->bound), choice->most);
+    for (int p = 1; p < parts; p++)
+        choose(choice, from + (to - from) * (p / parts));
+    choose(choice, to);
+    remember(choice);
+}
+
+static double largest_at_steps(const struct process *process)
+{
+    struct walk walk =
+        walk_begin(process->action, process->network, process->record, process->law);
+    double largest = 0;
+    for (int i = 0; i < process->network->packing.n_particle; i++)
+        largest = fmax(largest, norm(walk.force[i]));
+    while (walk_advance(&walk))
+        for (int k = 0; k < walk.n_changed; k++)
+            largest = fmax(largest, norm(walk.force[walk.changed[k]]));
+    walk_free(&walk);
+    return largest;
+}
+
+double *adaptive_times(const struct process *process, double bound, int most,
+                       int *count)
+{
+    const struct drying_record *record = process->record;
+    struct choice choice = {
+        .walk = walk_begin(process->action, process->network, record, process->law),
+        .bound = bound * largest_at_steps(process),
+        .last = NEW_ARRAY(struct vector, process->network->packing.n_particle),
+        .most = most};
+    choose(&choice, 0);
+    remember(&choice);
+    for (int step = 0; walk_advance(&choice.walk); step++)
+        follow(&choice, record->time[step], record->time[step + 1]);
+    choose(&choice, end_of(record));
+    walk_free(&choice.walk);
+    free(choice.last);
+    *count = choice.n;
+    if (choice.n <= most) return choice.time;
+    free(choice.time);
+    return NULL;
+}

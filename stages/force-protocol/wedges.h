@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where each throat lies beside each grain: wedges, out of which all forms of the
+// capillary force are made.
+#ifndef CRAQUELURE_WEDGES_H
+#define CRAQUELURE_WEDGES_H
+
+#include "basics/status.h"
+#include "network/network.h"
+
+// One throat beside one face of one grain's cell, seen from that grain: the triangle
+// from the foot of the face to the throat. In a layer of grains the face is the throat
+// itself, and the foot is its middle. All places are in one repetition of the box, the
+// same for all wedges of one face.
+struct wedge {
+    int32_t throat, grain;
+    int32_t beyond;         // the grain across the face; below 0: a wall
+    int32_t face;           // -1: of a face that the network has not kept
+    struct vector centre;   // of the grain
+    struct vector across;   // centre of the grain beyond, or the foot on the wall
+    struct vector foot;     // where the line between the two crosses the face [K 3.2]
+    struct vector from, to; // the throat, counter-clockwise seen from beyond
+};
+
+struct wedges {
+    const struct network *network;
+    bool layer;
+    struct side *side;   // what is known of them, by throats
+    int64_t *offset;     // (n_throat+1) into SIDE
+    bool *open;          // (n_throat) whether a face beside it is missing
+    struct wedge *wedge; // of the throat asked for last
+    int capacity;
+};
+
+// Finds all wedges of NETWORK, which must live as long. Where cut cells were left out
+// (boundary=eliminate) a throat between one that stays and two that do not has lost
+// the face between these two; its wedges are there all the same, so that all grains
+// around a throat feel it. In a layer the grain that lost its cell is that of least
+// power at the throat.
+//
+// STATUS_BAD_DATA when two neighbours in a face's loop are not joined by a throat, or
+// a cell is open elsewhere. The caller frees with wedges_free, also after a failure.
+enum status wedges_find(const struct network *network, struct wedges *wedges,
+                        struct reason *reason);
+void wedges_free(struct wedges *wedges);
+
+// The wedges of THROAT in wedges->wedge, until asked again; returns how many.
+int wedges_at(struct wedges *wedges, int throat);
+
+#endif
