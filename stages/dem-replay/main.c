@@ -12,7 +12,8 @@
 
 struct replay_parameters {
     struct replay_settings settings;
-    int support, engine, bridge_model;
+    int support, engine, bond, bridge_model;
+    double contact_strength;
     struct number_list snapshots;
 };
 
@@ -48,6 +49,15 @@ static const struct parameter table[] = {
      AT(settings.bond.shear_strength)},
     {"bond.radius_fraction", PARAMETER_NUMBER, "1", "0.5858", BOUND_BETWEEN, 1e-6, 1,
      NULL, "bond radius, of the smaller grain's", AT(settings.bond.radius_fraction)},
+    {"bond.kind", PARAMETER_CHOICE, "1", "\"parallel\"", BOUND_NONE, 0, 0,
+     "parallel|contact",
+     "parallel: cylinders of glue [K 4.31-4.44]; contact: the contact's own springs "
+     "also "
+     "in tension, without slip [K 4.2]",
+     AT(bond)},
+    {"bond.contact_strength", PARAMETER_NUMBER, "N", "null", BOUND_MINIMUM, 0, 0, NULL,
+     "tension or shear force that breaks a contact bond; null: none does",
+     AT(contact_strength)},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", BOUND_NONE, 0, 0, "free|fixed|wall",
      "free: net force and moment are taken off; fixed: grains at the lower z wall are "
      "held; "
@@ -124,6 +134,20 @@ static void check_snapshots(const struct number_list *snapshots)
                 snapshots->value[k], snapshots->value[k - 1]);
 }
 
+// Strengths of parallel bonds are stresses, those of contact bonds forces.
+static void choose_bonds(const struct replay_parameters *parameters,
+                         struct replay_settings *settings)
+{
+    settings->bond.kind = (enum dem_bond_kind)parameters->bond;
+    if (settings->bond.kind == DEM_PARALLEL_BOND) return;
+    if (settings->engine == ENGINE_QUASI_STATIC)
+        die(STATUS_BAD_DATA, "dem-replay.bond.kind: contact bonds are for "
+                             "engine=explicit");
+    const double strength = parameters->contact_strength;
+    settings->bond.normal_strength = isnan(strength) ? INFINITY : strength;
+    settings->bond.shear_strength = settings->bond.normal_strength;
+}
+
 static struct load read_load(const struct artifact *input)
 {
     struct load load;
@@ -171,18 +195,20 @@ static void write_response(const struct packing *packing, const struct load *loa
                                            "grains at the lower z wall held",
                                            "a rigid wall beneath"};
     static const char *const engines[] = {
-        "discrete elements: leapfrog, linear contacts, slip, dashpots, parallel bonds "
-        "[K 4]",
-        "equilibria: linear contacts, slip, parallel bonds that break one by one [K "
-        "4], "
+        "discrete elements: leapfrog, linear contacts, slip, dashpots, %s bonds [K 4]",
+        "equilibria: linear contacts, slip, %s bonds that break one by one [K 4], "
         "small displacements; what nothing holds leaves"};
+    static const char *const bonds[] = {"parallel", "contact"};
+    char engine[200];
+    snprintf(engine, sizeof engine, engines[settings->engine],
+             bonds[settings->bond.kind]);
     char model[700];
     snprintf(model, sizeof model,
              "%s\n"
              "support: %s\n"
              "%s"
              "left out: gravity, %smoments of capillary forces\n",
-             engines[settings->engine], supports[settings->support],
+             engine, supports[settings->support],
              settings->liquid.volume > 0
                  ? "liquid bridges between grains that have touched [G 2]\n"
                  : "",
@@ -222,6 +248,7 @@ int main(int argc, char **argv)
     settings->engine = (enum engine)parameters.engine;
     settings->liquid.model = (enum bridge_model)parameters.bridge_model;
     settings->liquid.contact_angle *= M_PI / 180;
+    choose_bonds(&parameters, settings);
     settings->n_snapshot = parameters.snapshots.count;
     settings->snapshot = parameters.snapshots.value;
     settings->threads = invocation.threads;

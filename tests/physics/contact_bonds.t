@@ -1,0 +1,58 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Contact bonds in dem-replay [K 4.2, 5.10]: a soft aggregate shrinks by its springs and comes
+# back; the strength is a force.
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, run, scratch
+
+SOFT = "samples/soft-10x5x5.json"
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    network = run("merge-nodes", "-p", SOFT, input=run("tessellate", "-p", SOFT, input=run(
+        "pack", "-p", SOFT, "--set", "counts=[4,3,3]")))
+    drying = run("dry", "-p", SOFT, input=network)
+
+    def replay(scale, *settings):
+        forces = run("force-protocol", "-p", SOFT, "--set", "steps=40", "--set",
+                     f"force_scale={scale}", input=drying)
+        run("dem-replay", "-p", SOFT, "--set", "cycles=2000", *(word for s in settings
+            for word in ("--set", s)), "-o", at("response"), input=forces)
+        return json.loads(run("crackstats", at("response")))["mean"], h5py.File(at("response"))
+
+    stats, response = replay(0.01)
+    ok(stats["cracks"]["total"] == 0, "no cracks")
+    ok(0.999 < stats["shrinkage"]["spring_back"] < 1.001, "it springs back to where it was",
+       stats["shrinkage"])
+
+    # Every contact's normal force is its spring's: half a grain's stiffness times overlap.
+    pair = response["contacts/particles"][:]
+    place = response["particles/position"][:] + response["snapshots/displacement"][0]
+    apart = np.diff(place[pair], axis=1)[:, 0]
+    length = np.linalg.norm(apart, axis=1)
+    force = (response["snapshots/contact_force"][0] * apart).sum(axis=1) / length
+    spring = 0.5 * 10 * (500e-9 - length)
+    ok(np.allclose(force, spring, atol=1e-4 * np.abs(spring).max()),
+       "forces are those of the springs", np.abs(force - spring).max() / np.abs(spring).max())
+    normal = -np.concatenate([response["snapshots/contact_force"][k].ravel()
+                              for k in range(len(response["snapshots/time"]))])
+    most = np.abs(normal).max()
+
+    stats, response = replay(0.01, f"bond.contact_strength={3 * most}")
+    ok(stats["cracks"]["total"] == 0, "none where the strength is above any force")
+    stats, response = replay(0.01, f"bond.contact_strength={0.15 * most}")
+    ok(stats["cracks"]["total"] > 0, "some where it is below most", stats["cracks"])
+    tried = subprocess.run([f"{BIN}/dem-replay", "-p", SOFT, "--set", "engine=quasi-static"],
+                           input=run("force-protocol", "-p", SOFT, "--set", "steps=2", input=drying),
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    ok(tried.returncode == 65 and b"contact bonds are for engine=explicit" in tried.stderr,
+       "contact bonds without dynamics are refused")
+done()
