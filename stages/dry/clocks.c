@@ -229,10 +229,7 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
                             .losing = NEW_ARRAY(int, n),
                             .saturation = NEW_ARRAY(double, n)};
     for (int t = 0; t < n; t++)
-        clocks.saturation[t] =
-            phases->volume[t] > 0
-                ? compensated_value(phases->liquid[t]) / phases->volume[t]
-                : 0;
+        clocks.saturation[t] = phases_saturation(phases, t);
     for (int i = 0; i < phases->network->n_node; i++)
         share_node(&clocks, i);
     for (int k = 0; k < phases->n_wet; k++)

@@ -154,6 +154,26 @@ enum status check_throats(const struct network *network, struct reason *reason)
     return STATUS_OK;
 }
 
+int count_throats(const struct network *network)
+{
+    int n = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        n += network->throat_kind[t] == THROAT_NETWORK;
+    return n;
+}
+
+enum status check_steps(const struct drying_conditions *conditions,
+                        const struct network *network, struct reason *reason)
+{
+    const int n = count_throats(network);
+    if (conditions->step_interval > 0 || n <= MOST_RECORDED_THROATS) return STATUS_OK;
+    const double bytes = 12 * pow(n, 1.7) / 2; // rows as measured on cubic lattices
+    return refuse(reason, STATUS_BAD_DATA,
+                  "step_interval: must be above 0 in networks of more than %d throats, "
+                  "is 0 with %d: what changes at each event would come to some %.2g GB",
+                  MOST_RECORDED_THROATS, n, bytes / 1e9);
+}
+
 static double mean_throat_length(const struct network *network)
 {
     struct compensated sum = {0};

@@ -29,6 +29,17 @@ enum status check_gravity(const struct drying_conditions *conditions,
 // part.
 enum status check_throats(const struct network *network, struct reason *reason);
 
+// Every event of more throats than this is not recorded: the changes, about half the
+// throats to the power of 1.7 of them, would take more than 2 GB.
+enum { MOST_RECORDED_THROATS = 100000 };
+
+// Those that take part.
+int count_throats(const struct network *network);
+
+// STATUS_BAD_DATA if every event of a network so large would be recorded.
+enum status check_steps(const struct drying_conditions *conditions,
+                        const struct network *network, struct reason *reason);
+
 // Both arguments must have passed their checks.
 struct drying_scale drying_scale(const struct network *network,
                                  const struct drying_conditions *conditions);

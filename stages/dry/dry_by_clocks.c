@@ -4,7 +4,6 @@
 #include "run.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static void record_change(struct run *run, int throat)
 {
@@ -14,17 +13,11 @@ static void record_change(struct run *run, int throat)
     run->saturation[throat] = saturation;
 }
 
-static int compare_throats(const void *a, const void *b)
-{
-    const int *t = a, *s = b;
-    return (*t > *s) - (*t < *s);
-}
-
 // Of all throats that lose or have lost since the last step, in ascending order.
 static void record_changes(struct run *run)
 {
     const struct clocks *clocks = &run->clocks;
-    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, compare_throats);
+    sort_ended(run);
     int k = 0;
     for (int l = 0; l < clocks->n; l++) {
         for (; k < run->n_ended && run->ended[k] < clocks->losing[l]; k++)
@@ -36,29 +29,12 @@ static void record_changes(struct run *run)
     run->n_ended = 0;
 }
 
-// A step if it is time for one. Where events were passed over, the rate of the last
-// step becomes the mean until this.
 static void record_step(struct run *run)
 {
-    const double saturation = network_saturation(run);
-    const double fallen = run->step_saturation - saturation;
-    if (fallen < run->conditions->step_interval && run->phases.n_full > 0) {
-        run->n_skipped++;
-        return;
-    }
-    if (run->n_skipped > 0) {
-        const double evaporated =
-            compensated_difference(run->evaporated, run->step_evaporated);
-        const double time = compensated_difference(run->time, run->step_time);
-        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
-    }
+    if (!step_is_due(run)) return;
     record_changes(run);
     record_state(run);
     run->imbalance = fmax(run->imbalance, fabs(clocks_imbalance(&run->clocks)));
-    run->n_skipped = 0;
-    run->step_saturation = saturation;
-    run->step_time = run->time;
-    run->step_evaporated = run->evaporated;
 }
 
 enum status dry_by_clocks(struct run *run, struct reason *reason)

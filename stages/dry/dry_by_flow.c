@@ -46,11 +46,6 @@ static void lose(struct phases *phases, int throat, double amount)
     }
 }
 
-static double throat_saturation(const struct phases *phases, int throat)
-{
-    return compensated_value(phases->liquid[throat]) / phases->volume[throat];
-}
-
 // Time passes until the first throat has emptied.
 static void advance(struct run *run, double duration)
 {
@@ -59,12 +54,25 @@ static void advance(struct run *run, double duration)
     compensated_add(&run->evaporated, vapour_rate(&phases->vapour) * duration);
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
-        const double before = throat_saturation(phases, loss->throat);
         lose(phases, loss->throat, loss->rate * duration);
-        const double after = throat_saturation(phases, loss->throat);
-        if (after != before) // too little to show, now and then
-            recorder_add_change(&run->recorder, loss->throat, after);
+        if (!run->is_ended[loss->throat]) run->ended[run->n_ended++] = loss->throat;
+        run->is_ended[loss->throat] = true;
     }
+}
+
+// Of all throats that have lost or filled since the last step, in ascending order.
+static void record_changes(struct run *run)
+{
+    sort_ended(run);
+    for (int k = 0; k < run->n_ended; k++) {
+        const int throat = run->ended[k];
+        const double saturation = phases_saturation(&run->phases, throat);
+        run->is_ended[throat] = false;
+        if (saturation == run->saturation[throat]) continue; // too little to show
+        recorder_add_change(&run->recorder, throat, saturation);
+        run->saturation[throat] = saturation;
+    }
+    run->n_ended = 0;
 }
 
 static void note_refills(struct run *run, double time)
@@ -72,7 +80,7 @@ static void note_refills(struct run *run, double time)
     const struct phases *phases = &run->phases;
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
-        if (loss->rate < 0 && throat_saturation(phases, loss->throat) == 1)
+        if (loss->rate < 0 && phases_saturation(phases, loss->throat) == 1)
             recorder_add_event(&run->recorder, time, loss->throat, EVENT_REFILLED);
     }
 }
@@ -90,13 +98,6 @@ static void empty_throats(struct run *run)
         recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
     }
     note_breakthrough(run);
-}
-
-static bool snapshot_is_due(const struct run *run)
-{
-    const int next = run->recorder.history->n_pressure;
-    return next < run->conditions->n_snapshot &&
-           network_saturation(run) <= run->conditions->snapshot[next];
 }
 
 static void keep_pressures(struct run *run)
@@ -140,6 +141,10 @@ enum status dry_by_flow(struct run *run, struct reason *reason)
     advance(run, time_to_first(run));
     const int n_before = phases->n_full;
     empty_throats(run);
-    record_state(run);
+    run->n_flow_step++;
+    if (step_is_due(run)) {
+        record_changes(run);
+        record_state(run);
+    }
     return note_idle(run, phases->n_full == n_before, reason);
 }

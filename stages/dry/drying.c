@@ -35,12 +35,51 @@ double rate_now(const struct run *run)
     return run->phases.n_full > 0 ? vapour_rate(&run->phases.vapour) : 0;
 }
 
+bool snapshot_is_due(const struct run *run)
+{
+    const int next = run->recorder.history->n_pressure;
+    return run->conditions->liquid == LIQUID_VISCOUS &&
+           next < run->conditions->n_snapshot &&
+           network_saturation(run) <= run->conditions->snapshot[next];
+}
+
+bool step_is_due(struct run *run)
+{
+    const double fallen = run->step_saturation - network_saturation(run);
+    if (fallen < run->conditions->step_interval && run->phases.n_full > 0 &&
+        !snapshot_is_due(run)) {
+        run->n_skipped++;
+        return false;
+    }
+    if (run->n_skipped > 0) {
+        const double evaporated =
+            compensated_difference(run->evaporated, run->step_evaporated);
+        const double time = compensated_difference(run->time, run->step_time);
+        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
+    }
+    return true;
+}
+
+static int compare_throats(const void *a, const void *b)
+{
+    const int *t = a, *s = b;
+    return (*t > *s) - (*t < *s);
+}
+
+void sort_ended(struct run *run)
+{
+    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, compare_throats);
+}
+
 void record_state(struct run *run)
 {
-    const double rate = rate_now(run);
     recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
-                      network_saturation(run), rate * run->scale.rate,
+                      network_saturation(run), rate_now(run) * run->scale.rate,
                       run->phases.clusters.count);
+    run->n_skipped = 0;
+    run->step_saturation = network_saturation(run);
+    run->step_time = run->time;
+    run->step_evaporated = run->evaporated;
 }
 
 void note_breakthrough(struct run *run)
@@ -112,7 +151,7 @@ static void start(struct run *run)
     free(invaded);
 }
 
-// What the liquid needs.
+// What the liquid needs, and the first step.
 static void prepare(struct run *run)
 {
     const struct network *network = run->phases.network;
@@ -121,14 +160,16 @@ static void prepare(struct run *run)
             liquid_flow_make(network, run->scale.length,
                              menisci_make(network, run->conditions, &run->scale));
         run->losses = losses_make(network->n_throat);
-        return;
+    } else {
+        run->clocks =
+            clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
     }
-    run->clocks = clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, network->n_throat);
+    run->is_ended = NEW_ARRAY(bool, network->n_throat);
     run->saturation = NEW_ARRAY(double, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
-        run->saturation[t] = clocks_saturation(&run->clocks, t);
+        run->saturation[t] = phases_saturation(&run->phases, t);
 }
 
 // How easily gas enters each throat against gravity. The caller frees it.
@@ -143,6 +184,58 @@ static double *find_ease(const struct network *network,
     return ease;
 }
 
+static enum status make_phases(const struct network *network, struct run *run,
+                               struct reason *reason)
+{
+    const struct drying_conditions *conditions = run->conditions;
+    struct boundary_layer layer;
+    enum status status = boundary_layers_make(
+        network, conditions->open_walls, run->scale.length, run->scale.boundary_layer,
+        &(struct boundary_form){conditions->feet, conditions->layers,
+                                conditions->lumped},
+        &layer, reason);
+    if (status) {
+        boundary_layer_free(&layer);
+        return status;
+    }
+    double *ease = conditions->gravity != 0
+                       ? find_ease(network, conditions, &run->scale)
+                       : NULL; // by radius
+    const struct phases_form form = {.length = run->scale.length,
+                                     .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
+                                     .ease = ease,
+                                     .knudsen_radius = knudsen_radius(conditions)};
+    status = phases_make(network, conditions->open_walls, &form, layer, &run->phases,
+                         reason);
+    free(ease);
+    return status;
+}
+
+// At the start, or where another run was when its state was kept.
+static enum status begin_run(struct run *run, const struct keeper *keeper,
+                             struct reason *reason)
+{
+    if (keeper && keeper->begin) {
+        prepare(run);
+        return go_on_from(run, keeper->begin, reason);
+    }
+    start(run);
+    prepare(run);
+    begin(run);
+    return STATUS_OK;
+}
+
+static void free_run(struct run *run)
+{
+    liquid_flow_free(&run->flow);
+    losses_free(&run->losses);
+    clocks_free(&run->clocks);
+    free(run->ended);
+    free(run->is_ended);
+    free(run->saturation);
+    phases_free(&run->phases);
+}
+
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,
@@ -152,50 +245,16 @@ enum status dry_network(const struct network *network,
     enum status status = check_conditions(conditions, reason);
     if (!status) status = check_gravity(conditions, network, reason);
     if (!status) status = check_throats(network, reason);
+    if (!status) status = check_steps(conditions, network, reason);
     if (status) return status;
 
     struct run run = {.conditions = conditions,
                       .scale = drying_scale(network, conditions),
                       .recorder = recorder_make(history)};
-    struct boundary_layer layer;
-    status = boundary_layers_make(
-        network, conditions->open_walls, run.scale.length, run.scale.boundary_layer,
-        &(struct boundary_form){conditions->feet, conditions->layers,
-                                conditions->lumped},
-        &layer, reason);
-    if (status) {
-        boundary_layer_free(&layer);
-        return status;
-    }
-
-    double *ease = conditions->gravity != 0 ? find_ease(network, conditions, &run.scale)
-                                            : NULL; // by radius
-    const struct phases_form form = {.length = run.scale.length,
-                                     .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
-                                     .ease = ease,
-                                     .knudsen_radius = knudsen_radius(conditions)};
-    status =
-        phases_make(network, conditions->open_walls, &form, layer, &run.phases, reason);
-    free(ease);
-    if (!status) {
-        const struct keeper *keeper = progress ? progress->keeper : NULL;
-        const bool goes_on = keeper && keeper->begin;
-        if (!goes_on) start(&run);
-        prepare(&run);
-        if (goes_on)
-            status = go_on_from(&run, keeper->begin, reason);
-        else
-            begin(&run);
-    }
-    if (!status) {
-        status = dry_all(&run, progress, reason);
-    }
+    status = make_phases(network, &run, reason);
+    if (!status) status = begin_run(&run, progress ? progress->keeper : NULL, reason);
+    if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);
-    liquid_flow_free(&run.flow);
-    losses_free(&run.losses);
-    clocks_free(&run.clocks);
-    free(run.ended);
-    free(run.saturation);
-    phases_free(&run.phases);
+    free_run(&run);
     return status;
 }

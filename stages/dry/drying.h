@@ -66,7 +66,7 @@ struct drying_conditions {
     double start_saturation;
     const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
     // Fall of the network's saturation from one recorded step to the next; 0: each
-    // event is a step. Not where the liquid is viscous.
+    // event is a step.
     double step_interval;
     double
         first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends

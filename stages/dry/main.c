@@ -137,10 +137,10 @@ int main(int argc, char **argv)
     struct dry_parameters parameters = {0};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check_snapshots(&parameters.snapshots);
-    complete_conditions(&parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);
 
+    complete_conditions(&parameters, &network);
     const struct mass_transfer transfer =
         give_mass_transfer(&network, &parameters, invocation.quiet);
     give_radii(&network, &parameters);

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameters.h"
 
+#include "conditions.h"
+
+#include <math.h>
 #include <stddef.h>
+
+// Of step_interval: null.
+enum { MOST_THROATS_BY_EVENTS = 30000 };
+static const double COARSE_STEPS = 1e-3;
 
 #define AT(member) offsetof(struct dry_parameters, member)
 #define WALLS "-x|+x|-y|+y|-z|+z"
@@ -116,10 +123,10 @@ const struct parameter dry_table[] = {
      "INPUT "
      "is a drying, its state when it had as much",
      AT(conditions.start_saturation)},
-    {"step_interval", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
-     "fall of the saturation from one recorded step to the next, for large networks; "
-     "0: "
-     "every event is a step; of no effect in viscous liquid",
+    {"step_interval", PARAMETER_NUMBER, "1", "null", BOUND_BETWEEN, 0, 1, NULL,
+     "fall of the saturation from one recorded step to the next; 0: every event is a "
+     "step (up to 100000 throats); null: 0 up to 30000 throats, 0.001 in larger "
+     "networks",
      AT(conditions.step_interval)},
     {"snapshots", PARAMETER_LIST, "1", "[]", BOUND_BETWEEN, 0, 1, NULL,
      "saturations, falling, at which the state of every throat is written, and the "
@@ -131,7 +138,8 @@ const struct parameter dry_table[] = {
      AT(conditions.first_period_rate_fraction)},
     {0}};
 
-void complete_conditions(struct dry_parameters *parameters)
+void complete_conditions(struct dry_parameters *parameters,
+                         const struct network *network)
 {
     struct drying_conditions *conditions = &parameters->conditions;
     conditions->liquid = (enum liquid_limit)parameters->liquid;
@@ -141,4 +149,7 @@ void complete_conditions(struct dry_parameters *parameters)
     conditions->layers = (int)parameters->layers;
     conditions->feet = (enum boundary_feet)parameters->feet;
     conditions->lumped = parameters->exchange == EXCHANGE_LUMPED;
+    if (isnan(conditions->step_interval))
+        conditions->step_interval =
+            count_throats(network) > MOST_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
 }

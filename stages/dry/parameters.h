@@ -24,7 +24,8 @@ struct dry_parameters {
 
 extern const struct parameter dry_table[];
 
-// Gives the conditions what was not read right into them.
-void complete_conditions(struct dry_parameters *parameters);
+// Gives the conditions what was not read right into them, and what NETWORK decides.
+void complete_conditions(struct dry_parameters *parameters,
+                         const struct network *network);
 
 #endif

@@ -110,6 +110,12 @@ void phases_empty_throat(struct phases *phases, int throat)
     }
 }
 
+double phases_saturation(const struct phases *phases, int throat)
+{
+    if (!(phases->volume[throat] > 0)) return 0;
+    return compensated_value(phases->liquid[throat]) / phases->volume[throat];
+}
+
 void phases_free(struct phases *phases)
 {
     vapour_free(&phases->vapour);

@@ -51,6 +51,9 @@ enum status phases_make(const struct network *network, unsigned open_walls,
 // THROAT has lost its last liquid: gas fills it and both its nodes.
 void phases_empty_throat(struct phases *phases, int throat);
 
+// Of THROAT, where the phases know it: at the start, and in viscous liquid.
+double phases_saturation(const struct phases *phases, int throat);
+
 void phases_state(struct phases *phases, struct state *state);
 
 void phases_free(struct phases *phases);

@@ -27,13 +27,14 @@ static void flow_state(struct run *run, struct state *state)
     state_long(state, &flow->rounds);
     state_long(state, &flow->solutions);
     state_integer(state, &run->n_idle, 0, INT_MAX);
+    state_long(state, &run->n_flow_step);
+    state_flags(state, run->is_ended, run->phases.network->n_throat);
     pressures_state(run, state);
 }
 
 static void steps_state(struct run *run, struct state *state)
 {
     const int n_throat = run->phases.network->n_throat;
-    clocks_state(&run->clocks, state);
     state_numbers(state, &run->step_saturation, 1);
     state_sums(state, &run->step_time, 1);
     state_sums(state, &run->step_evaporated, 1);
@@ -52,16 +53,17 @@ static void run_state(struct run *run, struct state *state)
     state_integer(state, &run->n_at_start, 0, run->phases.network->n_throat);
     recorder_state(&run->recorder, run->phases.network->n_throat, state);
     phases_state(&run->phases, state);
+    steps_state(run, state);
     if (run->conditions->liquid == LIQUID_VISCOUS)
         flow_state(run, state);
     else
-        steps_state(run, state);
+        clocks_state(&run->clocks, state);
 }
 
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     if (run->conditions->liquid == LIQUID_VISCOUS) {
-        if (run->recorder.history->n_step % STEPS_BETWEEN_CUTS != 0) return;
+        if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
         liquid_flow_forget(&run->flow);
     }
     if (!is_due(keeper)) return;

@@ -18,6 +18,7 @@ struct run {
     struct losses losses;    // empty unless it is
     struct liquid_flow flow; // empty unless it is
     int n_idle;              // viscous: steps since a throat has emptied
+    int64_t n_flow_step;     // viscous: steps so far, recorded or not
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
     double first_rate;                   // scaled
@@ -28,8 +29,9 @@ struct run {
     double step_saturation;
     struct compensated step_time, step_evaporated;
     int n_skipped;      // events
-    int n_ended;        // throats that have emptied
+    int n_ended;        // throats that have emptied; viscous: that have changed
     int *ended;         // (n_ended)
+    bool *is_ended;     // (n_throat) viscous: whether among them
     double *saturation; // (n_throat) at that step
 };
 
@@ -38,6 +40,16 @@ double network_saturation(const struct run *run);
 
 // Into the drying air, scaled; 0 when all is dry.
 double rate_now(const struct run *run);
+
+// Whether the pressures of viscous liquid are asked for now.
+bool snapshot_is_due(const struct run *run);
+
+// Whether this moment is to be recorded. Where events have been passed over, the rate
+// of the last step becomes the mean until now.
+bool step_is_due(struct run *run);
+
+// Puts the ended in ascending order.
+void sort_ended(struct run *run);
 
 // Adds a step to the history, with the changes recorded since the last.
 void record_state(struct run *run);

@@ -81,6 +81,7 @@ static struct drying_conditions conditions(const char *liquid, double step_inter
         .mass_transfer = 2.5685e-6,
         .open_walls = WALL_Z_UPPER,
         .liquid = strcmp(liquid, "immobile") == 0 ? LIQUID_IMMOBILE : LIQUID_INVISCID,
+        .start_saturation = 1,
         .step_interval = step_interval,
         .first_period_rate_fraction = 0.9};
 }

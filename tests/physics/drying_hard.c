@@ -88,7 +88,7 @@ static void test_recording_less_changes_nothing(void **state)
     (void)state;
     struct network network = lattice_network(7, 7, 7, spacing);
     randomise_radii(&network, spacing, 0.3, 4);
-    for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_IMMOBILE; liquid++) {
+    for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_VISCOUS; liquid++) {
         struct drying_conditions conditions =
             kharaghani_conditions((enum liquid_limit)liquid);
         struct drying_history all = dry_and_check(&network, &conditions);
@@ -113,6 +113,21 @@ static void test_recording_less_changes_nothing(void **state)
     network_free(&network);
 }
 
+// What changed at each event of a large network would fill the memory.
+static void test_large_networks_are_not_recorded_whole(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(36, 36, 36, spacing);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    struct drying_history history;
+    struct reason reason = {""};
+    assert_int_equal(dry_network(&network, &conditions, NULL, &history, &reason),
+                     STATUS_BAD_DATA);
+    assert_non_null(strstr(reason.text, "step_interval: must be above 0"));
+    drying_history_free(&history);
+    network_free(&network);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -120,6 +135,7 @@ int main(void)
         cmocka_unit_test(test_equal_radii_in_a_stated_order),
         cmocka_unit_test(test_radii_over_six_decades),
         cmocka_unit_test(test_one_throat_near_boiling),
-        cmocka_unit_test(test_recording_less_changes_nothing)};
+        cmocka_unit_test(test_recording_less_changes_nothing),
+        cmocka_unit_test(test_large_networks_are_not_recorded_whole)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,8 +5,8 @@
 #include "support_lattice.h"
 
 #include "basics/memory.h"
-#include "dry/invasion.h"
 #include "dry/start.h"
+#include "invade/invasion.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -92,7 +92,8 @@ static void test_gas_has_come_in(void **state)
     randomise_radii(&network, spacing, 0.3, 6);
     struct invasion invasion;
     struct reason reason = {""};
-    assert_int_equal(invade(&network, WALL_Z_UPPER, 0, false, &invasion, &reason), 0);
+    const struct invasion_conditions gas = {.inlet = WALL_Z_UPPER};
+    assert_int_equal(invade(&network, &gas, &invasion, &reason), 0);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     conditions.start_saturation = 0.617;
     struct drying_history history = dry_from(&network, &conditions, NULL);
