@@ -10,19 +10,6 @@
 
 #include <stdlib.h>
 
-int impose_empty_throats(struct network *network, unsigned walls)
-{
-    int n = 0;
-    for (int t = 0; t < network->n_throat; t++) {
-        const int32_t *node = network->throat_nodes[t];
-        if (network->throat_kind[t] == THROAT_NETWORK &&
-            network->node_walls[node[0]] & network->node_walls[node[1]] & walls)
-            network->throat_kind[t] = THROAT_IMPOSED_EMPTY;
-        n += network->throat_kind[t] == THROAT_IMPOSED_EMPTY;
-    }
-    return n;
-}
-
 double network_saturation(const struct run *run)
 {
     if (run->phases.n_full == 0) return 0;

@@ -132,12 +132,6 @@ struct drying_progress {
     const struct keeper *keeper; // keeps the state on the way; may be NULL
 };
 
-// Marks as THROAT_IMPOSED_EMPTY the throats that lie in one of WALLS (bits of enum
-// wall), that is whose two nodes are both on that wall: they hold no liquid, and
-// neither vapour nor gas passes through them [K 5.4]. Returns how many are so marked in
-// all.
-int impose_empty_throats(struct network *network, unsigned walls);
-
 // Dries NETWORK, of which only the throats of kind THROAT_NETWORK take part, to the
 // end. HISTORY is overwritten; the caller frees it with drying_history_free, also after
 // a failure. PROGRESS may be NULL.

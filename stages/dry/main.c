@@ -6,7 +6,6 @@
 #include "drying.h"
 #include "enclosed.h"
 #include "mass_transfer.h"
-#include "network/throat_radius.h"
 #include "parameters.h"
 #include "start.h"
 #include "write_drying.h"
@@ -91,17 +90,6 @@ static void dry(const struct network *network, const struct dry_parameters *para
     if (status) die(status, "%s: %s", input_name(path), reason.text);
 }
 
-static void give_radii(struct network *network, const struct dry_parameters *parameters)
-{
-    if (parameters->distribution == RADII_OF_NETWORK) return;
-    struct radius_distribution distribution = parameters->radii;
-    distribution.law = (enum radius_law)(parameters->distribution - 1);
-    distribution.seed = (unsigned long)parameters->seed;
-    struct reason reason;
-    const enum status status = draw_radii(network, &distribution, &reason);
-    if (status) die(status, "dry.%s", reason.text);
-}
-
 static double longer_open_edge(const struct packing *packing, int wall)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
@@ -143,7 +131,9 @@ int main(int argc, char **argv)
     complete_conditions(&parameters, &network);
     const struct mass_transfer transfer =
         give_mass_transfer(&network, &parameters, invocation.quiet);
-    give_radii(&network, &parameters);
+    struct reason reason;
+    if (give_radii(&network, &parameters.radii, &reason))
+        die(STATUS_BAD_DATA, "dry.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);
     if (parameters.imposed_empty)
         parameters.enclosed = empty_enclosed_throats(&network, parameters.open_walls,

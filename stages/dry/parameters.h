@@ -5,21 +5,20 @@
 
 #include "drying.h"
 #include "mass_transfer.h"
-#include "network/throat_radius.h"
+#include "network/drawn_radii.h"
 #include "parameters/parameters.h"
 
-enum { RADII_OF_NETWORK }; // the choices that follow are those of enum radius_law
 enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 
 struct dry_parameters {
     struct drying_conditions conditions;
     struct number_list snapshots;
     struct air_flow air;
-    int liquid, distribution, transfer_law, exchange, feet;
+    int liquid, transfer_law, exchange, feet;
     int enclosed; // throats that others imposed empty have shut in
-    int64_t layers, seed;
+    int64_t layers;
     unsigned open_walls, imposed_empty;
-    struct radius_distribution radii;
+    struct drawn_radii radii;
 };
 
 extern const struct parameter dry_table[];

@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "entry.h"
+#include "network/drawn_radii.h"
 #include "outcome.h"
 
 #include <stdio.h>
@@ -11,7 +12,9 @@
 struct invade_parameters {
     struct invasion_conditions invasion;
     struct entry_conditions entry;
+    struct drawn_radii radii;
     int rule, until;
+    unsigned imposed_empty;
 };
 
 enum { UNTIL_END, UNTIL_BREAKTHROUGH };
@@ -34,6 +37,11 @@ static const struct parameter table[] = {
      "walls through which gas comes in", AT(invasion.inlet)},
     {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", BOUND_NONE, 0, 0, WALLS,
      "walls through which liquid leaves", AT(invasion.outlet)},
+    {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0,
+     WALLS "|outer|inner",
+     "walls whose throats hold no liquid and let nothing through, as in dry",
+     AT(imposed_empty)},
+    DRAWN_RADII_ROWS(AT(radii)),
     {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
      "of the liquid [K Table 3.1]", AT(entry.surface_tension)},
     {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
@@ -166,9 +174,12 @@ int main(int argc, char **argv)
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_periodic_network(input);
 
+    struct reason reason;
+    if (give_radii(&network, &parameters.radii, &reason))
+        die(STATUS_BAD_DATA, "invade.%s", reason.text);
+    impose_empty_throats(&network, parameters.imposed_empty);
     struct entry entry;
     struct invasion invasion = {0};
-    struct reason reason;
     enum status status =
         entry_make(&network, conditions->rule, &parameters.entry, &entry, &reason);
     conditions->ease = entry.ease;

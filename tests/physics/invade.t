@@ -137,6 +137,15 @@ with scratch() as folder:
                        "weight flattens the front of gas from above: full is what lies below it")
     ok(at_breakthrough["-z", 1e10] > 0.9, "and draws gas from below straight up", at_breakthrough)
 
+    drawn = []
+    for stage in "dry", "invade":
+        run(stage, "--quiet", "--set", "throat_radius.distribution=lognormal", "--set",
+            'imposed_empty=["-x"]', at("network.h5"), "-o", at("drawn.h5"))
+        with h5py.File(at("drawn.h5")) as file:
+            drawn.append([file["throats"][name][:] for name in ("radius", "kind")])
+    ok(all(np.array_equal(*pair) for pair in zip(*drawn)) and drawn[0][1].max() == 2,
+       "drawn radii, and throats imposed empty, are those of dry")
+
     network = read(at("network.h5"))
     ok(run("invade", input=network) == run("invade", "--threads", "2", at("network.h5")),
        "the same bytes through a pipe and by two threads")

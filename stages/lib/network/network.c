@@ -105,6 +105,19 @@ int face_throat(const struct network *network, const struct incidence *incidence
     return -1;
 }
 
+int impose_empty_throats(struct network *network, unsigned walls)
+{
+    int n = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *node = network->throat_nodes[t];
+        if (network->throat_kind[t] == THROAT_NETWORK &&
+            network->node_walls[node[0]] & network->node_walls[node[1]] & walls)
+            network->throat_kind[t] = THROAT_IMPOSED_EMPTY;
+        n += network->throat_kind[t] == THROAT_IMPOSED_EMPTY;
+    }
+    return n;
+}
+
 double throat_volume(const struct network *network, int throat)
 {
     if (network->throat_volume) return network->throat_volume[throat];

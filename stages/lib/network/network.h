@@ -79,6 +79,12 @@ void incidence_free(struct incidence *incidence);
 int face_throat(const struct network *network, const struct incidence *incidence,
                 int face, int k);
 
+// Marks as THROAT_IMPOSED_EMPTY the throats that lie in one of WALLS (bits of enum
+// wall), that is whose two nodes are both on that wall: they hold no liquid, and
+// neither vapour nor gas passes through them [K 5.4]. Returns how many are so marked in
+// all.
+int impose_empty_throats(struct network *network, unsigned walls);
+
 // Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L
 // [K 3.3.4].
 double throat_volume(const struct network *network, int throat);

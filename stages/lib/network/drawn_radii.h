@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Throat radii that a stage may draw instead of taking those of the network: its rows
+// of the parameter table, and what they fill.
+#ifndef CRAQUELURE_DRAWN_RADII_H
+#define CRAQUELURE_DRAWN_RADII_H
+
+#include "network/throat_radius.h"
+#include "parameters/parameters.h"
+
+struct drawn_radii {
+    int law; // 0: as in the network; the others are those of enum radius_law, from 1
+    int64_t seed;
+    struct radius_distribution how;
+};
+
+// Gives NETWORK the radii that were asked for, if any were; STATUS_BAD_DATA as
+// draw_radii.
+enum status give_radii(struct network *network, const struct drawn_radii *radii,
+                       struct reason *reason);
+
+// AT: where struct drawn_radii lies in the stage's parameter struct.
+#define DRAWN_RADII_AT(at, member) (at) + offsetof(struct drawn_radii, member)
+// clang-format off
+#define DRAWN_RADII_ROWS(at) \
+    {"throat_radius.distribution", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0, \
+     0, "network|normal|lognormal|uniform|two_mode", \
+     "throat radii: as in the network, or drawn [K 2.2, 3.11]; drawn ones make the " \
+     "throats cylinders", \
+     DRAWN_RADII_AT(at, law)}, \
+    {"throat_radius.mean", PARAMETER_NUMBER, "m", "103e-9", BOUND_ABOVE, 0, 0, NULL, \
+     "mean of drawn radii; two_mode: of the first mode", \
+     DRAWN_RADII_AT(at, how.mean)}, \
+    {"throat_radius.standard_deviation", PARAMETER_NUMBER, "m", "1e-9", BOUND_MINIMUM, \
+     0, 0, NULL, "their standard deviation", \
+     DRAWN_RADII_AT(at, how.deviation)}, \
+    {"throat_radius.second_mean", PARAMETER_NUMBER, "m", "40e-9", BOUND_ABOVE, 0, 0, \
+     NULL, "two_mode: mean of the second mode", \
+     DRAWN_RADII_AT(at, how.second_mean)}, \
+    {"throat_radius.second_standard_deviation", PARAMETER_NUMBER, "m", "2e-9", \
+     BOUND_MINIMUM, 0, 0, NULL, "its standard deviation", \
+     DRAWN_RADII_AT(at, how.second_deviation)}, \
+    {"throat_radius.second_share", PARAMETER_NUMBER, "1", "0.5", BOUND_BETWEEN, 0, 1, \
+     NULL, "share of the throats in it", \
+     DRAWN_RADII_AT(at, how.second_share)}, \
+    {"throat_radius.correlation_length", PARAMETER_NUMBER, "m", "0", BOUND_MINIMUM, 0, \
+     0, NULL, \
+     "drawn radii are alike within this distance, their distribution the same; 0: " \
+     "independent", \
+     DRAWN_RADII_AT(at, how.correlation_length)}, \
+    {"throat_radius.seed", PARAMETER_INTEGER, "1", "1", BOUND_BETWEEN, 0, 4294967295.0, \
+     NULL, "seed of drawn radii", \
+     DRAWN_RADII_AT(at, seed)}
+// clang-format on
+
+#endif
