@@ -79,18 +79,19 @@ static void put_on_walls(const struct grains *grains, const int32_t corner[4],
     }
 }
 
-// Of all cells at once; `node` -1 where one has none of its own.
+// Of all cells at once; node -1 where one has none of its own.
 static int find_centres(const struct grains *grains,
-                        struct triangulation *triangulation)
+                        struct triangulation *triangulation, struct vector *centre)
 {
     int n_flat = 0;
+    triangulation->node = NEW_ARRAY(int32_t, triangulation->n_cell);
 #pragma omp parallel for schedule(static) reduction(+ : n_flat)
     for (int c = 0; c < triangulation->n_cell; c++) {
-        struct cell *cell = &triangulation->cell[c];
+        const struct cell *cell = &triangulation->cell[c];
         const struct four four = corners_of(grains, cell);
-        cell->node = power_centre(&four, &cell->at) ? 0 : -1;
-        n_flat += cell->node < 0;
-        put_on_walls(grains, cell->vertex, &cell->at);
+        triangulation->node[c] = power_centre(&four, &centre[c]) ? 0 : -1;
+        n_flat += triangulation->node[c] < 0;
+        put_on_walls(grains, cell->vertex, &centre[c]);
     }
     return n_flat;
 }
@@ -151,7 +152,7 @@ static bool stands(const struct name *name)
     return same_image(name->first, (struct image){0});
 }
 
-// Marks the cells that stand for all (`node` their number, else -1) and lists the names
+// Marks the cells that stand for all (node their number, else -1) and lists the names
 // of those with a copy beside them, sorted.
 static struct name *number_cells(const struct grains *grains,
                                  struct triangulation *triangulation, int *n_cell,
@@ -162,14 +163,14 @@ static struct name *number_cells(const struct grains *grains,
     *n_cell = 0;
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct name name = name_of(grains, &triangulation->cell[c], c);
-        triangulation->cell[c].node = stands(&name) ? (*n_cell)++ : -1;
+        triangulation->node[c] = stands(&name) ? (*n_cell)++ : -1;
     }
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct cell *cell = &triangulation->cell[c];
         bool beside = false;
-        for (int k = 0; k < 4 && cell->node >= 0; k++)
-            beside |= cell->neighbour[k] >= 0 &&
-                      triangulation->cell[cell->neighbour[k]].node < 0;
+        for (int k = 0; k < 4 && triangulation->node[c] >= 0; k++)
+            beside |=
+                cell->neighbour[k] >= 0 && triangulation->node[cell->neighbour[k]] < 0;
         if (!beside) continue;
         GROW_ARRAY(names, count, capacity);
         names[count++] = name_of(grains, cell, c);
@@ -182,7 +183,7 @@ static struct name *number_cells(const struct grains *grains,
 // No copy that was left out could change this cell: it would have to be inside the
 // sphere around the centre that no grain has less power to.
 static bool is_complete(const struct grains *grains, const struct cell *cell,
-                        double largest_weight)
+                        struct vector centre, double largest_weight)
 {
     for (int k = 0; k < 4; k++) {
         int walls = 0;
@@ -193,12 +194,12 @@ static bool is_complete(const struct grains *grains, const struct cell *cell,
     int grain = 0;
     while (cell->vertex[grain] < 0)
         grain++;
-    const struct vector to = subtract(grains->position[cell->vertex[grain]], cell->at);
+    const struct vector to = subtract(grains->position[cell->vertex[grain]], centre);
     const double power = dot(to, to) - grains->weight[cell->vertex[grain]];
     const double radius = sqrt(fmax(0, power + largest_weight));
     for (int axis = 0; axis < 3; axis++) {
         if (!grains->repeats[axis]) continue;
-        const double x = component(cell->at, axis);
+        const double x = component(centre, axis);
         if (x - radius <= -grains->reach ||
             x + radius >= component(grains->box, axis) + grains->reach)
             return false;
@@ -207,14 +208,17 @@ static bool is_complete(const struct grains *grains, const struct cell *cell,
 }
 
 static bool all_complete(const struct grains *grains,
-                         const struct triangulation *triangulation)
+                         const struct triangulation *triangulation,
+                         const struct vector *centre)
 {
     double largest_weight = 0;
     for (int i = 0; i < grains->n_base; i++)
         largest_weight = fmax(largest_weight, grains->weight[i]);
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct cell *cell = &triangulation->cell[c];
-        if (cell->node >= 0 && !is_complete(grains, cell, largest_weight)) return false;
+        if (triangulation->node[c] >= 0 &&
+            !is_complete(grains, cell, centre[c], largest_weight))
+            return false;
     }
     return true;
 }
@@ -228,14 +232,14 @@ static int32_t standing(const struct grains *grains,
                         const struct name *names, int n_name, struct image *image)
 {
     *image = (struct image){0};
-    if (triangulation->cell[c].node >= 0) return triangulation->cell[c].node;
+    if (triangulation->node[c] >= 0) return triangulation->node[c];
     const struct name name = name_of(grains, &triangulation->cell[c], c);
     const struct name *found =
         n_name ? bsearch(&name, names, (size_t)n_name, sizeof name, compare_names)
                : NULL;
     if (!found) return -1;
     *image = name.first;
-    return triangulation->cell[found->cell].node;
+    return triangulation->node[found->cell];
 }
 
 static bool copy_cell(const struct grains *grains,
@@ -243,7 +247,6 @@ static bool copy_cell(const struct grains *grains,
                       const struct name *names, int n_name, struct pore_cell *to)
 {
     const struct cell *from = &triangulation->cell[c];
-    *to = (struct pore_cell){.centre = from->at};
     for (int k = 0; k < 4; k++) {
         const int32_t vertex = from->vertex[k];
         to->corner[k] = vertex < 0 ? vertex : grains->base[vertex];
@@ -263,28 +266,32 @@ static bool keep_cells(const struct grains *grains, struct triangulation *triang
 {
     const int n = triangulation->n_cell;
     uint8_t *all_flat = NEW_ARRAY(uint8_t, n);
-    cells->n_flat = find_centres(grains, triangulation);
+    struct vector *centre = NEW_ARRAY(struct vector, n);
+    cells->n_flat = find_centres(grains, triangulation, centre);
     for (int c = 0; c < n; c++)
-        all_flat[c] = triangulation->cell[c].node < 0;
+        all_flat[c] = triangulation->node[c] < 0;
     int n_name = 0;
     struct name *names = NULL;
     if (grains_repeat(grains))
         names = number_cells(grains, triangulation, &cells->n, &n_name);
     else
         for (int c = 0; c < n; c++)
-            triangulation->cell[c].node = cells->n++;
-    bool complete = all_complete(grains, triangulation) || !grains_repeat(grains);
+            triangulation->node[c] = cells->n++;
+    bool complete =
+        all_complete(grains, triangulation, centre) || !grains_repeat(grains);
     cells->cell = NEW_ARRAY(struct pore_cell, cells->n);
     *is_flat = NEW_ARRAY(uint8_t, cells->n);
     for (int c = 0; c < n && complete; c++) {
-        const int32_t number = triangulation->cell[c].node;
+        const int32_t number = triangulation->node[c];
         if (number < 0) continue;
+        cells->cell[number].centre = centre[c];
         complete =
             copy_cell(grains, triangulation, c, names, n_name, &cells->cell[number]);
         (*is_flat)[number] = all_flat[c];
     }
     free(names);
     free(all_flat);
+    free(centre);
     return complete;
 }
 

@@ -12,7 +12,7 @@ struct assembly {
     const struct generators *generators;
     const struct triangulation *triangulation;
     const struct nodes *nodes;
-    const double *radius; // (n_particle) in units
+    const double *radius; // of generators, in units
     enum clearance clearance;
 };
 

@@ -52,8 +52,8 @@ static int count_hidden(const struct generators *generators,
         for (int k = 0; k < 4; k++)
             used[triangulation->cell[c].vertex[k]] = true;
     int hidden = 0;
-    for (int i = 0; i < generators->n_particle; i++)
-        hidden += !used[i];
+    for (int i = 0; i < generators->n; i++)
+        hidden += is_grain(generators, i) && !used[i];
     free(used);
     return hidden;
 }
@@ -71,8 +71,7 @@ static enum status triangulate_in_box(const struct packing *packing, bool power,
             place_generators(packing, reach, power, generators, reason);
         if (status) return status;
         const bool spans =
-            !triangulate(generators->position, power ? generators->weight : NULL,
-                         generators->n, triangulation);
+            !triangulate(generators->point, generators->n, triangulation);
         if (spans) status = find_nodes(generators, triangulation, nodes, reason);
         if (status || (spans && nodes->complete)) return status;
         if (all_images(generators))
@@ -155,9 +154,10 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     if (!status) report->hidden = count_hidden(&generators, &triangulation);
     if (!status && report->hidden) status = check_distinct(&generators, reason);
     if (!status) {
-        double *radius = NEW_ARRAY(double, packing->n_particle);
-        for (int i = 0; i < packing->n_particle; i++)
-            radius[i] = packing->radius[i] / generators.unit;
+        double *radius = NEW_ARRAY(double, generators.n);
+        for (int i = 0; i < generators.n; i++)
+            radius[i] =
+                packing->radius[generators.origin[i].particle] / generators.unit;
         const struct assembly assembly = {&generators, &triangulation, &nodes, radius,
                                           how->clearance};
         copy_packing(packing, &network->packing);

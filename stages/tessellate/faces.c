@@ -62,9 +62,9 @@ static bool turn_around(const struct triangulation *cells, struct part part, int
     int at = start, steps = 0;
     loop->count = 0;
     do {
-        struct cell *here = &cells->cell[at];
-        if (at < part.end) here->seen |= other_edge[out][stays];
-        append_corner(loop, here->node, here->image);
+        const struct cell *here = &cells->cell[at];
+        if (at < part.end) cells->seen[at] |= other_edge[out][stays];
+        append_corner(loop, cells->node[at], node_image(cells, at));
         const int32_t next = here->neighbour[out], kept = here->vertex[stays];
         if (next < part.begin || ++steps > MOST_AROUND) return false;
         // What stayed is left next, what is new stays.
@@ -83,12 +83,13 @@ static bool turn_around(const struct triangulation *cells, struct part part, int
 static bool is_face(const struct generators *generators, int32_t p, int32_t q,
                     struct row *row)
 {
-    if (p >= generators->n_particle) return false;
-    const int wall = generators->wall[q];
-    row->key[0] = p;
-    row->key[1] = wall < 0 ? generators->particle[q] : -1 - wall;
-    row->key[2] = image_number(generators->image[q]);
-    return wall < 0 || (generators->particle[q] == p && !row->key[2]);
+    if (!is_grain(generators, p)) return false;
+    const struct origin *first = &generators->origin[p],
+                        *second = &generators->origin[q];
+    row->key[0] = first->particle;
+    row->key[1] = second->wall < 0 ? second->particle : -1 - second->wall;
+    row->key[2] = image_number(second->image);
+    return second->wall < 0 || (second->particle == first->particle && !row->key[2]);
 }
 
 static bool comes_first(const struct loop *loop, int a, int b)
@@ -141,7 +142,8 @@ static void find_faces(const struct assembly *assembly, struct part part, int ce
     const struct cell *here = &assembly->triangulation->cell[cell];
     for (int e = 0; e < 6; e++) {
         const int *corner = edges[e]; // an even permutation
-        if (here->seen & other_edge[corner[2]][corner[3]]) continue;
+        if (assembly->triangulation->seen[cell] & other_edge[corner[2]][corner[3]])
+            continue;
         const int32_t p = here->vertex[corner[0]], q = here->vertex[corner[1]];
         loop->forward = compare_generators(generators, p, q) < 0;
         struct row row = {0};
@@ -165,7 +167,7 @@ static void find_all(const struct assembly *assembly, bool periodic, int n_part,
         if (periodic) lists[i].image = NEW_ARRAY(struct image, 1);
         for (int c = part.begin; c < part.end; c++) {
             expect_neighbours(assembly->triangulation, c);
-            if (assembly->triangulation->cell[c].node >= 0)
+            if (assembly->triangulation->node[c] >= 0)
                 find_faces(assembly, part, c, &loop, &lists[i]);
         }
         free(loop.node);

@@ -2,6 +2,7 @@
 #include "generators.h"
 
 #include "basics/memory.h"
+#include "geometry/regular_triangulation.h"
 
 #include <stdlib.h>
 
@@ -84,7 +85,7 @@ static enum status check_inside(const struct generators *generators,
 {
     for (int i = 0; i < generators->n_particle; i++)
         for (int axis = 0; axis < 3; axis++) {
-            const double at = component(generators->position[i], axis);
+            const double at = component(generators->point[i].at, axis);
             if (!generators->walled[axis]) continue;
             if (at > 0 && at < component(generators->box, axis)) continue;
             return refuse(
@@ -111,8 +112,11 @@ static int compare_places(const void *a, const void *b, void *positions)
 enum status check_distinct(const struct generators *generators, struct reason *reason)
 {
     const int n = generators->n_particle;
-    struct vector *at = duplicate(generators->position, (size_t)n, sizeof *at);
+    struct vector *at = NEW_ARRAY(struct vector, n);
     int32_t *order = NEW_ARRAY(int32_t, n);
+    for (int i = 0; i < generators->n; i++)
+        if (is_grain(generators, i))
+            at[generators->origin[i].base] = generators->point[i].at;
     for (int i = 0; i < n; i++) {
         order[i] = i;
         for (int axis = 0; axis < 3; axis++) // an upper side that repeats is the lower
@@ -145,16 +149,10 @@ static void grow(struct generators *generators)
 {
     const size_t capacity = 2 * (size_t)generators->capacity;
     generators->capacity *= 2;
-    generators->position =
-        reallocate(generators->position, capacity, sizeof *generators->position);
-    generators->weight =
-        reallocate(generators->weight, capacity, sizeof *generators->weight);
-    generators->particle =
-        reallocate(generators->particle, capacity, sizeof *generators->particle);
-    generators->base = reallocate(generators->base, capacity, sizeof *generators->base);
-    generators->image =
-        reallocate(generators->image, capacity, sizeof *generators->image);
-    generators->wall = reallocate(generators->wall, capacity, 1);
+    generators->point =
+        reallocate(generators->point, capacity, sizeof *generators->point);
+    generators->origin =
+        reallocate(generators->origin, capacity, sizeof *generators->origin);
 }
 
 // Room for one more, with all that is the same as for generator FROM.
@@ -162,18 +160,14 @@ static int add_like(struct generators *generators, int from)
 {
     if (generators->n == generators->capacity) grow(generators);
     const int i = generators->n++;
-    generators->position[i] = generators->position[from];
-    generators->weight[i] = generators->weight[from];
-    generators->particle[i] = generators->particle[from];
-    generators->base[i] = generators->base[from];
-    generators->image[i] = generators->image[from];
-    generators->wall[i] = generators->wall[from];
+    generators->point[i] = generators->point[from];
+    generators->origin[i] = generators->origin[from];
     return i;
 }
 
 static double depth(const struct generators *generators, int i, int wall)
 {
-    const double at = component(generators->position[i], wall / 2);
+    const double at = component(generators->point[i].at, wall / 2);
     return wall % 2 ? component(generators->box, wall / 2) - at : at;
 }
 
@@ -183,15 +177,15 @@ static const double round_clearance = 0.25;
 static void add_round_reflections(struct generators *generators, double grid)
 {
     for (int i = 0; i < generators->n_particle && generators->is_round; i++) {
-        const struct vector at = generators->position[i];
+        const struct vector at = generators->point[i].at;
         const struct vector out = body_outward(&generators->round, at);
         const double far = distance(at, body_nearest(&generators->round, at));
         if (far > generators->reach) continue;
         const int added = add_like(generators, i);
         const struct vector image = add(at, scale(2 * (far + round_clearance), out));
-        generators->position[added] = round_to(grid, image);
-        generators->base[added] = added;
-        generators->wall[added] = WALL_OUTER;
+        generators->point[added].at = round_to(grid, image);
+        generators->origin[added].base = added;
+        generators->origin[added].wall = WALL_OUTER;
     }
 }
 
@@ -206,12 +200,13 @@ static void add_reflections(struct generators *generators)
                 depth(generators, i, wall) > generators->reach)
                 continue;
             const double at = wall % 2 ? component(generators->box, axis) : 0;
-            const double from = component(generators->position[i], axis);
+            const double from = component(generators->point[i].at, axis);
             const int added = add_like(generators, i);
-            set_component(&generators->position[added], axis,
+            set_component(&generators->point[added].at, axis,
                           2 * at - from); // exact on the grid
-            generators->base[added] = added;
-            if (i < generators->n_particle) generators->wall[added] = (int8_t)wall;
+            generators->origin[added].base = added;
+            if (i < generators->n_particle)
+                generators->origin[added].wall = (int8_t)wall;
         }
 }
 
@@ -227,12 +222,12 @@ static void add_copies(struct generators *generators)
         for (int i = 0; i < before; i++)
             for (int boxes = -most; boxes <= most; boxes++) {
                 const double at =
-                    component(generators->position[i], axis) + boxes * edge;
+                    component(generators->point[i].at, axis) + boxes * edge;
                 if (!boxes || at < -generators->reach || at > edge + generators->reach)
                     continue;
                 const int added = add_like(generators, i);
-                set_component(&generators->position[added], axis, at);
-                generators->image[added].along[axis] = (int8_t)boxes;
+                set_component(&generators->point[added].at, axis, at);
+                generators->origin[added].image.along[axis] = (int8_t)boxes;
             }
     }
 }
@@ -250,6 +245,27 @@ static struct vector wrapped(const struct packing *packing, struct vector at)
     return at;
 }
 
+static void put_in_order(struct generators *generators)
+{
+    const int n = generators->n;
+    struct vector *at = NEW_ARRAY(struct vector, n);
+    for (int i = 0; i < n; i++)
+        at[i] = generators->point[i].at;
+    int32_t *order = insertion_order(at, n);
+    free(at);
+    struct weighted_point *point = allocate_uncleared((size_t)n, sizeof *point);
+    struct origin *origin = allocate_uncleared((size_t)n, sizeof *origin);
+    for (int k = 0; k < n; k++) {
+        point[k] = generators->point[order[k]];
+        origin[k] = generators->origin[order[k]];
+    }
+    free(order);
+    free(generators->point);
+    free(generators->origin);
+    generators->point = point;
+    generators->origin = origin;
+}
+
 enum status place_generators(const struct packing *packing, double reach, bool power,
                              struct generators *generators, struct reason *reason)
 {
@@ -257,12 +273,8 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     *generators = (struct generators){.n = n,
                                       .n_particle = n,
                                       .capacity = room,
-                                      .position = NEW_ARRAY(struct vector, room),
-                                      .weight = NEW_ARRAY(double, room),
-                                      .particle = NEW_ARRAY(int32_t, room),
-                                      .base = NEW_ARRAY(int32_t, room),
-                                      .image = NEW_ARRAY(struct image, room),
-                                      .wall = NEW_ARRAY(int8_t, room),
+                                      .point = NEW_ARRAY(struct weighted_point, room),
+                                      .origin = NEW_ARRAY(struct origin, room),
                                       .reach = reach,
                                       .unit = unit_of_length(packing)};
     const double unit = generators->unit;
@@ -274,13 +286,12 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     place_walls(packing, generators);
     for (int i = 0; i < n; i++) {
         const double radius = packing->radius[i] / unit;
-        generators->position[i] = round_to(
+        generators->point[i].at = round_to(
             grid, scaled(packing, wrapped(packing, packing->position[i]), unit));
-        generators->weight[i] = power ? radius * radius : 0;
+        generators->point[i].weight = power ? radius * radius : 0;
         generators->largest_weight =
-            fmax(generators->largest_weight, generators->weight[i]);
-        generators->particle[i] = generators->base[i] = i;
-        generators->wall[i] = -1;
+            fmax(generators->largest_weight, generators->point[i].weight);
+        generators->origin[i] = (struct origin){.particle = i, .base = i, .wall = -1};
     }
     enum status status = check_inside(generators, reason);
     if (!status) status = check_within(packing, reason);
@@ -289,16 +300,13 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     add_reflections(generators);
     generators->n_base = generators->n;
     add_copies(generators);
+    put_in_order(generators);
     return STATUS_OK;
 }
 
 void generators_free(struct generators *generators)
 {
-    free(generators->position);
-    free(generators->weight);
-    free(generators->particle);
-    free(generators->base);
-    free(generators->image);
-    free(generators->wall);
+    free(generators->point);
+    free(generators->origin);
     *generators = (struct generators){0};
 }

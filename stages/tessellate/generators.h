@@ -15,22 +15,28 @@
 #define CRAQUELURE_GENERATORS_H
 
 #include "basics/status.h"
+#include "geometry/exact.h"
 #include "geometry/image.h"
 #include "geometry/packing.h"
 
 #include <stdbool.h>
 
-// In units of length from the lower corner of the box: first the grains, then their
-// reflections, then copies of both.
+// Where a generator comes from.
+struct origin {
+    int32_t particle;   // the grain itself, or that an image belongs to
+    int32_t base;       // the number of the base it is, or is a copy of
+    struct image image; // how many boxes a copy is away from its base
+    int8_t wall;        // 0..6 the wall it is reflected in; else -1
+};
+
+// In units of length from the lower corner of the box. Bases are the grains, numbered
+// as in the packing, then their reflections; the others are copies of them. They stand
+// in an order in which to insert them, so that what is close is close in memory.
 struct generators {
-    int n, n_particle, n_base, capacity; // bases: grains and reflections
-    struct vector *position;
-    double *weight;      // radius squared; 0 for Voronoi
-    int32_t *particle;   // the grain itself, or that an image belongs to
-    int32_t *base;       // what a copy repeats; itself for a grain and a reflection
-    struct image *image; // how many boxes a copy is away from its base
-    int8_t *wall;        // 0..6 the wall it is reflected in; else -1
-    struct vector box;   // upper corner
+    int n, n_particle, n_base, capacity;
+    struct weighted_point *point; // weight: radius squared; 0 for Voronoi
+    struct origin *origin;
+    struct vector box; // upper corner
     bool repeats[3];
     bool walled[3];    // along which the box has two walls
     bool is_round;     // whether there is a round wall around the grains
@@ -57,15 +63,31 @@ enum status check_distinct(const struct generators *generators, struct reason *r
 struct vector moved(const struct generators *generators, struct vector position,
                     struct image image);
 
-// Orders generators by what they repeat, then by the repetition: so do all their copies
-// with each other.
+// Whether there are copies.
+static inline bool has_copies(const struct generators *generators)
+{
+    return generators->n > generators->n_base;
+}
+
+// Whether generator I is a grain, not an image of one.
+static inline bool is_grain(const struct generators *generators, int32_t i)
+{
+    return generators->origin[i].base < generators->n_particle &&
+           (!has_copies(generators) ||
+            same_image(generators->origin[i].image, (struct image){0}));
+}
+
+// Orders generators by their bases, then by the repetition: so do all their copies with
+// each other.
 static inline int compare_generators(const struct generators *generators, int32_t a,
                                      int32_t b)
 {
-    if (a < generators->n_base && b < generators->n_base) return (a > b) - (a < b);
-    const int32_t first = generators->base[a], second = generators->base[b];
+    const int32_t first = generators->origin[a].base,
+                  second = generators->origin[b].base;
     if (first != second) return first < second ? -1 : 1;
-    return image_number(generators->image[a]) - image_number(generators->image[b]);
+    if (!has_copies(generators)) return 0;
+    return image_number(generators->origin[a].image) -
+           image_number(generators->origin[b].image);
 }
 
 // The unit of length, m: the mean grain diameter, or the edge of a grain's share of the

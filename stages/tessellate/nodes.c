@@ -26,20 +26,22 @@ static bool repeats(const struct generators *generators)
 static struct vector power_centre(const struct generators *generators,
                                   const int32_t corner[4])
 {
-    const struct vector origin = generators->position[corner[0]];
+    const struct weighted_point *p[4];
+    for (int k = 0; k < 4; k++)
+        p[k] = &generators->point[corner[k]];
     struct vector row[3];
-    double right[3];
+    double right[3], squares = flat * flat;
     for (int k = 0; k < 3; k++) {
-        row[k] = subtract(generators->position[corner[k + 1]], origin);
+        row[k] = subtract(p[k + 1]->at, p[0]->at);
+        const double square = dot(row[k], row[k]);
         // Weights first: those of a grain and its image cancel, however close they are.
-        right[k] = 0.5 * (dot(row[k], row[k]) + (generators->weight[corner[0]] -
-                                                 generators->weight[corner[k + 1]]));
+        right[k] = 0.5 * (square + (p[0]->weight - p[k + 1]->weight));
+        squares *= square;
     }
     const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
                                      cross(row[0], row[1])};
     const double determinant = dot(row[0], across[0]);
-    if (fabs(determinant) < flat * norm(row[0]) * norm(row[1]) * norm(row[2]))
-        return exact_power_centre(generators->position, generators->weight, corner);
+    if (determinant * determinant < squares) return exact_power_centre(p);
     struct vector centre = {0};
     // The second pass takes off what the first left by rounding.
     for (int pass = 0; pass < 2; pass++) {
@@ -51,14 +53,7 @@ static struct vector power_centre(const struct generators *generators,
             correction = add(correction, scale(residual[k] / determinant, across[k]));
         centre = add(centre, correction);
     }
-    return add(origin, centre);
-}
-
-static bool near_grain(const struct generators *generators, const int32_t corner[4])
-{
-    for (int k = 0; k < 4; k++)
-        if (corner[k] < generators->n_particle) return true;
-    return false;
+    return add(p[0]->at, centre);
 }
 
 // Puts a node exactly on every wall it is close to; returns those walls.
@@ -102,165 +97,282 @@ static void sort_corners(const struct generators *generators, const int32_t cell
     put_in_order(generators, &corner[1], &corner[2]);
 }
 
-// A cell is named after its corners in order, and where they are relative to the first:
-// cells that are copies of each other have one name. False when that does not fit.
-static bool name_cell(const struct generators *generators, const int32_t cell[4],
+// A cell is named after the bases of its corners in order, and where they are relative
+// to the first: cells that are copies of each other have one name. False when that does
+// not fit.
+static bool name_cell(const struct generators *generators, const int32_t corner[4],
                       struct row *name)
 {
     enum { IMAGES = 343, MIDDLE = 171 }; // of image_number
-    int32_t corner[4];
-    sort_corners(generators, cell, corner);
     for (int k = 0; k < 4; k++)
-        name->key[k] =
-            corner[k] < generators->n_base ? corner[k] : generators->base[corner[k]];
-    for (int k = 1; k < 4 && generators->n > generators->n_base; k++) {
-        const struct image apart = image_difference(generators->image[corner[k]],
-                                                    generators->image[corner[0]]);
+        name->key[k] = generators->origin[corner[k]].base;
+    name->key[4] = 0;
+    for (int k = 1; k < 4 && has_copies(generators); k++) {
+        const struct image apart = image_difference(
+            generators->origin[corner[k]].image, generators->origin[corner[0]].image);
         if (is_far(apart)) return false;
         name->key[4] = name->key[4] * IMAGES + image_number(apart) + MIDDLE;
     }
     return true;
 }
 
-// Of the cells near grains; NULL when one has no name.
-static struct row *sorted_names(const struct generators *generators,
-                                const struct triangulation *triangulation, int *count)
+// ---- groups -------------------------------------------------------------------------
+
+// Cells with a grain among their corners, by the first base of their names: those of
+// generator i, which is that base, from offset[i] to offset[i + 1], ascending. Their
+// places come in the order of bases instead: those of base b from place[b] on.
+struct groups {
+    int n, largest;
+    int *offset; // (n + 2), the last but one is the end
+    int *place;  // (n_base + 1)
+    int32_t *cell;
+};
+
+static bool is_base(const struct generators *generators, int32_t i)
 {
-    const int n_cell = triangulation->n_cell;
-    struct row *names = allocate_aligned((size_t)n_cell, sizeof *names);
-    bool named = true;
-#pragma omp parallel for reduction(&& : named)
-    for (int c = 0; c < n_cell; c++) {
-        const int32_t *corner = triangulation->cell[c].vertex;
-        names[c].item = near_grain(generators, corner) ? c : -1;
-        if (names[c].item == c)
-            named = name_cell(generators, corner, &names[c]) && named;
+    return !has_copies(generators) ||
+           same_image(generators->origin[i].image, (struct image){0});
+}
+
+// Which generator each base is.
+static int32_t *find_bases(const struct generators *generators)
+{
+    int32_t *base = NEW_ARRAY(int32_t, generators->n_base);
+    for (int i = 0; i < generators->n; i++)
+        if (is_base(generators, i)) base[generators->origin[i].base] = i;
+    return base;
+}
+
+// The first corner of a cell, or another of its base; -1 when no corner is a grain.
+static int32_t first_corner(const struct generators *generators,
+                            const int32_t vertex[4])
+{
+    int32_t first = vertex[0];
+    bool near = false;
+    for (int k = 0; k < 4; k++) {
+        near |= is_grain(generators, vertex[k]);
+        if (generators->origin[vertex[k]].base < generators->origin[first].base)
+            first = vertex[k];
     }
-    *count = 0;
+    return near ? first : -1;
+}
+
+static void number_places(const struct generators *generators, struct groups *groups)
+{
+    for (int i = 0; i < generators->n; i++) {
+        const int count = groups->offset[i + 2];
+        if (count) groups->place[generators->origin[i].base + 1] = count;
+        if (count > groups->largest) groups->largest = count;
+    }
+    for (int base = 0; base < generators->n_base; base++)
+        groups->place[base + 1] += groups->place[base];
+}
+
+// Notes the generators that cells go with as their nodes.
+static struct groups group_cells(const struct generators *generators,
+                                 struct triangulation *triangulation)
+{
+    const int n = generators->n, n_cell = triangulation->n_cell;
+    struct groups groups = {.n = n,
+                            .offset = NEW_ARRAY(int, n + 2),
+                            .place = NEW_ARRAY(int, generators->n_base + 1)};
+    int32_t *base = has_copies(generators) ? find_bases(generators) : NULL;
+    for (int c = 0; c < n_cell; c++) {
+        int32_t first = first_corner(generators, triangulation->cell[c].vertex);
+        if (base && first >= 0) first = base[generators->origin[first].base];
+        if (first >= 0) groups.offset[first + 2]++;
+        triangulation->node[c] = first;
+    }
+    free(base);
+    number_places(generators, &groups);
+    // Filling moves each offset one on, so that group i ends where i + 1 begins.
+    for (int i = 0; i < n; i++)
+        groups.offset[i + 2] += groups.offset[i + 1];
+    groups.cell = allocate_uncleared((size_t)groups.offset[n + 1], sizeof(int32_t));
     for (int c = 0; c < n_cell; c++)
-        if (names[c].item == c) names[(*count)++] = names[c];
-    if (named) return sort_rows(names, *count);
-    free(names);
-    return NULL;
+        if (triangulation->node[c] >= 0)
+            groups.cell[groups.offset[triangulation->node[c] + 1]++] = c;
+    return groups;
+}
+
+// ---- what was left out --------------------------------------------------------------
+
+// The cell of a grain among its corners is unbounded.
+static bool is_open(const struct generators *generators, const struct cell *cell)
+{
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 4 && cell->neighbour[k] < 0; m++)
+            if (m != k && is_grain(generators, cell->vertex[m])) return true;
+    return false;
+}
+
+// An image left out is farther from the box than the reach; it could change a cell only
+// from inside the sphere around its node, AT, that no generator has less power to.
+static bool is_complete(const struct generators *generators, const struct cell *cell,
+                        struct vector at)
+{
+    if (is_open(generators, cell)) return false;
+    if (!repeats(generators)) return true;
+    const struct weighted_point *corner = &generators->point[cell->vertex[0]];
+    const struct vector to = subtract(corner->at, at);
+    const double power = dot(to, to) - corner->weight;
+    const double radius = sqrt(fmax(0, power + generators->largest_weight));
+    for (int axis = 0; axis < 3; axis++) {
+        if (!generators->repeats[axis]) continue;
+        const double x = component(at, axis);
+        if (x - radius <= -generators->reach ||
+            x + radius >= component(generators->box, axis) + generators->reach)
+            return false;
+    }
+    return true;
 }
 
 // ---- places -------------------------------------------------------------------------
 
-// One for all cells of one name, and those united with it on a wall.
-struct place {
-    int parent;             // itself, or a place it coincides with
-    struct image of_parent; // the repetition of the box in which it does
-    struct image within;    // its first cell has it in, when seen from a grain
-};
+// One for all cells of one name, and those united with it on a wall. Numbered in the
+// order of the names; the other cells of a name take up numbers that are no place's.
+enum { NO_PLACE = -1 };
 
 struct places {
     int n;
-    struct place *place;
+    int32_t *back;           // to a place before that it coincides with; 0: to none
+    struct image *of_parent; // the repetition of the box in which it does
     struct vector *position;
     uint8_t *walls;
 };
 
-enum { FIRST_OF_NAME = 1 }; // in cell.seen
-
-// Gives every named cell its place, and marks the first of each name. Cells come in any
-// order: they are asked for in time.
-static int number_places(struct triangulation *triangulation, const struct row *names,
-                         int count)
+// Gives cell C place I, which is in repetition IMAGE of the box, seen from there. False
+// when an image that was left out could change it.
+static bool put_cell(const struct generators *generators, const struct places *places,
+                     int i, struct image image, struct triangulation *triangulation,
+                     int c)
 {
-    enum { AHEAD = 16 };
-    int n = 0;
-#pragma omp parallel for
-    for (int c = 0; c < triangulation->n_cell; c++)
-        triangulation->cell[c].node = -1;
-    for (int k = 0; k < count; k++) {
-        const int later = k + AHEAD < count ? k + AHEAD : k;
-        __builtin_prefetch(&triangulation->cell[names[later].item], 1);
-        struct cell *cell = &triangulation->cell[names[k].item];
-        const bool first =
-            !k || memcmp(names[k].key, names[k - 1].key, sizeof names->key);
-        n += first;
-        cell->node = n - 1;
-        cell->seen = first ? FIRST_OF_NAME : 0;
-    }
-    return n;
-}
-
-static struct image first_image(const struct generators *generators,
-                                const int32_t cell[4])
-{
-    int32_t corner[4];
-    sort_corners(generators, cell, corner);
-    return generators->image[corner[0]];
+    triangulation->node[c] = i;
+    triangulation->seen[c] = repeats(generators) || places->walls[i] ? SHARES_NODE : 0;
+    if (triangulation->image) triangulation->image[c] = image;
+    return is_complete(generators, &triangulation->cell[c],
+                       moved(generators, places->position[i], image));
 }
 
 // Where the first cell of a name has its node, when its first corner is one of the
-// grains themselves; then moved into the box.
-static void find_place(const struct generators *generators, const struct cell *cell,
-                       struct places *places, bool *outside)
+// bases themselves; then moved into the box. Returns the repetition that was in.
+static struct image find_place(const struct generators *generators,
+                               const int32_t corner[4], struct places *places, int i,
+                               bool *outside)
 {
-    int32_t corner[4];
-    sort_corners(generators, cell->vertex, corner);
-    const struct image none = {0}, first = generators->image[corner[0]];
+    const struct image none = {0}, first = generators->origin[corner[0]].image;
     struct vector at = power_centre(generators, corner);
     at = moved(generators, at, image_difference(none, first));
-    const uint8_t walls = snap_to_walls(generators, &at, outside);
-    if (walls) places->walls[cell->node] = walls;
-    struct image within = {0};
+    places->walls[i] = snap_to_walls(generators, &at, outside);
+    struct image within = none;
     for (int axis = 0; axis < 3 && repeats(generators); axis++)
         if (generators->repeats[axis])
             within.along[axis] =
                 (int8_t)floor(component(at, axis) / component(generators->box, axis));
-    if (repeats(generators)) places->place[cell->node].within = within;
-    places->position[cell->node] =
-        moved(generators, at, image_difference(none, within));
+    places->position[i] = moved(generators, at, image_difference(none, within));
+    return within;
 }
 
-// Where a cell has its place, seen from where the cell is.
-static void move_to_place(const struct generators *generators,
-                          const struct places *places, struct cell *cell)
-{
-    const bool periodic = repeats(generators);
-    if (periodic)
-        cell->image = image_sum(places->place[cell->node].within,
-                                first_image(generators, cell->vertex));
-    cell->at = moved(generators, places->position[cell->node], cell->image);
-    cell->seen = periodic || places->walls[cell->node] ? SHARES_NODE : 0;
-}
+// Room for the cells of a group.
+struct named {
+    struct row *name; // item: which of the group
+    int32_t (*corner)[4];
+};
 
-static struct places find_places(const struct generators *generators,
-                                 struct triangulation *triangulation,
-                                 const struct row *names, int count, bool *outside)
+// Gives the cells of group G their places. False when one has no name.
+static bool place_group(const struct generators *generators,
+                        const struct groups *groups, int g,
+                        struct triangulation *triangulation, struct named named,
+                        struct places *places, bool *complete)
 {
-    const int n = number_places(triangulation, names, count);
-    struct places places = {.n = n,
-                            .place = NEW_ARRAY(struct place, n),
-                            .position = NEW_ARRAY(struct vector, n),
-                            .walls = NEW_ARRAY(uint8_t, n)};
-    bool beyond = false;
-    for (int i = 0; i < n; i++)
-        places.place[i].parent = i;
-#pragma omp parallel for reduction(|| : beyond)
-    for (int c = 0; c < triangulation->n_cell; c++) {
-        struct cell *cell = &triangulation->cell[c];
-        if (cell->node < 0 || cell->seen != FIRST_OF_NAME) continue;
-        find_place(generators, cell, &places, &beyond);
-        move_to_place(generators, &places, cell);
+    const int count = groups->offset[g + 1] - groups->offset[g];
+    const int begin = groups->place[generators->origin[g].base];
+    const int32_t *cell = groups->cell + groups->offset[g];
+    for (int k = 0; k < count; k++) {
+        sort_corners(generators, triangulation->cell[cell[k]].vertex, named.corner[k]);
+        if (!name_cell(generators, named.corner[k], &named.name[k])) return false;
+        named.name[k].item = k;
     }
-#pragma omp parallel for
-    for (int c = 0; c < (n < count ? triangulation->n_cell : 0); c++) // copies
-        if (triangulation->cell[c].node >= 0 && !triangulation->cell[c].seen)
-            move_to_place(generators, &places, &triangulation->cell[c]);
-    *outside = beyond;
-    return places;
+    sort_few_rows(named.name, count);
+    struct image within = {0};
+    bool outside = false;
+    for (int k = 0, i = 0; k < count; k++) {
+        const struct row *name = &named.name[k];
+        const int32_t *corner = named.corner[name->item];
+        const bool first = !k || memcmp(name->key, name[-1].key, sizeof name->key);
+        if (first) i = begin + k;
+        if (first)
+            within = find_place(generators, corner, places, i, &outside);
+        else
+            places->back[begin + k] = NO_PLACE;
+        const struct image image =
+            image_sum(within, generators->origin[corner[0]].image);
+        if (!put_cell(generators, places, i, image, triangulation, cell[name->item]))
+            *complete = false;
+    }
+    *complete &= !outside;
+    return true;
+}
+
+// Groups are near each other, their cells less so, their places anywhere: asked for in
+// time.
+PREFETCHING expect_group(const struct generators *generators,
+                         const struct groups *groups, const struct places *places,
+                         const struct triangulation *triangulation, int g)
+{
+    enum { AHEAD = 6 };
+    if (g + 2 * AHEAD >= groups->n) return;
+    __builtin_prefetch(&groups->place[generators->origin[g + 2 * AHEAD].base]);
+    const int next = g + AHEAD, begin = groups->offset[next],
+              count = groups->offset[next + 1] - begin,
+              place = groups->place[generators->origin[next].base];
+    for (int k = 0; k < count; k++)
+        __builtin_prefetch(&triangulation->cell[groups->cell[begin + k]]);
+    for (int k = 0; k < count; k += 2)
+        __builtin_prefetch(&places->position[place + k], 1);
+    __builtin_prefetch(&places->walls[place], 1);
+}
+
+// False when a cell has no name.
+static bool find_places(const struct generators *generators,
+                        struct triangulation *triangulation,
+                        const struct groups *groups, struct places *places,
+                        bool *complete)
+{
+    const int n = groups->place[generators->n_base];
+    *places = (struct places){.n = n,
+                              .back = NEW_ARRAY(int32_t, n),
+                              .of_parent = NEW_ARRAY(struct image, n),
+                              .position =
+                                  allocate_uncleared((size_t)n, sizeof(struct vector)),
+                              .walls = NEW_ARRAY(uint8_t, n)};
+    bool all_named = true, all_complete = true;
+#pragma omp parallel reduction(&& : all_named, all_complete)
+    {
+        const struct named named = {
+            NEW_ARRAY(struct row, groups->largest),
+            allocate((size_t)groups->largest, sizeof *named.corner)};
+#pragma omp for
+        for (int g = 0; g < groups->n; g++) {
+            expect_group(generators, groups, places, triangulation, g);
+            if (!place_group(generators, groups, g, triangulation, named, places,
+                             &all_complete))
+                all_named = false;
+        }
+        free(named.name);
+        free(named.corner);
+    }
+    *complete = all_complete;
+    return all_named;
 }
 
 // The place that I is united with, and the repetition in which it is I.
 static int root_of(const struct places *places, int i, struct image *image)
 {
     *image = (struct image){0};
-    while (places->place[i].parent != i) {
-        *image = image_sum(*image, places->place[i].of_parent);
-        i = places->place[i].parent;
+    while (places->back[i]) {
+        *image = image_sum(*image, places->of_parent[i]);
+        i -= places->back[i];
     }
     return i;
 }
@@ -273,119 +385,101 @@ static void unite(struct places *places, int a, struct image in_a, int b,
     if (first == second) return;
     in_a = image_sum(in_a, from_a);
     in_b = image_sum(in_b, from_b);
-    struct place *later = &places->place[first > second ? first : second];
-    later->parent = first > second ? second : first;
-    later->of_parent =
+    const int later = first > second ? first : second;
+    places->back[later] = abs(first - second);
+    places->of_parent[later] =
         first > second ? image_difference(in_b, in_a) : image_difference(in_a, in_b);
 }
 
-static void unite_on_walls(const struct triangulation *triangulation,
+static void unite_on_walls(const struct generators *generators,
+                           const struct triangulation *triangulation,
                            struct places *places)
 {
+    const int32_t *place = triangulation->node;
     for (int c = 0; c < triangulation->n_cell; c++) {
-        const struct cell *cell = &triangulation->cell[c];
-        if (!cell->seen || !places->walls[cell->node]) continue;
+        if (!triangulation->seen[c] || !places->walls[place[c]]) continue;
+        const struct image image = node_image(triangulation, c);
+        const struct vector at = moved(generators, places->position[place[c]], image);
         for (int k = 0; k < 4; k++) {
-            if (cell->neighbour[k] < c) continue;
-            const struct cell *other = &triangulation->cell[cell->neighbour[k]];
-            if (other->node >= 0 && places->walls[other->node] &&
-                distance(cell->at, other->at) <= coincide)
-                unite(places, cell->node, cell->image, other->node, other->image);
+            const int32_t d = triangulation->cell[c].neighbour[k];
+            if (d < c || place[d] < 0 || !places->walls[place[d]]) continue;
+            const struct image other = node_image(triangulation, d);
+            const struct vector there =
+                moved(generators, places->position[place[d]], other);
+            if (distance(at, there) <= coincide)
+                unite(places, place[c], image, place[d], other);
         }
     }
 }
 
-// Those places become nodes that are not united with an earlier one, in the order of
-// the names. Takes over what PLACES holds of them; returns their numbers.
-static int *number_nodes(struct places *places, struct nodes *nodes)
+// Those places become nodes that are not united with one before, in the order of the
+// names. Takes over what PLACES holds of them, and leaves there for each place its node
+// and the repetition of the box in which that is the place.
+static void number_nodes(struct places *places, struct nodes *nodes)
 {
-    int *number = NEW_ARRAY(int, places->n);
     for (int i = 0; i < places->n; i++) {
-        if (places->place[i].parent != i) continue;
+        const int back = places->back[i];
+        if (back == NO_PLACE) continue;
+        if (back > 0) { // to where all this is done
+            places->of_parent[i] =
+                image_sum(places->of_parent[i], places->of_parent[i - back]);
+            places->back[i] = places->back[i - back];
+            continue;
+        }
         places->position[nodes->n] = places->position[i];
         places->walls[nodes->n] = places->walls[i];
-        number[i] = nodes->n++;
+        places->back[i] = nodes->n++;
     }
     nodes->position = places->position;
     nodes->walls = places->walls;
-    return number;
 }
 
-// From the place of a cell to its node.
-static void move_to_node(const struct generators *generators,
-                         const struct places *places, const int *number,
-                         const struct nodes *nodes, struct cell *cell)
+// From the places of cells to their nodes.
+static void move_to_nodes(const struct places *places,
+                          struct triangulation *triangulation)
 {
-    struct image image;
-    const int root = root_of(places, cell->node, &image);
-    if (root != cell->node) {
-        cell->image = image_sum(cell->image, image);
-        cell->at = moved(generators, nodes->position[number[root]], cell->image);
+#pragma omp parallel for
+    for (int c = 0; c < triangulation->n_cell; c++) {
+        const int32_t place = triangulation->node[c];
+        if (place < 0) continue;
+        triangulation->node[c] = places->back[place];
+        if (triangulation->image)
+            triangulation->image[c] =
+                image_sum(triangulation->image[c], places->of_parent[place]);
     }
-    cell->node = number[root];
-}
-
-// ---- what was left out --------------------------------------------------------------
-
-// The cell of a grain among its corners is unbounded.
-static bool is_open(const struct generators *generators, const struct cell *cell)
-{
-    for (int k = 0; k < 4; k++)
-        for (int m = 0; m < 4 && cell->neighbour[k] < 0; m++)
-            if (m != k && cell->vertex[m] < generators->n_particle) return true;
-    return false;
-}
-
-// An image left out is farther from the box than the reach; it could change a cell only
-// from inside the sphere around the node that no generator has less power to.
-static bool is_complete(const struct generators *generators, const struct cell *cell)
-{
-    if (is_open(generators, cell)) return false;
-    if (!repeats(generators)) return true;
-    const int32_t corner = cell->vertex[0];
-    const struct vector to = subtract(generators->position[corner], cell->at);
-    const double power = dot(to, to) - generators->weight[corner];
-    const double radius = sqrt(fmax(0, power + generators->largest_weight));
-    for (int axis = 0; axis < 3; axis++) {
-        if (!generators->repeats[axis]) continue;
-        const double x = component(cell->at, axis);
-        if (x - radius <= -generators->reach ||
-            x + radius >= component(generators->box, axis) + generators->reach)
-            return false;
-    }
-    return true;
 }
 
 enum status find_nodes(const struct generators *generators,
                        struct triangulation *triangulation, struct nodes *nodes,
                        struct reason *reason)
 {
-    int count;
+    const int n_cell = triangulation->n_cell;
     *nodes = (struct nodes){0};
-    struct row *names = sorted_names(generators, triangulation, &count);
-    if (!names)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "/domain/upper: the box is too narrow for a network that "
-                      "repeats: grains meet that are more than %d boxes apart",
-                      FARTHEST_IMAGE);
-    bool outside;
-    struct places places =
-        find_places(generators, triangulation, names, count, &outside);
-    free(names);
-    unite_on_walls(triangulation, &places);
-    int *number = number_nodes(&places, nodes);
-    bool complete = !outside;
-#pragma omp parallel for reduction(&& : complete)
-    for (int c = 0; c < triangulation->n_cell; c++) {
-        struct cell *cell = &triangulation->cell[c];
-        if (cell->node < 0) continue;
-        move_to_node(generators, &places, number, nodes, cell);
-        complete = is_complete(generators, cell) && complete;
+    triangulation->node = allocate_uncleared((size_t)n_cell, sizeof(int32_t));
+    triangulation->seen = NEW_ARRAY(uint8_t, n_cell);
+    if (repeats(generators)) triangulation->image = NEW_ARRAY(struct image, n_cell);
+    struct groups groups = group_cells(generators, triangulation);
+    struct places places;
+    const bool named =
+        find_places(generators, triangulation, &groups, &places, &nodes->complete);
+    free(groups.offset);
+    free(groups.place);
+    free(groups.cell);
+    if (named) {
+        unite_on_walls(generators, triangulation, &places);
+        number_nodes(&places, nodes);
+        move_to_nodes(&places, triangulation);
+    } else {
+        free(places.position);
+        free(places.walls);
     }
-    nodes->complete = complete;
-    free(number);
-    free(places.place);
-    return STATUS_OK;
+    free(places.back);
+    free(places.of_parent);
+    if (named) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "/domain/upper: the box is too narrow for a network that repeats: "
+                  "grains meet that are more than %d boxes apart",
+                  FARTHEST_IMAGE);
 }
 
 void nodes_free(struct nodes *nodes)

@@ -15,8 +15,13 @@ static int compare_rows(const void *a, const void *b)
     return (first->item > second->item) - (first->item < second->item);
 }
 
-static void sort_few(struct row *rows, int count)
+void sort_few_rows(struct row *rows, int count)
 {
+    enum { FEW = 32 };
+    if (count > FEW) {
+        qsort(rows, (size_t)count, sizeof *rows, compare_rows);
+        return;
+    }
     for (int k = 1; k < count; k++) {
         const struct row row = rows[k];
         int to = k;
@@ -28,7 +33,6 @@ static void sort_few(struct row *rows, int count)
 
 struct row *sort_rows(struct row *rows, int count)
 {
-    enum { FEW = 32 };
     int32_t largest = 0;
     for (int k = 0; k < count; k++)
         if (rows[k].key[0] > largest) largest = rows[k].key[0];
@@ -38,18 +42,13 @@ struct row *sort_rows(struct row *rows, int count)
         offset[rows[k].key[0] + 2]++;
     for (int32_t i = 0; i < largest; i++)
         offset[i + 2] += offset[i + 1];
-    struct row *sorted = allocate_aligned((size_t)count, sizeof *sorted);
+    struct row *sorted = allocate_uncleared((size_t)count, sizeof *sorted);
     for (int k = 0; k < count; k++)
         sorted[offset[rows[k].key[0] + 1]++] = rows[k];
     free(rows);
 #pragma omp parallel for
-    for (int32_t i = 0; i <= largest; i++) {
-        const int size = offset[i + 1] - offset[i];
-        if (size <= FEW)
-            sort_few(sorted + offset[i], size);
-        else
-            qsort(sorted + offset[i], (size_t)size, sizeof *sorted, compare_rows);
-    }
+    for (int32_t i = 0; i <= largest; i++)
+        sort_few_rows(sorted + offset[i], offset[i + 1] - offset[i]);
     free(offset);
     return sorted;
 }

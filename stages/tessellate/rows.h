@@ -17,4 +17,7 @@ struct row {
 // frees what it returns.
 struct row *sort_rows(struct row *rows, int count);
 
+// The same where they are, for few.
+void sort_few_rows(struct row *rows, int count);
+
 #endif

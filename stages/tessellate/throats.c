@@ -5,6 +5,7 @@
 #include "basics/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // A throat as seen from a facet, and from the first of its nodes.
 struct candidate {
@@ -12,9 +13,10 @@ struct candidate {
     double radius, length; // in units; the radius may be below 0 where grains overlap
 };
 
-// Candidates by their first nodes: those of node i from offset[i] to offset[i + 1].
+// Of nodes that several cells may share: those of node i from offset[i] to
+// offset[i + 1]. The others have those of their one cell.
 struct candidates {
-    int *offset; // (n_node + 1)
+    int *offset; // (n_node + 2)
     struct candidate *at;
 };
 
@@ -36,10 +38,9 @@ static double facet_clearance(const struct assembly *assembly, int cell, int k,
     double least = HUGE_VAL;
     for (int m = 0; m < 4; m++) {
         const int32_t point = assembly->triangulation->cell[cell].vertex[m];
-        if (m == k || assembly->generators->wall[point] >= 0) continue;
-        const int32_t grain = assembly->generators->particle[point];
+        if (m == k || assembly->generators->origin[point].wall >= 0) continue;
         const double here =
-            clearance_of(assembly->generators->position[point], assembly->radius[grain],
+            clearance_of(assembly->generators->point[point].at, assembly->radius[point],
                          end, assembly->clearance);
         if (here < least) least = here;
     }
@@ -53,16 +54,16 @@ static bool facet_counts(const struct assembly *assembly, int cell, int k)
     const struct generators *generators = assembly->generators;
     const int32_t *corner = assembly->triangulation->cell[cell].vertex;
     int32_t first = -1;
-    if (generators->n == generators->n_base)
-        return (k != 0 && corner[0] < generators->n_particle) ||
-               (k != 1 && corner[1] < generators->n_particle) ||
-               (k != 2 && corner[2] < generators->n_particle) ||
-               (k != 3 && corner[3] < generators->n_particle);
+    if (!has_copies(generators))
+        return (k != 0 && is_grain(generators, corner[0])) ||
+               (k != 1 && is_grain(generators, corner[1])) ||
+               (k != 2 && is_grain(generators, corner[2])) ||
+               (k != 3 && is_grain(generators, corner[3]));
     for (int m = 0; m < 4; m++)
         if (m != k &&
             (first < 0 || compare_generators(generators, corner[m], first) < 0))
             first = corner[m];
-    return first < generators->n_particle;
+    return is_grain(generators, first);
 }
 
 // The facets of cell C, as bits, from which a throat is seen whose first node is that
@@ -70,50 +71,63 @@ static bool facet_counts(const struct assembly *assembly, int cell, int k)
 // from where the number of that image is above 0.
 static int find_facets(const struct assembly *assembly, int c)
 {
-    const struct cell *cells = assembly->triangulation->cell, *from = &cells[c];
+    const struct triangulation *cells = assembly->triangulation;
+    const int32_t node = cells->node[c];
     int facets = 0;
-    for (int k = 0; k < 4 && from->node >= 0; k++) {
-        const int d = from->neighbour[k];
-        if (d < 0 || from->node > cells[d].node || !facet_counts(assembly, c, k))
-            continue;
-        if (from->node < cells[d].node ||
-            image_number(image_difference(cells[d].image, from->image)) > 0)
+    for (int k = 0; k < 4 && node >= 0; k++) {
+        const int32_t d = cells->cell[c].neighbour[k];
+        if (d < 0 || node > cells->node[d] || !facet_counts(assembly, c, k)) continue;
+        if (node < cells->node[d] ||
+            image_number(image_difference(node_image(cells, d), node_image(cells, c))) >
+                0)
             facets |= 1 << k;
     }
     return facets;
 }
 
-// Adds MORE to the count of the node of a cell; returns what it was. Most cells have
-// nodes of their own, and need not wait.
-static int add_to_count(const struct cell *cell, int *count, int more)
+// Notes in each cell what its facets are. Counts the throats of nodes with one cell,
+// one place on, and the candidates of those that are shared, two places on.
+static void count_throats(const struct assembly *assembly, int *count, int *shared)
 {
-    int before;
-    if (cell->seen & SHARES_NODE) {
-#pragma omp atomic capture
-        {
-            before = *count;
-            *count += more;
-        }
-        return before;
+    const struct triangulation *cells = assembly->triangulation;
+#pragma omp parallel for
+    for (int c = 0; c < cells->n_cell; c++) {
+        const int facets = find_facets(assembly, c);
+        if (!facets) continue;
+        const int more = __builtin_popcount((unsigned)facets);
+        if (cells->seen[c] & SHARES_NODE)
+#pragma omp atomic
+            shared[cells->node[c] + 2] += more;
+        else
+            count[cells->node[c] + 1] = more;
+        cells->seen[c] |= (uint8_t)facets;
     }
-    before = *count;
-    *count += more;
-    return before;
 }
 
-// How many candidates there are of each first node, two places on.
-static void count_candidates(const struct assembly *assembly, int *count)
+// Where cell C has its node.
+static struct vector node_of(const struct assembly *assembly, int c)
 {
-#pragma omp parallel for
-    for (int c = 0; c < assembly->triangulation->n_cell; c++) {
-        struct cell *cell = &assembly->triangulation->cell[c];
-        expect_neighbours(assembly->triangulation, c);
-        const int facets = find_facets(assembly, c);
-        cell->seen |= (uint8_t)facets; // until filling
-        if (facets)
-            add_to_count(cell, &count[cell->node + 2],
-                         __builtin_popcount((unsigned)facets));
+    const struct triangulation *cells = assembly->triangulation;
+    const struct vector at = assembly->nodes->position[cells->node[c]];
+    return cells->image ? moved(assembly->generators, at, cells->image[c]) : at;
+}
+
+// What is seen from the facets of a cell, and how many.
+static int gather(const struct assembly *assembly, int c, struct candidate at[4])
+{
+    const struct triangulation *cells = assembly->triangulation;
+    struct vector end[2] = {node_of(assembly, c)};
+    int count = 0;
+    for (int k = 0; k < 4; k++) {
+        if (!(cells->seen[c] & 1 << k)) continue;
+        const int32_t d = cells->cell[c].neighbour[k];
+        end[1] = node_of(assembly, d);
+        at[count++] = (struct candidate){
+            cells->node[d],
+            image_number(image_difference(node_image(cells, d), node_image(cells, c))),
+            facet_clearance(assembly, c, k, end), distance(end[0], end[1])};
     }
+    return count;
 }
 
 // Filling moves each offset on, so that candidates of a node end where those of the
@@ -124,22 +138,16 @@ static void fill_candidates(const struct assembly *assembly,
     const struct triangulation *cells = assembly->triangulation;
 #pragma omp parallel for
     for (int c = 0; c < cells->n_cell; c++) {
-        struct cell *from = &cells->cell[c];
-        const int facets = from->seen & ~SHARES_NODE;
-        expect_neighbours(cells, c);
-        from->seen &= SHARES_NODE;
-        if (!facets) continue;
-        int to = add_to_count(from, &candidates->offset[from->node + 1],
-                              __builtin_popcount((unsigned)facets));
-        for (int k = 0; k < 4; k++) {
-            if (!(facets & 1 << k)) continue;
-            const struct cell *other = &cells->cell[from->neighbour[k]];
-            const struct vector end[2] = {from->at, other->at};
-            const struct image apart = image_difference(other->image, from->image);
-            candidates->at[to++] = (struct candidate){
-                other->node, image_number(apart), facet_clearance(assembly, c, k, end),
-                distance(end[0], end[1])};
+        if (cells->seen[c] <= SHARES_NODE) continue; // no facets, or its own node
+        struct candidate at[4];
+        const int count = gather(assembly, c, at);
+        int to;
+#pragma omp atomic capture
+        {
+            to = candidates->offset[cells->node[c] + 1];
+            candidates->offset[cells->node[c] + 1] += count;
         }
+        memcpy(candidates->at + to, at, (size_t)count * sizeof *at);
     }
 }
 
@@ -200,49 +208,92 @@ static void store(const struct candidate *at, int count, double unit, int node, 
 static void allocate_throats(struct network *network, int count)
 {
     network->n_throat = count;
-    network->throat_nodes = allocate((size_t)count, sizeof *network->throat_nodes);
-    network->throat_radius = NEW_ARRAY(double, count);
-    network->throat_length = NEW_ARRAY(double, count);
+    const size_t n = (size_t)count;
+    network->throat_nodes = allocate_uncleared(n, sizeof *network->throat_nodes);
+    network->throat_radius = allocate_uncleared(n, sizeof *network->throat_radius);
+    network->throat_length = allocate_uncleared(n, sizeof *network->throat_length);
     network->throat_kind = NEW_ARRAY(uint8_t, count);
     if (is_periodic(&network->packing))
         network->throat_image = NEW_ARRAY(struct image, count);
 }
 
-// Sorts and fuses what the nodes have, and stores it one node after the other.
-static void store_candidates(const struct assembly *assembly,
-                             const struct candidates *candidates,
-                             struct network *network)
+// Sorts and fuses what shared nodes have, and counts what is left.
+static void fuse_candidates(const struct assembly *assembly,
+                            const struct candidates *candidates, int *count)
 {
-    const int n = assembly->nodes->n, *offset = candidates->offset;
-    int *to = NEW_ARRAY(int, n + 1);
+    const int *offset = candidates->offset;
 #pragma omp parallel for
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < assembly->nodes->n; i++) {
+        const int many = offset[i + 1] - offset[i];
         struct candidate *at = candidates->at + offset[i];
-        sort_candidates(at, offset[i + 1] - offset[i]);
-        to[i + 1] =
-            fuse_in_walls(assembly->nodes->walls, i, at, offset[i + 1] - offset[i]);
+        if (!many) continue;
+        sort_candidates(at, many);
+        count[i + 1] = fuse_in_walls(assembly->nodes->walls, i, at, many);
     }
-    for (int i = 0; i < n; i++)
-        to[i + 1] += to[i];
-    allocate_throats(network, to[n]);
+}
+
+// Nodes come in any order in space: where they are, and where their throats go, is
+// asked for in time.
+PREFETCHING expect_nodes(const struct assembly *assembly, int c, const int *begin,
+                         const struct network *network)
+{
+    enum { AHEAD = 12 };
+    const struct triangulation *cells = assembly->triangulation;
+    if (c + 2 * AHEAD >= cells->n_cell) return;
+    const int32_t later = cells->node[c + 2 * AHEAD], next = cells->node[c + AHEAD];
+    if (later >= 0) __builtin_prefetch(&begin[later]);
+    if (next < 0) return;
+    for (int k = 0; k < 4; k++) {
+        const int32_t d = cells->cell[c + AHEAD].neighbour[k];
+        if (d >= 0) __builtin_prefetch(&assembly->nodes->position[cells->node[d]].z);
+    }
+    __builtin_prefetch(&assembly->nodes->position[next].z);
+    __builtin_prefetch(&network->throat_nodes[begin[next]], 1);
+    __builtin_prefetch(&network->throat_radius[begin[next]], 1);
+    __builtin_prefetch(&network->throat_length[begin[next]], 1);
+}
+
+// The throats of each node, from BEGIN of it on.
+static void store_throats(const struct assembly *assembly,
+                          const struct candidates *candidates, const int *begin,
+                          struct network *network)
+{
+    const struct triangulation *cells = assembly->triangulation;
+    const double unit = assembly->generators->unit;
 #pragma omp parallel for
-    for (int i = 0; i < n; i++)
-        store(candidates->at + offset[i], to[i + 1] - to[i], assembly->generators->unit,
-              i, to[i], network);
-    free(to);
+    for (int c = 0; c < cells->n_cell; c++) {
+        expect_nodes(assembly, c, begin, network);
+        if (cells->seen[c] && !(cells->seen[c] & SHARES_NODE)) {
+            struct candidate at[4];
+            const int count = gather(assembly, c, at), node = cells->node[c];
+            sort_candidates(at, count);
+            store(at, count, unit, node, begin[node], network);
+        }
+        cells->seen[c] = 0;
+    }
+#pragma omp parallel for
+    for (int i = 0; i < assembly->nodes->n; i++)
+        if (candidates->offset[i + 1] > candidates->offset[i])
+            store(candidates->at + candidates->offset[i], begin[i + 1] - begin[i], unit,
+                  i, begin[i], network);
 }
 
 void assemble_throats(const struct assembly *assembly, struct network *network)
 {
     const int n = assembly->nodes->n;
+    int *begin = allocate_aligned((size_t)n + 1, sizeof *begin);
     struct candidates candidates = {.offset = NEW_ARRAY(int, n + 2)};
-    count_candidates(assembly, candidates.offset);
+    count_throats(assembly, begin, candidates.offset);
     for (int i = 0; i < n; i++)
         candidates.offset[i + 2] += candidates.offset[i + 1];
-    candidates.at =
-        allocate_aligned((size_t)candidates.offset[n + 1], sizeof *candidates.at);
+    candidates.at = NEW_ARRAY(struct candidate, candidates.offset[n + 1]);
     fill_candidates(assembly, &candidates);
-    store_candidates(assembly, &candidates, network);
+    fuse_candidates(assembly, &candidates, begin);
+    for (int i = 0; i < n; i++)
+        begin[i + 1] += begin[i];
+    allocate_throats(network, begin[n]);
+    store_throats(assembly, &candidates, begin, network);
     free(candidates.offset);
     free(candidates.at);
+    free(begin);
 }

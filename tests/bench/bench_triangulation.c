@@ -63,7 +63,14 @@ static void measure(struct scene *scene)
 {
     struct triangulation triangulation = {0};
     const clock_t began = clock();
-    triangulate(scene->at, scene->weight, scene->n, &triangulation);
+    int32_t *order = insertion_order(scene->at, scene->n);
+    struct weighted_point *points = allocate_aligned((size_t)scene->n, sizeof *points);
+    for (int k = 0; k < scene->n; k++)
+        points[k] = (struct weighted_point){
+            scene->at[order[k]], scene->weight ? scene->weight[order[k]] : 0};
+    triangulate(points, scene->n, &triangulation);
+    free(points);
+    free(order);
     const double seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
     printf("%-28s %9d %9d %12lld %10lld %9.4f %8.3f\n", scene->name, scene->n,
            triangulation.n_cell, (long long)triangulation.n_test,

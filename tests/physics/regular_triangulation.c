@@ -163,25 +163,21 @@ static int32_t (*cells_of(const struct triangulation *triangulation,
     return corners;
 }
 
-static void assert_same_in_any_order(const struct scene *scene,
-                                     const struct triangulation *triangulation)
+static void triangulate_scene(const struct scene *scene, const int32_t *from,
+                              struct triangulation *triangulation)
 {
-    struct scene other;
-    struct triangulation shuffled;
-    int32_t itself[POINTS], from[POINTS];
+    struct weighted_point points[POINTS];
     for (int i = 0; i < POINTS; i++)
-        itself[i] = from[i] = i;
-    for (int i = POINTS - 1; i > 0; i--) {
-        const unsigned long j = gsl_rng_uniform_int(generator, (unsigned long)i + 1);
-        const int32_t kept = from[i];
-        from[i] = from[j];
-        from[j] = kept;
-    }
-    for (int i = 0; i < POINTS; i++) {
-        other.at[i] = scene->at[from[i]];
-        other.weight[i] = scene->weight[from[i]];
-    }
-    assert_int_equal(triangulate(other.at, other.weight, POINTS, &shuffled), 0);
+        points[i] = point(scene, from[i]);
+    assert_int_equal(triangulate(points, POINTS, triangulation), 0);
+}
+
+static void assert_same_in_order(const struct scene *scene, const int32_t *itself,
+                                 const struct triangulation *triangulation,
+                                 const int32_t *from)
+{
+    struct triangulation shuffled;
+    triangulate_scene(scene, from, &shuffled);
     assert_int_equal(shuffled.n_cell, triangulation->n_cell);
     int32_t(*first)[4] = cells_of(triangulation, itself);
     int32_t(*second)[4] = cells_of(&shuffled, from);
@@ -191,15 +187,36 @@ static void assert_same_in_any_order(const struct scene *scene,
     triangulation_free(&shuffled);
 }
 
+// A drawn order, and the one that is fast.
+static void assert_same_in_any_order(const struct scene *scene, const int32_t *itself,
+                                     const struct triangulation *triangulation)
+{
+    int32_t from[POINTS];
+    memcpy(from, itself, sizeof from);
+    for (int i = POINTS - 1; i > 0; i--) {
+        const unsigned long j = gsl_rng_uniform_int(generator, (unsigned long)i + 1);
+        const int32_t kept = from[i];
+        from[i] = from[j];
+        from[j] = kept;
+    }
+    assert_same_in_order(scene, itself, triangulation, from);
+    int32_t *order = insertion_order(scene->at, POINTS);
+    assert_same_in_order(scene, itself, triangulation, order);
+    free(order);
+}
+
 // WHOLE: no point is engulfed.
 static void check(struct scene scene, bool whole)
 {
     struct triangulation triangulation;
     bool used[POINTS] = {0};
-    assert_int_equal(triangulate(scene.at, scene.weight, POINTS, &triangulation), 0);
+    int32_t itself[POINTS];
+    for (int i = 0; i < POINTS; i++)
+        itself[i] = i;
+    triangulate_scene(&scene, itself, &triangulation);
     assert_empty_spheres(&scene, &triangulation);
     assert_fills_hull(&scene, &triangulation);
-    assert_same_in_any_order(&scene, &triangulation);
+    assert_same_in_any_order(&scene, itself, &triangulation);
     int count = 0;
     for (int c = 0; c < triangulation.n_cell; c++)
         for (int k = 0; k < 4; k++)
@@ -231,11 +248,14 @@ static void test_weighted(void **state)
 static void test_flat(void **state)
 {
     (void)state;
-    struct scene scene = lattice();
+    const struct scene scene = lattice();
+    struct weighted_point points[SIDE * SIDE];
     struct triangulation triangulation;
-    assert_int_equal(triangulate(scene.at, NULL, SIDE * SIDE, &triangulation), -1);
-    assert_int_equal(triangulate(scene.at, NULL, SIDE, &triangulation), -1);
-    assert_int_equal(triangulate(scene.at, NULL, 1, &triangulation), -1);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        points[i] = point(&scene, i);
+    assert_int_equal(triangulate(points, SIDE * SIDE, &triangulation), -1);
+    assert_int_equal(triangulate(points, SIDE, &triangulation), -1);
+    assert_int_equal(triangulate(points, 1, &triangulation), -1);
 }
 
 int main(void)

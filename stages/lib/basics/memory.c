@@ -15,7 +15,7 @@ void *allocate(size_t count, size_t size)
     return memory;
 }
 
-void *allocate_aligned(size_t count, size_t size)
+void *allocate_uncleared(size_t count, size_t size)
 {
     enum { CACHE_LINE = 64, HUGE_PAGE = 2 << 20 };
     const size_t page = count * size < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE;
@@ -23,7 +23,12 @@ void *allocate_aligned(size_t count, size_t size)
     void *memory = aligned_alloc(page, bytes);
     if (!memory) die(STATUS_INTERNAL, "out of memory: %zu bytes", bytes);
     if (page == HUGE_PAGE) (void)madvise(memory, bytes, MADV_HUGEPAGE);
-    return memset(memory, 0, bytes);
+    return memory;
+}
+
+void *allocate_aligned(size_t count, size_t size)
+{
+    return memset(allocate_uncleared(count, size), 0, count * size);
 }
 
 void *reallocate(void *old, size_t count, size_t size)

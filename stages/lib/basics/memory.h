@@ -16,9 +16,17 @@ void *allocate(size_t count, size_t size)
 void *allocate_aligned(size_t count, size_t size)
     __attribute__((malloc, returns_nonnull, warn_unused_result));
 
+// The same for what is all written before it is read: not zeroed.
+void *allocate_uncleared(size_t count, size_t size)
+    __attribute__((malloc, returns_nonnull, warn_unused_result));
+
 // OLD grown or shrunk to COUNT elements of SIZE bytes; what is new is not zeroed.
 void *reallocate(void *old, size_t count, size_t size)
     __attribute__((returns_nonnull, warn_unused_result));
+
+// For functions that only ask for memory in time (__builtin_prefetch): GCC takes them
+// for functions without effect, and drops the calls, unless they are inlined at once.
+#define PREFETCHING static inline __attribute__((always_inline)) void
 
 // COUNT elements of SIZE bytes copied from SOURCE.
 void *duplicate(const void *source, size_t count, size_t size)

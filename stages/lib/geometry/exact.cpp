@@ -42,15 +42,12 @@ extern "C" int exact_power_side(const struct weighted_point *const p[5])
         weighted(p[0]), weighted(p[1]), weighted(p[2]), weighted(p[3]), weighted(p[4]));
 }
 
-extern "C" struct vector exact_power_centre(const struct vector *points,
-                                            const double *weights,
-                                            const int32_t corner[4])
+extern "C" struct vector exact_power_centre(const struct weighted_point *const p[4])
 {
     using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
     const auto exactly = [&](int k) {
-        const struct vector &p = points[corner[k]];
-        return Exact::Weighted_point_3(Exact::Point_3(p.x, p.y, p.z),
-                                       weights[corner[k]]);
+        const struct vector &at = p[k]->at;
+        return Exact::Weighted_point_3(Exact::Point_3(at.x, at.y, at.z), p[k]->weight);
     };
     const Exact::Point_3 centre = Exact().construct_weighted_circumcenter_3_object()(
         exactly(0), exactly(1), exactly(2), exactly(3));

@@ -28,10 +28,9 @@ int exact_orientation(const struct weighted_point *const p[4]);
 // oriented tetrahedron, than they have; -1 when more, 0 when the same.
 int exact_power_side(const struct weighted_point *const p[5]);
 
-// The point of equal power to the four points CORNER, in rational arithmetic: for flat
-// tetrahedra, where rounding could put it anywhere.
-struct vector exact_power_centre(const struct vector *points, const double *weights,
-                                 const int32_t corner[4]);
+// The point of equal power to four points, in rational arithmetic: for flat tetrahedra,
+// where rounding could put it anywhere.
+struct vector exact_power_centre(const struct weighted_point *const p[4]);
 
 #ifdef __cplusplus
 }

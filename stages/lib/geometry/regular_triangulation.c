@@ -12,6 +12,16 @@
 
 enum { INFINITE = -1, NOWHERE = -2 };
 
+// A cell while triangulating, with the centre of its sphere.
+struct live_cell {
+    int32_t vertex[4], neighbour[4];
+    struct vector at; // centre of power, from the last vertex
+    float error;      // of it; below 0: infinite
+    uint8_t seen;     // in the cavity, or no longer there
+};
+
+static_assert(sizeof(struct live_cell) == 64, "one cache line");
+
 // A facet between a cell that goes and one that stays. Its vertices come so that with
 // the new point they are positively oriented.
 struct facet {
@@ -31,8 +41,8 @@ struct edge {
 
 struct insertion {
     const struct weighted_point *point;
-    struct cell *cell; // `at`: centre of power, from the last vertex
-    int32_t *cavity;   // cells
+    struct live_cell *cell;
+    int32_t *cavity; // cells
     struct facet *rim;
     int32_t *unused; // cells
     struct edge *edge;
@@ -138,7 +148,7 @@ static bool is_mirrored(const struct weighted_point *const p[5])
 // The centre of power of a cell, from its last vertex, and how far off it may be by
 // rounding, so that most tests need one look at the cell: for the rows r_k to the other
 // three, 2 r_k . c = |r_k|^2 - w_k + w. The bound is of each coordinate and generous.
-static void find_centre(const struct insertion *insertion, struct cell *cell)
+static void find_centre(const struct insertion *insertion, struct live_cell *cell)
 {
     const struct weighted_point *last = &insertion->point[cell->vertex[3]];
     struct vector row[3], centre = {0};
@@ -169,12 +179,12 @@ static void find_centre(const struct insertion *insertion, struct cell *cell)
                           8 * DBL_EPSILON * far);
 }
 
-static bool takes(struct insertion *insertion, const struct cell *cell, int32_t e);
+static bool takes(struct insertion *insertion, const struct live_cell *cell, int32_t e);
 
 // When rounding could decide, and for infinite cells: they take what lies beyond their
 // finite facet and, in its plane, what the cell this side of it takes.
-static __attribute__((noinline)) bool takes_exactly(struct insertion *insertion,
-                                                    const struct cell *cell, int32_t e)
+static __attribute__((noinline)) bool
+takes_exactly(struct insertion *insertion, const struct live_cell *cell, int32_t e)
 {
     if (cell->seen) return true;
     const int32_t *vertex = cell->vertex;
@@ -195,7 +205,7 @@ static __attribute__((noinline)) bool takes_exactly(struct insertion *insertion,
 
 // Whether point E takes a cell away: whether it has less power to the cell's centre
 // than the vertices have.
-static inline bool takes(struct insertion *insertion, const struct cell *cell,
+static inline bool takes(struct insertion *insertion, const struct live_cell *cell,
                          int32_t e)
 {
     const bool infinite = cell->error < 0;
@@ -221,7 +231,7 @@ static int32_t locate(const struct insertion *insertion, int32_t e)
 {
     int32_t at = insertion->last, before = NOWHERE;
     for (;;) {
-        const struct cell *cell = &insertion->cell[at];
+        const struct live_cell *cell = &insertion->cell[at];
         int k = 0;
         if (cell->error <
             0) { // infinite: stay, or start from the finite cell beside it
@@ -267,10 +277,10 @@ static void find_cavity(struct insertion *insertion, int32_t start, int32_t e)
         int n_cavity = insertion->n_cavity, n_rim = insertion->n_rim;
         make_room(insertion);
         const int32_t from = insertion->cavity[at];
-        const struct cell *cell = &insertion->cell[from];
+        const struct live_cell *cell = &insertion->cell[from];
         for (int k = 0; k < 4; k++) {
             const int32_t next = cell->neighbour[k];
-            struct cell *beyond = &insertion->cell[next];
+            struct live_cell *beyond = &insertion->cell[next];
             const bool fresh = !beyond->seen;
             const bool taken = fresh & takes(insertion, beyond, e);
             beyond->seen |= taken;
@@ -312,7 +322,7 @@ static void widen_edge_table(struct insertion *insertion, uint32_t least)
     memset(insertion->edge, 0xff, length * sizeof *insertion->edge);
 }
 
-static void finish_cell(const struct insertion *insertion, struct cell *cell)
+static void finish_cell(const struct insertion *insertion, struct live_cell *cell)
 {
     cell->seen = 0;
     cell->error = -1;
@@ -325,8 +335,8 @@ static int32_t add_cell(struct insertion *insertion)
 {
     if (insertion->n_unused) return insertion->unused[--insertion->n_unused];
     if (insertion->n_cell == insertion->cell_capacity) {
-        struct cell *cell =
-            allocate_aligned((size_t)(insertion->cell_capacity *= 2), sizeof *cell);
+        struct live_cell *cell =
+            allocate_uncleared((size_t)(insertion->cell_capacity *= 2), sizeof *cell);
         memcpy(cell, insertion->cell, (size_t)insertion->n_cell * sizeof *cell);
         free(insertion->cell);
         insertion->cell = cell;
@@ -348,9 +358,9 @@ static void fill_cavity(struct insertion *insertion, int32_t e)
             const int32_t from = v[(k + 1) % 3], to = v[(k + 2) % 3];
             *find_edge(insertion, from, to, e) = (struct edge){from, to, e, i};
         }
-        struct cell *cell = &insertion->cell[i];
-        *cell = (struct cell){.vertex = {v[0], v[1], v[2], e},
-                              .neighbour = {[3] = facet->beyond}};
+        struct live_cell *cell = &insertion->cell[i];
+        *cell = (struct live_cell){.vertex = {v[0], v[1], v[2], e},
+                                   .neighbour = {[3] = facet->beyond}};
         insertion->cell[facet->beyond].neighbour[facet->back] = i;
         finish_cell(insertion, cell);
         facet->in_place = i;
@@ -379,7 +389,7 @@ static bool same_place(struct vector a, struct vector b)
 static void insert(struct insertion *insertion, int32_t e)
 {
     const int32_t start = locate(insertion, e);
-    const struct cell *cell = &insertion->cell[start];
+    const struct live_cell *cell = &insertion->cell[start];
     const struct weighted_point *point = insertion->point;
     for (int k = 0; k < 4; k++)
         if (cell->vertex[k] != INFINITE &&
@@ -422,7 +432,7 @@ static bool find_corners(const struct weighted_point *point, int n, int32_t corn
 static void surround(struct insertion *insertion, const int32_t corner[4])
 {
     for (int c = 0; c < 5; c++) {
-        struct cell *cell = &insertion->cell[add_cell(insertion)];
+        struct live_cell *cell = &insertion->cell[add_cell(insertion)];
         int32_t beside[4] = {1, 2, 3, 4};
         memcpy(cell->vertex, corner, sizeof cell->vertex);
         if (c > 0) {
@@ -465,19 +475,33 @@ struct turn {
     int32_t point;
 };
 
-static int compare_turns(const void *a, const void *b)
+// By radix, from the lowest digit up: those of one time stay in order.
+static struct turn *sort_turns(struct turn *turns, int n, int bits)
 {
-    const struct turn *first = a, *second = b;
-    if (first->when != second->when) return first->when < second->when ? -1 : 1;
-    return (first->point > second->point) - (first->point < second->point);
+    enum { DIGIT = 12, DIGITS = 1 << DIGIT };
+    struct turn *sorted = NEW_ARRAY(struct turn, n);
+    for (int shift = 0; shift < bits; shift += DIGIT) {
+        int begin[DIGITS + 1] = {0};
+        for (int i = 0; i < n; i++)
+            begin[(turns[i].when >> shift) % DIGITS + 1]++;
+        for (int digit = 1; digit < DIGITS; digit++)
+            begin[digit] += begin[digit - 1];
+        for (int i = 0; i < n; i++)
+            sorted[begin[(turns[i].when >> shift) % DIGITS]++] = turns[i];
+        struct turn *other = turns;
+        turns = sorted;
+        sorted = other;
+    }
+    free(sorted);
+    return turns;
 }
 
 // Biased randomised insertion order [Amenta, Choi and Rote 2003]: rounds of random
 // points, each along a Z-curve, so that cavities stay small and what comes next is
 // near.
-static struct turn *order_points(const struct vector *points, int n)
+int32_t *insertion_order(const struct vector *points, int n)
 {
-    enum { BITS = 18 };
+    enum { BITS = 18, ROUND_BITS = 3 };
     struct vector lower = points[0], upper = points[0];
     for (int i = 1; i < n; i++)
         for (int axis = 0; axis < 3; axis++) {
@@ -495,11 +519,15 @@ static struct turn *order_points(const struct vector *points, int n)
             turns[i].when |= spread((uint64_t)(x * cells)) << axis;
         }
     }
-    qsort(turns, (size_t)n, sizeof *turns, compare_turns);
-    return turns;
+    turns = sort_turns(turns, n, 3 * BITS + ROUND_BITS);
+    int32_t *order = NEW_ARRAY(int32_t, n);
+    for (int k = 0; k < n; k++)
+        order[k] = turns[k].point;
+    free(turns);
+    return order;
 }
 
-static int32_t last_point(const struct cell *cell)
+static int32_t last_point(const struct live_cell *cell)
 {
     int32_t last = cell->vertex[0];
     for (int k = 1; k < 4; k++)
@@ -507,32 +535,30 @@ static int32_t last_point(const struct cell *cell)
     return last;
 }
 
-// Puts the finite cells in the order in which their last points came, along the curve,
-// and gives points their own numbers back. Frees the cells that were.
-static struct triangulation pack_cells(struct insertion *insertion,
-                                       const struct turn *turns, int n)
+// Puts the finite cells in the order in which their last points came. Frees the cells
+// that were.
+static struct triangulation pack_cells(struct insertion *insertion, int n)
 {
     int32_t *number = NEW_ARRAY(int32_t, insertion->n_cell);
     int32_t *next = NEW_ARRAY(int32_t, n + 1);
     for (int c = 0; c < insertion->n_cell; c++) {
-        const struct cell *cell = &insertion->cell[c];
+        const struct live_cell *cell = &insertion->cell[c];
         number[c] = cell->seen || cell->error < 0 ? -1 : last_point(cell);
         if (number[c] >= 0) next[number[c] + 1]++;
     }
     for (int i = 0; i < n; i++)
         next[i + 1] += next[i];
     const int32_t count = next[n];
-    struct cell *packed = allocate_aligned((size_t)count, sizeof *packed);
+    struct cell *packed = allocate_uncleared((size_t)count, sizeof *packed);
     for (int c = 0; c < insertion->n_cell; c++)
         if (number[c] >= 0) number[c] = next[number[c]]++;
     for (int c = 0; c < insertion->n_cell; c++) {
         if (number[c] < 0) continue;
-        const struct cell *from = &insertion->cell[c];
+        const struct live_cell *from = &insertion->cell[c];
         struct cell *cell = &packed[number[c]];
-        for (int k = 0; k < 4; k++) {
-            cell->vertex[k] = turns[from->vertex[k]].point;
+        memcpy(cell->vertex, from->vertex, sizeof cell->vertex);
+        for (int k = 0; k < 4; k++)
             cell->neighbour[k] = number[from->neighbour[k]];
-        }
     }
     free(number);
     free(next);
@@ -550,7 +576,7 @@ static struct insertion insertion_begin(const struct weighted_point *point, int 
     const int room = 7 * n + n / 4 + 64; // points that fill space have 6.77 a point
     struct insertion insertion = {
         .point = point,
-        .cell = allocate_aligned((size_t)room, sizeof *insertion.cell),
+        .cell = allocate_uncleared((size_t)room, sizeof *insertion.cell),
         .cavity = NEW_ARRAY(int32_t, USUAL),
         .rim = NEW_ARRAY(struct facet, USUAL),
         .cell_capacity = room,
@@ -569,32 +595,25 @@ static void insertion_free(struct insertion *insertion)
     free(insertion->edge);
 }
 
-int triangulate(const struct vector *points, const double *weights, int n,
+int triangulate(const struct weighted_point *points, int n,
                 struct triangulation *triangulation)
 {
-    struct turn *turns = order_points(points, n);
-    struct weighted_point *point = allocate_aligned((size_t)n, sizeof *point);
-    for (int k = 0; k < n; k++) {
-        const int i = turns[k].point;
-        point[k] = (struct weighted_point){points[i], weights ? weights[i] : 0};
-    }
     int32_t corner[4];
-    const bool spans = find_corners(point, n, corner);
-    if (spans) {
-        struct insertion insertion = insertion_begin(point, n, corner);
-        for (int32_t e = 1; e < n; e++)
-            if (e != corner[0] && e != corner[1] && e != corner[2] && e != corner[3])
-                insert(&insertion, e);
-        *triangulation = pack_cells(&insertion, turns, n);
-        insertion_free(&insertion);
-    }
-    free(point);
-    free(turns);
-    return spans ? 0 : -1;
+    if (!find_corners(points, n, corner)) return -1;
+    struct insertion insertion = insertion_begin(points, n, corner);
+    for (int32_t e = 1; e < n; e++)
+        if (e != corner[0] && e != corner[1] && e != corner[2] && e != corner[3])
+            insert(&insertion, e);
+    *triangulation = pack_cells(&insertion, n);
+    insertion_free(&insertion);
+    return 0;
 }
 
 void triangulation_free(struct triangulation *triangulation)
 {
     free(triangulation->cell);
+    free(triangulation->node);
+    free(triangulation->image);
+    free(triangulation->seen);
     *triangulation = (struct triangulation){0};
 }

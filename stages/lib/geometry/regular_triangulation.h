@@ -4,28 +4,21 @@
 #ifndef CRAQUELURE_REGULAR_TRIANGULATION_H
 #define CRAQUELURE_REGULAR_TRIANGULATION_H
 
+#include "basics/memory.h"
+#include "geometry/exact.h"
 #include "geometry/image.h"
 #include "geometry/vector.h"
 
 #include <stdint.h>
 
-// A tetrahedron, positively oriented, and what is found out about it later. Whoever
-// goes from cell to cell waits for memory, so that all of it is on one cache line.
+// A tetrahedron, positively oriented. Whoever goes from cell to cell waits for memory,
+// so that there is nothing else, and half a cache line is enough.
 struct cell {
     int32_t vertex[4];    // points
     int32_t neighbour[4]; // cell opposite each vertex; -1: infinite
-    struct vector at;     // where it has its node
-    union {
-        int32_t node; // -1: none that is wanted
-        float error;  // of `at`, while triangulating
-    };
-    struct image image; // repetition of the box that `at` is in
-    uint8_t seen;       // edges done with; SHARES_NODE
 };
 
 enum { SHARES_NODE = 1 << 7 }; // other cells may have the same node
-
-static_assert(sizeof(struct cell) == 64, "one cache line");
 
 // Where X is among FOUR, known to be there. Without branches, which would be guesses.
 static inline int index_among(const int32_t four[4], int32_t x)
@@ -33,19 +26,29 @@ static inline int index_among(const int32_t four[4], int32_t x)
     return (four[1] == x) + 2 * (four[2] == x) + 3 * (four[3] == x);
 }
 
-// The infinite cells are left out.
+// The infinite cells are left out. What is found out about cells later is NULL until
+// then; whoever finds it out allocates it.
 struct triangulation {
     int n_cell;
     struct cell *cell;
     int64_t n_test, n_exact; // sphere tests made, and those that took exact numbers
+
+    int32_t *node;       // (n_cell) -1: none that is wanted
+    struct image *image; // (n_cell) of the node; NULL unless the box repeats
+    uint8_t *seen;       // (n_cell) edges done with; SHARES_NODE
 };
+
+// The repetition of the box that the node of a cell is seen in.
+static inline struct image node_image(const struct triangulation *triangulation, int c)
+{
+    return triangulation->image ? triangulation->image[c] : (struct image){0};
+}
 
 // For loops over all cells that look at neighbours: asks in time for those of a cell
 // soon to come.
-static inline void expect_neighbours(const struct triangulation *triangulation,
-                                     int cell)
+PREFETCHING expect_neighbours(const struct triangulation *triangulation, int cell)
 {
-    enum { AHEAD = 8 };
+    enum { AHEAD = 24 };
     if (cell + AHEAD >= triangulation->n_cell) return;
     for (int k = 0; k < 4; k++) {
         const int32_t next = triangulation->cell[cell + AHEAD].neighbour[k];
@@ -53,14 +56,18 @@ static inline void expect_neighbours(const struct triangulation *triangulation,
     }
 }
 
-// Triangulates N points with WEIGHTS (radius squared; NULL: all equal). O(n log n) for
-// points that fill space. Which cells there are depends on the points alone: tests are
-// exact, also where many points are cospherical (then lexicographically later points
-// count as a little lighter than they are), and no cell is flat. A point that another
-// has engulfed is in no cell. Cells close in space are close in memory. Returns 0, or
-// -1 when the points do not span three dimensions. The caller frees with
-// triangulation_free.
-int triangulate(const struct vector *points, const double *weights, int n,
+// An order in which to insert N points fast, each close to one before: where each of
+// them stands. The caller frees it.
+int32_t *insertion_order(const struct vector *points, int n);
+
+// Triangulates N points (weight: radius squared) in the order given; O(n log n) for
+// points that fill space in insertion_order. Which cells there are depends on the
+// points alone: tests are exact, also where many points are cospherical (then
+// lexicographically later points count as a little lighter than they are), and no cell
+// is flat. A point that another has engulfed is in no cell. Cells come in the order of
+// their last points: close in space, close in memory. Returns 0, or -1 when the points
+// do not span three dimensions. The caller frees with triangulation_free.
+int triangulate(const struct weighted_point *points, int n,
                 struct triangulation *triangulation);
 void triangulation_free(struct triangulation *triangulation);
 
