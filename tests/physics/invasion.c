@@ -297,7 +297,7 @@ static void test_cubic_threshold(void **state)
     double mean[2], deviation[2];
     uint64_t seed = 22;
     for (int k = 0; k < 2; k++) {
-        const int size = k ? 20 : 10;
+        const int size = k ? 32 : 16;
         struct network network = lattice_network(size, size, size + 1, 1);
         double sum = 0, squares = 0;
         for (int run = 0; run < RUNS; run++) {
