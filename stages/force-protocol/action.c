@@ -26,8 +26,8 @@ static struct vector force_on(const struct action *action, double (*load)[LOADS]
     return scale(action->scale, force);
 }
 
-void find_forces(const struct action *action, const struct filling *filling,
-                 struct vector *force)
+void forces_now(const struct action *action, const struct filling *filling,
+                struct vector *force)
 {
     const struct network *network = filling->network;
     double(*load)[LOADS] = allocate((size_t)network->n_throat, sizeof *load);

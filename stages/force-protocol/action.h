@@ -17,8 +17,8 @@ void action_free(struct action *action);
 
 // Forces on all grains (n_particle), for the filling as it is now. OpenMP over the
 // grains, each summed in the order of throats.
-void find_forces(const struct action *action, const struct filling *filling,
-                 struct vector *force);
+void forces_now(const struct action *action, const struct filling *filling,
+                struct vector *force);
 
 // The forces step by step; only of grains beside throats that change.
 struct walk {

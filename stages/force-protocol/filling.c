@@ -48,7 +48,7 @@ static void unite_at_nodes(const struct filling *filling, int *set)
     free(first);
 }
 
-int find_clusters(const struct filling *filling, int *cluster)
+int filling_clusters(const struct filling *filling, int *cluster)
 {
     const int n = filling->network->n_throat;
     int *set = NEW_ARRAY(int, n);
@@ -70,7 +70,7 @@ static void find_cluster_suction(const struct filling *filling)
     const int n = network->n_throat;
     int *cluster = NEW_ARRAY(int, n);
     double *widest = NEW_ARRAY(double, n); // with a meniscus, of the cluster so named
-    find_clusters(filling, cluster);
+    filling_clusters(filling, cluster);
     for (int t = 0; t < n; t++) {
         const int32_t *node = network->throat_nodes[t];
         if (cluster[t] >= 0 &&

@@ -84,6 +84,6 @@ void filling_loads(const struct filling *filling, int throat, double load[LOADS]
 
 // Names the connected pieces of liquid by the lowest throat of each, -1: no liquid.
 // Throats join at nodes where none has emptied. CLUSTER (n_throat); returns how many.
-int find_clusters(const struct filling *filling, int *cluster);
+int filling_clusters(const struct filling *filling, int *cluster);
 
 #endif

@@ -209,16 +209,10 @@ enum status check_patches(const struct patches *patches, struct reason *reason)
 void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
                            struct patches *patches)
 {
-    const struct network *network = wedges->network;
     int kept = 0;
-    for (int k = 0; k < patches->n; k++) {
-        const int throat = patches->patch[k].throat;
-        const int32_t *ends = network->throat_nodes[throat];
-        const unsigned common =
-            network->node_walls[ends[0]] & network->node_walls[ends[1]];
-        if (wedges->open[throat] || !(common & walls))
+    for (int k = 0; k < patches->n; k++)
+        if (!(wedges->surface[patches->patch[k].throat] & walls))
             patches->patch[kept++] = patches->patch[k];
-    }
     patches->n = kept;
-    find_begins(patches, network->packing.n_particle);
+    find_begins(patches, wedges->network->packing.n_particle);
 }

@@ -55,7 +55,7 @@ void patches_free(struct patches *patches);
 enum status check_patches(const struct patches *patches, struct reason *reason);
 
 // Takes out the patches of throats that lie in one of WALLS (bits of enum wall). Not of
-// those that only face it, between grains whose cells were left out.
+// those that only face it where cells were left out.
 void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
                            struct patches *patches);
 

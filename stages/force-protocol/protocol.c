@@ -18,7 +18,7 @@ struct protocol make_protocol(const struct process *process, double *times, int 
     for (int m = 0; m < n_time; m++) {
         filling_to(&filling, times[m]);
         protocol.saturation[m] = filling_saturation(&filling);
-        find_forces(process->action, &filling, protocol.force + (size_t)m * n_particle);
+        forces_now(process->action, &filling, protocol.force + (size_t)m * n_particle);
     }
     filling_free(&filling);
     return protocol;

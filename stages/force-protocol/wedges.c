@@ -183,26 +183,6 @@ static void find_grain_across(const struct network *network, struct wedge *wedge
     }
 }
 
-// Whether the throat is in a wall that cuts the layer, as none is that faces a cell
-// left out.
-static bool is_in_wall(const struct network *network, int throat)
-{
-    static const double rounding = 1e-6; // of the throat
-    const int32_t *ends = network->throat_nodes[throat];
-    const unsigned common = network->node_walls[ends[0]] & network->node_walls[ends[1]];
-    for (int wall = 0; wall <= WALL_INNER; wall++) {
-        if (!(common >> wall & 1)) continue;
-        bool on = true;
-        for (int end = 0; end < 2; end++) {
-            const struct vector x = network->node_position[ends[end]];
-            on &= distance(x, nearest_on_wall(&network->packing, wall, x)) <=
-                  rounding * network->throat_length[throat];
-        }
-        if (on) return true;
-    }
-    return false;
-}
-
 // In a layer both sides of a throat are cells.
 static void pair_cells(struct wedges *wedges, int throat, int *n)
 {
@@ -213,7 +193,7 @@ static void pair_cells(struct wedges *wedges, int throat, int *n)
             wedge[k].across =
                 add(wedge[!k].centre, subtract(wedge[k].to, wedge[!k].from));
         }
-    } else if (*n == 1 && !is_in_wall(wedges->network, throat)) {
+    } else if (*n == 1 && !wedges->surface[throat]) {
         find_grain_across(wedges->network, &wedge[0]);
         if (wedge[0].beyond < 0) return;
         const struct wedge one = wedge[0];
@@ -297,6 +277,44 @@ static void sort_sides(struct wedges *wedges, const int *throats)
     free(next);
 }
 
+// Of the walls that both ends of the throat belong to those on which they lie. Where
+// cells were left out ends only face a wall.
+static unsigned walls_around(const struct network *network, int throat)
+{
+    static const double rounding = 1e-6; // of the throat
+    const int32_t *ends = network->throat_nodes[throat];
+    unsigned walls = network->node_walls[ends[0]] & network->node_walls[ends[1]];
+    for (int wall = 0; wall <= WALL_INNER; wall++)
+        for (int end = 0; end < 2 && walls >> wall & 1; end++) {
+            const struct vector x = network->node_position[ends[end]];
+            if (!(distance(x, nearest_on_wall(&network->packing, wall, x)) <=
+                  rounding * network->throat_length[throat]))
+                walls &= ~(1u << wall);
+        }
+    return walls;
+}
+
+static bool is_beside_auxiliary(const struct wedges *wedges, int n)
+{
+    for (int k = 0; k < n; k++)
+        if (is_auxiliary(&wedges->network->packing, wedges->wedge[k].grain))
+            return true;
+    return false;
+}
+
+static void find_surface(struct wedges *wedges)
+{
+    const struct network *network = wedges->network;
+    for (int t = 0; t < network->n_throat; t++)
+        wedges->surface[t] = (uint8_t)walls_around(network, t);
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *ends = network->throat_nodes[t];
+        if (is_beside_auxiliary(wedges, wedges_at(wedges, t)))
+            wedges->surface[t] =
+                network->node_walls[ends[0]] & network->node_walls[ends[1]];
+    }
+}
+
 // Around a throat grains follow one another; at most one face between two is missing.
 static enum status find_open(struct wedges *wedges, struct reason *reason)
 {
@@ -309,8 +327,7 @@ static enum status find_open(struct wedges *wedges, struct reason *reason)
                           "/faces/particles: the cell of grain %d is open at throat "
                           "%d: tessellate with boundary=truncate",
                           wedges->wedge[single[0]].grain, t);
-        wedges->open[t] =
-            count == 2 || (wedges->layer && n == 2 && wedges->wedge[1].face < 0);
+        wedges->open[t] = count == 2;
     }
     return STATUS_OK;
 }
@@ -322,9 +339,13 @@ enum status wedges_find(const struct network *network, struct wedges *wedges,
     *wedges = (struct wedges){.network = network,
                               .layer = is_layer(network),
                               .offset = NEW_ARRAY(int64_t, network->n_throat + 1),
-                              .open = NEW_ARRAY(bool, network->n_throat)};
+                              .open = NEW_ARRAY(bool, network->n_throat),
+                              .surface = NEW_ARRAY(uint8_t, network->n_throat)};
     enum status status = find_throats(network, &throats, reason);
-    if (!status) sort_sides(wedges, throats);
+    if (!status) {
+        sort_sides(wedges, throats);
+        find_surface(wedges);
+    }
     if (!status) status = find_open(wedges, reason);
     free(throats);
     return status;
@@ -335,6 +356,7 @@ void wedges_free(struct wedges *wedges)
     free(wedges->side);
     free(wedges->offset);
     free(wedges->open);
+    free(wedges->surface);
     free(wedges->wedge);
     *wedges = (struct wedges){0};
 }

@@ -26,7 +26,9 @@ struct wedges {
     bool layer;
     struct side *side;   // what is known of them, by throats
     int64_t *offset;     // (n_throat+1) into SIDE
-    bool *open;          // (n_throat) whether a face beside it is missing
+    bool *open;          // (n_throat) a face beside it is missing
+    uint8_t *surface;    // (n_throat) walls it lies in, bits of enum wall; below an
+                         // auxiliary layer those it faces
     struct wedge *wedge; // of the throat asked for last
     int capacity;
 };
