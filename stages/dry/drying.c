@@ -144,7 +144,7 @@ static void prepare(struct run *run)
     const struct network *network = run->phases.network;
     if (run->conditions->liquid == LIQUID_VISCOUS) {
         run->flow =
-            liquid_flow_make(network, run->scale.length,
+            liquid_flow_make(&run->phases, run->scale.length,
                              menisci_make(network, run->conditions, &run->scale));
         run->losses = losses_make(network->n_throat);
     } else {

@@ -2,111 +2,34 @@
 #include "graph_factor.h"
 
 #include "basics/memory.h"
-#include "sparse/plain_cholmod.h"
+#include "sparse/plain_solve.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// More changes than this at once, or nodes left aside than this share, are factorised.
-enum { MOST_CHANGES = 64 };
-static const double MOST_ASIDE = 0.3;
+// More changes than this at once are factorised.
+enum { MOST_CHANGES = 300, ROOM = 4 };
 
-struct named_link {
-    int link, a, b;
-    double conductance;
-};
+// Arms are followed when they have changed by this part of what the factor has.
+static const double ARM_CHANGE = 0.01;
+
+// Part of a row's conductance that it is grounded with, so that it stays positive
+// definite without links.
+static const double GROUND = 1e-11;
 
 struct graph_factor {
-    cholmod_common common;
-    cholmod_factor *factor;
-    cholmod_dense *right, *solution, *workspace[2]; // kept from solve to solve
-    int *place;    // (n_node) row in the factor, -1: none
-    int *position; // of each row, in the order of elimination
-    bool *aside;   // (n_row) decoupled from the rest
-    int *row_node; // (n_row)
-    int n_row, n_aside;
-    double *conductance; // (n_link) in the factor
-    bool *present;       // (n_node) in the graph as named now
-    const int *node;     // (n_named_node) the graph's nodes
-    int n_named_node;
-    struct named_link *named;
-    int n_named, capacity;
-    bool forget;
-    int n_total, n_link_total;
+    cholmod_common *common;
+    cholmod_factor *factor; // NULL: to be made
+    int n;
+    double *conductance; // (entries) in the factor, at the first of a link's two places
+    double *ground;      // (n) of arms, in the factor
+    int n_noted, capacity;
+    int *noted;                // (n_noted) entries that have changed, some twice
+    double *room[ROOM], *work; // (n)
 };
 
-struct graph_factor *graph_factor_make(int n_node, int n_link)
-{
-    struct graph_factor *factor = NEW_ARRAY(struct graph_factor, 1);
-    factor->place = NEW_ARRAY(int, n_node);
-    factor->position = NEW_ARRAY(int, n_node);
-    factor->aside = NEW_ARRAY(bool, n_node);
-    factor->row_node = NEW_ARRAY(int, n_node);
-    factor->conductance = NEW_ARRAY(double, n_link);
-    factor->present = NEW_ARRAY(bool, n_node);
-    factor->forget = true;
-    factor->n_total = n_node;
-    factor->n_link_total = n_link;
-    for (int i = 0; i < n_node; i++)
-        factor->place[i] = -1;
-    plain_cholmod_start(&factor->common);
-    return factor;
-}
-
-static void free_dense(struct graph_factor *factor)
-{
-    cholmod_free_dense(&factor->right, &factor->common);
-    cholmod_free_dense(&factor->solution, &factor->common);
-    cholmod_free_dense(&factor->workspace[0], &factor->common);
-    cholmod_free_dense(&factor->workspace[1], &factor->common);
-}
-
-void graph_factor_free(struct graph_factor *factor)
-{
-    if (!factor) return;
-    free_dense(factor);
-    cholmod_free_factor(&factor->factor, &factor->common);
-    cholmod_finish(&factor->common);
-    free(factor->place);
-    free(factor->position);
-    free(factor->aside);
-    free(factor->row_node);
-    free(factor->conductance);
-    free(factor->present);
-    free(factor->named);
-    free(factor);
-}
-
-void graph_factor_forget(struct graph_factor *factor)
-{
-    factor->forget = true;
-}
-
-// --- the graph as it is named
-// ----------------------------------------------------------
-
-void graph_factor_begin(struct graph_factor *factor, int n_node, const int *node)
-{
-    factor->n_named = 0;
-    factor->n_named_node = n_node;
-    factor->node = node;
-    for (int k = 0; k < n_node; k++) {
-        factor->present[node[k]] = true;
-        factor->forget |= factor->place[node[k]] < 0;
-    }
-}
-
-void graph_factor_link(struct graph_factor *factor, int link, int a, int b,
-                       double conductance)
-{
-    if (!factor->forget && factor->conductance[link] == conductance) return;
-    GROW_ARRAY(factor->named, factor->n_named, factor->capacity);
-    factor->named[factor->n_named++] = (struct named_link){link, a, b, conductance};
-}
-
-// --- from scratch
-// ----------------------------------------------------------------------
+// --- from scratch --------------------------------------------------------------------
 
 static void add_entry(cholmod_triplet *entries, int row, int column, double value)
 {
@@ -116,81 +39,140 @@ static void add_entry(cholmod_triplet *entries, int row, int column, double valu
     entries->nnz++;
 }
 
-static void number_rows(struct graph_factor *factor)
+static cholmod_sparse *take_matrix(cholmod_common *common, cholmod_triplet *entries)
 {
-    for (int k = 0; k < factor->n_row; k++)
-        factor->place[factor->row_node[k]] = -1;
-    factor->n_row = factor->n_named_node;
-    factor->n_aside = 0;
-    for (int k = 0; k < factor->n_row; k++) {
-        factor->row_node[k] = factor->node[k];
-        factor->place[factor->node[k]] = k;
-        factor->aside[k] = false;
-    }
-    memset(factor->conductance, 0, (size_t)factor->n_link_total * sizeof(double));
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, entries->nnz, common);
+    cholmod_free_triplet(&entries, common);
+    return matrix;
+}
+
+static cholmod_triplet *new_entries(cholmod_common *common, int n, size_t most)
+{
+    return cholmod_allocate_triplet((size_t)n, (size_t)n, most, -1, CHOLMOD_REAL,
+                                    common);
+}
+
+bool graph_factor_order(cholmod_common *common, int n, int n_link,
+                        const struct graph_link *link, int *row)
+{
+    cholmod_triplet *entries = new_entries(common, n, (size_t)n + (size_t)n_link);
+    if (!entries) return false;
+    for (int i = 0; i < n; i++)
+        add_entry(entries, i, i, 1);
+    for (int k = 0; k < n_link; k++)
+        add_entry(entries, link[k].a, link[k].b, 1);
+    cholmod_sparse *pattern = take_matrix(common, entries);
+    cholmod_factor *factor = pattern ? cholmod_analyze(pattern, common) : NULL;
+    for (int i = 0; factor && i < n; i++)
+        row[((const int *)factor->Perm)[i]] = i;
+    const bool good = factor;
+    cholmod_free_factor(&factor, common);
+    cholmod_free_sparse(&pattern, common);
+    return good;
 }
 
 // Lower triangle. Links that conduct nothing now keep their place in the pattern, for
 // they may later.
-static cholmod_sparse *assemble(struct graph_factor *factor)
+static cholmod_sparse *assemble(struct graph_factor *factor,
+                                const struct liquid_graph *graph)
 {
-    const size_t n = (size_t)factor->n_row;
-    cholmod_triplet *entries = cholmod_allocate_triplet(
-        n, n, 3 * (size_t)factor->n_named, -1, CHOLMOD_REAL, &factor->common);
+    cholmod_triplet *entries =
+        new_entries(factor->common, factor->n,
+                    (size_t)factor->n + (size_t)graph->offset[factor->n]);
     if (!entries) return NULL;
-    for (int k = 0; k < factor->n_named; k++) {
-        const struct named_link *link = &factor->named[k];
-        const int a = factor->place[link->a];
-        if (a < 0 || (link->b >= 0 && factor->place[link->b] < 0)) continue;
-        factor->conductance[link->link] = link->conductance;
-        add_entry(entries, a, a, link->conductance);
-        if (link->b < 0) continue;
-        const int b = factor->place[link->b];
-        add_entry(entries, b, b, link->conductance);
-        add_entry(entries, a, b, -link->conductance);
+    for (int i = 0; i < factor->n; i++) {
+        double sum = 0;
+        for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++) {
+            sum += graph->conductance[k];
+            factor->conductance[k] = graph->conductance[k];
+            if (graph->column[k] > i)
+                add_entry(entries, i, graph->column[k], -graph->conductance[k]);
+        }
+        factor->ground[i] = graph->ground[i];
+        sum += graph->ground[i];
+        add_entry(entries, i, i, sum > 0 ? sum * (1 + GROUND) : 1);
     }
-    cholmod_sparse *matrix =
-        cholmod_triplet_to_sparse(entries, entries->nnz, &factor->common);
-    cholmod_free_triplet(&entries, &factor->common);
-    return matrix;
+    return take_matrix(factor->common, entries);
 }
 
-static bool factorise(struct graph_factor *factor)
+static bool factorise(struct graph_factor *factor, const struct liquid_graph *graph)
 {
-    number_rows(factor);
-    free_dense(factor);
-    cholmod_common *common = &factor->common;
+    cholmod_common *common = factor->common;
+    const int ordering = common->method[0].ordering, postorder = common->postorder;
+    common->method[0].ordering = CHOLMOD_NATURAL;
+    common->postorder = false;
     cholmod_free_factor(&factor->factor, common);
-    cholmod_sparse *matrix = assemble(factor);
+    cholmod_sparse *matrix = assemble(factor, graph);
     if (matrix) factor->factor = cholmod_analyze(matrix, common);
     const bool good = factor->factor &&
                       cholmod_factorize(matrix, factor->factor, common) &&
                       common->status == CHOLMOD_OK;
     cholmod_free_sparse(&matrix, common);
-    if (!good) return false;
-    for (int k = 0; k < factor->n_row; k++)
-        factor->position[((const int *)factor->factor->Perm)[k]] = k;
-    factor->right =
-        cholmod_zeros((size_t)factor->n_row, 1, CHOLMOD_REAL, &factor->common);
-    factor->forget = false;
-    return factor->right != NULL;
+    if (!good) cholmod_free_factor(&factor->factor, common);
+    common->method[0].ordering = ordering;
+    common->postorder = postorder;
+    factor->n_noted = 0;
+    return good;
 }
 
-// --- from what it was
-// ------------------------------------------------------------------
+struct graph_factor *graph_factor_make(cholmod_common *common,
+                                       const struct liquid_graph *graph)
+{
+    struct graph_factor *factor = NEW_ARRAY(struct graph_factor, 1);
+    *factor =
+        (struct graph_factor){.common = common,
+                              .n = graph->n,
+                              .conductance = NEW_ARRAY(double, graph->offset[graph->n]),
+                              .ground = NEW_ARRAY(double, graph->n),
+                              .work = NEW_ARRAY(double, graph->n)};
+    for (int k = 0; k < ROOM; k++)
+        factor->room[k] = NEW_ARRAY(double, graph->n);
+    return factor;
+}
+
+void graph_factor_free(struct graph_factor *factor)
+{
+    if (!factor) return;
+    cholmod_free_factor(&factor->factor, factor->common);
+    free(factor->conductance);
+    free(factor->ground);
+    free(factor->noted);
+    free(factor->work);
+    for (int k = 0; k < ROOM; k++)
+        free(factor->room[k]);
+    free(factor);
+}
+
+void graph_factor_forget(struct graph_factor *factor)
+{
+    cholmod_free_factor(&factor->factor, factor->common);
+}
+
+double **graph_factor_room(struct graph_factor *factor)
+{
+    return factor->room;
+}
+
+// --- from what it was ----------------------------------------------------------------
 
 struct rank_one {
-    int row[2]; // in the order of elimination, ascending; second -1: the ground
+    int row[2]; // ascending; second -1: the ground
     double change;
 };
+
+void graph_factor_note(struct graph_factor *factor, int entry)
+{
+    GROW_ARRAY(factor->noted, factor->n_noted, factor->capacity);
+    factor->noted[factor->n_noted++] = entry;
+}
 
 // Adds or takes the N changes in CHANGE that have the sign of UP.
 static bool change_rank(struct graph_factor *factor, const struct rank_one *change,
                         int n, bool up)
 {
     cholmod_sparse *columns =
-        cholmod_allocate_sparse((size_t)factor->n_row, (size_t)n, 2 * (size_t)n, 1, 1,
-                                0, CHOLMOD_REAL, &factor->common);
+        cholmod_allocate_sparse((size_t)factor->n, (size_t)n, 2 * (size_t)n, 1, 1, 0,
+                                CHOLMOD_REAL, factor->common);
     if (!columns) return false;
     int *begin = columns->p, *row = columns->i, n_column = 0, n_entry = 0;
     double *value = columns->x;
@@ -206,83 +188,63 @@ static bool change_rank(struct graph_factor *factor, const struct rank_one *chan
     }
     begin[n_column] = n_entry;
     columns->ncol = (size_t)n_column;
-    const bool good = n_column == 0 ||
-                      (cholmod_updown(up, columns, factor->factor, &factor->common) &&
-                       factor->common.status == CHOLMOD_OK);
+    const bool good =
+        n_column == 0 || (cholmod_updown(up, columns, factor->factor, factor->common) &&
+                          factor->common->status == CHOLMOD_OK);
     columns->ncol = (size_t)n;
-    cholmod_free_sparse(&columns, &factor->common);
+    cholmod_free_sparse(&columns, factor->common);
     return good;
 }
 
-// Grounds the nodes that are in the factor but not in the graph any more, so that what
-// is left among them does no harm. Returns how many.
-static int set_aside(struct graph_factor *factor, struct rank_one *change)
+// Returns how many there are; more than MOST_CHANGES if not all found room.
+static int link_changes(struct graph_factor *factor, const struct liquid_graph *graph,
+                        struct rank_one *change)
 {
     int n = 0;
-    for (int k = 0; k < factor->n_row && n < MOST_CHANGES; k++) {
-        if (factor->aside[k] || factor->present[factor->row_node[k]]) continue;
-        factor->aside[k] = true;
-        change[n++] = (struct rank_one){{factor->position[k], -1}, 1};
+    for (int k = 0; k < factor->n_noted; k++) {
+        const int here = factor->noted[k], there = graph->mirror[here];
+        const double grown = graph->conductance[here] - factor->conductance[here];
+        if (grown == 0) continue;
+        if (n == MOST_CHANGES) return n + 1;
+        const int a = graph->column[here], b = graph->column[there];
+        factor->conductance[here] = factor->conductance[there] =
+            graph->conductance[here];
+        change[n++] = (struct rank_one){{a < b ? a : b, a < b ? b : a}, grown};
     }
-    factor->n_aside += n;
+    factor->n_noted = 0;
     return n;
 }
 
-static struct rank_one changed_link(struct graph_factor *factor,
-                                    const struct named_link *link)
+static int ground_changes(struct graph_factor *factor, const struct liquid_graph *graph,
+                          struct rank_one *change, int n)
 {
-    const double change = link->conductance - factor->conductance[link->link];
-    int a = factor->position[factor->place[link->a]];
-    int b = link->b < 0 ? -1 : factor->position[factor->place[link->b]];
-    if (b >= 0 && b < a) {
-        const int other = a;
-        a = b;
-        b = other;
+    for (int i = 0; i < factor->n; i++) {
+        const double grown = graph->ground[i] - factor->ground[i];
+        if (grown == 0 || graph->present[i] == 0 ||
+            (graph->ground[i] > 0 && fabs(grown) <= ARM_CHANGE * factor->ground[i]))
+            continue;
+        if (n == MOST_CHANGES) return n + 1;
+        factor->ground[i] = graph->ground[i];
+        change[n++] = (struct rank_one){{i, -1}, grown};
     }
-    factor->conductance[link->link] = link->conductance;
-    return (struct rank_one){{a, b}, change};
+    return n;
 }
 
-static bool follow(struct graph_factor *factor)
+bool graph_factor_follow(struct graph_factor *factor, const struct liquid_graph *graph)
 {
-    struct rank_one change[2 * MOST_CHANGES];
-    int n = set_aside(factor, change);
-    if (n == MOST_CHANGES || factor->n_named > MOST_CHANGES ||
-        factor->n_aside > MOST_ASIDE * factor->n_row)
-        return false;
-    for (int k = 0; k < factor->n_named; k++) {
-        const struct named_link *link = &factor->named[k];
-        if (factor->place[link->a] < 0 || (link->b >= 0 && factor->place[link->b] < 0))
-            return false;
-        change[n++] = changed_link(factor, link);
-    }
+    if (!factor->factor) return factorise(factor, graph);
+    struct rank_one change[MOST_CHANGES];
+    int n = link_changes(factor, graph, change);
+    if (n <= MOST_CHANGES) n = ground_changes(factor, graph, change, n);
+    if (n > MOST_CHANGES) return factorise(factor, graph);
     // What is added comes first: the matrix must stay positive definite.
-    return change_rank(factor, change, n, true) &&
-           change_rank(factor, change, n, false);
+    if (change_rank(factor, change, n, true) && change_rank(factor, change, n, false))
+        return true;
+    return factorise(factor, graph);
 }
 
-bool graph_factor_finish(struct graph_factor *factor)
+void graph_factor_solve(const struct graph_factor *factor, const double *b, double *x)
 {
-    bool good = factor->forget ? factorise(factor) : follow(factor);
-    if (!good) factor->forget = true;
-    for (int k = 0; k < factor->n_named_node; k++)
-        factor->present[factor->node[k]] = false;
-    return good;
-}
-
-bool graph_factor_solve(struct graph_factor *factor, const double *right,
-                        double *solution)
-{
-    double *b = factor->right->x;
-    memset(b, 0, (size_t)factor->n_row * sizeof *b);
-    for (int k = 0; k < factor->n_named_node; k++)
-        b[factor->place[factor->node[k]]] = right[k];
-    if (!cholmod_solve2(CHOLMOD_A, factor->factor, factor->right, NULL,
-                        &factor->solution, NULL, &factor->workspace[0],
-                        &factor->workspace[1], &factor->common))
-        return false;
-    const double *x = factor->solution->x;
-    for (int k = 0; k < factor->n_named_node; k++)
-        solution[k] = x[factor->place[factor->node[k]]];
-    return true;
+    memcpy(x, b, (size_t)factor->n * sizeof *x);
+    plain_solve(factor->factor, x, factor->work);
 }

@@ -64,7 +64,7 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     if (run->conditions->liquid == LIQUID_VISCOUS) {
         if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
-        liquid_flow_forget(&run->flow);
+        liquid_flow_forget(&run->flow, &run->phases);
     }
     if (!is_due(keeper)) return;
     struct state state = state_to_keep();
@@ -80,6 +80,8 @@ enum status go_on_from(struct run *run, const struct kept_state *kept,
 {
     struct state state = state_to_restore(&kept->stage);
     run_state(run, &state);
+    if (run->conditions->liquid == LIQUID_VISCOUS)
+        liquid_flow_forget(&run->flow, &run->phases);
     if (state_is_whole(&state)) return STATUS_OK;
     return refuse(reason, STATUS_BAD_DATA,
                   "/stage: is not the state of a drying of this network");

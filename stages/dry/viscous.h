@@ -39,8 +39,12 @@ struct liquid_flow {
 
 // For a network full of liquid. Takes over MENISCI. The caller frees it with
 // liquid_flow_free.
-struct liquid_flow liquid_flow_make(const struct network *network, double length,
+struct liquid_flow liquid_flow_make(const struct phases *phases, double length,
                                     struct menisci menisci);
+
+// THROAT has emptied, and PHASES have followed.
+void liquid_flow_follow(struct liquid_flow *flow, const struct phases *phases,
+                        int throat);
 
 // Finds which throats lose liquid, or gain it (a negative rate), when each evaporates
 // CHARGE[throat]: LOSS, with room for one entry a throat, and their number N_LOSS, in
@@ -53,7 +57,7 @@ enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phas
 
 // What is remembered from call to call only to be faster is not any more: the next
 // goes on from the menisci alone.
-void liquid_flow_forget(struct liquid_flow *flow);
+void liquid_flow_forget(struct liquid_flow *flow, const struct phases *phases);
 
 void liquid_flow_free(struct liquid_flow *flow);
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "matrix.h"
 
-#include "basics/memory.h"
-
 #include <stdlib.h>
-
-enum { BLOCK = 4096 };
 
 void matrix_free(struct matrix *matrix)
 {
@@ -26,23 +22,4 @@ void matrix_multiply(const struct matrix *matrix, const double *x, double *resul
             if (matrix->column[k] < n) sum -= matrix->value[k] * x[matrix->column[k]];
         result[i] = sum;
     }
-}
-
-double dot_product(const double *x, const double *y, int n)
-{
-    const int blocks = (n + BLOCK - 1) / BLOCK;
-    double *part = NEW_ARRAY(double, blocks);
-#pragma omp parallel for schedule(static) if (n > 20000)
-    for (int b = 0; b < blocks; b++) {
-        const int end = (b + 1) * BLOCK < n ? (b + 1) * BLOCK : n;
-        double sum = 0;
-        for (int i = b * BLOCK; i < end; i++)
-            sum += x[i] * y[i];
-        part[b] = sum;
-    }
-    double sum = 0;
-    for (int b = 0; b < blocks; b++)
-        sum += part[b];
-    free(part);
-    return sum;
 }

@@ -18,7 +18,4 @@ void matrix_free(struct matrix *matrix);
 // RESULT = MATRIX X; both (n), 0 at given places.
 void matrix_multiply(const struct matrix *matrix, const double *x, double *result);
 
-// A sum in blocks of fixed length: the same for any number of threads.
-double dot_product(const double *x, const double *y, int n);
-
 #endif

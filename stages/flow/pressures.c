@@ -3,9 +3,11 @@
 
 #include "basics/memory.h"
 #include "cholesky.h"
-#include "conjugate_gradients.h"
+#include "sampled_factor.h"
+#include "sparse/conjugate_gradients.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
 enum { DIRECT_MOST = 1500 };
@@ -278,18 +280,42 @@ static double find_throughput(const struct balance *balance,
 }
 
 struct solver_state {
+    const struct matrix *matrix;
     struct cholesky *cholesky;
     struct sampled_factor *factor;
+    double *residual, *work[3]; // (n) of conjugate gradients
 };
+
+static void multiply(void *context, const double *x, double *image)
+{
+    matrix_multiply(((const struct solver_state *)context)->matrix, x, image);
+}
+
+static void precondition(void *context, const double *residual, double *z)
+{
+    sampled_factor_apply(((const struct solver_state *)context)->factor, residual, z);
+}
+
+static void forget(struct solver_state *state)
+{
+    sampled_factor_free(state->factor);
+    cholesky_free(state->cholesky);
+    free(state->residual);
+    for (int k = 0; k < 3; k++)
+        free(state->work[k]);
+}
 
 static enum status prepare(const struct matrix *matrix, enum solver solver,
                            struct solver_state *state, struct reason *reason)
 {
-    *state = (struct solver_state){0};
+    *state = (struct solver_state){.matrix = matrix};
     if (solver == SOLVER_CHOLESKY ||
         (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
         return cholesky_make(matrix, &state->cholesky, reason);
     state->factor = sampled_factor_make(matrix);
+    state->residual = NEW_ARRAY(double, matrix->n);
+    for (int k = 0; k < 3; k++)
+        state->work[k] = NEW_ARRAY(double, matrix->n);
     return STATUS_OK;
 }
 
@@ -297,10 +323,19 @@ static enum status correct(const struct matrix *matrix, struct solver_state *sta
                            const double *b, double *x, double reduction,
                            int *iterations, struct reason *reason)
 {
-    if (state->factor)
-        *iterations += conjugate_gradients(matrix, state->factor, b, x, reduction,
+    if (state->factor) {
+        const int n = matrix->n;
+        const struct linear_problem problem = {
+            n,
+            state,
+            multiply,
+            precondition,
+            {state->work[0], state->work[1], state->work[2]}};
+        memcpy(state->residual, b, (size_t)n * sizeof *b);
+        *iterations += conjugate_gradients(&problem, state->residual, x,
+                                           reduction * sqrt(dot_product(b, b, n)),
                                            MOST_ITERATIONS);
-    else if (!cholesky_solve(state->cholesky, b, x))
+    } else if (!cholesky_solve(state->cholesky, b, x))
         return refuse(reason, STATUS_INTERNAL,
                       "out of memory in the balances of %d pores", matrix->n);
     return STATUS_OK;
@@ -367,8 +402,7 @@ static enum status close_balances(const struct balance *balance,
             break;
         best = fmin(best, pressures->imbalance);
     }
-    sampled_factor_free(state.factor);
-    cholesky_free(state.cholesky);
+    forget(&state);
     free(x);
     free(lack);
     free(correction);

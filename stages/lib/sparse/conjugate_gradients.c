@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "conjugate_gradients.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { BLOCK = 4096, LANES = 8, LARGE = 20000 };
+
+// In lanes that processors add side by side.
+static double block_product(const double *x, const double *y, int n)
+{
+    double lane[LANES] = {0}, sum = 0;
+    int i = 0;
+    for (; i + LANES <= n; i += LANES)
+        for (int l = 0; l < LANES; l++)
+            lane[l] += x[i + l] * y[i + l];
+    for (; i < n; i++)
+        sum += x[i] * y[i];
+    for (int l = 0; l < LANES; l++)
+        sum += lane[l];
+    return sum;
+}
+
+double dot_product(const double *x, const double *y, int n)
+{
+    if (n <= BLOCK) return block_product(x, y, n);
+    const int blocks = (n + BLOCK - 1) / BLOCK;
+    double *part = NEW_ARRAY(double, blocks);
+#pragma omp parallel for schedule(static) if (n > LARGE)
+    for (int b = 0; b < blocks; b++) {
+        const int begin = b * BLOCK, end = begin + BLOCK < n ? begin + BLOCK : n;
+        part[b] = block_product(x + begin, y + begin, end - begin);
+    }
+    double sum = 0;
+    for (int b = 0; b < blocks; b++)
+        sum += part[b];
+    free(part);
+    return sum;
+}
+
+int conjugate_gradients(const struct linear_problem *problem, double *residual,
+                        double *x, double aim, int most)
+{
+    const int n = problem->n;
+    double *z = problem->work[0], *p = problem->work[1], *image = problem->work[2];
+    double curvature = 0;
+    int iteration = 0;
+    for (int i = 0; i < n; i++)
+        x[i] = p[i] = 0;
+    while (iteration < most && sqrt(dot_product(residual, residual, n)) > aim) {
+        problem->precondition(problem->context, residual, z);
+        const double overlap =
+            iteration ? dot_product(z, image, n) / curvature : 0; // along the last p
+#pragma omp parallel for schedule(static) if (n > LARGE)
+        for (int i = 0; i < n; i++)
+            p[i] = z[i] - overlap * p[i];
+        problem->multiply(problem->context, p, image);
+        curvature = dot_product(p, image, n);
+        if (!(curvature > 0)) break;
+        const double step = dot_product(p, residual, n) / curvature;
+#pragma omp parallel for schedule(static) if (n > LARGE)
+        for (int i = 0; i < n; i++) {
+            x[i] += step * p[i];
+            residual[i] -= step * image[i];
+        }
+        iteration++;
+    }
+    return iteration;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Preconditioned conjugate gradients.
+#ifndef CRAQUELURE_CONJUGATE_GRADIENTS_H
+#define CRAQUELURE_CONJUGATE_GRADIENTS_H
+
+// A symmetric positive definite matrix of N rows, and one whose inverse is near its.
+struct linear_problem {
+    int n;
+    void *context; // given to both
+    void (*multiply)(void *context, const double *x, double *image);
+    void (*precondition)(void *context, const double *residual, double *z);
+    double *work[3]; // (n) each, overwritten
+};
+
+// Solves from X = 0 until the norm of what RESIDUAL (n) lacks, first the right side, is
+// AIM or less, or after MOST iterations, or when the preconditioner proves not positive
+// definite. RESIDUAL comes back as it follows from step to step. Returns how many
+// iterations were done. The same digits for any number of threads.
+int conjugate_gradients(const struct linear_problem *problem, double *residual,
+                        double *x, double aim, int most);
+
+// A sum in blocks of fixed length: the same for any number of threads.
+double dot_product(const double *x, const double *y, int n);
+
+#endif
