@@ -25,8 +25,15 @@ static const struct stage stage = {
     .parameters = dry_table,
     .checkpoints = true};
 
-static void check_snapshots(const struct number_list *snapshots)
+static void check_snapshots(const struct dry_parameters *parameters)
 {
+    const struct number_list *snapshots = &parameters->snapshots;
+    const double interval = parameters->snapshot_interval;
+    if (interval > 0 && (snapshots->count > 0 || interval < 1e-4))
+        die(STATUS_BAD_DATA,
+            "dry.snapshot_interval: must be 0 or at least 1e-4, and 0 with a list of "
+            "snapshots, got %g",
+            interval);
     for (int k = 1; k < snapshots->count; k++)
         if (snapshots->value[k] >= snapshots->value[k - 1])
             die(STATUS_BAD_DATA,
@@ -124,7 +131,7 @@ int main(int argc, char **argv)
 {
     struct dry_parameters parameters = {0};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    check_snapshots(&parameters.snapshots);
+    check_snapshots(&parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);
 
@@ -151,6 +158,7 @@ int main(int argc, char **argv)
     json_decref(digest);
     drying_history_free(&history);
     free(start);
+    free(parameters.even_snapshots);
     network_free(&network);
     artifact_close(input);
     invocation_free(&invocation);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameters.h"
 
+#include "basics/memory.h"
 #include "conditions.h"
 
 #include <math.h>
@@ -111,11 +112,24 @@ const struct parameter dry_table[] = {
      "saturations, falling, at which the state of every throat is written, and the "
      "pressures of viscous liquid",
      AT(snapshots)},
+    {"snapshot_interval", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
+     "in place of snapshots: the fall of the saturation, from 1, from one to the next, "
+     "at least 1e-4; 0: as listed",
+     AT(snapshot_interval)},
     {"first_period_rate", PARAMETER_NUMBER, "1", "0.9", BOUND_BETWEEN, 0.01, 0.999,
      NULL,
      "the first drying period ends when the rate falls below this share of its start",
      AT(conditions.first_period_rate_fraction)},
     {0}};
+
+// Saturations of 1 and less, INTERVAL apart, above 0.
+static double *even_snapshots(double interval, int *count)
+{
+    double *snapshot = NEW_ARRAY(double, 1 / interval + 2);
+    for (*count = 0; *count * interval < 1; (*count)++)
+        snapshot[*count] = 1 - *count * interval;
+    return snapshot;
+}
 
 void complete_conditions(struct dry_parameters *parameters,
                          const struct network *network)
@@ -125,6 +139,11 @@ void complete_conditions(struct dry_parameters *parameters,
     conditions->open_walls = parameters->open_walls;
     conditions->n_snapshot = parameters->snapshots.count;
     conditions->snapshot = parameters->snapshots.value;
+    if (parameters->snapshot_interval > 0) {
+        parameters->even_snapshots =
+            even_snapshots(parameters->snapshot_interval, &conditions->n_snapshot);
+        conditions->snapshot = parameters->even_snapshots;
+    }
     conditions->layers = (int)parameters->layers;
     conditions->feet = (enum boundary_feet)parameters->feet;
     conditions->lumped = parameters->exchange == EXCHANGE_LUMPED;

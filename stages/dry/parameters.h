@@ -13,6 +13,8 @@ enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 struct dry_parameters {
     struct drying_conditions conditions;
     struct number_list snapshots;
+    double snapshot_interval;
+    double *even_snapshots; // in place of the list; NULL: none
     struct air_flow air;
     int liquid, transfer_law, exchange, feet;
     int enclosed; // throats that others imposed empty have shut in
@@ -23,7 +25,8 @@ struct dry_parameters {
 
 extern const struct parameter dry_table[];
 
-// Gives the conditions what was not read right into them, and what NETWORK decides.
+// Gives the conditions what was not read right into them, and what NETWORK decides. The
+// caller frees .even_snapshots.
 void complete_conditions(struct dry_parameters *parameters,
                          const struct network *network);
 

@@ -71,12 +71,11 @@ static void put_profiles(struct artifact *artifact, const struct network *networ
 
 static void put_snapshots(struct artifact *artifact, const struct network *network,
                           const struct drying_history *history,
-                          const struct dry_parameters *parameters)
+                          const struct drying_conditions *conditions)
 {
-    const struct drying_conditions *conditions = &parameters->conditions;
     struct profiles profiles = profiles_make(
         network, history, conditions->open_walls, conditions->liquid != LIQUID_IMMOBILE,
-        parameters->snapshots.count, parameters->snapshots.value, true);
+        conditions->n_snapshot, conditions->snapshot, true);
     put_moments(artifact, "snapshots", history, &profiles);
     artifact_put_table(artifact, "/snapshots/throat_saturation",
                        profiles.throat_saturation, profiles.n_level, network->n_throat);
@@ -151,7 +150,7 @@ void write_drying(const struct network *network, const struct drying_history *hi
     put_summary(artifact, history, parameters->conditions.open_walls);
     put_boundary_layer(artifact, network, &parameters->conditions, history);
     put_profiles(artifact, network, history, conditions);
-    if (parameters->snapshots.count > 0)
-        put_snapshots(artifact, network, history, parameters);
+    if (conditions->n_snapshot > 0)
+        put_snapshots(artifact, network, history, conditions);
     artifact_finish(artifact, invocation, one_input(input), model);
 }

@@ -350,7 +350,7 @@ def refusals():
 def threads():
     centres, radii = scatter(60, (2.6e-6, 2.6e-6, 3e-6))
     drying("d", centres, radii, (2.6e-6, 2.6e-6, 3e-6), [], ["liquid=viscous",
-           "snapshots=[1,0.8,0.6,0.4,0.2]"], merge=0.1)
+           "snapshot_interval=0.05"], merge=0.1)
     both = []
     for n in 1, 2:
         run("force-protocol", "--threads", str(n), *settings(
