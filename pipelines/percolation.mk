@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Invasion percolation beside published thresholds and exponents:
+#
+#     make percolation  ->  build/runs/percolation/table.md, build/runs/percolation/percolation.svg
+#
+# SHARE=0.1 takes a tenth of the realisations.
+
+SHARE ?= 1
+percolation_study := $(BUILD)/tests/bench/percolation_study
+
+.PHONY: percolation
+percolation: $(percolation_study) ## thresholds and exponents of invasion percolation (minutes)
+	@mkdir -p $(RUNS)/percolation
+	@pipelines/percolation $(percolation_study) $(RUNS)/percolation $(SHARE)
+	@gnuplot -e 'tables="$(RUNS)/percolation"' pipelines/percolation.gp \
+		>$(RUNS)/percolation/percolation.svg
+	@cat $(RUNS)/percolation/table.md
