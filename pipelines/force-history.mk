@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The normal force of one contact over the drying, in both limits [K Fig. 5.12]:
+#
+#     make force-history    ->  build/runs/force-history/force-history.svg
+
+pipeline_goals += force-history
+force_history_scene := samples/stiff-5x5x10.json
+force_history_folder := $(RUNS)/force-history
+force_history_limits := inviscid immobile
+force_history_snapshots := snapshots=[1$(shell seq -s '' -f ',%.2f' 0.98 -0.02 0.02),0]
+
+.PHONY: force-history
+force-history: ## the force of one contact over the drying, K's Fig. 5.12
+
+ifneq ($(filter force-history,$(MAKECMDGOALS)),)
+$(call crack_network,$(force_history_folder),$(force_history_scene))
+define force_history_limit
+$(call step,$(force_history_folder)/$1/drying.h5,dry,$(DRY),$(force_history_scene),liquid=$1,$(force_history_folder)/network.h5)
+$(call step,$(force_history_folder)/$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$(force_history_scene),,$(force_history_folder)/$1/drying.h5)
+$(call step,$(force_history_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(force_history_scene),$(force_history_snapshots),$(force_history_folder)/$1/forces.h5)
+endef
+$(foreach limit,$(force_history_limits),$(call force_history_limit,$(limit)))
+force_history_responses := $(force_history_limits:%=$(force_history_folder)/%/response.h5)
+$(call artifact,$(force_history_folder)/force-history.svg,stage=force-history version=1,$(wildcard \
+	pipelines/force-history pipelines/force-history.gp) $(force_history_responses),pipelines/force-history \
+	$(force_history_responses) $(force_history_folder)/force-history.svg,$(BUILD)/bin/inspect)
+
+force-history: $(force_history_folder)/force-history.svg
+ifdef really
+	@echo 'picture: $<'
+endif
+endif

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Cracks in irregular aggregates of 1000 grains, each with its own pore network: slow and fast
+# drying, and viscous liquid with and without its pressure gradient, which K 5.7 leaves out:
+#
+#     make irregular                  ->  build/runs/irregular/irregular.md, irregular.svg
+#     make irregular AGGREGATES=20
+
+AGGREGATES ?= 4# packings, each in all arms
+IRREGULAR_VISCOSITY ?= 1e-4# m2/s, of viscous liquid; water: 1e-6
+
+pipeline_goals += irregular
+irregular_scene := samples/irregular-1000.json
+irregular_folder := $(RUNS)/irregular
+
+# An arm: how the liquid flows, and its suction.
+irregular_arms := inviscid-uniform immobile-uniform viscous-uniform viscous-field
+irregular_liquid = $(firstword $(subst -, ,$1))
+irregular_pressure = $(lastword $(subst -, ,$1))
+
+# Packing $1 in arm $2.
+define irregular_run
+$(call step,$(irregular_folder)/$1/$2-forces.h5,force-protocol,$(FORCE_PROTOCOL),$(irregular_scene),pressure=$(call irregular_pressure,$2),$(irregular_folder)/$1/$(call irregular_liquid,$2).h5)
+$(call step,$(irregular_folder)/$1/$2.h5,dem-replay,$(DEM_REPLAY),$(irregular_scene),,$(irregular_folder)/$1/$2-forces.h5)
+endef
+
+# Packing $1, its network, and how it dries with each of the three liquids.
+define irregular_aggregate
+$(call step,$(irregular_folder)/$1/packing.h5,pack,$(PACK),$(irregular_scene),seed=$1,)
+$(call step,$(irregular_folder)/$1/tessellation.h5,tessellate,$(TESSELLATE),$(irregular_scene),,$(irregular_folder)/$1/packing.h5)
+$(call step,$(irregular_folder)/$1/network.h5,merge-nodes,$(MERGE_NODES),$(irregular_scene),,$(irregular_folder)/$1/tessellation.h5)
+$(foreach l,inviscid immobile viscous,$(call step,$(irregular_folder)/$1/$l.h5,dry,$(DRY),$(irregular_scene),liquid=$l viscosity=$(IRREGULAR_VISCOSITY),$(irregular_folder)/$1/network.h5))
+$(foreach arm,$(irregular_arms),$(call irregular_run,$1,$(arm)))
+endef
+
+.PHONY: irregular
+irregular: ## cracks in irregular aggregates of 1000 grains, pressure gradients on and off (minutes)
+
+ifneq ($(filter irregular,$(MAKECMDGOALS)),)
+irregular_seeds := $(shell seq $(AGGREGATES))
+$(foreach seed,$(irregular_seeds),$(call irregular_aggregate,$(seed)))
+irregular_tables := $(irregular_arms:%=$(irregular_folder)/%.json)
+$(foreach arm,$(irregular_arms),$(call step,$(irregular_folder)/$(arm).json,crackstats,$(CRACKSTATS),$(irregular_scene),,$(foreach \
+	seed,$(irregular_seeds),$(irregular_folder)/$(seed)/$(arm).h5 $(irregular_folder)/$(seed)/$(call irregular_liquid,$(arm)).h5)))
+# Whether slow and fast drying differ, and whether the gradient does anything.
+irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(irregular_scene),first_group=$(AGGREGATES),$(foreach \
+	arm,$2,$(irregular_seeds:%=$(irregular_folder)/%/$(arm).h5)))
+$(call irregular_test,limits.json,inviscid-uniform immobile-uniform)
+$(call irregular_test,gradient.json,viscous-uniform viscous-field)
+irregular_tests := $(irregular_folder)/limits.json $(irregular_folder)/gradient.json
+$(call artifact,$(irregular_folder)/irregular.md,stage=irregular version=1,pipelines/irregular pipelines/counts pipelines/monte-carlo $(irregular_tables) $(irregular_tests),pipelines/irregular $(irregular_folder) $(irregular_folder)/irregular.md,)
+$(call artifact,$(irregular_folder)/irregular.svg,stage=cracks-figure version=1,$(wildcard pipelines/cracks-figure*) $(irregular_tables),pipelines/cracks-figure \
+	$(foreach arm,$(irregular_arms),$(arm)=$(irregular_folder)/$(arm).json) $(irregular_folder)/irregular.svg,)
+
+irregular: $(irregular_folder)/irregular.md $(irregular_folder)/irregular.svg
+ifdef really
+	@cat $<
+	@echo 'picture: $(irregular_folder)/irregular.svg'
+endif
+endif

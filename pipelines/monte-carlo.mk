@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Monte Carlo over throat radii in both drying limits [K 5.7, 5.8, Figs. 5.18, 5.19, 5.20]:
+#
+#     make monte-carlo                      ->  build/runs/monte-carlo/stiff-10x10x20/explicit/
+#     make monte-carlo REALISATIONS=1000 ENGINE=quasi-static
+#     make monte-carlo MONTE_CARLO_SCENE=samples/stiff-5x5x10.json
+#
+# More realisations keep those that are there.
+
+REALISATIONS ?= 10# in each limit; K: 10
+ENGINE ?= explicit
+MONTE_CARLO_SCENE ?= samples/stiff-10x10x20.json
+
+pipeline_goals += monte-carlo
+monte_carlo_top := $(RUNS)/monte-carlo/$(basename $(notdir $(MONTE_CARLO_SCENE)))
+monte_carlo_folder := $(monte_carlo_top)/$(ENGINE)
+monte_carlo_limits := inviscid immobile
+
+# Response $1 to the drying $2 of scene $3.
+realisation = $(call artifact,$1,stage=realisation version=$(call version_of,force-protocol).$(call \
+	version_of,dem-replay) set=$(ENGINE),pipelines/realisation $3 $2,$(RUN) pipelines/realisation \
+	'$(FORCE_PROTOCOL)' '$(DEM_REPLAY)' $3 $(ENGINE) $2 $1,$(FORCE_PROTOCOL) $(DEM_REPLAY))
+
+# Realisation $1 in limit $2.
+define monte_carlo_run
+$(call step,$(monte_carlo_top)/drying/$2-$1.h5,dry,$(DRY),$(MONTE_CARLO_SCENE),liquid=$2 throat_radius.seed=$1,$(monte_carlo_top)/network.h5)
+$(call realisation,$(monte_carlo_folder)/$2-$1.h5,$(monte_carlo_top)/drying/$2-$1.h5,$(MONTE_CARLO_SCENE))
+endef
+
+.PHONY: monte-carlo
+monte-carlo: ## cracks over 10 realisations in both drying limits, tested against each other (minutes)
+
+ifneq ($(filter monte-carlo,$(MAKECMDGOALS)),)
+$(call crack_network,$(monte_carlo_top),$(MONTE_CARLO_SCENE))
+monte_carlo_seeds := $(shell seq $(REALISATIONS))
+$(foreach limit,$(monte_carlo_limits),$(foreach seed,$(monte_carlo_seeds),$(call monte_carlo_run,$(seed),$(limit))))
+monte_carlo_responses = $(monte_carlo_seeds:%=$(monte_carlo_folder)/$1-%.h5)
+$(foreach limit,$(monte_carlo_limits),$(call step,$(monte_carlo_folder)/$(limit).json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),,$(foreach \
+	seed,$(monte_carlo_seeds),$(monte_carlo_folder)/$(limit)-$(seed).h5 $(monte_carlo_top)/drying/$(limit)-$(seed).h5)))
+$(call step,$(monte_carlo_folder)/test.json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),first_group=$(REALISATIONS),$(foreach \
+	limit,$(monte_carlo_limits),$(call monte_carlo_responses,$(limit))))
+monte_carlo_counts := $(monte_carlo_limits:%=$(monte_carlo_folder)/%.json) $(monte_carlo_folder)/test.json
+$(call artifact,$(monte_carlo_folder)/table.md,stage=monte-carlo version=1,pipelines/monte-carlo $(monte_carlo_counts),pipelines/monte-carlo $(monte_carlo_counts) $(monte_carlo_folder)/table.md,)
+$(call artifact,$(monte_carlo_folder)/counts.svg,stage=monte-carlo-figure version=1,$(wildcard \
+	pipelines/monte-carlo-figure*) $(monte_carlo_counts),pipelines/monte-carlo-figure $(monte_carlo_counts) $(monte_carlo_folder)/counts.svg,)
+$(call artifact,$(monte_carlo_folder)/patterns.svg,stage=crack-patterns version=1,$(wildcard \
+	pipelines/crack-patterns*) $(monte_carlo_limits:%=$(monte_carlo_folder)/%-1.h5),pipelines/crack-patterns \
+	$(foreach limit,$(monte_carlo_limits),$(limit)=$(monte_carlo_folder)/$(limit)-1.h5) $(monte_carlo_folder)/patterns.svg,$(BUILD)/bin/inspect)
+
+monte-carlo: $(addprefix $(monte_carlo_folder)/,table.md counts.svg patterns.svg)
+ifdef really
+	@cat $<
+	@echo 'pictures: $(monte_carlo_folder)/counts.svg, patterns.svg'
+endif
+endif

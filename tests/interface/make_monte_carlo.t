@@ -1,0 +1,41 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A study of many runs: one that fails is repeated alone, and nothing half done is counted.
+source tests/interface/make_tap.sh
+
+cd "$tree" || exit
+jq '.pack.counts = [3, 3, 4] | .["force-protocol"].steps = 5 | .["dem-replay"].cycles = 20
+    | .["dem-replay"].snapshots = [1, 0]' samples/stiff-5x5x10.json >"$scratch/tiny.json"
+cat >"$scratch/replay" <<END
+#!/bin/bash
+# The stage itself, but one run in it fails once its output has begun.
+[[ \$1 == --version ]] && exec build/bin/dem-replay --version
+if [[ -e $scratch/fails && \$* == *inviscid-2.h5 ]]; then echo half >"\${!#}"; exit 3; fi
+exec build/bin/dem-replay "\$@"
+END
+chmod +x "$scratch/replay"
+# study ARGUMENTS...: runs it, says which files of the study were made
+study()
+{
+    make monte-carlo MONTE_CARLO_SCENE="$scratch/tiny.json" RUNS="$scratch" REALISATIONS=3 \
+        DEM_REPLAY="$scratch/replay" "$@" >"$scratch/said" 2>"$scratch/error" || echo failed
+    sed -n 's/^  RUN *.*explicit\///p' "$scratch/said" | sort | xargs
+}
+where=$scratch/monte-carlo/tiny/explicit
+
+touch "$scratch/fails"
+is 'a run that fails stops the study' failed "$(study -k | sed -n 1p)"
+is 'the others are there, the failed one and its counts are not' \
+    'immobile-1.h5 immobile-2.h5 immobile-3.h5 immobile.json inviscid-1.h5 inviscid-3.h5' \
+    "$(cd "$where" && echo *.h5 *.json | tr ' ' '\n' | sort | xargs)"
+rm "$scratch/fails"
+is 'then it runs alone, and what counts it' \
+    'counts.svg inviscid-2.h5 inviscid.json table.md test.json' "$(study)"
+is 'all three are counted' 3 "$(jq .runs "$where/inviscid.json")"
+is 'the test has two groups of three' '[3,3]' "$(jq -c .test.groups "$where/test.json")"
+is 'nothing runs again' '' "$(study)"
+is 'one more runs alone' 'counts.svg immobile-4.h5 immobile.json inviscid-4.h5 inviscid.json table.md test.json' \
+    "$(study REALISATIONS=4)"
+rm "$where/immobile-1.h5"
+is 'one that is lost is made again' 'immobile-1.h5' "$(study REALISATIONS=4)"
+finish
