@@ -11,12 +11,14 @@
 // More changes than this at once are factorised.
 enum { MOST_CHANGES = 300, ROOM = 4 };
 
-// Arms are followed when they have changed by this part of what the factor has.
-static const double ARM_CHANGE = 0.01;
+// Up to so many arms are followed closely; more, when they have changed by this part of
+// what the factor has.
+enum { FEW_ARMS = 100 };
+static const double ARM_CHANGE = 0.1;
 
 // Part of a row's conductance that it is grounded with, so that it stays positive
 // definite without links.
-static const double GROUND = 1e-11;
+static const double GROUND = 1e-13;
 
 struct graph_factor {
     cholmod_common *common;
@@ -218,10 +220,11 @@ static int link_changes(struct graph_factor *factor, const struct liquid_graph *
 static int ground_changes(struct graph_factor *factor, const struct liquid_graph *graph,
                           struct rank_one *change, int n)
 {
+    const double least = graph->n_arm > FEW_ARMS ? ARM_CHANGE : 0;
     for (int i = 0; i < factor->n; i++) {
         const double grown = graph->ground[i] - factor->ground[i];
         if (grown == 0 || graph->present[i] == 0 ||
-            (graph->ground[i] > 0 && fabs(grown) <= ARM_CHANGE * factor->ground[i]))
+            (graph->ground[i] > 0 && fabs(grown) <= least * factor->ground[i]))
             continue;
         if (n == MOST_CHANGES) return n + 1;
         factor->ground[i] = graph->ground[i];

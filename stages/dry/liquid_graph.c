@@ -130,10 +130,12 @@ double liquid_graph_lack(struct liquid_graph *graph)
         lack[arm->a] +=
             arm->conductance * compensated_difference(level, potential[arm->a]);
     }
-    double largest = 0;
-    for (int i = 0; i < graph->n; i++)
-        largest = fmax(largest, fabs(lack[i]));
-    return largest;
+    double largest = 0, sum = 0;
+    for (int i = 0; i < graph->n; i++) {
+        if (fabs(lack[i]) > largest) largest = fabs(lack[i]);
+        sum += lack[i];
+    }
+    return isfinite(sum) ? largest : INFINITY;
 }
 
 static void multiply(void *context, const double *x, double *image)
@@ -155,9 +157,27 @@ static void precondition(void *context, const double *residual, double *z)
         z[i] *= graph->present[i];
 }
 
+// Raises all potentials alike until what the balances lack adds up to nothing. Mostly a
+// cluster rises or falls nearly as one, and the rest is found with more digits then.
+static void level_potentials(struct liquid_graph *graph)
+{
+    double lack = 0, ground = 0;
+    for (int i = 0; i < graph->n; i++) {
+        lack += graph->lack[i];
+        ground += graph->present[i] * graph->ground[i];
+    }
+    if (!(ground > 0)) return;
+    const double rise = lack / ground;
+    for (int i = 0; i < graph->n; i++) {
+        compensated_add(&graph->potential[i], rise);
+        graph->lack[i] -= graph->present[i] * graph->ground[i] * rise;
+    }
+}
+
 bool liquid_graph_correct(struct liquid_graph *graph, double aim)
 {
     if (!graph_factor_follow(graph->factor, graph)) return false;
+    level_potentials(graph);
     double **room = graph_factor_room(graph->factor);
     const struct linear_problem problem = {
         graph->n, graph, multiply, precondition, {room[0], room[1], room[2]}};

@@ -227,6 +227,33 @@ static void test_eighteen_decades(void **state)
     network_free(&network);
 }
 
+// Radii over six decades, conductances over twenty-four: balances close all the same.
+// Times do not all differ, as volumes are over twelve decades.
+static void test_radii_over_six_decades(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        struct network network = lattice_network(6, 6, 6, spacing);
+        uint64_t random = seed;
+        for (int t = 0; t < network.n_throat; t++)
+            network.throat_radius[t] =
+                0.3 * spacing * pow(10, -6 * next_random(&random));
+        struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+        for (int k = -14; k <= -2; k += 4) {
+            conditions.viscosity = pow(10, k);
+            struct drying_history history;
+            struct reason reason = {""};
+            if (dry_network(&network, &conditions, NULL, &history, &reason))
+                fail_msg("%s", reason.text);
+            assert_true(history.liquid_residual < 1e-12);
+            assert_true(fabs(history.evaporated / history.initial_liquid - 1) < 1e-12);
+            assert_true(history.saturation[history.n_step - 1] == 0);
+            drying_history_free(&history);
+        }
+        network_free(&network);
+    }
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -237,6 +264,7 @@ int main(void)
         cmocka_unit_test(test_vanishing_viscosity_is_inviscid),
         cmocka_unit_test(test_great_viscosity_is_immobile),
         cmocka_unit_test(test_equal_throats),
-        cmocka_unit_test(test_eighteen_decades)};
+        cmocka_unit_test(test_eighteen_decades),
+        cmocka_unit_test(test_radii_over_six_decades)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plain_solve.h"
 
-enum { LANES = 8 };
+enum { LANES = 4 };
 
 // Columns one after the other that have the same rows below the last of them, and all
 // of them above: there, the rows' part of X is gathered once for all.
@@ -30,7 +30,7 @@ static void subtract(double *restrict to, const double *restrict column, int n,
 }
 
 // In lanes that processors add side by side.
-static double product(const double *restrict a, const double *restrict b, int n)
+static inline double product(const double *restrict a, const double *restrict b, int n)
 {
     double lane[LANES] = {0}, sum = 0;
     int k = 0;
@@ -48,6 +48,33 @@ static void gather(const struct panel *panel, const double *x, double *work)
 {
     for (int k = 0; k < panel->n_below; k++)
         work[k] = x[panel->below[k]];
+}
+
+// The same for a column alone.
+static void go_down_one(const cholmod_factor *factor, const struct panel *panel,
+                        double *x)
+{
+    const double *column =
+        (const double *)factor->x + ((const int *)factor->p)[panel->first] + 1;
+    const double here = x[panel->first];
+    for (int k = 0; k < panel->n_below; k++)
+        x[panel->below[k]] -= column[k] * here;
+}
+
+static void come_up_one(const cholmod_factor *factor, const struct panel *panel,
+                        double *x)
+{
+    const double *column =
+        (const double *)factor->x + ((const int *)factor->p)[panel->first] + 1;
+    const int n = panel->n_below, *row = panel->below;
+    double even = 0, odd = 0;
+    int k = 0;
+    for (; k + 2 <= n; k += 2) {
+        even += column[k] * x[row[k]];
+        odd += column[k + 1] * x[row[k + 1]];
+    }
+    if (k < n) even += column[k] * x[row[k]];
+    x[panel->first] = x[panel->first] / column[-1] - (even + odd);
 }
 
 static void go_down(const cholmod_factor *factor, const struct panel *panel, double *x,
@@ -83,7 +110,10 @@ void plain_solve(const cholmod_factor *factor, double *x, double *work)
     const int n = (int)factor->n;
     for (int j = 0; j < n;) {
         const struct panel panel = panel_from(factor, j);
-        go_down(factor, &panel, x, work);
+        if (panel.width == 1)
+            go_down_one(factor, &panel, x);
+        else
+            go_down(factor, &panel, x, work);
         j += panel.width;
     }
     for (int j = n - 1; j >= 0;) {
@@ -93,7 +123,10 @@ void plain_solve(const cholmod_factor *factor, double *x, double *work)
                row[begin[first - 1] + 1] == first)
             first--;
         const struct panel panel = panel_from(factor, first);
-        come_up(factor, &panel, x, work);
+        if (panel.width == 1)
+            come_up_one(factor, &panel, x);
+        else
+            come_up(factor, &panel, x, work);
         j = first - 1;
     }
 }
