@@ -54,14 +54,15 @@ static void test_error(void **state)
 {
     (void)state;
     check_table(1, 0, 1e-5);
+    check_table(1, 32, 1e-5); // where two ways to rupture meet
+    check_table(1, 80, 1e-5); // and where symmetry breaks long before the gap turns
     check_table(INFINITY, 45, 1e-5);
     check_table(0.4, 90, 1e-5);
 }
 
-static void test_ends(void **state)
+static void check_ends(double angle)
 {
-    (void)state;
-    const double radius[2] = {1, 1}, angles[2] = {0.3, 0.3};
+    const double radius[2] = {1, 1}, angles[2] = {angle, angle};
     struct bridge_table *table;
     struct reason reason = {""};
     assert_int_equal(bridge_table_create(radius, angles, &table, &reason), STATUS_OK);
@@ -81,6 +82,13 @@ static void test_ends(void **state)
         assert_true(fabs(force[k] - bridge_table_force(table, volume[k], gap[k])) <=
                     1e-12 * force[k]);
     bridge_table_free(table);
+}
+
+static void test_ends(void **state)
+{
+    (void)state;
+    check_ends(0.3);
+    check_ends(0.6); // with bridges whose symmetry breaks
 }
 
 static void test_many_forces_of_models(void **state)

@@ -18,7 +18,8 @@ struct problem {
     double volume; // of the liquid
     double shared; // by overlapping bodies: the arc spans so much less
     double gap;
-    bool symmetric; // of two equal bodies only bridges with equal ends are looked for
+    bool symmetric;  // of two equal bodies only bridges with equal ends are looked for
+    bool to_turning; // the break of symmetry does not count
     const struct unknowns *from; // NULL: the gap is given
     const double *direction;     // of length 1
     double distance;
@@ -224,7 +225,8 @@ static bool judge(const struct problem *problem, const double *previous,
     at.symmetric = false;
     is = system_at(&at, &state->unknowns);
     memcpy(is.slope[3], state->direction, sizeof widening);
-    state->symmetry = eliminate(is.slope, is.residual);
+    const double symmetry = eliminate(is.slope, is.residual);
+    state->symmetry = problem->to_turning && problem->symmetric ? INFINITY : symmetry;
     return isfinite(size);
 }
 
@@ -263,9 +265,19 @@ static bool equal(const double of[2])
     return !(of[0] < of[1] || of[0] > of[1]);
 }
 
-static struct problem problem_at(const struct bodies *bodies, double volume, double gap)
+// What is looked for; with to_turning also past the break of symmetry.
+struct question {
+    const struct bodies *bodies;
+    double volume;
+    bool to_turning;
+};
+
+static struct problem problem_at(const struct question *asked, double volume,
+                                 double gap)
 {
+    const struct bodies *bodies = asked->bodies;
     return (struct problem){.bodies = bodies,
+                            .to_turning = asked->to_turning,
                             .volume = volume,
                             .shared = bodies_overlap(bodies, gap).volume,
                             .gap = gap,
@@ -294,31 +306,39 @@ static bool near(const struct unknowns *one, const struct unknowns *other)
 // further on, which no determinant tells; from contact on there is no mistaking.
 static const double least_pull = 0.16;
 
+// The same, but for bridges that are stable.
+static struct problem stable_at(const struct question *asked, double volume, double gap)
+{
+    struct problem problem = problem_at(asked, volume, gap);
+    problem.to_turning = false;
+    return problem;
+}
+
 // At GAP straight from the torus; false when that does not lead to a stable bridge.
-static bool jump(const struct bodies *bodies, double volume, double gap,
+static bool jump(const struct question *asked, double volume, double gap,
                  struct state *state)
 {
-    const struct problem problem = problem_at(bodies, volume, gap);
-    const struct arc arc = torus(bodies, volume, gap);
+    const struct problem problem = stable_at(asked, volume, gap);
+    const struct arc arc = torus(asked->bodies, volume, gap);
     const struct unknowns guess = unknowns_of(&arc);
     state->unknowns = guess;
     if (!settle(&problem, state) || !near(&state->unknowns, &guess)) return false;
     const struct arc found = arc_of(&state->unknowns);
-    return gap <= 0 || arc_force(bodies, &found) > least_pull * cbrt(volume);
+    return gap <= 0 || arc_force(asked->bodies, &found) > least_pull * cbrt(volume);
 }
 
 // At GAP (zero or less), if need be through ever larger volumes.
-static bool grow(const struct bodies *bodies, double volume, double gap,
-                 struct state *state)
+static bool grow(const struct question *asked, double gap, struct state *state)
 {
+    const double volume = asked->volume;
     double reached = volume, factor = 2;
-    while (!jump(bodies, reached, gap, state)) {
+    while (!jump(asked, reached, gap, state)) {
         reached *= 0.1;
         if (reached < 1e-8 * volume) return false;
     }
     while (reached < volume) {
         const double next = fmin(reached * factor, volume);
-        const struct problem problem = problem_at(bodies, next, gap);
+        const struct problem problem = stable_at(asked, next, gap);
         struct state larger = *state;
         if (settle(&problem, &larger)) {
             *state = larger;
@@ -431,25 +451,36 @@ static struct equilibrium equilibrium_of(const struct state *state)
                                 .steps = state->steps};
 }
 
-enum status find_rupture(const struct bodies *bodies, double volume,
-                         struct equilibrium *found)
+static enum status find_end(const struct question *asked, struct equilibrium *found)
 {
     struct state state = {0};
     bool ruptured;
-    const struct problem problem = problem_at(bodies, volume, 0);
-    if (!grow(bodies, volume, 0, &state)) return STATUS_NOT_CONVERGED;
+    const struct problem problem = problem_at(asked, asked->volume, 0);
+    if (!grow(asked, 0, &state)) return STATUS_NOT_CONVERGED;
     const enum status status = advance(&problem, INFINITY, &state, &ruptured);
     *found = equilibrium_of(&state);
     return status;
 }
 
+enum status find_rupture(const struct bodies *bodies, double volume,
+                         struct equilibrium *found)
+{
+    return find_end(&(struct question){bodies, volume, false}, found);
+}
+
+enum status find_turning(const struct bodies *bodies, double volume,
+                         struct equilibrium *found)
+{
+    return find_end(&(struct question){bodies, volume, true}, found);
+}
+
 // Along the branch from a shorter gap, if need be from touching bodies.
-static enum status approach(const struct bodies *bodies, double volume, double gap,
+static enum status approach(const struct question *asked, double gap,
                             struct state *state)
 {
     bool ruptured;
-    const struct problem problem = problem_at(bodies, volume, gap);
-    if (!jump(bodies, volume, 0.6 * gap, state) && !grow(bodies, volume, 0, state))
+    const struct problem problem = problem_at(asked, asked->volume, gap);
+    if (!jump(asked, asked->volume, 0.6 * gap, state) && !grow(asked, 0, state))
         return STATUS_NOT_CONVERGED;
     const enum status status = advance(&problem, gap, state, &ruptured);
     if (status || ruptured) return status ? status : STATUS_NO;
@@ -459,17 +490,23 @@ static enum status approach(const struct bodies *bodies, double volume, double g
     return STATUS_OK;
 }
 
-enum status find_equilibrium(const struct bodies *bodies, double volume, double gap,
-                             struct equilibrium *found)
+static enum status find_at(const struct question *asked, double gap,
+                           struct equilibrium *found)
 {
     struct state state = {0};
     enum status status = STATUS_OK;
     if (gap <= 0)
-        status = grow(bodies, volume, gap, &state) ? STATUS_OK : STATUS_NOT_CONVERGED;
-    else if (!jump(bodies, volume, gap, &state))
-        status = approach(bodies, volume, gap, &state);
+        status = grow(asked, gap, &state) ? STATUS_OK : STATUS_NOT_CONVERGED;
+    else if (!jump(asked, asked->volume, gap, &state))
+        status = approach(asked, gap, &state);
     *found = equilibrium_of(&state);
     return status;
+}
+
+enum status find_equilibrium(const struct bodies *bodies, double volume, double gap,
+                             struct equilibrium *found)
+{
+    return find_at(&(struct question){bodies, volume, false}, gap, found);
 }
 
 // From the two bridges before by secants.
@@ -484,21 +521,20 @@ static struct unknowns extrapolated(const struct state *before,
     return to;
 }
 
-enum status follow_branch(const struct bodies *bodies, double volume, int count,
-                          const double *gap, struct equilibrium *found)
+static enum status follow(const struct question *asked, int count, const double *gap,
+                          struct equilibrium *found)
 {
     struct state before = {0}, last = {0};
     for (int k = 0; k < count; k++) {
         struct state next = last;
-        const struct problem problem = problem_at(bodies, volume, gap[k]);
+        const struct problem problem = problem_at(asked, asked->volume, gap[k]);
         if (k > 1) next.unknowns = extrapolated(&before, &last, gap[k]);
         const bool settled =
             k > 0 && settle(&problem, &next) && near(&next.unknowns, &last.unknowns);
         if (settled)
             found[k] = equilibrium_of(&next);
         else {
-            const enum status status =
-                find_equilibrium(bodies, volume, gap[k], &found[k]);
+            const enum status status = find_at(asked, gap[k], &found[k]);
             const bool just_beyond =
                 status == STATUS_NO && gap[k] < (1 + 1e-4) * found[k].gap;
             if (status && !just_beyond) return status;
@@ -509,4 +545,16 @@ enum status follow_branch(const struct bodies *bodies, double volume, int count,
         last = next;
     }
     return STATUS_OK;
+}
+
+enum status follow_branch(const struct bodies *bodies, double volume, int count,
+                          const double *gap, struct equilibrium *found)
+{
+    return follow(&(struct question){bodies, volume, false}, count, gap, found);
+}
+
+enum status follow_to_turning(const struct bodies *bodies, double volume, int count,
+                              const double *gap, struct equilibrium *found)
+{
+    return follow(&(struct question){bodies, volume, true}, count, gap, found);
 }

@@ -27,10 +27,18 @@ enum status find_equilibrium(const struct bodies *bodies, double volume, double 
 enum status find_rupture(const struct bodies *bodies, double volume,
                          struct equilibrium *found);
 
+// The bridge in the turning point of the gap: the last symmetric one, whether or not
+// symmetry broke before.
+enum status find_turning(const struct bodies *bodies, double volume,
+                         struct equilibrium *found);
+
 // Bridges at COUNT rising gaps from contact to rupture, each from those before it:
 // several times faster than one by one where gaps are close. Gaps beyond rupture by
 // less than 1e-4 of it get the last bridge.
 enum status follow_branch(const struct bodies *bodies, double volume, int count,
                           const double *gap, struct equilibrium *found);
+// The same up to the turning point: those past the break of symmetry are not stable.
+enum status follow_to_turning(const struct bodies *bodies, double volume, int count,
+                              const double *gap, struct equilibrium *found);
 
 #endif

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a table of bridges is laid out; for the files that make and read it only.
+//
+// With the gap A of the turning point and a length C of 1.2 sqrt(volume),
+//     zeta = sqrt((1 - a/A)/(1 + a/C))
+// runs from 1 at contact to 0 there. It spreads both places where the force is steep:
+// next to contact, where it changes over sqrt(volume), and next to the turning point,
+// where it goes with the root of what is left. Then F (1 + a/C)^2 is a smooth number of
+// order one, which bicubic patches in volume and zeta hold. Where symmetry breaks first
+// the bridge ruptures before, at a zeta above 0; what the table holds beyond is only
+// for the smoothness.
+//
+// The patches in volume are eighths of octaves, found from the bits of the number: a
+// force takes one division and one root, no logarithm and no search.
+#ifndef CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
+#define CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
+
+#include "bridges/table.h"
+
+#include <math.h>
+#include <stdalign.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+// Places in zeta: 1/64 wide, below 4/64 half of that.
+enum { OCTAVES = 30, EIGHTHS = 8, VOLUMES = OCTAVES * EIGHTHS };
+enum { WIDE = 64, NARROW = 4, PLACES = WIDE + NARROW };
+enum { TURNING_ORDER = 6, ORDER = 4 }; // coefficients of 1/A, and of all else
+
+typedef float eight __attribute__((vector_size(32)));
+
+// Of the least volume, those above the third of the fraction.
+static const int least_bits = (1023 - OCTAVES) * EIGHTHS;
+
+// For one patch of volumes, with u from -1 to 1 across it; two quads.
+struct volume_patch {
+    alignas(64) double turning[TURNING_ORDER]; // 1/A as a polynomial in u
+    double steepness;                          // 1/C
+    double unused;
+};
+
+struct bridge_table {
+    double error;
+    bool breaks;                // symmetry, somewhere
+    double end[VOLUMES][ORDER]; // zeta at rupture, as a polynomial in u; below 0: 0
+    struct volume_patch volume[VOLUMES];
+    // Coefficients of u^i w^j, w from -1 to 1 across the place: i = 0 and 1, 2 and 3.
+    alignas(64) eight force[VOLUMES][PLACES][2];
+};
+
+struct volume_place {
+    int patch;
+    double u;
+};
+
+static inline struct volume_place place_volume(double volume)
+{
+    const double most = BRIDGE_TABLE_MOST * (1 - 0x1p-53);
+    volume = volume < BRIDGE_TABLE_LEAST ? BRIDGE_TABLE_LEAST : volume;
+    volume = volume > most ? most : volume;
+    uint64_t bits;
+    memcpy(&bits, &volume, sizeof bits);
+    const uint64_t within = (bits & 0x1ffffffffffff) << 3 | 0x3ff0000000000000;
+    double fraction; // 1 to 2
+    memcpy(&fraction, &within, sizeof fraction);
+    return (struct volume_place){(int)(bits >> 49) - least_bits, 2 * fraction - 3};
+}
+
+#define POLYNOMIAL(c, u)                                                               \
+    (((c)[0] + (u) * (c)[1]) + (u) * (u) * ((c)[2] + (u) * (c)[3]) +                   \
+     (u) * (u) * ((u) * (u)) * ((c)[4] + (u) * (c)[5]))
+
+static inline double end_at(const struct bridge_table *table, struct volume_place at)
+{
+    const double *c = table->end[at.patch], u = at.u;
+    return (c[0] + u * c[1]) + u * u * (c[2] + u * c[3]);
+}
+
+// How many places of zeta are below it, from zeta in the wide ones.
+static inline double along(double wide)
+{
+    return wide + (wide < NARROW ? wide : NARROW);
+}
+
+struct place {
+    int patch, place;
+    float u, w;
+    double scale; // (1 + a/C)^-2; 0 beyond rupture
+};
+
+static inline struct place place_of(const struct bridge_table *table, double volume,
+                                    double gap)
+{
+    const struct volume_place at = place_volume(volume);
+    const struct volume_patch *patch = &table->volume[at.patch];
+    gap = gap > 0 ? gap : 0;
+    const double rest = 1 - gap * POLYNOMIAL(patch->turning, at.u);
+    const double left = rest > 0 ? rest : 0;
+    const double shrink = 1 / (1 + gap * patch->steepness);
+    const double zeta = sqrt(left * shrink), x = along(WIDE * zeta);
+    const int whole = (int)x, place = whole < PLACES ? whole : PLACES - 1;
+    const bool ruptured = !(rest > 0) || (table->breaks && zeta < end_at(table, at));
+    return (struct place){at.patch, place, (float)at.u, (float)(2 * (x - place) - 1),
+                          ruptured ? 0 : shrink * shrink};
+}
+
+#endif

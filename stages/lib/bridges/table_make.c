@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A table from exact solutions at Chebyshev's nodes.
+#include "basics/memory.h"
+#include "bridges/equilibrium.h"
+#include "bridges/table_layout.h"
+
+#include <stdlib.h>
+
+// Chebyshev's nodes and polynomials: node K of COUNT, from 1 down to -1.
+static double node(int k, int count)
+{
+    return cos(M_PI * (k + 0.5) / count);
+}
+
+// Interpolates VALUE at COUNT nodes; gives the coefficients of powers.
+static void fit(const double *value, int count, double *power)
+{
+    static const double powers[TURNING_ORDER][TURNING_ORDER] = {
+        {1},           {0, 1},           {-1, 0, 2},
+        {0, -3, 0, 4}, {1, 0, -8, 0, 8}, {0, 5, 0, -20, 0, 16}};
+    memset(power, 0, (size_t)count * sizeof *power);
+    for (int n = 0; n < count; n++) {
+        double sum = 0;
+        for (int k = 0; k < count; k++)
+            sum += value[k] * cos(M_PI * n * (k + 0.5) / count);
+        sum *= (n ? 2.0 : 1.0) / count;
+        for (int p = 0; p <= n; p++)
+            power[p] += sum * powers[n][p];
+    }
+}
+
+static double patch_volume(int patch, double u)
+{
+    const double octave = ldexp(BRIDGE_TABLE_LEAST, patch / EIGHTHS);
+    return octave * (1 + (patch % EIGHTHS + 0.5 * (u + 1)) / EIGHTHS);
+}
+
+// zeta of node J of a place, from 0 at the turning point up.
+static double zeta_at(int place, double w)
+{
+    const double x = place + 0.5 * (w + 1);
+    return (x < 2 * NARROW ? 0.5 * x : x - NARROW) / WIDE;
+}
+
+enum { SAMPLES = PLACES * ORDER };
+
+// F (1 + a/C)^2 at all places' nodes for one volume.
+static enum status sample(const struct bodies *bodies, double volume,
+                          const struct volume_patch *patch, double u,
+                          double values[SAMPLES])
+{
+    const double inverse = POLYNOMIAL(patch->turning, u), steepness = patch->steepness;
+    double gap[SAMPLES];
+    struct equilibrium found[SAMPLES];
+    for (int s = 0; s < SAMPLES; s++) { // from contact on: gaps rise
+        const double zeta = zeta_at(PLACES - 1 - s / ORDER, node(s % ORDER, ORDER));
+        gap[s] = (1 - zeta * zeta) / (inverse + zeta * zeta * steepness);
+    }
+    const enum status status = follow_to_turning(bodies, volume, SAMPLES, gap, found);
+    if (status) return status;
+    for (int s = 0; s < SAMPLES; s++) {
+        const double stretch = 1 + gap[s] * steepness;
+        const int place = PLACES - 1 - s / ORDER;
+        values[place * ORDER + s % ORDER] =
+            2 * M_PI * arc_force(bodies, &found[s].arc) * stretch * stretch;
+    }
+    return STATUS_OK;
+}
+
+// Fits 1/A: A of turning points, or if BROKEN of rupture.
+static enum status fit_turning(const struct bodies *bodies, int patch, bool broken,
+                               struct volume_patch *at)
+{
+    double inverse[TURNING_ORDER];
+    for (int k = 0; k < TURNING_ORDER; k++) {
+        struct equilibrium last;
+        const double volume = patch_volume(patch, node(k, TURNING_ORDER));
+        const enum status status =
+            (broken ? find_rupture : find_turning)(bodies, volume, &last);
+        if (status) return status;
+        inverse[k] = 1 / last.gap;
+    }
+    fit(inverse, TURNING_ORDER, at->turning);
+    return STATUS_OK;
+}
+
+// zeta where the bridge ruptures; nearer to 0 than 1e-4 nobody can tell.
+static enum status fit_end(const struct bodies *bodies, int patch,
+                           const struct volume_patch *at, double end[ORDER])
+{
+    double zeta[ORDER];
+    for (int k = 0; k < ORDER; k++) {
+        struct equilibrium last;
+        const double u = node(k, ORDER);
+        const enum status status = find_rupture(bodies, patch_volume(patch, u), &last);
+        if (status) return status;
+        const double rest = 1 - last.gap * POLYNOMIAL(at->turning, u);
+        zeta[k] = sqrt(fmax(rest, 0) / (1 + last.gap * at->steepness));
+        if (zeta[k] < 1e-4) zeta[k] = 0;
+    }
+    fit(zeta, ORDER, end);
+    return STATUS_OK;
+}
+
+// Where symmetry breaks well before the turning point, that is too far to make forces
+// steep, and the branch may wind on its way there: then A is where the bridge ruptures.
+static enum status fit_volumes(const struct bodies *bodies, int patch,
+                               struct volume_patch *at, double end[ORDER])
+{
+    const double well_before = 0.1;
+    at->steepness = 1 / (1.2 * sqrt(patch_volume(patch, 0)));
+    enum status status = fit_turning(bodies, patch, false, at);
+    if (!status) status = fit_end(bodies, patch, at, end);
+    if (!status && end[0] < well_before) return STATUS_OK;
+    memset(end, 0, ORDER * sizeof *end);
+    return fit_turning(bodies, patch, true, at);
+}
+
+// Interpolates at ORDER by ORDER nodes.
+static void fit_place(const double value[ORDER][SAMPLES], int place, eight row[2])
+{
+    double across[ORDER][ORDER], power[ORDER];
+    for (int v = 0; v < ORDER; v++) {
+        fit(&value[v][place * ORDER], ORDER, power);
+        for (int j = 0; j < ORDER; j++)
+            across[j][v] = power[j];
+    }
+    for (int j = 0; j < ORDER; j++) {
+        fit(across[j], ORDER, power);
+        for (int i = 0; i < ORDER; i++)
+            row[i / 2][i % 2 * ORDER + j] = (float)power[i];
+    }
+}
+
+static enum status fill_patch(const struct bodies *bodies, int patch,
+                              struct bridge_table *table)
+{
+    struct volume_patch *at = &table->volume[patch];
+    double value[ORDER][SAMPLES];
+    enum status status = fit_volumes(bodies, patch, at, table->end[patch]);
+    for (int v = 0; v < ORDER && !status; v++) {
+        const double u = node(v, ORDER);
+        status = sample(bodies, patch_volume(patch, u), at, u, value[v]);
+    }
+    for (int place = 0; place < PLACES && !status; place++)
+        fit_place(value, place, table->force[patch][place]);
+    return status;
+}
+
+// The largest error of stable bridges at places between the nodes, on the border of two
+// patches.
+static enum status measure(const struct bodies *bodies,
+                           const struct bridge_table *table, int patch, double *error)
+{
+    enum { CHECKS = 2 * PLACES };
+    const double volume = patch_volume(patch, -1);
+    double gap[CHECKS], inverse;
+    struct equilibrium found[CHECKS];
+    const struct volume_patch *at = &table->volume[patch];
+    inverse = POLYNOMIAL(at->turning, -1.0);
+    for (int k = 0; k < CHECKS; k++) { // ends and middles of places, from contact on
+        const double zeta = zeta_at(PLACES - 1 - k / 2, k % 2 ? 0 : 1);
+        const double square = zeta * zeta;
+        gap[k] = (1 - square) / (inverse + square * at->steepness);
+    }
+    const enum status status = follow_to_turning(bodies, volume, CHECKS, gap, found);
+    if (status) return status;
+    *error = 0;
+    for (int k = 0; k < CHECKS; k++) {
+        const double exact = 2 * M_PI * arc_force(bodies, &found[k].arc);
+        const struct place place = place_of(table, volume, gap[k]);
+        const double least = BRIDGE_TABLE_FLOOR * place.scale;
+        const double ours = bridge_table_force(table, volume, gap[k]);
+        if (!(place.scale > 0)) break; // ruptured
+        *error = fmax(*error, fabs(ours - exact) / fmax(fabs(exact), least));
+    }
+    return STATUS_OK;
+}
+
+static bool breaks_in(const double end[ORDER])
+{
+    bool breaks = false;
+    for (int k = 0; k < ORDER; k++)
+        breaks = breaks || fabs(end[k]) > 0;
+    return breaks;
+}
+
+enum status bridge_table_create(const double radius[2], const double contact_angle[2],
+                                struct bridge_table **table, struct reason *reason)
+{
+    const double first = 1 / radius[0], second = 1 / radius[1];
+    const double scale = 2 / (first + second);
+    if (!(first >= 0 && second >= 0 && isfinite(scale)))
+        return refuse(reason, STATUS_BAD_DATA, "no bridge between radii %g and %g",
+                      radius[0], radius[1]);
+    const struct bodies bodies = {{first * scale, second * scale},
+                                  {contact_angle[0], contact_angle[1]}};
+    struct bridge_table *made = aligned_alloc(64, sizeof *made);
+    if (!made) return refuse(reason, STATUS_INTERNAL, "out of memory");
+    *table = made;
+    enum status status[VOLUMES];
+    double error[VOLUMES];
+#pragma omp parallel for schedule(dynamic)
+    for (int patch = 0; patch < VOLUMES; patch++)
+        status[patch] = fill_patch(&bodies, patch, made);
+    made->breaks = false;
+    for (int patch = 0; patch < VOLUMES; patch++)
+        made->breaks = made->breaks || (!status[patch] && breaks_in(made->end[patch]));
+#pragma omp parallel for schedule(dynamic)
+    for (int patch = 0; patch < VOLUMES; patch++)
+        if (!status[patch])
+            status[patch] = measure(&bodies, made, patch, &error[patch]);
+    made->error = 0;
+    for (int patch = 0; patch < VOLUMES; patch++) {
+        if (status[patch]) {
+            free(made);
+            return refuse(
+                reason, STATUS_NOT_CONVERGED,
+                "no table: a bridge of %g effective radii cubed was not solved",
+                patch_volume(patch, 0));
+        }
+        made->error = fmax(made->error, error[patch]);
+    }
+    return STATUS_OK;
+}
