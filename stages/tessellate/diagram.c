@@ -110,22 +110,23 @@ static void copy_packing(const struct packing *from, struct packing *to)
     move_inside(to);
 }
 
-static void copy_nodes(const struct nodes *nodes, const struct generators *generators,
+// Hands the nodes over, in m.
+static void move_nodes(struct nodes *nodes, const struct generators *generators,
                        struct network *network)
 {
     const struct packing *packing = &network->packing;
     network->n_node = nodes->n;
-    network->node_walls = duplicate(nodes->walls, (size_t)nodes->n, 1);
-    network->node_position = NEW_ARRAY(struct vector, nodes->n);
+    network->node_walls = nodes->walls;
+    network->node_position = nodes->position;
 #pragma omp parallel for
     for (int i = 0; i < nodes->n; i++) {
-        network->node_position[i] =
-            add(packing->lower, scale(generators->unit, nodes->position[i]));
+        struct vector *at = &network->node_position[i];
+        *at = add(packing->lower, scale(generators->unit, *at));
         for (int axis = 0; axis < 3; axis++) // upper walls exactly where the box says
             if (nodes->walls[i] & (2 << 2 * axis))
-                set_component(&network->node_position[i], axis,
-                              component(packing->upper, axis));
+                set_component(at, axis, component(packing->upper, axis));
     }
+    *nodes = (struct nodes){0};
 }
 
 static int count_closed(const struct network *network)
@@ -161,9 +162,9 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
         const struct assembly assembly = {&generators, &triangulation, &nodes, radius,
                                           how->clearance};
         copy_packing(packing, &network->packing);
-        copy_nodes(&nodes, &generators, network);
         assemble_throats(&assembly, network);
         assemble_faces(&assembly, network);
+        move_nodes(&nodes, &generators, network);
         free(radius);
     }
     nodes_free(&nodes);

@@ -175,7 +175,7 @@ static void find_all(const struct assembly *assembly, bool periodic, int n_part,
     }
 }
 
-// The rows of all lists, sorted by the grains they separate.
+// The rows of all lists.
 static struct row *join(struct face_list *lists, int n_part, int *count)
 {
     *count = 0;
@@ -188,7 +188,7 @@ static struct row *join(struct face_list *lists, int n_part, int *count)
             row[to + f].key[3] = i;
         if (i > 0) free(lists[i].row);
     }
-    return sort_rows(row, *count);
+    return row;
 }
 
 static void store_face(const struct face_list *list, const struct row *row, int f,
@@ -205,27 +205,39 @@ static void store_face(const struct face_list *list, const struct row *row, int 
            corners * sizeof(struct image));
 }
 
-// Into the network. What comes next is somewhere else: asked for in time.
-static void store(const struct face_list *lists, const struct row *row,
-                  struct network *network)
+static void allocate_faces(struct network *network, const struct row *row,
+                           const int32_t *order)
 {
-    enum { AHEAD = 12 };
+    enum { AHEAD = 32 };
     const int count = network->n_face;
     network->face_offset = NEW_ARRAY(int64_t, count + 1);
-    for (int f = 0; f < count; f++)
-        network->face_offset[f + 1] = network->face_offset[f] + row[f].key[4];
-    const int64_t n_node = network->face_offset[count];
-    network->face_nodes = NEW_ARRAY(int32_t, n_node);
-    network->face_particles = allocate((size_t)count, sizeof *network->face_particles);
-    if (lists->image) {
-        network->face_image = NEW_ARRAY(struct image, count);
-        network->face_node_image = NEW_ARRAY(struct image, n_node);
+    for (int f = 0; f < count; f++) {
+        __builtin_prefetch(&row[order[f + AHEAD < count ? f + AHEAD : f]]);
+        network->face_offset[f + 1] = network->face_offset[f] + row[order[f]].key[4];
     }
+    const size_t n_node = (size_t)network->face_offset[count];
+    network->face_nodes = allocate_uncleared(n_node, sizeof(int32_t));
+    network->face_particles =
+        allocate_uncleared((size_t)count, sizeof *network->face_particles);
+    if (!is_periodic(&network->packing)) return;
+    network->face_image = NEW_ARRAY(struct image, count);
+    network->face_node_image = NEW_ARRAY(struct image, n_node);
+}
+
+// Into the network, sorted by the grains they separate. What comes next is somewhere
+// else: asked for in time.
+static void store(const struct face_list *lists, const struct row *row,
+                  const int32_t *order, struct network *network)
+{
+    enum { AHEAD = 16 };
+    const int count = network->n_face;
 #pragma omp parallel for
     for (int f = 0; f < count; f++) {
-        const struct row *later = &row[f + AHEAD < count ? f + AHEAD : f];
+        const struct row *later = &row[order[f + AHEAD < count ? f + AHEAD : f]];
+        __builtin_prefetch(&row[order[f + 2 * AHEAD < count ? f + 2 * AHEAD : f]]);
         __builtin_prefetch(lists[later->key[3]].node + later->item);
-        store_face(&lists[row[f].key[3]], &row[f], f, network);
+        const struct row *face = &row[order[f]];
+        store_face(&lists[face->key[3]], face, f, network);
     }
 }
 
@@ -235,11 +247,14 @@ void assemble_faces(const struct assembly *assembly, struct network *network)
     struct face_list *lists = NEW_ARRAY(struct face_list, n_part);
     find_all(assembly, is_periodic(&network->packing), n_part, lists);
     struct row *row = join(lists, n_part, &network->n_face);
-    store(lists, row, network);
+    int32_t *order = order_rows(row, network->n_face);
+    allocate_faces(network, row, order);
+    store(lists, row, order, network);
     for (int i = 0; i < n_part; i++) {
         free(lists[i].node);
         free(lists[i].image);
     }
     free(lists);
+    free(order);
     free(row);
 }

@@ -12,9 +12,11 @@ struct row {
     int32_t item;          // what the row stands for
 };
 
-// The COUNT rows, which it takes over, by their keys and then by their items. Sorted by
-// counting the first key, so that it is O(count) where few rows share one. The caller
-// frees what it returns.
+// The order of COUNT rows by their keys and then by their items. Sorted by counting the
+// first key, so that it is O(count) where few rows share one. The caller frees it.
+int32_t *order_rows(struct row *rows, int count);
+
+// The rows, which it takes over, in that order. The caller frees what it returns.
 struct row *sort_rows(struct row *rows, int count);
 
 // The same where they are, for few.

@@ -12,7 +12,7 @@
 // Squares of what is larger would overflow, and so would distances.
 static const double largest_size = 1e150;
 
-enum { MOST_SYMBOLS = 24, MOST_RANK = 3, BLOCK_VALUES = 1 << 16 };
+enum { MOST_SYMBOLS = 24, MOST_RANK = 3, BLOCK_VALUES = 1 << 15 };
 
 // Extents that symbols stand for: n_particle = 250.
 struct symbols {
@@ -162,6 +162,32 @@ static enum status breach(const struct subject *subject, hsize_t index,
                   got);
 }
 
+// Rules by number: >=, <=, >, <, and not beyond in size.
+static inline bool keeps(double value, int rule, double limit)
+{
+    return rule == 0   ? value >= limit
+           : rule == 1 ? value <= limit
+           : rule == 2 ? value > limit
+           : rule == 3 ? value < limit
+                       : fabs(value) <= limit;
+}
+
+// The first value that breaks a rule, or COUNT. Nearly always none does: values are
+// looked at many at once, without asking after each.
+static hsize_t first_breach(const double *value, hsize_t count, int rule, double limit)
+{
+    enum { MANY = 64 };
+    for (hsize_t from = 0; from < count; from += MANY) {
+        const hsize_t to = from + MANY < count ? from + MANY : count;
+        int kept = 1;
+        for (hsize_t k = from; k < to; k++)
+            kept &= keeps(value[k], rule, limit);
+        for (hsize_t k = from; k < to && !kept; k++)
+            if (!keeps(value[k], rule, limit)) return k;
+    }
+    return count;
+}
+
 static enum status check_range(const struct subject *subject, const double *block,
                                hsize_t first, hsize_t count,
                                const struct symbols *symbols, struct reason *reason)
@@ -169,27 +195,20 @@ static enum status check_range(const struct subject *subject, const double *bloc
     static const struct {
         const char *rule, *sign;
     } rules[] = {{"minimum", ">="}, {"maximum", "<="}, {"above", ">"}, {"below", "<"}};
-    for (hsize_t k = 0; k < count; k++) {
-        if (fabs(block[k]) <= largest_size) continue;
-        const bool finite = isfinite(block[k]);
-        return refuse(reason, STATUS_BAD_DATA, "%s: row %llu: must be %s, got %g",
-                      subject->name,
-                      (unsigned long long)((first + k) / subject->row_values),
-                      finite ? "at most 1e150 in size" : "finite", block[k]);
-    }
+    const hsize_t odd = first_breach(block, count, 4, largest_size);
+    if (odd < count)
+        return refuse(
+            reason, STATUS_BAD_DATA, "%s: row %llu: must be %s, got %g", subject->name,
+            (unsigned long long)((first + odd) / subject->row_values),
+            isfinite(block[odd]) ? "at most 1e150 in size" : "finite", block[odd]);
     for (int r = 0; r < 4; r++) {
         double limit;
         if (!bound(subject->rules, rules[r].rule, symbols, &limit)) continue;
-        for (hsize_t k = 0; k < count; k++) {
-            const bool keeps = r == 0   ? block[k] >= limit
-                               : r == 1 ? block[k] <= limit
-                               : r == 2 ? block[k] > limit
-                                        : block[k] < limit;
-            if (!keeps)
-                return breach(subject, first + k, rules[r].sign,
-                              json_object_get(subject->rules, rules[r].rule), limit,
-                              block[k], reason);
-        }
+        const hsize_t k = first_breach(block, count, r, limit);
+        if (k < count)
+            return breach(subject, first + k, rules[r].sign,
+                          json_object_get(subject->rules, rules[r].rule), limit,
+                          block[k], reason);
     }
     return STATUS_OK;
 }
