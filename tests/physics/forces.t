@@ -363,6 +363,18 @@ def threads():
            "and forces")
 
 
+def hardly_viscous():
+    """With hardly any viscosity a connected liquid has the pressure of its widest meniscus."""
+    box = (2.6e-6, 2.6e-6, 3e-6)
+    centres, radii = scatter(60, box)
+    drying("d", centres, radii, box, [], ["liquid=viscous", "viscosity=1e-14", "snapshots=[1,0.5]",
+                                          SIDES])
+    field, clusters = (forces("d", f"pressure={p}")[0][0] for p in ("field", "clusters"))
+    error = abs(field - clusters).max() / abs(clusters).max()
+    ok(error < 1e-6 and abs(clusters).max() > 0,
+       "hardly viscous: the field is that of clusters at the start", error)
+
+
 def overlaps():
     """Grains that overlap their neighbours by a tenth, on a lattice of their own."""
     a = 2 * R
@@ -411,6 +423,7 @@ with scratch() as folder:
     times()
     rings()
     refusals()
+    hardly_viscous()
     overlaps()
     renumbered()
     threads()
