@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibrium of bonded grains itself, without cycles that lead there: for small
 // displacements about where they began, with bonds [K 4.31-4.44], contacts that open,
-// close and slip [K 4.11-4.26], by Newton's method on a sparse stiffness.
+// close and slip [K 4.11-4.26].
 //
-// Bonds break one after another: the most overloaded first, of equals the first listed,
-// and the next is looked for when the load has found its way round.
+// The stiffness is factored once; what breaks, opens, closes or slips later is a small
+// dense correction to it (corrections.h), until there is so much of that that a new
+// factor is made. Bonds break one after another: the most overloaded first, of equals
+// the first listed, and the next is looked for when the load has found its way round.
 //
-// What equilibrium cannot hold: a fragment (grains joined by intact bonds) that no
-// support holds and that would move more than a tenth of the mean radius when the rest
-// is balanced leaves the aggregate. Its load counts no more, and nothing touches it any
-// more. Where it flies and what it would hit is a matter of dynamics, and left to that
-// engine.
+// With friction there may be no equilibrium near the last one. Then dynamics decides:
+// dashpots at all joints slow the way to the next, and the way is walked in steps of
+// time. What does not come to rest so and hangs on no support leaves the aggregate, as
+// does a fragment (grains joined by intact bonds) that would move by more than a tenth
+// of the mean radius: its load counts no more, and nothing touches it. Where it flies
+// and what it would hit is left to the other engine.
 #ifndef CRAQUELURE_EQUILIBRIUM_H
 #define CRAQUELURE_EQUILIBRIUM_H
 
@@ -23,7 +26,7 @@ struct equilibrium_setup {
     struct dem_material material;  // density and damping have no part in it
     struct dem_bond_material bond; // parallel
     double tolerance; // largest force or moment left on a grain, of the largest load
-    int64_t most_iterations; // of one equilibrium
+    int64_t most_iterations; // steps in time to one equilibrium
 };
 
 struct equilibrium;
@@ -35,8 +38,7 @@ enum status equilibrium_new(struct equilibrium **result,
 void equilibrium_free(struct equilibrium *equilibrium);
 
 // The next one, under FORCE (n_particle) N, with the history of those before.
-// STATUS_NOT_CONVERGED: not found in so many iterations, or what is left has moved so
-// far that displacements are not small.
+// STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small.
 enum status equilibrium_find(struct equilibrium *equilibrium,
                              const struct vector *force, struct reason *reason);
 
@@ -52,6 +54,10 @@ struct dem_contact *equilibrium_contacts(const struct equilibrium *equilibrium,
 double equilibrium_unbalanced_ratio(const struct equilibrium *equilibrium);
 
 int equilibrium_iterations(const struct equilibrium *equilibrium); // so far
-int equilibrium_gone(const struct equilibrium *equilibrium); // grains that have left
+// Grains that have left, and the FIRST of them.
+int equilibrium_gone(const struct equilibrium *equilibrium, int *first);
+// Loads under which something held did not come to rest, and the grain that had most
+// left to balance under the LAST of them.
+int equilibrium_restless(const struct equilibrium *equilibrium, int *last);
 
 #endif

@@ -69,55 +69,60 @@ struct displacement joint_loads(const struct joint *joint, int end,
 static void add_bond(const struct joint *joint, const double strain[STRAINS],
                      struct resistance *resistance)
 {
-    const double stiffness[STRAINS] = {joint->bond_along,  joint->bond_across,
-                                       joint->bond_across, joint->bond_twist,
-                                       joint->bond_bend,   joint->bond_bend};
-    for (int k = 0; k < STRAINS; k++) {
-        resistance->bond_load[k] = resistance->load[k] = stiffness[k] * strain[k];
-        resistance->tangent[k] = stiffness[k];
+    for (int k = 0; k < STRAINS; k++)
+        resistance->load[k] = joint->bond_stiffness[k] * strain[k];
+    for (int k = 0; k < 3; k++) {
+        resistance->slope[k][k] = joint->bond_stiffness[k];
+        resistance->stiffness[k] = joint->bond_stiffness[3 + k];
     }
 }
 
-// Where the shear spring is free: where it was, or, for grains that come to touch,
-// where on the straight way from the last equilibrium they did.
-void joint_hold_friction(struct joint *joint, const double strain[STRAINS],
-                         double share)
+// Coulomb slip [K 4.25-4.26]: the limit falls as the grains part. A spring that slides
+// still resists what turns its direction.
+static void slide(const struct joint *joint, const double trial[2], double size,
+                  double limit, struct resistance *resistance)
 {
-    const double before = joint->overlap - joint->strain[STRAIN_ALONG];
-    const double after = joint->overlap - strain[STRAIN_ALONG];
-    const double limit = joint->friction * joint->contact_along * fmax(after, 0);
-    joint->slip_limit += share * (limit - joint->slip_limit);
-    const double way = after > before ? -before / (after - before) : 1;
+    const double along[2] = {trial[0] / size, trial[1] / size};
+    const double kept = limit / size * joint->contact_across;
     for (int k = 0; k < 2; k++) {
-        const double was = joint->strain[STRAIN_ACROSS + k];
-        joint->anchor[k] = joint->contact.touches
-                               ? joint->contact.anchor[k]
-                               : was + way * (strain[STRAIN_ACROSS + k] - was);
+        double *slope = resistance->slope[STRAIN_ACROSS + k];
+        slope[STRAIN_ALONG] -= joint->friction * joint->contact_along * along[k];
+        for (int l = 0; l < 2; l++)
+            slope[STRAIN_ACROSS + l] += kept * ((k == l) - along[k] * along[l]);
+        resistance->load[STRAIN_ACROSS + k] += limit * along[k];
+        resistance->contact.anchor[k] +=
+            (1 - limit / size) * trial[k] / joint->contact_across;
     }
+    resistance->contact.touch = TOUCH_SLIPS;
 }
 
-// Coulomb slip [K 4.25-4.26]. A spring that slides still resists what turns its
-// direction.
+// Grains that come to touch do so without shear: their spring is free where they are
+// when all is balanced.
 static void add_shear(const struct joint *joint, const double strain[STRAINS],
-                      struct resistance *resistance)
+                      double limit, struct resistance *resistance)
 {
+    double *anchor = resistance->contact.anchor;
+    if (joint->contact.touch == TOUCH_NONE) {
+        resistance->contact.touch = TOUCH_BEGINS;
+        memcpy(anchor, strain + STRAIN_ACROSS, 2 * sizeof *anchor);
+        return;
+    }
     const double stiffness = joint->contact_across;
     double trial[2];
-    for (int k = 0; k < 2; k++)
-        trial[k] = stiffness * (strain[STRAIN_ACROSS + k] - joint->anchor[k]);
-    const double size = hypot(trial[0], trial[1]);
-    const bool slips = size > joint->slip_limit;
-    const double kept = slips ? joint->slip_limit / size : 1;
     for (int k = 0; k < 2; k++) {
-        const double other = slips ? trial[1 - k] / size : 1;
-        resistance->load[STRAIN_ACROSS + k] += kept * trial[k];
-        resistance->tangent[STRAIN_ACROSS + k] += stiffness * kept * other * other;
-        resistance->contact.anchor[k] = joint->anchor[k];
-        if (slips) resistance->contact.anchor[k] += (1 - kept) * trial[k] / stiffness;
+        anchor[k] = joint->contact.anchor[k];
+        trial[k] = stiffness * (strain[STRAIN_ACROSS + k] - anchor[k]);
     }
-    if (slips)
-        resistance->tangent_across =
-            -stiffness * kept * (trial[0] / size) * (trial[1] / size);
+    const double size = hypot(trial[0], trial[1]);
+    if (size > limit) {
+        slide(joint, trial, size, limit, resistance);
+        return;
+    }
+    resistance->contact.touch = TOUCH_STICKS;
+    for (int k = 0; k < 2; k++) {
+        resistance->load[STRAIN_ACROSS + k] += trial[k];
+        resistance->slope[STRAIN_ACROSS + k][STRAIN_ACROSS + k] += stiffness;
+    }
 }
 
 // [K 4.11-4.16]
@@ -125,21 +130,17 @@ static void add_contact(const struct joint *joint, const double strain[STRAINS],
                         struct resistance *resistance)
 {
     const double overlap = joint->overlap - strain[STRAIN_ALONG];
-    resistance->contact.touches = overlap >= 0;
-    if (joint->contact_across > 0 && joint->slip_limit > 0)
-        add_shear(joint, strain, resistance);
-    else
-        memcpy(resistance->contact.anchor, strain + STRAIN_ACROSS,
-               sizeof resistance->contact.anchor);
     if (overlap < 0) return;
     resistance->load[STRAIN_ALONG] -= joint->contact_along * overlap;
-    resistance->tangent[STRAIN_ALONG] += joint->contact_along;
+    resistance->slope[STRAIN_ALONG][STRAIN_ALONG] += joint->contact_along;
+    add_shear(joint, strain, joint->friction * joint->contact_along * overlap,
+              resistance);
 }
 
 struct resistance joint_resistance(const struct joint *joint,
                                    const double strain[STRAINS])
 {
-    struct resistance resistance = {.load = {0}};
+    struct resistance resistance = {.contact.touch = TOUCH_NONE};
     if (joint->is_gone) return resistance;
     if (joint->is_bonded) add_bond(joint, strain, &resistance);
     add_contact(joint, strain, &resistance);
@@ -147,17 +148,17 @@ struct resistance joint_resistance(const struct joint *joint,
 }
 
 // With k^n A and k^s A known, A R^2 = 4 I = 2 J gives the stresses without A.
-struct overload joint_overload(const struct joint *joint,
-                               const double bond_load[STRAINS], double normal_strength,
-                               double shear_strength)
+struct overload joint_overload(const struct joint *joint, const double strain[STRAINS],
+                               double normal_strength, double shear_strength)
 {
+    const double *stiffness = joint->bond_stiffness;
     const double radius = joint->bond_radius, area = M_PI * radius * radius;
-    const double bending = hypot(bond_load[STRAIN_BEND], bond_load[STRAIN_BEND + 1]);
-    const double shear = hypot(bond_load[STRAIN_ACROSS], bond_load[STRAIN_ACROSS + 1]);
-    const double twisting = fabs(bond_load[STRAIN_TWIST]);
-    const double normal_stress =
-        (bond_load[STRAIN_ALONG] + 4 * bending / radius) / area;
-    const double shear_stress = (shear + 2 * twisting / radius) / area;
-    return (struct overload){normal_stress / normal_strength,
-                             shear_stress / shear_strength};
+    const double bending =
+        stiffness[STRAIN_BEND] * hypot(strain[STRAIN_BEND], strain[STRAIN_BEND + 1]);
+    const double shear = stiffness[STRAIN_ACROSS] *
+                         hypot(strain[STRAIN_ACROSS], strain[STRAIN_ACROSS + 1]);
+    const double twisting = stiffness[STRAIN_TWIST] * fabs(strain[STRAIN_TWIST]);
+    const double tension = stiffness[STRAIN_ALONG] * strain[STRAIN_ALONG];
+    return (struct overload){(tension + 4 * bending / radius) / area / normal_strength,
+                             (shear + 2 * twisting / radius) / area / shear_strength};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two grains that are bonded or may touch, or a grain and the wall beneath, for small
 // displacements about where they began. A joint answers six strains with six loads,
-// each of its own but for slip, which takes both shear strains.
+// each of its own but for slip, which ties both shears to the normal force.
 #ifndef CRAQUELURE_JOINT_H
 #define CRAQUELURE_JOINT_H
 
@@ -17,8 +17,15 @@ struct displacement {
 
 enum strain { STRAIN_ALONG, STRAIN_ACROSS, STRAIN_TWIST = 3, STRAIN_BEND, STRAINS = 6 };
 
+enum touch {
+    TOUCH_NONE,
+    TOUCH_STICKS,
+    TOUCH_SLIPS,
+    TOUCH_BEGINS // since the last equilibrium: no shear yet
+};
+
 struct contact {
-    bool touches;
+    enum touch touch;
     double anchor[2]; // shear strains at which the shear spring is free
 };
 
@@ -31,35 +38,27 @@ struct joint {
     double arm[2];         // from the centres to the contact point
     double overlap;        // at the start
     double bond_radius;
-    // Parallel bond [K 4.32-4.39]: k^n A, k^s A, k^s J, k^n I.
-    double bond_along, bond_across, bond_twist, bond_bend;
-    double contact_along, contact_across; // [K 4.22]
+    // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice.
+    double bond_stiffness[STRAINS];
+    double contact_along, contact_across; // [K 4.22]; no shear without friction
     double friction;
-    // Held while the rest is balanced: with them each load is the derivative of a
-    // convex energy, which Newton's method cannot miss the minimum of.
-    double slip_limit; // friction times normal force
-    double anchor[2];
     // Of the last equilibrium, from which history goes on.
     double strain[STRAINS];
     struct contact contact;
 };
 
-// What a joint resists with: the derivatives of its energy, and theirs.
+// What a joint resists with, and how that changes with the strains.
 struct resistance {
     double load[STRAINS];
-    double bond_load[STRAINS]; // the part of the bond
-    double tangent[STRAINS];   // diagonal
-    double tangent_across;     // between the two shear strains
-    struct contact contact;    // as it would be
+    double slope[3][3]; // of the first three loads with the first three strains
+    double stiffness[STRAINS - 3]; // of the others, each with its own
+    struct contact contact;        // as it would be
 };
 
 // Strains of [K 4.7, 4.15, 4.17], all linear, when the grains move so; NULL: one that
 // does not, as the wall.
 void joint_strains(const struct joint *joint, const struct displacement *first,
                    const struct displacement *second, double strain[STRAINS]);
-// Slip limit and anchor as they are at STRAIN; the limit goes there by SHARE only.
-void joint_hold_friction(struct joint *joint, const double strain[STRAINS],
-                         double share);
 struct resistance joint_resistance(const struct joint *joint,
                                    const double strain[STRAINS]);
 
@@ -72,12 +71,11 @@ struct displacement joint_arm(const struct joint *joint, int end, int strain);
 struct displacement joint_loads(const struct joint *joint, int end,
                                 const double load[STRAINS]);
 
-// Stress over strength [K 4.41, 4.42] of a bond under its loads.
+// Stress over strength [K 4.41, 4.42] of an intact bond at STRAIN.
 struct overload {
     double normal, shear;
 };
-struct overload joint_overload(const struct joint *joint,
-                               const double bond_load[STRAINS], double normal_strength,
-                               double shear_strength);
+struct overload joint_overload(const struct joint *joint, const double strain[STRAINS],
+                               double normal_strength, double shear_strength);
 
 #endif

@@ -73,8 +73,10 @@ static const struct parameter table[] = {
     {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8", BOUND_ABOVE, 0, 0, NULL,
      "largest force or moment left on a grain, of the largest load",
      AT(settings.equilibrium_tolerance)},
-    {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "1000", BOUND_BETWEEN, 1,
-     1e9, NULL, "more than these at one equilibrium: not converged",
+    {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "40", BOUND_BETWEEN, 1,
+     1e9, NULL,
+     "steps in time, slowed by dashpots, where equilibrium is not found at once; what "
+     "still moves then goes on under the next load",
      AT(settings.most_iterations)},
     {"bridges.volume", PARAMETER_NUMBER, "m3", "0", BOUND_MINIMUM, 0, 0, NULL,
      "of a liquid bridge between each two grains that touch [G 2], or with shared on "
@@ -229,8 +231,13 @@ static void warn_if_loose(const struct packing *packing,
         largest_radius = fmax(largest_radius, packing->radius[i]);
     const double moved = largest_displacement(packing, response);
     if (response->n_gone > 0)
-        report("%d grains left the aggregate: nothing held them under their load",
-               response->n_gone);
+        report("%d grains left the aggregate, grain %d the first: nothing held them "
+               "under their load",
+               response->n_gone, response->first_gone);
+    if (response->n_restless > 0)
+        report("under %d of the loads not all came to rest, under the last of them "
+               "grain %d",
+               response->n_restless, response->restless);
     if (moved > largest_radius)
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
                "%.3g "

@@ -35,6 +35,19 @@ static double overlap_of(const struct joint_setup *setup, double overlap)
     return fabs(overlap) <= 16 * 0x1p-53 * furthest / setup->length ? 0 : overlap;
 }
 
+// [K 4.22], SHARE of the stiffness of a grain.
+static struct joint in_contact(const struct joint_setup *setup, struct joint joint,
+                               double share)
+{
+    const struct dem_material *material = setup->material;
+    joint.friction = material->friction;
+    joint.contact_along = share * material->normal_stiffness / setup->stiffness;
+    if (joint.friction > 0)
+        joint.contact_across = share * material->shear_stiffness / setup->stiffness;
+    joint.contact.touch = joint.overlap >= 0 ? TOUCH_STICKS : TOUCH_NONE;
+    return joint;
+}
+
 static struct joint touching(const struct joint_setup *setup, int i, int j,
                              struct vector separation)
 {
@@ -46,11 +59,7 @@ static struct joint touching(const struct joint_setup *setup, int i, int j,
     joint.overlap = overlap_of(setup, r[0] + r[1] - norm(separation) / setup->length);
     for (int end = 0; end < 2; end++)
         joint.arm[end] = r[end] - 0.5 * joint.overlap;
-    joint.contact_along = 0.5 * setup->material->normal_stiffness / setup->stiffness;
-    joint.contact_across = 0.5 * setup->material->shear_stiffness / setup->stiffness;
-    joint.friction = setup->material->friction;
-    joint.contact.touches = joint.overlap >= 0;
-    return joint;
+    return in_contact(setup, joint, 0.5); // two grains in series
 }
 
 static struct joint on_wall(const struct joint_setup *setup, int i)
@@ -62,11 +71,7 @@ static struct joint on_wall(const struct joint_setup *setup, int i)
     find_axes(&joint, (struct vector){0, 0, -1});
     joint.overlap = overlap_of(setup, radius - height);
     joint.arm[0] = radius - joint.overlap;
-    joint.contact_along = setup->material->normal_stiffness / setup->stiffness;
-    joint.contact_across = setup->material->shear_stiffness / setup->stiffness;
-    joint.friction = setup->material->friction;
-    joint.contact.touches = joint.overlap >= 0;
-    return joint;
+    return in_contact(setup, joint, 1);
 }
 
 static void bond_joint(const struct joint_setup *setup, struct joint *joint, int bond)
@@ -81,10 +86,11 @@ static void bond_joint(const struct joint_setup *setup, struct joint *joint, int
     joint->bond = bond;
     joint->is_bonded = true;
     joint->bond_radius = r;
-    joint->bond_along = along * area;
-    joint->bond_across = across * area;
-    joint->bond_twist = across * area * r * r / 2; // J
-    joint->bond_bend = along * area * r * r / 4;   // I
+    const double twist = r * r / 2, bend = r * r / 4; // J / A, I / A
+    const double stiffness[STRAINS] = {along,          across,       across,
+                                       across * twist, along * bend, along * bend};
+    for (int k = 0; k < STRAINS; k++)
+        joint->bond_stiffness[k] = stiffness[k] * area;
 }
 
 struct joint_list {

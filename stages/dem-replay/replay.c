@@ -281,7 +281,11 @@ enum status replay(const struct packing *packing, const struct load *load,
         if (progress && progress->report)
             progress->report(progress->context, (double)run.place.step / load->n_time);
     }
-    if (run.equilibrium) response->n_gone = equilibrium_gone(run.equilibrium);
+    if (run.equilibrium) {
+        response->n_gone = equilibrium_gone(run.equilibrium, &response->first_gone);
+        response->n_restless =
+            equilibrium_restless(run.equilibrium, &response->restless);
+    }
     dem_free(run.dem);
     equilibrium_free(run.equilibrium);
     free(run.fixed);

@@ -34,7 +34,7 @@ struct replay_settings {
     enum support support;
     enum engine engine;
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load
-    int64_t most_iterations;      // quasi-static: at one equilibrium
+    int64_t most_iterations;      // quasi-static: steps in time to one equilibrium
     double time_step_safety;
     bool force_time_step;
     int64_t cycles;      // at every step of the load
@@ -65,7 +65,9 @@ struct response {
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
-    int n_gone;                        // grains that left an equilibrium
+    int n_gone, first_gone;            // grains that left an equilibrium
+    int n_restless, restless; // loads under which something held did not come to rest,
+                              // and the grain furthest from it under the last
 };
 
 // Told how far the replay is.

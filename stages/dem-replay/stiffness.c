@@ -28,10 +28,8 @@ struct stiffness {
     cholmod_common common;
     cholmod_sparse *matrix;
     cholmod_factor *factor;
-    bool is_factorised;
-    // Of conjugate gradients, (n_moving * DEGREES); solved: CHOLMOD's own.
-    double *residual, *direction, *image;
-    cholmod_dense *right, *solved, *work[2];
+    cholmod_dense *load, *loads;     // (n_moving * DEGREES) by 1 and by 3
+    cholmod_dense *solved, *work[2]; // CHOLMOD's own
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -115,10 +113,8 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
     lay_out(s);
     const size_t size = (size_t)s->n_moving * DEGREES;
     if (size > 0) s->factor = cholmod_analyze(s->matrix, &s->common);
-    s->right = cholmod_zeros(size, 1, CHOLMOD_REAL, &s->common);
-    s->residual = NEW_ARRAY(double, size);
-    s->direction = NEW_ARRAY(double, size);
-    s->image = NEW_ARRAY(double, size);
+    s->load = cholmod_zeros(size, 1, CHOLMOD_REAL, &s->common);
+    s->loads = cholmod_zeros(size, 3, CHOLMOD_REAL, &s->common);
     return s;
 }
 
@@ -127,15 +123,16 @@ void stiffness_free(struct stiffness *s)
     if (!s) return;
     cholmod_free_sparse(&s->matrix, &s->common);
     cholmod_free_factor(&s->factor, &s->common);
-    cholmod_free_dense(&s->right, &s->common);
+    cholmod_free_dense(&s->load, &s->common);
+    cholmod_free_dense(&s->loads, &s->common);
     cholmod_free_dense(&s->solved, &s->common);
     cholmod_free_dense(&s->work[0], &s->common);
     cholmod_free_dense(&s->work[1], &s->common);
     cholmod_finish(&s->common);
-    void *const owned[] = {s->number,   s->block,     s->block_of, s->diagonal,
-                           s->residual, s->direction, s->image};
-    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
-        free(owned[k]);
+    free(s->number);
+    free(s->block);
+    free(s->block_of);
+    free(s->diagonal);
     free(s);
 }
 
@@ -151,8 +148,7 @@ static double *numbers_of(const struct stiffness *s, int block, int *stride)
            (block - s->diagonal[b->column]) * DEGREES;
 }
 
-// What the loads of a joint do to the grain at END, and from what strains they come:
-// B^T and D B, six rows each.
+// What the loads of a joint do to the grain at END, six rows: B^T.
 static void arms_of(const struct joint *joint, int end, double arm[STRAINS][DEGREES])
 {
     for (int k = 0; k < STRAINS; k++) {
@@ -161,177 +157,97 @@ static void arms_of(const struct joint *joint, int end, double arm[STRAINS][DEGR
     }
 }
 
-static void times_tangent(const struct resistance *resistance,
-                          const double arm[STRAINS][DEGREES],
-                          double product[STRAINS][DEGREES])
-{
-    for (int k = 0; k < STRAINS; k++)
-        for (int c = 0; c < DEGREES; c++)
-            product[k][c] = resistance->tangent[k] * arm[k][c];
-    for (int k = 0; k < 2; k++)
-        for (int c = 0; c < DEGREES; c++)
-            product[STRAIN_ACROSS + k][c] +=
-                resistance->tangent_across * arm[STRAIN_ACROSS + 1 - k][c];
-}
-
 static void add_block(struct stiffness *s, int block,
                       const double left[STRAINS][DEGREES],
-                      const double right[STRAINS][DEGREES])
+                      const double right[STRAINS][DEGREES],
+                      const double tangent[STRAINS])
 {
     int stride;
     double *numbers = numbers_of(s, block, &stride);
-    for (int c = 0; c < DEGREES; c++)
-        for (int r = 0; r < DEGREES; r++)
-            for (int k = 0; k < STRAINS; k++)
-                numbers[c * stride + r] += left[k][r] * right[k][c];
+    for (int k = 0; k < STRAINS; k++)
+        for (int c = 0; c < DEGREES; c++)
+            for (int r = 0; r < DEGREES; r++)
+                numbers[c * stride + r] += tangent[k] * left[k][r] * right[k][c];
 }
 
-static void add_joint(struct stiffness *s, int j, const struct resistance *resistance)
+static void add_joint(struct stiffness *s, int j, const double tangent[STRAINS])
 {
     const struct joint *joint = &s->joint[j];
-    double arm[2][STRAINS][DEGREES], product[2][STRAINS][DEGREES];
+    double arm[2][STRAINS][DEGREES];
     int32_t number[2];
     for (int end = 0; end < 2; end++) {
         number[end] = joint->grain[end] < 0 ? -1 : s->number[joint->grain[end]];
         if (number[end] < 0) continue;
         arms_of(joint, end, arm[end]);
-        times_tangent(resistance, arm[end], product[end]);
-        add_block(s, s->diagonal[number[end]], arm[end], product[end]);
+        add_block(s, s->diagonal[number[end]], arm[end], arm[end], tangent);
     }
     if (s->block_of[j] < 0) return;
     const int lower = number[0] < number[1] ? 0 : 1;
-    add_block(s, s->block_of[j], arm[1 - lower], product[lower]);
+    add_block(s, s->block_of[j], arm[1 - lower], arm[lower], tangent);
 }
 
-static bool factorise(struct stiffness *s, const struct resistance *resistance,
+bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
                       double soft)
 {
+    if (s->n_moving == 0) return true;
     memset(s->matrix->x, 0, s->matrix->nzmax * sizeof(double));
     for (int j = 0; j < s->n_joint; j++)
-        add_joint(s, j, &resistance[j]);
+        add_joint(s, j, tangent[j]);
     for (int k = 0; k < s->n_moving; k++) {
         int stride;
         double *numbers = numbers_of(s, s->diagonal[k], &stride);
         for (int r = 0; r < DEGREES; r++)
             numbers[r * stride + r] += soft;
     }
-    s->is_factorised = cholmod_factorize(s->matrix, s->factor, &s->common) &&
-                       s->common.status == CHOLMOD_OK;
-    return s->is_factorised;
+    return cholmod_factorize(s->matrix, s->factor, &s->common) &&
+           s->common.status == CHOLMOD_OK;
 }
 
-// ---- conjugate gradients ------------------------------------------------------------
+// ---- answers ------------------------------------------------------------------------
 
-static double product_of(const double *a, const double *b, size_t n)
+static void scatter(const struct stiffness *s, const struct displacement *moving,
+                    struct displacement *answer)
 {
-    double sum = 0;
-    for (size_t k = 0; k < n; k++)
-        sum += a[k] * b[k];
-    return sum;
+    for (int i = 0; i < s->n; i++)
+        answer[i] = s->number[i] < 0 ? (struct displacement){{0, 0, 0}, {0, 0, 0}}
+                                     : moving[s->number[i]];
 }
 
-static struct displacement *of_grain(const struct stiffness *s, double *numbers,
-                                     int32_t grain)
+static const struct displacement *solve(struct stiffness *s, cholmod_dense *load)
 {
-    if (grain < 0 || s->number[grain] < 0) return NULL;
-    return (struct displacement *)numbers + s->number[grain];
-}
-
-// Shear strains and the others are each a product with what a joint's two grains do.
-static void resist(const struct stiffness *s, const struct resistance *resistance,
-                   int j, double *direction, double *image)
-{
-    const struct joint *joint = &s->joint[j];
-    double strain[STRAINS], force[STRAINS];
-    joint_strains(joint, of_grain(s, direction, joint->grain[0]),
-                  of_grain(s, direction, joint->grain[1]), strain);
-    for (int k = 0; k < STRAINS; k++)
-        force[k] = resistance->tangent[k] * strain[k];
-    for (int k = 0; k < 2; k++)
-        force[STRAIN_ACROSS + k] +=
-            resistance->tangent_across * strain[STRAIN_ACROSS + 1 - k];
-    for (int end = 0; end < 2; end++) {
-        struct displacement *load = of_grain(s, image, joint->grain[end]);
-        if (!load) continue;
-        const struct displacement part = joint_loads(joint, end, force);
-        load->shift = add(load->shift, part.shift);
-        load->turn = add(load->turn, part.turn);
-    }
-}
-
-static void multiply(const struct stiffness *s, const struct resistance *resistance,
-                     double soft, double *direction, double *image)
-{
-    const size_t n = (size_t)s->n_moving * DEGREES;
-    for (size_t k = 0; k < n; k++)
-        image[k] = soft * direction[k];
-    for (int j = 0; j < s->n_joint; j++)
-        resist(s, &resistance[j], j, direction, image);
-}
-
-// What the factor makes of the residual.
-static const double *precondition(struct stiffness *s)
-{
-    memcpy(s->right->x, s->residual, (size_t)s->n_moving * DEGREES * sizeof(double));
-    if (!cholmod_solve2(CHOLMOD_A, s->factor, s->right, NULL, &s->solved, NULL,
-                        &s->work[0], &s->work[1], &s->common))
+    if (!cholmod_solve2(CHOLMOD_A, s->factor, load, NULL, &s->solved, NULL, &s->work[0],
+                        &s->work[1], &s->common))
         return NULL;
     return s->solved->x;
 }
 
-enum outcome { SOLVED, SLOW, FAILED };
-
-// ANSWER is made from 0; the residual begins as the load.
-static enum outcome iterate(struct stiffness *s, const struct resistance *resistance,
-                            double soft, double *answer)
-{
-    enum { MOST = 24 }; // steps that cost about as much as a new factor
-    const double enough = 1e-3;
-    const size_t n = (size_t)s->n_moving * DEGREES;
-    const double target = enough * enough * product_of(s->residual, s->residual, n);
-    double before = 0;
-    memset(answer, 0, n * sizeof *answer);
-    for (int step = 0; step < MOST; step++) {
-        const double *solved = precondition(s);
-        if (!solved) return FAILED;
-        const double now = product_of(s->residual, solved, n);
-        for (size_t k = 0; k < n; k++)
-            s->direction[k] = solved[k] + (step ? now / before * s->direction[k] : 0);
-        multiply(s, resistance, soft, s->direction, s->image);
-        const double bend = product_of(s->direction, s->image, n);
-        if (!(bend > 0)) return FAILED;
-        for (size_t k = 0; k < n; k++) {
-            answer[k] += now / bend * s->direction[k];
-            s->residual[k] -= now / bend * s->image[k];
-        }
-        if (product_of(s->residual, s->residual, n) <= target) return SOLVED;
-        before = now;
-    }
-    return SLOW;
-}
-
-static void gather(struct stiffness *s, const struct displacement *load)
-{
-    for (int i = 0; i < s->n; i++)
-        if (s->number[i] >= 0)
-            ((struct displacement *)s->residual)[s->number[i]] = load[i];
-}
-
-bool stiffness_solve(struct stiffness *s, const struct resistance *resistance,
-                     double soft, const struct displacement *load,
+bool stiffness_solve(struct stiffness *s, const struct displacement *load,
                      struct displacement *answer)
 {
-    double *moving = NEW_ARRAY(double, s->n_moving *DEGREES);
-    enum outcome outcome = SLOW;
-    for (int turn = 0; turn < 2 && outcome == SLOW; turn++) {
-        if (turn > 0 || !s->is_factorised)
-            if (!factorise(s, resistance, soft)) break;
-        gather(s, load);
-        outcome = iterate(s, resistance, soft, moving);
-    }
+    struct displacement *moving = s->load->x;
     for (int i = 0; i < s->n; i++)
-        answer[i] = s->number[i] < 0 ? (struct displacement){{0, 0, 0}, {0, 0, 0}}
-                                     : ((struct displacement *)moving)[s->number[i]];
-    free(moving);
-    return outcome == SOLVED;
+        if (s->number[i] >= 0) moving[s->number[i]] = load[i];
+    const struct displacement *solved = s->n_moving ? solve(s, s->load) : moving;
+    if (!solved) return false;
+    scatter(s, solved, answer);
+    return true;
+}
+
+bool stiffness_solve_joint(struct stiffness *s, int j, int first,
+                           struct displacement *answer)
+{
+    const struct joint *joint = &s->joint[j];
+    struct displacement *loads = s->loads->x;
+    for (int k = 0; k < 3; k++)
+        for (int end = 0; end < 2; end++) {
+            const int32_t grain = joint->grain[end];
+            if (grain >= 0 && s->number[grain] >= 0)
+                loads[k * s->n_moving + s->number[grain]] =
+                    joint_arm(joint, end, first + k);
+        }
+    const struct displacement *solved = s->n_moving ? solve(s, s->loads) : loads;
+    for (int k = 0; solved && k < 3; k++)
+        scatter(s, solved + k * s->n_moving, answer + (size_t)k * (size_t)s->n);
+    memset(loads, 0, 3 * (size_t)s->n_moving * sizeof *loads);
+    return solved;
 }

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sparse stiffness of joints between grains, and what displacements answer a load.
-//
-// A factor is kept while joints change: conjugate gradients, with the old factor before
-// them, need about as many steps as the change has ranks (a broken bond: six), each
-// much cheaper than a new factor, which is made when that takes too many.
+// The sparse stiffness of joints between grains, factored, and what displacements
+// answer a load.
 #ifndef CRAQUELURE_STIFFNESS_H
 #define CRAQUELURE_STIFFNESS_H
 
@@ -17,11 +14,19 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
                                 const struct joint *joint);
 void stiffness_free(struct stiffness *stiffness);
 
-// Into ANSWER (n) the displacements under LOAD (n), forces and moments, when joints
-// resist with the tangents of RESISTANCE (n_joint), and every grain with SOFT besides;
-// to a thousandth of the load or better. 0 for fixed grains. False: no number came out.
-bool stiffness_solve(struct stiffness *stiffness, const struct resistance *resistance,
-                     double soft, const struct displacement *load,
+// With TANGENT (n_joint) of each joint, >= 0 for each strain, and SOFT of every grain
+// besides. False: it is singular.
+bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[STRAINS],
+                      double soft);
+
+// Into ANSWER (n) the displacements under LOAD (n), forces and moments, by the last
+// factor; 0 for fixed grains. False: no number came out.
+bool stiffness_solve(struct stiffness *stiffness, const struct displacement *load,
                      struct displacement *answer);
+
+// The same under each of the unit loads FIRST, FIRST+1 and FIRST+2 of JOINT, one after
+// the other: ANSWER (3 n).
+bool stiffness_solve_joint(struct stiffness *stiffness, int joint, int first,
+                           struct displacement *answer);
 
 #endif

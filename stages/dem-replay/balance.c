@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equilibrium_state.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct displacement nothing = {{0, 0, 0}, {0, 0, 0}};
+
+static void pull(struct displacement *sum, struct displacement load)
+{
+    sum->shift = subtract(sum->shift, load.shift);
+    sum->turn = subtract(sum->turn, load.turn);
+}
+
+static struct displacement scaled(double share, struct displacement a)
+{
+    return (struct displacement){scale(share, a.shift), scale(share, a.turn)};
+}
+
+static void strain_joints(const struct equilibrium *e, const struct displacement *moved,
+                          double (*strain)[STRAINS])
+{
+    for (int j = 0; j < e->n_joint; j++) {
+        const int32_t *grain = e->joint[j].grain;
+        joint_strains(&e->joint[j], &moved[grain[0]],
+                      grain[1] < 0 ? NULL : &moved[grain[1]], strain[j]);
+    }
+}
+
+// What is left of the load at the trial.
+static void resist(struct equilibrium *e)
+{
+    for (int i = 0; i < e->n; i++) {
+        e->left[i] = e->load[i];
+        pull(&e->left[i], scaled(e->damping, e->dashpots[i]));
+    }
+    strain_joints(e, e->trial, e->strain);
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        e->resistance[j] = joint_resistance(joint, e->strain[j]);
+        for (int end = 0; end < 2; end++)
+            if (joint->grain[end] >= 0)
+                pull(&e->left[joint->grain[end]],
+                     joint_loads(joint, end, e->resistance[j].load));
+    }
+    for (int i = 0; i < e->n; i++)
+        if (e->setup.fixed[i] || e->is_gone[i]) e->left[i] = nothing;
+}
+
+static double largest_left(const struct equilibrium *e)
+{
+    double most = 0;
+    for (int i = 0; i < e->n; i++)
+        most = fmax(most, size_of(e->left[i]));
+    return most;
+}
+
+// ---- one step -----------------------------------------------------------------------
+
+// As everything is now; what slips, and begins to touch, is left to corrections. Then
+// the bond alone is in the factor across the contact, or else the contact as if it
+// stuck: so that a grain that slips wherever it touches is not free there.
+static bool factor(struct equilibrium *e)
+{
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        const enum touch touch = e->resistance[j].contact.touch;
+        const bool is_bonded = joint->is_bonded && !joint->is_gone;
+        e->factored[j] = (struct factored){touch, is_bonded};
+        if (touch == TOUCH_BEGINS) e->factored[j].touch = TOUCH_STICKS;
+        for (int k = 0; k < STRAINS; k++)
+            e->tangent[j][k] = is_bonded ? joint->bond_stiffness[k] : 0;
+        if (touch) e->tangent[j][STRAIN_ALONG] += joint->contact_along;
+        const bool is_stiff = touch && !(touch == TOUCH_SLIPS && is_bonded);
+        for (int k = 0; k < 2 && is_stiff; k++)
+            e->tangent[j][STRAIN_ACROSS + k] += joint->contact_across;
+    }
+    corrections_clear(e->corrections);
+    e->factors++;
+    return stiffness_factor(e->matrix, e->tangent, e->soft);
+}
+
+// Joints that do not resist as the factor says, here or where the step leads.
+static bool include_joints(struct equilibrium *e)
+{
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        const struct factored *factored = &e->factored[j];
+        double strain[STRAINS];
+        for (int k = 0; k < STRAINS; k++)
+            strain[k] = e->strain[j][k] + e->more[j][k];
+        const enum touch here = e->resistance[j].contact.touch;
+        const enum touch there = joint_resistance(joint, strain).contact.touch;
+        const bool broke = factored->is_bonded && (!joint->is_bonded || joint->is_gone);
+        const bool same =
+            here == there && here == factored->touch && here <= TOUCH_STICKS;
+        if (broke && !corrections_add(e->corrections, j, 3)) return false;
+        if ((broke || !same) && !corrections_add(e->corrections, j, 0)) return false;
+    }
+    return true;
+}
+
+enum outcome { FOUND, TOO_MANY, STUCK };
+
+// The step that balances all.
+static enum outcome find_step(struct equilibrium *e)
+{
+    const double share = 1 / (1 + e->damping);
+    for (int i = 0; i < e->n; i++)
+        e->left[i] = scaled(share, e->left[i]);
+    if (!stiffness_solve(e->matrix, e->left, e->step)) return STUCK;
+    strain_joints(e, e->step, e->more);
+    if (!include_joints(e)) return TOO_MANY;
+    if (corrections_count(e->corrections) == 0) return FOUND;
+    double most = 0;
+    for (int j = 0; j < e->n_joint; j++)
+        for (int k = 0; k < STRAINS; k++)
+            most = fmax(most, fabs(e->more[j][k]));
+    const double enough = fmax(1e-3 * e->enough, 1e-14 * most);
+    if (!corrections_find(e->corrections, e->strain, e->more, share, enough))
+        return STUCK;
+    corrections_take_off(e->corrections, share, e->left);
+    return stiffness_solve(e->matrix, e->left, e->step) ? FOUND : STUCK;
+}
+
+// What is marked leaves: its load counts no more, and nothing touches it.
+static void let_go(struct equilibrium *e, const bool *leaves)
+{
+    for (int i = 0; i < e->n; i++) {
+        if (!leaves[e->fragments.of[i]] || e->is_gone[i]) continue;
+        e->is_gone[i] = true;
+        if (e->n_gone++ == 0) e->first_gone = i;
+        e->load[i] = nothing;
+    }
+    for (int j = 0; j < e->n_joint; j++)
+        for (int end = 0; end < 2; end++) {
+            const int32_t grain = e->joint[j].grain[end];
+            if (grain >= 0 && e->is_gone[grain]) e->joint[j].is_gone = true;
+        }
+    resist(e);
+}
+
+// Fragments that no support holds leave where a grain of theirs moves by more than MOST
+// (of MOVES, displacements or what is left). Whether any did.
+static bool let_go_beyond(struct equilibrium *e, const struct displacement *moves,
+                          double most)
+{
+    bool *leaves = NEW_ARRAY(bool, e->n);
+    bool any = false;
+    for (int i = 0; i < e->n; i++) {
+        const int fragment = e->fragments.of[i];
+        if (e->is_gone[i] || e->fragments.is_held[fragment]) continue;
+        if (!(size_of(moves[i]) <= most)) any = leaves[fragment] = true;
+    }
+    if (any) let_go(e, leaves);
+    free(leaves);
+    return any;
+}
+
+// ---- the way ------------------------------------------------------------------------
+
+// One round: a step, or a new factor where the old one does not do. Whether it did
+// anything.
+static bool improve(struct equilibrium *e, bool *is_fresh)
+{
+    const enum outcome outcome = find_step(e);
+    if ((outcome == FOUND || *is_fresh) && let_go_beyond(e, e->step, furthest))
+        return true;
+    if (outcome != FOUND) {
+        if (*is_fresh) return false;
+        resist(e);
+        *is_fresh = true;
+        return factor(e);
+    }
+    for (int i = 0; i < e->n; i++) {
+        pull(&e->trial[i], scaled(-1, e->step[i]));
+        pull(&e->dashpots[i], scaled(-1, e->left[i]));
+    }
+    resist(e);
+    e->iterations++;
+    return true;
+}
+
+// The next equilibrium, or step in time on the way there, from the last one: to well
+// below what may be left, as forces on many grains add up, where that comes easily.
+static bool approach(struct equilibrium *e)
+{
+    enum { ROUNDS = 20, MOST = 600 };
+    resist(e);
+    e->enough = e->setup.tolerance * e->largest_load;
+    if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
+    const double well = (e->damping > 0 ? 1 : 1e-4) * e->enough;
+    bool is_fresh = e->factors == 0 || corrections_count(e->corrections) > MOST;
+    if (is_fresh && !factor(e)) return false;
+    double before = INFINITY;
+    for (int round = 0; round < ROUNDS; round++) {
+        const double left = largest_left(e);
+        if (left <= well || (left <= e->enough && left >= 0.1 * before)) return true;
+        before = left;
+        if (!improve(e, &is_fresh)) break;
+    }
+    resist(e);
+    return largest_left(e) <= e->enough;
+}
+
+static void keep_history(struct equilibrium *e)
+{
+    memcpy(e->before, e->trial, (size_t)e->n * sizeof *e->before);
+    for (int j = 0; j < e->n_joint; j++) {
+        memcpy(e->joint[j].strain, e->strain[j], sizeof e->joint[j].strain);
+        e->joint[j].contact = e->resistance[j].contact;
+        if (e->joint[j].contact.touch == TOUCH_BEGINS)
+            e->joint[j].contact.touch = TOUCH_STICKS;
+    }
+}
+
+static void go_back(struct equilibrium *e)
+{
+    memcpy(e->trial, e->before, (size_t)e->n * sizeof *e->trial);
+    memset(e->dashpots, 0, (size_t)e->n * sizeof *e->dashpots);
+}
+
+// The first with the largest load left.
+static int least_balanced(const struct equilibrium *e)
+{
+    int worst = 0;
+    for (int i = 1; i < e->n; i++)
+        if (size_of(e->left[i]) > size_of(e->left[worst])) worst = i;
+    return worst;
+}
+
+// The way to rest with dashpots at all joints, by steps in time that grow as things
+// come to rest and shrink where one cannot be found. Whether it came to rest.
+static bool creep(struct equilibrium *e)
+{
+    const double stiffest = 1e4, softest = 1e-2;
+    double growth = 16;
+    e->damping = 1;
+    go_back(e);
+    for (int64_t k = 0; k < e->setup.most_iterations && e->damping <= stiffest; k++) {
+        const bool found = approach(e);
+        if (found) {
+            keep_history(e);
+            if (e->damping == 0) return true;
+            e->damping = e->damping > softest ? e->damping / growth : 0;
+            growth = 16;
+        } else {
+            e->damping = fmax(8 * e->damping, softest);
+            growth = 2;
+        }
+        go_back(e);
+    }
+    e->damping = 0;
+    resist(e);
+    return false;
+}
+
+void balance(struct equilibrium *e)
+{
+    const double enough = e->setup.tolerance * e->largest_load;
+    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    bool rests;
+    do {
+        e->damping = 0;
+        go_back(e);
+        rests = approach(e);
+        if (rests)
+            keep_history(e);
+        else
+            rests = creep(e);
+    } while (let_go_beyond(e, e->trial, furthest) ||
+             (!rests && let_go_beyond(e, e->left, enough)));
+    if (!rests) {
+        e->n_restless++;
+        e->restless = least_balanced(e);
+        keep_history(e);
+    }
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Joints that do not resist as the factored stiffness says: bonds that broke since,
+// contacts that opened, closed or slip.
+//
+// Under what is left to balance, r, grains move by K^-1 (r - B^T q), where K is what is
+// factored and q by how much such joints resist more than K says. Of q and their
+// strains, e = B K^-1 r - W q(e) with W = B K^-1 B^T, only these joints know: a small
+// dense system, solved by Newton's method, where that fails joint by joint in turn.
+#ifndef CRAQUELURE_CORRECTIONS_H
+#define CRAQUELURE_CORRECTIONS_H
+
+#include "stiffness.h"
+
+struct corrections;
+
+// For N grains and N_JOINT joints, of which TANGENT (n_joint) is in the factor of
+// STIFFNESS; all are kept, not copied. The caller frees it with corrections_free.
+struct corrections *corrections_new(struct stiffness *stiffness, int n, int n_joint,
+                                    const struct joint *joint,
+                                    const double (*tangent)[STRAINS]);
+void corrections_free(struct corrections *corrections);
+
+// None, after a new factor.
+void corrections_clear(struct corrections *corrections);
+
+// Strains FIRST (0 or 3) to FIRST+2 of JOINT, unless they are in already. False: there
+// are too many, or no number came out; then a new factor is due.
+bool corrections_add(struct corrections *corrections, int joint, int first);
+int corrections_count(const struct corrections *corrections); // of strains
+
+// Finds q for grains that move on from STRAIN (n_joint) so that all joints, were they
+// as the factor says, would be strained by LINEAR (n_joint) more; strains to ENOUGH.
+// False: not found.
+bool corrections_find(struct corrections *corrections, const double (*strain)[STRAINS],
+                      const double (*linear)[STRAINS], double share, double enough);
+
+// Takes B^T q off LEFT (n).
+void corrections_take_off(const struct corrections *corrections, double share,
+                          struct displacement *left);
+
+#endif

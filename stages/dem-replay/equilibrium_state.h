@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is inside struct equilibrium, for the files that make it up only. All in its
+// units: lengths in mean radii, stiffnesses in the largest of a joint.
+#ifndef CRAQUELURE_EQUILIBRIUM_STATE_H
+#define CRAQUELURE_EQUILIBRIUM_STATE_H
+
+#include "corrections.h"
+#include "equilibrium.h"
+#include "fragments.h"
+#include "stiffness.h"
+
+#include <math.h>
+
+// How a joint was when the stiffness was factored.
+struct factored {
+    enum touch touch;
+    bool is_bonded;
+};
+
+// Mean radii, and as much of a turn: further is not small.
+static const double furthest = 0.1;
+
+static inline double size_of(struct displacement a)
+{
+    return fmax(norm(a.shift), norm(a.turn));
+}
+
+struct equilibrium {
+    const struct packing *packing;
+    struct equilibrium_setup setup;
+    double length, stiffness; // units
+    int n, n_joint;
+    struct joint *joint;
+    double (*strain)[STRAINS];     // (n_joint) of the trial
+    double (*more)[STRAINS];       // (n_joint) that a step would add
+    struct resistance *resistance; // (n_joint) of the trial
+    struct displacement *trial;    // (n) and once found, the equilibrium
+    struct displacement *load;     // (n) from outside
+    double damping;                // of dashpots, over the stiffness and a time step
+    struct displacement *dashpots; // (n) what they pull at that damping of 1
+    struct displacement *left;     // (n) what is not balanced at the trial
+    struct displacement *step;     // (n)
+    struct displacement *before;   // (n) the last equilibrium
+    struct fragments fragments;
+    bool *is_gone; // (n) grains
+    int n_gone, first_gone;
+    struct stiffness *matrix;
+    double (*tangent)[STRAINS]; // (n_joint) in the factor
+    struct factored *factored;  // (n_joint)
+    struct corrections *corrections;
+    double soft;
+    double largest_load; // so far: what is left is measured by it
+    double enough;       // what may be left
+    int iterations, factors;
+    int n_restless; // loads under which not all came to rest
+    int restless;   // grain that had most left to balance under the last of them
+    int n_crack, crack_capacity;
+    struct dem_crack *crack;
+};
+
+// Equilibrium under the load: at once or, where that is not found, in time. What does
+// not even then come to rest leaves if nothing supports it; else it goes on moving
+// under the next load.
+void balance(struct equilibrium *equilibrium);
+
+#endif

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What came out of an equilibrium.
+#include "equilibrium_state.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+const struct dem_crack *equilibrium_cracks(const struct equilibrium *e, int *count)
+{
+    *count = e->n_crack;
+    return e->crack;
+}
+
+int equilibrium_iterations(const struct equilibrium *e)
+{
+    return e->iterations;
+}
+
+int equilibrium_gone(const struct equilibrium *e, int *first)
+{
+    *first = e->first_gone;
+    return e->n_gone;
+}
+
+int equilibrium_restless(const struct equilibrium *e, int *last)
+{
+    *last = e->restless;
+    return e->n_restless;
+}
+
+void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
+{
+    for (int i = 0; i < e->n; i++)
+        displacement[i] = scale(e->length, e->trial[i].shift);
+}
+
+void equilibrium_bonds_intact(const struct equilibrium *e, uint8_t *intact)
+{
+    for (int j = 0; j < e->n_joint; j++)
+        if (e->joint[j].bond >= 0) intact[e->joint[j].bond] = e->joint[j].is_bonded;
+}
+
+static int by_pair(const void *a, const void *b)
+{
+    const struct dem_contact *p = a, *q = b;
+    if (p->particle[0] != q->particle[0])
+        return p->particle[0] < q->particle[0] ? -1 : 1;
+    const uint32_t second = (uint32_t)p->particle[1], other = (uint32_t)q->particle[1];
+    return (second > other) - (second < other); // walls last
+}
+
+static struct dem_contact contact_of(const struct equilibrium *e, int j)
+{
+    const struct joint *joint = &e->joint[j];
+    const int i = joint->grain[0];
+    const struct displacement on_first = joint_loads(joint, 0, e->resistance[j].load);
+    const struct vector from =
+        add(e->trial[i].shift, scale(joint->arm[0], joint->axis[0]));
+    return (struct dem_contact){
+        .particle = {i, joint->grain[1]},
+        .bond = joint->is_bonded ? joint->bond : -1,
+        .overlap = e->length * (joint->overlap - joint->strain[STRAIN_ALONG]),
+        .force = scale(e->stiffness * e->length, on_first.shift),
+        .position = add(e->packing->position[i], scale(e->length, from))};
+}
+
+struct dem_contact *equilibrium_contacts(const struct equilibrium *e, int *count)
+{
+    struct dem_contact *contact = NEW_ARRAY(struct dem_contact, e->n_joint);
+    *count = 0;
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        if (joint->is_gone || !(joint->is_bonded || joint->contact.touch)) continue;
+        contact[(*count)++] = contact_of(e, j);
+    }
+    qsort(contact, (size_t)*count, sizeof *contact, by_pair);
+    return contact;
+}
+
+// [K 4.20].
+double equilibrium_unbalanced_ratio(const struct equilibrium *e)
+{
+    double left = 0, carried = 0;
+    int moving = 0, carrying = 0;
+    for (int i = 0; i < e->n; i++) {
+        if (e->setup.fixed[i] || e->is_gone[i]) continue;
+        left += norm(e->left[i].shift);
+        moving++;
+    }
+    for (int j = 0; j < e->n_joint; j++) {
+        const double force =
+            norm(joint_loads(&e->joint[j], 0, e->resistance[j].load).shift);
+        if (!(force > 0)) continue;
+        carried += force;
+        carrying++;
+    }
+    if (!(left > 0)) return 0;
+    return carrying > 0 ? left / moving / (carried / carrying) : INFINITY;
+}
