@@ -5,89 +5,27 @@
 #ifndef CRAQUELURE_CLUSTER_FLOW_H
 #define CRAQUELURE_CLUSTER_FLOW_H
 
-#include "kron.h"
-#include "liquid_graph.h"
-#include "sparse/plain_cholmod.h"
-#include "throat_lists.h"
-#include "viscous.h"
+#include "flow_solver.h"
 
 // Largest error of a node's balance, relative to the largest flow in its cluster, and
 // what is aimed at.
 #define FLOW_TOLERANCE 1e-11
 static const double FLOW_AIM = 5e-13;
 
-// What is known of a cluster from before.
-struct cluster_memory {
-    struct liquid_graph *graph; // NULL: none
-    int *node;                  // (graph->n) of its rows
-    int reference;     // potentials are above that at which gas enters this throat, -1:
-                       // there are none
-    double resistance; // at least that of all its throats one after the other,
-    int size;          // of as many
-};
-
-struct flow_solver {
-    const struct phases *phases;
-    const double *charge;
-    cholmod_common common;
-    struct throat_lists lists;
-    int capacity;
-    struct cluster_memory *cluster; // (capacity) by identity
-    struct kron kron;
-    int *row;   // (n_node) in the graph of its cluster, -1: none
-    int *entry; // (n_throat) of its link in the graph of its cluster, -1: none
-    // In two parts: across a wide throat potentials differ by less than the last digit.
-    struct compensated *potential; // (n_node) where no graph has it
-    double *inflow;                // (n_throat) to each meniscus that moves
-
-    // Of the cluster at hand.
-    int n_mover, *mover;   // (n_mover) throats whose meniscus moves
-    struct graph_arm *arm; // from liquid ends to them, in their order
-    int n_node, *node;
-    int *site; // (n_node of the network) in kron, -1: none
-    double *level;
-    struct graph_link *link;
-};
-
-// A cluster of liquid at this step. Its unknowns are the potentials at nodes that
-// liquid fills and passes through.
-struct piece {
-    int cluster, n_throat;
-    int reference;      // throat that gas enters most easily: potentials are above its
-    double evaporation; // of all its throats
-    int n_meniscus, n_partial; // of them, in throats partly empty
-    double margin;             // of the reference over the next throat that gas enters
-    double flow;               // scale of the flows in it
-};
-
-struct flow_solver *flow_solver_make(const struct phases *phases);
-void flow_solver_free(struct flow_solver *solver);
-
-// Nothing is remembered of the clusters as they were.
-void flow_solver_forget(struct flow_solver *solver, const struct phases *phases);
-
-// THROAT has emptied.
-void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
-                        int throat);
-
-// Whether a throat is full; whether liquid goes from throat to throat at NODE.
-bool throat_is_full(const struct phases *phases, int throat);
-bool passes_on(const struct phases *phases, int node);
-
-// The nodes at a throat's liquid ends; returns how many there are.
-int liquid_ends(const struct liquid_flow *flow, int throat, int end[2]);
-
-// From the meniscus of THROAT to each of its N liquid ends.
-double meniscus_arm(const struct liquid_flow *flow, int throat, int n);
-
-// Of NODE in CLUSTER.
-double node_potential(const struct flow_solver *solver, int cluster, int node);
-
-// Lists the cluster's nodes in the solver's NODE.
-void list_nodes(struct liquid_flow *flow, const struct piece *piece);
-
 // Potentials, flows to the menisci that FLOW says move, and their scale.
 enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
                                struct reason *reason);
+
+// The scale of the flows: the largest to or from a moving meniscus, or what evaporates.
+double flow_scale(const struct flow_solver *solver, const struct piece *piece);
+
+// Either way: movers and nodes are listed; returns the error of the balances, of the
+// largest flow.
+double solve_by_elimination(struct liquid_flow *flow, struct piece *piece);
+double solve_by_graph(struct liquid_flow *flow, struct piece *piece,
+                      struct liquid_graph *graph);
+
+// The cluster's graph; NULL if it is too small for one: then its nodes are listed.
+struct liquid_graph *find_graph(struct liquid_flow *flow, const struct piece *piece);
 
 #endif

@@ -227,6 +227,34 @@ static void test_eighteen_decades(void **state)
     network_free(&network);
 }
 
+// Pieces of one throat each have nothing to flow to: viscosity changes nothing, over
+// twelve decades.
+static void test_throats_alone(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(3, 3, 2, spacing);
+    randomise_radii(&network, spacing, 0.3, 4);
+    for (int t = 0; t < network.n_throat; t++)
+        if (network.throat_nodes[t][1] - network.throat_nodes[t][0] != 9)
+            network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    struct drying_history expected = dry_and_check(&network, &conditions);
+    conditions.liquid = LIQUID_VISCOUS;
+    for (int k = -12; k <= 0; k += 3) {
+        conditions.viscosity = pow(10, k);
+        struct drying_history history = dry_and_check(&network, &conditions);
+        assert_int_equal(history.n_event, expected.n_event);
+        for (int e = 0; e < history.n_event; e++) {
+            assert_int_equal(history.event_throat[e], expected.event_throat[e]);
+            assert_true(fabs(history.event_time[e] / expected.event_time[e] - 1) <
+                        1e-13);
+        }
+        drying_history_free(&history);
+    }
+    drying_history_free(&expected);
+    network_free(&network);
+}
+
 // Radii over six decades, conductances over twenty-four: balances close all the same.
 // Times do not all differ, as volumes are over twelve decades.
 static void test_radii_over_six_decades(void **state)
@@ -265,6 +293,7 @@ int main(void)
         cmocka_unit_test(test_great_viscosity_is_immobile),
         cmocka_unit_test(test_equal_throats),
         cmocka_unit_test(test_eighteen_decades),
+        cmocka_unit_test(test_throats_alone),
         cmocka_unit_test(test_radii_over_six_decades)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

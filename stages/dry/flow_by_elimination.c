@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Flow in a cluster that is small, or whose conductances are too far apart.
+#include "cluster_flow.h"
+
+#include <math.h>
+
+static double fall_between_movers(const void *context, int b, int a)
+{
+    const struct liquid_flow *flow = context;
+    return menisci_potential(&flow->menisci, flow->solver->mover[b],
+                             flow->solver->mover[a]);
+}
+
+static void link_throat(struct liquid_flow *flow, int throat)
+{
+    struct flow_solver *solver = flow->solver;
+    int end[2];
+    const int n = liquid_ends(flow, throat, end);
+    for (int e = 0; e < n; e++)
+        kron_take(&solver->kron, solver->site[end[e]], solver->charge[throat] / n);
+    if (n == 2)
+        kron_link(&solver->kron, solver->site[end[0]], solver->site[end[1]],
+                  flow->conductance[throat]);
+}
+
+static void link_mover(struct liquid_flow *flow, int k)
+{
+    struct flow_solver *solver = flow->solver;
+    int end[2];
+    const int n = liquid_ends(flow, solver->mover[k], end);
+    for (int e = 0; e < n; e++)
+        kron_link(&solver->kron, solver->site[end[e]], solver->n_node + k,
+                  meniscus_arm(flow, solver->mover[k], n));
+}
+
+// Returns by how much what flows to the menisci differs from what is taken on the way.
+static double find_inflow(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    double sum = piece->evaporation;
+    for (int k = 0; k < solver->n_mover; k++) {
+        const int throat = solver->mover[k];
+        solver->inflow[throat] = kron_flow(&solver->kron, k, fall_between_movers, flow);
+        sum += solver->inflow[throat] - solver->charge[throat];
+    }
+    return fabs(sum);
+}
+
+static void keep_potentials(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    struct cluster_memory *memory = &solver->cluster[piece->cluster];
+    double *level = solver->level;
+    for (int k = 0; k < solver->n_mover; k++)
+        level[solver->n_node + k] =
+            menisci_potential(&flow->menisci, solver->mover[k], piece->reference);
+    kron_potentials(&solver->kron, level);
+    for (int k = 0; k < solver->n_node; k++) {
+        const int node = solver->node[k];
+        struct compensated *potential =
+            memory->graph ? &memory->graph->potential[solver->row[node]]
+                          : &solver->potential[node];
+        *potential = (struct compensated){.value = level[k]};
+    }
+    memory->reference = piece->reference;
+}
+
+// The nodes are listed. Returns the error of the balance.
+double solve_by_elimination(struct liquid_flow *flow, struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    kron_begin(&solver->kron, solver->n_node, solver->n_mover);
+    for (int k = 0; k < solver->n_node; k++)
+        solver->site[solver->node[k]] = k;
+    for (enum throat_list l = 0; l < LISTS; l++)
+        for (int t = first_throat(solver, piece, l); t >= 0; t = solver->lists.next[t])
+            if (!flow->moving[t]) link_throat(flow, t);
+    for (int k = 0; k < solver->n_mover; k++)
+        link_mover(flow, k);
+    for (int k = 0; k < solver->n_node; k++)
+        solver->site[solver->node[k]] = -1;
+    kron_eliminate(&solver->kron);
+    const double lack = find_inflow(flow, piece);
+    keep_potentials(flow, piece);
+    piece->flow = flow_scale(solver, piece);
+    return lack > 0 ? lack / piece->flow : 0;
+}

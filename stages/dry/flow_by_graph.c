@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Flow in a large cluster, from what it was at the step before.
+#include "cluster_flow.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// A cluster of at least this many nodes has a graph, which is made anew when this part
+// of its nodes have left.
+enum { GRAPH_NODES = 150, REFINEMENTS = 8 };
+static const double MOST_LEFT = 0.06;
+
+static int list_links(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    int n_link = 0;
+    for (enum throat_list l = 0; l < LISTS; l++)
+        for (int t = first_throat(solver, piece, l); t >= 0;
+             t = solver->lists.next[t]) {
+            int end[2];
+            solver->entry[t] = -1;
+            if (liquid_ends(flow, t, end) != 2) continue;
+            solver->entry[t] = n_link;
+            solver->link[n_link++] =
+                (struct graph_link){solver->site[end[0]], solver->site[end[1]],
+                                    flow->moving[t] ? 0 : flow->conductance[t]};
+        }
+    return n_link;
+}
+
+// The nodes are listed.
+static bool make_graph(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    struct cluster_memory *memory = &solver->cluster[piece->cluster];
+    const int n = solver->n_node;
+    for (int k = 0; k < n; k++)
+        solver->site[solver->node[k]] = k;
+    const int n_link = list_links(flow, piece);
+    for (int k = 0; k < n; k++)
+        solver->site[solver->node[k]] = -1;
+    int *row = NEW_ARRAY(int, n), *entry = NEW_ARRAY(int, n_link);
+    memory->graph =
+        liquid_graph_make(&solver->common, n, n_link, solver->link, row, entry);
+    if (memory->graph) {
+        memory->node = NEW_ARRAY(int, n);
+        for (int k = 0; k < n; k++) {
+            memory->node[row[k]] = solver->node[k];
+            solver->row[solver->node[k]] = row[k];
+            if (memory->reference >= 0)
+                memory->graph->potential[row[k]] = solver->potential[solver->node[k]];
+        }
+        for (enum throat_list l = 0; l < LISTS; l++)
+            for (int t = first_throat(solver, piece, l); t >= 0;
+                 t = solver->lists.next[t])
+                if (solver->entry[t] >= 0) solver->entry[t] = entry[solver->entry[t]];
+    }
+    free(row);
+    free(entry);
+    return memory->graph;
+}
+
+struct liquid_graph *find_graph(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    struct cluster_memory *memory = &solver->cluster[piece->cluster];
+    const struct liquid_graph *old = memory->graph;
+    if (old && old->n_left <= MOST_LEFT * old->n) return memory->graph;
+    free_graph(solver, memory);
+    list_nodes(flow, piece);
+    if (solver->n_node >= GRAPH_NODES) make_graph(flow, piece);
+    return memory->graph;
+}
+
+// Potentials are above that of another throat now.
+static void change_reference(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct cluster_memory *memory = &flow->solver->cluster[piece->cluster];
+    if (memory->reference >= 0 && memory->reference != piece->reference) {
+        const double rise =
+            menisci_potential(&flow->menisci, memory->reference, piece->reference);
+        for (int k = 0; k < memory->graph->n; k++)
+            compensated_add(&memory->graph->potential[k], rise);
+    }
+    memory->reference = piece->reference;
+}
+
+// What menisci take that stay, and the arms to those that move.
+static void describe_menisci(struct liquid_flow *flow, const struct piece *piece,
+                             struct liquid_graph *graph)
+{
+    struct flow_solver *solver = flow->solver;
+    int n_arm = 0;
+    for (int k = 0; k < graph->n; k++)
+        graph->source[k] = 0;
+    for (int t = first_throat(solver, piece, LIST_MENISCI); t >= 0;
+         t = solver->lists.next[t]) {
+        int end[2];
+        const int n = liquid_ends(flow, t, end);
+        if (solver->entry[t] >= 0 && n == 2)
+            liquid_graph_set(graph, solver->entry[t],
+                             flow->moving[t] ? 0 : flow->conductance[t]);
+        for (int e = 0; e < n; e++) {
+            const int row = solver->row[end[e]];
+            if (flow->moving[t])
+                solver->arm[n_arm++] = (struct graph_arm){
+                    row, meniscus_arm(flow, t, n),
+                    menisci_potential(&flow->menisci, t, piece->reference)};
+            else
+                graph->source[row] -= solver->charge[t] / n;
+        }
+    }
+    liquid_graph_set_arms(graph, n_arm, solver->arm);
+}
+
+// Movers and arms come in one order.
+static void collect_inflow(struct liquid_flow *flow, const struct liquid_graph *graph)
+{
+    struct flow_solver *solver = flow->solver;
+    const struct graph_arm *arm = graph->arm;
+    for (int k = 0; k < solver->n_mover; k++) {
+        int end[2];
+        const int throat = solver->mover[k], n = liquid_ends(flow, throat, end);
+        double sum = 0;
+        for (int e = 0; e < n; e++, arm++) {
+            const struct compensated level = {.value = arm->level};
+            sum += arm->conductance *
+                   compensated_difference(graph->potential[arm->a], level);
+        }
+        solver->inflow[throat] = sum;
+    }
+}
+
+// What the worst balance lacks, of the largest flow; 0 where nothing flows, as between
+// menisci that are all alike.
+static double graph_error(struct liquid_flow *flow, struct piece *piece,
+                          struct liquid_graph *graph)
+{
+    const double lack = liquid_graph_lack(graph);
+    collect_inflow(flow, graph);
+    piece->flow = flow_scale(flow->solver, piece);
+    return lack > 0 ? lack / piece->flow : 0;
+}
+
+double solve_by_graph(struct liquid_flow *flow, struct piece *piece,
+                      struct liquid_graph *graph)
+{
+    change_reference(flow, piece);
+    describe_menisci(flow, piece, graph);
+    double error = graph_error(flow, piece, graph);
+    for (int k = 0; k < REFINEMENTS && !(error <= FLOW_AIM); k++) {
+        const bool good = liquid_graph_correct(graph, FLOW_AIM * piece->flow);
+        error = graph_error(flow, piece, graph);
+        if (!good) break;
+    }
+    return error;
+}

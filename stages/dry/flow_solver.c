@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "flow_solver.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// --- one throat, one cluster ---------------------------------------------------------
+
+bool throat_is_full(const struct phases *phases, int throat)
+{
+    return !(phases_saturation(phases, throat) < 1);
+}
+
+bool passes_on(const struct phases *phases, int node)
+{
+    return phases->clusters.joins[node] && phases->liquid_beside[node] > 1;
+}
+
+int liquid_ends(const struct liquid_flow *flow, int throat, int end[2])
+{
+    int n = 0;
+    for (int k = 0; k < 2; k++) {
+        const int node = flow->network->throat_nodes[throat][k];
+        if (passes_on(flow->solver->phases, node)) end[n++] = node;
+    }
+    return n;
+}
+
+double meniscus_arm(const struct liquid_flow *flow, int throat, int n)
+{
+    return n * flow->conductance[throat] /
+           phases_saturation(flow->solver->phases, throat);
+}
+
+double node_potential(const struct flow_solver *solver, int cluster, int node)
+{
+    const struct liquid_graph *graph = solver->cluster[cluster].graph;
+    return compensated_value(graph ? graph->potential[solver->row[node]]
+                                   : solver->potential[node]);
+}
+
+int first_throat(const struct flow_solver *solver, const struct piece *piece,
+                 enum throat_list list)
+{
+    return throat_lists_first(&solver->lists, piece->cluster, list);
+}
+
+static void add_node(struct flow_solver *solver, int node)
+{
+    if (solver->site[node] >= 0) return;
+    solver->site[node] = solver->n_node;
+    solver->node[solver->n_node++] = node;
+}
+
+void list_nodes(struct liquid_flow *flow, const struct piece *piece)
+{
+    struct flow_solver *solver = flow->solver;
+    solver->n_node = 0;
+    for (enum throat_list l = 0; l < LISTS; l++)
+        for (int t = first_throat(solver, piece, l); t >= 0;
+             t = solver->lists.next[t]) {
+            int end[2];
+            const int n = liquid_ends(flow, t, end);
+            for (int e = 0; e < n; e++)
+                add_node(solver, end[e]);
+        }
+    for (int k = 0; k < solver->n_node; k++)
+        solver->site[solver->node[k]] = -1;
+}
+
+// --- from event to event -------------------------------------------------------------
+
+void free_graph(struct flow_solver *solver, struct cluster_memory *memory)
+{
+    struct liquid_graph *graph = memory->graph;
+    for (int k = 0; graph && k < graph->n; k++) {
+        if (graph->present[k] == 0) continue;
+        solver->potential[memory->node[k]] = graph->potential[k];
+        solver->row[memory->node[k]] = -1;
+    }
+    liquid_graph_free(graph);
+    free(memory->node);
+    memory->graph = NULL;
+    memory->node = NULL;
+}
+
+static void reserve(struct flow_solver *solver, int n_id)
+{
+    while (solver->capacity < n_id) {
+        const int before = solver->capacity;
+        GROW_ARRAY(solver->cluster, solver->capacity, solver->capacity);
+        for (int c = before; c < solver->capacity; c++)
+            solver->cluster[c] = (struct cluster_memory){.reference = -1};
+    }
+}
+
+// NODE is gas now.
+static void cut_node(struct flow_solver *solver, struct cluster_memory *memory,
+                     int node)
+{
+    if (solver->row[node] < 0) return;
+    liquid_graph_cut(memory->graph, solver->row[node]);
+    solver->row[node] = -1;
+}
+
+// The ends of THROAT have left with it for a new cluster.
+static void part_with(struct flow_solver *solver, const struct network *network,
+                      struct cluster_memory *memory, int throat)
+{
+    solver->entry[throat] = -1;
+    for (int end = 0; end < 2; end++) {
+        const int node = network->throat_nodes[throat][end], row = solver->row[node];
+        if (row < 0) continue;
+        solver->potential[node] = memory->graph->potential[row];
+        liquid_graph_leave(memory->graph, row);
+        solver->row[node] = -1;
+    }
+}
+
+void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
+                        int throat)
+{
+    const struct clusters *clusters = &phases->clusters;
+    const struct incidence *incidence = &phases->incidence;
+    reserve(solver, clusters->n_id);
+    const int old = solver->lists.cluster[throat];
+    struct cluster_memory *memory = &solver->cluster[old];
+    const int32_t *node = phases->network->throat_nodes[throat];
+    for (int end = 0; end < 2; end++)
+        cut_node(solver, memory, node[end]);
+    throat_lists_follow(&solver->lists, clusters, throat);
+    for (int k = 0; k < clusters->n_moved; k++) {
+        const int moved = clusters->moved[k];
+        part_with(solver, phases->network, memory, moved);
+        throat_lists_follow(&solver->lists, clusters, moved);
+        solver->cluster[clusters->of_throat[moved]] =
+            (struct cluster_memory){.reference = memory->reference,
+                                    .resistance = memory->resistance,
+                                    .size = memory->size};
+    }
+    for (int end = 0; end < 2; end++)
+        for (int k = incidence->offset[node[end]]; k < incidence->offset[node[end] + 1];
+             k++)
+            throat_lists_follow(&solver->lists, clusters, incidence->throat[k]);
+    if (clusters->size[old] > 0) return;
+    free_graph(solver, memory);
+    *memory = (struct cluster_memory){.reference = -1};
+}
+
+void flow_solver_forget(struct flow_solver *solver, const struct phases *phases)
+{
+    for (int c = 0; c < solver->capacity; c++) {
+        free_graph(solver, &solver->cluster[c]);
+        solver->cluster[c] = (struct cluster_memory){.reference = -1};
+    }
+    reserve(solver, phases->clusters.n_id);
+    throat_lists_free(&solver->lists);
+    solver->lists = throat_lists_make(&phases->clusters, phases->network->n_throat);
+}
+
+struct flow_solver *flow_solver_make(const struct phases *phases)
+{
+    const int n_node = phases->network->n_node, n_throat = phases->network->n_throat;
+    struct flow_solver *solver = NEW_ARRAY(struct flow_solver, 1);
+    *solver = (struct flow_solver){
+        .lists = throat_lists_make(&phases->clusters, n_throat),
+        .row = NEW_ARRAY(int, n_node),
+        .entry = NEW_ARRAY(int, n_throat),
+        .potential = NEW_ARRAY(struct compensated, n_node),
+        .inflow = NEW_ARRAY(double, n_throat),
+        .mover = NEW_ARRAY(int, n_throat),
+        .arm = NEW_ARRAY(struct graph_arm, 2 * (size_t)n_throat),
+        .node = NEW_ARRAY(int, n_node),
+        .site = NEW_ARRAY(int, n_node),
+        .level = NEW_ARRAY(double, (size_t)n_node + (size_t)n_throat),
+        .link = NEW_ARRAY(struct graph_link, n_throat)};
+    for (int i = 0; i < n_node; i++)
+        solver->row[i] = solver->site[i] = -1;
+    for (int t = 0; t < n_throat; t++)
+        solver->entry[t] = -1;
+    reserve(solver, phases->clusters.n_id);
+    plain_cholmod_start(&solver->common);
+    return solver;
+}
+
+void flow_solver_free(struct flow_solver *solver)
+{
+    if (!solver) return;
+    for (int c = 0; c < solver->capacity; c++)
+        free_graph(solver, &solver->cluster[c]);
+    cholmod_finish(&solver->common);
+    throat_lists_free(&solver->lists);
+    kron_free(&solver->kron);
+    free(solver->cluster);
+    free(solver->row);
+    free(solver->entry);
+    free(solver->potential);
+    free(solver->inflow);
+    free(solver->mover);
+    free(solver->arm);
+    free(solver->node);
+    free(solver->site);
+    free(solver->level);
+    free(solver->link);
+    free(solver);
+}
