@@ -49,7 +49,12 @@ static enum status check_liquid(const struct drying_conditions *conditions,
     if ((unsigned)conditions->liquid > LIQUID_VISCOUS)
         return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
                       (int)conditions->liquid);
-    if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0)
+    if (conditions->liquid != LIQUID_IMMOBILE && conditions->kelvin)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "kelvin: must be false unless the liquid is immobile: where it "
+                      "flows, menisci are as curved as its pressure makes them");
+    if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0 &&
+        !conditions->kelvin)
         return STATUS_OK;
     const enum status status = check_menisci(conditions, reason);
     if (status || conditions->liquid != LIQUID_VISCOUS) return status;

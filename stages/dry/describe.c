@@ -53,9 +53,15 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
                  knudsen_radius(conditions));
         append(text, size, line);
     }
+    if (conditions->kelvin)
+        append(
+            text, size,
+            "Kelvin effect: each throat's meniscus has its own vapour pressure; "
+            "vapour may condense in throats partly empty, full ones become flatter\n");
     append(text, size, "left out: ");
     if (!gravity) append(text, size, "gravity, ");
     if (!conditions->knudsen) append(text, size, "Knudsen effect, ");
-    append(text, size, "films, Kelvin effect, temperature");
+    if (!conditions->kelvin) append(text, size, "Kelvin effect, ");
+    append(text, size, "films, temperature");
     return text;
 }

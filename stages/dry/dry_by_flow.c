@@ -51,7 +51,7 @@ static void advance(struct run *run, double duration)
 {
     struct phases *phases = &run->phases;
     compensated_add(&run->time, duration);
-    compensated_add(&run->evaporated, vapour_rate(&phases->vapour) * duration);
+    compensated_add(&run->evaporated, rate_now(run) * duration);
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
         lose(phases, loss->throat, loss->rate * duration);
@@ -101,6 +101,19 @@ static void empty_throats(struct run *run)
     note_breakthrough(run);
 }
 
+void carry_out_losses(struct run *run)
+{
+    advance(run, time_to_first(run));
+    empty_throats(run);
+}
+
+void record_losses(struct run *run)
+{
+    if (!step_is_due(run)) return;
+    record_changes(run);
+    record_state(run);
+}
+
 static void keep_pressures(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
@@ -113,7 +126,7 @@ static void keep_pressures(struct run *run)
 }
 
 // Throats may refill in turn, but not for ever.
-static enum status note_idle(struct run *run, bool idle, struct reason *reason)
+enum status note_idle(struct run *run, bool idle, struct reason *reason)
 {
     run->n_idle = idle ? run->n_idle + 1 : 0;
     const double most =
@@ -139,13 +152,9 @@ enum status dry_by_flow(struct run *run, struct reason *reason)
             "nothing evaporates any more with %d throats still wet (rates too "
             "small for the arithmetic)",
             phases->n_full);
-    advance(run, time_to_first(run));
     const int n_before = phases->n_full;
-    empty_throats(run);
+    carry_out_losses(run);
     run->n_flow_step++;
-    if (step_is_due(run)) {
-        record_changes(run);
-        record_state(run);
-    }
+    record_losses(run);
     return note_idle(run, phases->n_full == n_before, reason);
 }

@@ -8,6 +8,7 @@
 #include "run.h"
 #include "start.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 double network_saturation(const struct run *run)
@@ -19,7 +20,9 @@ double network_saturation(const struct run *run)
 
 double rate_now(const struct run *run)
 {
-    return run->phases.n_full > 0 ? vapour_rate(&run->phases.vapour) : 0;
+    if (run->phases.n_full == 0) return 0;
+    return run->conditions->kelvin ? run->curved.rate
+                                   : vapour_rate(&run->phases.vapour);
 }
 
 bool snapshot_is_due(const struct run *run)
@@ -93,13 +96,19 @@ static void begin(struct run *run)
     record_state(run);
 }
 
+static enum status go_on(struct run *run, struct reason *reason)
+{
+    if (run->conditions->kelvin) return dry_by_curvature(run, reason);
+    if (run->conditions->liquid == LIQUID_VISCOUS) return dry_by_flow(run, reason);
+    return dry_by_clocks(run, reason);
+}
+
 static enum status dry_all(struct run *run, const struct drying_progress *progress,
                            struct reason *reason)
 {
     enum status status = STATUS_OK;
     while (!status && run->phases.n_full > 0) {
-        status = run->conditions->liquid == LIQUID_VISCOUS ? dry_by_flow(run, reason)
-                                                           : dry_by_clocks(run, reason);
+        status = go_on(run, reason);
         note_first_period(run);
         if (progress && progress->report)
             progress->report(progress->context,
@@ -115,7 +124,7 @@ static void summarise(const struct run *run, struct drying_history *history)
     history->boundary_layers = run->phases.layer.layers;
     history->initial_liquid = run->phases.initial_liquid * run->scale.mass;
     history->evaporated = compensated_value(run->evaporated) * run->scale.mass;
-    history->vapour_residual = run->imbalance;
+    history->vapour_residual = fmax(run->imbalance, run->curved.residual);
     history->liquid_residual = run->flow.residual;
     history->flow_solutions = run->flow.solutions;
     history->flow_rounds = run->flow.rounds;
@@ -142,7 +151,10 @@ static void start(struct run *run)
 static void prepare(struct run *run)
 {
     const struct network *network = run->phases.network;
-    if (run->conditions->liquid == LIQUID_VISCOUS) {
+    if (run->conditions->kelvin) {
+        run->curved = curved_make(&run->phases, run->conditions);
+        run->losses = losses_make(network->n_throat);
+    } else if (run->conditions->liquid == LIQUID_VISCOUS) {
         run->flow =
             liquid_flow_make(&run->phases, run->scale.length,
                              menisci_make(network, run->conditions, &run->scale));
@@ -198,24 +210,33 @@ static enum status make_phases(const struct network *network, struct run *run,
     return status;
 }
 
+static enum status find_curved(struct run *run, struct reason *reason)
+{
+    if (!run->conditions->kelvin) return STATUS_OK;
+    return curved_find(&run->curved, &run->phases, &run->losses, reason);
+}
+
 // At the start, or where another run was when its state was kept.
 static enum status begin_run(struct run *run, const struct keeper *keeper,
                              struct reason *reason)
 {
     if (keeper && keeper->begin) {
         prepare(run);
-        return go_on_from(run, keeper->begin, reason);
+        const enum status status = go_on_from(run, keeper->begin, reason);
+        return status ? status : find_curved(run, reason);
     }
     start(run);
     prepare(run);
-    begin(run);
-    return STATUS_OK;
+    const enum status status = find_curved(run, reason);
+    if (!status) begin(run);
+    return status;
 }
 
 static void free_run(struct run *run)
 {
     liquid_flow_free(&run->flow);
     losses_free(&run->losses);
+    curved_free(&run->curved);
     clocks_free(&run->clocks);
     free(run->ended);
     free(run->is_ended);
@@ -232,6 +253,7 @@ enum status dry_network(const struct network *network,
     enum status status = check_conditions(conditions, reason);
     if (!status) status = check_gravity(conditions, network, reason);
     if (!status) status = check_throats(network, reason);
+    if (!status) status = check_curved(conditions, network, reason);
     if (!status) status = check_steps(conditions, network, reason);
     if (status) return status;
 

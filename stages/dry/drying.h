@@ -6,8 +6,8 @@
 // completely empty and through a boundary layer above the open wall [K 3.9]. A node
 // that touches both liquid and gas is wet: its vapour is saturated, and what it
 // evaporates is charged to the liquid throats at the node in proportion to their
-// cross-sections. Left out: liquid films, adsorption, gravity, Kelvin and Knudsen
-// effects, viscosity of the gas, gradients of temperature [K 3.4.2].
+// cross-sections. Left out: liquid films, adsorption, viscosity of the gas, gradients
+// of temperature [K 3.4.2].
 //
 // Everything here is in SI units. Inside, lengths are scaled by the mean throat length
 // and vapour by its driving force, so that the same network at another scale gives the
@@ -48,6 +48,7 @@ struct drying_conditions {
     double contact_angle;   // degrees, from 0 to below 90
     double gravity;         // towards -z, m/s2; 0: none
     bool knudsen;           // molecules meet the walls of narrow throats
+    bool kelvin;            // curved menisci have less vapour; immobile liquid only
     int n_snapshot;
     const double *snapshot; // (n_snapshot) saturations, each below the one before:
                             // where the pressures of viscous liquid are kept

@@ -20,8 +20,7 @@ void losses_free(struct losses *losses)
     *losses = (struct losses){0};
 }
 
-// Proportional to the cross-section of a throat that holds liquid.
-static double liquid_section(const struct phases *phases, int throat)
+double liquid_section(const struct phases *phases, int throat)
 {
     if (phases->clusters.of_throat[throat] < 0) return 0;
     return phases->volume[throat] / phases->network->throat_length[throat];
@@ -51,6 +50,12 @@ static int compare_losses(const void *a, const void *b)
     return (l->throat > m->throat) - (l->throat < m->throat);
 }
 
+void losses_sort(struct losses *losses)
+{
+    if (losses->n > 0)
+        qsort(losses->loss, (size_t)losses->n, sizeof *losses->loss, compare_losses);
+}
+
 enum status losses_find(struct losses *losses, struct phases *phases,
                         struct liquid_flow *flow, struct reason *reason)
 {
@@ -62,7 +67,6 @@ enum status losses_find(struct losses *losses, struct phases *phases,
                                                 losses->loss, &losses->n, reason);
     for (int k = 0; k < losses->n_charged; k++)
         losses->charge[losses->charged[k]] = 0;
-    if (losses->n > 0)
-        qsort(losses->loss, (size_t)losses->n, sizeof *losses->loss, compare_losses);
+    losses_sort(losses);
     return status;
 }

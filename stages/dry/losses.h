@@ -28,6 +28,12 @@ struct losses losses_make(int n_throat);
 enum status losses_find(struct losses *losses, struct phases *phases,
                         struct liquid_flow *flow, struct reason *reason);
 
+// By throats, ascending.
+void losses_sort(struct losses *losses);
+
+// Proportional to the cross-section of THROAT; 0 if it holds no liquid.
+double liquid_section(const struct phases *phases, int throat);
+
 void losses_free(struct losses *losses);
 
 #endif

@@ -26,9 +26,7 @@ static void flow_state(struct run *run, struct state *state)
     state_numbers(state, &flow->residual, 1);
     state_long(state, &flow->rounds);
     state_long(state, &flow->solutions);
-    state_integer(state, &run->n_idle, 0, INT_MAX);
     state_long(state, &run->n_flow_step);
-    state_flags(state, run->is_ended, run->phases.network->n_throat);
     pressures_state(run, state);
 }
 
@@ -41,6 +39,8 @@ static void steps_state(struct run *run, struct state *state)
     state_integer(state, &run->n_skipped, 0, INT_MAX);
     state_integer(state, &run->n_ended, 0, n_throat);
     state_integers(state, run->ended, run->n_ended, 0, n_throat - 1);
+    state_flags(state, run->is_ended, n_throat);
+    state_integer(state, &run->n_idle, 0, INT_MAX);
     state_numbers(state, run->saturation, n_throat);
 }
 
@@ -54,7 +54,9 @@ static void run_state(struct run *run, struct state *state)
     recorder_state(&run->recorder, run->phases.network->n_throat, state);
     phases_state(&run->phases, state);
     steps_state(run, state);
-    if (run->conditions->liquid == LIQUID_VISCOUS)
+    if (run->conditions->kelvin)
+        curved_state(&run->curved, state);
+    else if (run->conditions->liquid == LIQUID_VISCOUS)
         flow_state(run, state);
     else
         clocks_state(&run->clocks, state);

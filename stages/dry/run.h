@@ -6,6 +6,7 @@
 #include "basics/compensated.h"
 #include "clocks.h"
 #include "conditions.h"
+#include "curved.h"
 #include "history.h"
 #include "losses.h"
 #include "phases.h"
@@ -14,9 +15,10 @@ struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
     struct phases phases;
-    struct clocks clocks;    // empty if the liquid is viscous
-    struct losses losses;    // empty unless it is
-    struct liquid_flow flow; // empty unless it is
+    struct clocks clocks;    // of liquid without viscosity, or immobile
+    struct liquid_flow flow; // of viscous liquid
+    struct curved curved;    // of menisci with vapour pressures of their own
+    struct losses losses;    // of the last two
     int n_idle;              // viscous: steps since a throat has emptied
     int64_t n_flow_step;     // viscous: steps so far, recorded or not
     struct recorder recorder;
@@ -29,9 +31,9 @@ struct run {
     double step_saturation;
     struct compensated step_time, step_evaporated;
     int n_skipped;      // events
-    int n_ended;        // throats that have emptied; viscous: that have changed
+    int n_ended;        // throats that have emptied; with losses: that have changed
     int *ended;         // (n_ended)
-    bool *is_ended;     // (n_throat) viscous: whether among them
+    bool *is_ended;     // (n_throat) with losses: whether among them
     double *saturation; // (n_throat) at that step
 };
 
@@ -57,9 +59,21 @@ void record_state(struct run *run);
 // Keeps the saturation when gas first reaches the wall opposite the open one.
 void note_breakthrough(struct run *run);
 
-// One event on: liquid without viscosity, or immobile; viscous liquid.
+// Until the first throat has emptied or filled, or changed by saturation_step, all lose
+// as run->losses say; gas fills what has emptied.
+void carry_out_losses(struct run *run);
+
+// Records the step that follows if it is time for one; with losses.
+void record_losses(struct run *run);
+
+// STATUS_NOT_CONVERGED if throats refill in turn for ever. IDLE: none has emptied.
+enum status note_idle(struct run *run, bool idle, struct reason *reason);
+
+// One event on: liquid without viscosity, or immobile; viscous liquid; menisci with
+// vapour pressures of their own, the losses being those of now.
 // STATUS_NOT_CONVERGED: nothing evaporates any more, or the flow is not found.
 enum status dry_by_clocks(struct run *run, struct reason *reason);
 enum status dry_by_flow(struct run *run, struct reason *reason);
+enum status dry_by_curvature(struct run *run, struct reason *reason);
 
 #endif

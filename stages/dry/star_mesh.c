@@ -341,6 +341,49 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
     if (front->n == 0) end_front(mesh, front_index);
 }
 
+// --- all links ---------------------------------------------------------------------
+
+void star_mesh_bring_up_to_date(struct star_mesh *mesh)
+{
+    for (int f = 0; f < mesh->n_front; f++)
+        bring_up_to_date(&mesh->front[f]);
+}
+
+void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
+                         double *flow)
+{
+    for (int f = 0; f < mesh->n_front; f++) {
+        const struct front *front = &mesh->front[f];
+        const double *link = front->triangle;
+        for (int i = 1; i < front->n; i++) {
+            const int site = front->site[i];
+            double sum = 0;
+            for (int j = 0; j < i; j++) {
+                const double through = *link++ * (level[front->site[j]] - level[site]);
+                sum += through;
+                flow[front->site[j]] -= through;
+            }
+            flow[site] += sum;
+        }
+    }
+}
+
+void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
+                           double *degree)
+{
+    for (int f = 0; f < mesh->n_front; f++) {
+        const struct front *front = &mesh->front[f];
+        const double *link = front->triangle;
+        for (int i = 1; i < front->n; i++)
+            for (int j = 0; j < i; j++, link++) {
+                const int a = front->site[i], b = front->site[j];
+                if (level[a] == level[b]) continue;
+                degree[a] += *link;
+                degree[b] += *link;
+            }
+    }
+}
+
 void star_mesh_forget_changes(struct star_mesh *mesh)
 {
     for (int k = 0; k < mesh->n_changed; k++)

@@ -55,6 +55,15 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
 // SITE leaves the mesh. O(n^2) for a front of n sites.
 void star_mesh_eliminate(struct star_mesh *mesh, int site);
 
+// With what eliminations have left to do done, adds to FLOW (n_site) what flows to each
+// site from the others when sites are at LEVEL (n_site), and to DEGREE (n_site) the
+// conductance of its links, those between sites at one level left out.
+void star_mesh_bring_up_to_date(struct star_mesh *mesh);
+void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
+                         double *flow);
+void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
+                           double *degree);
+
 void star_mesh_forget_changes(struct star_mesh *mesh);
 
 // When no changes are noted.

@@ -159,6 +159,9 @@ with scratch() as folder:
         this = [*dry, "--set", f"liquid={liquid}", network]
         in_pieces(f"dry, {liquid} liquid", this)
         killed(f"dry, {liquid} liquid", this)
+    killed("dry, curved menisci",
+           ["dry", "-p", SCENE, "--set", "liquid=immobile", "--set", "kelvin=true",
+            make_network(folder, "middle", 11)])
     in_pieces("dry, viscous liquid with snapshots",
               [*dry, "--set", "liquid=viscous", "--set", "snapshots=[0.9,0.6,0.3]", small])
 

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Menisci with vapour pressures of their own: on to the moment at which a throat has
+// emptied or filled.
+#include "run.h"
+
+enum status dry_by_curvature(struct run *run, struct reason *reason)
+{
+    struct phases *phases = &run->phases;
+    if (run->losses.n == 0)
+        return refuse(
+            reason, STATUS_NOT_CONVERGED,
+            "nothing evaporates any more with %d throats still wet (rates too "
+            "small for the arithmetic)",
+            phases->n_full);
+    const int n_before = phases->n_full;
+    carry_out_losses(run);
+    if (phases->n_full > 0) {
+        const enum status status =
+            curved_find(&run->curved, phases, &run->losses, reason);
+        if (status) return status;
+    }
+    record_losses(run);
+    return note_idle(run, phases->n_full == n_before, reason);
+}
