@@ -95,7 +95,7 @@ static void empty_throats(struct run *run)
         const int throat = run->losses.loss[k].throat;
         if (phases->liquid[throat].value != 0) continue;
         phases_empty_throat(phases, throat);
-        liquid_flow_follow(&run->flow, phases, throat);
+        if (run->flow.solver) liquid_flow_follow(&run->flow, phases, throat);
         recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
     }
     note_breakthrough(run);
