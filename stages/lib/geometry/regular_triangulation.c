@@ -5,30 +5,20 @@
 
 #include "basics/memory.h"
 #include "geometry/exact.h"
+#include "geometry/live_cell.h"
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { INFINITE = -1, NOWHERE = -2 };
-
-// A cell while triangulating, with the centre of its sphere.
-struct live_cell {
-    int32_t vertex[4], neighbour[4];
-    struct vector at; // centre of power, from the last vertex
-    float error;      // of it; below 0: infinite
-    uint8_t seen;     // in the cavity, or no longer there
-};
-
-static_assert(sizeof(struct live_cell) == 64, "one cache line");
+enum { NOWHERE = -2 };
 
 // A facet between a cell that goes and one that stays. Its vertices come so that with
 // the new point they are positively oriented.
 struct facet {
     int32_t vertex[3];
-    int32_t beyond;   // the cell that stays
-    int32_t back;     // its neighbour across the facet
-    int32_t in_place; // the new cell
+    int32_t beyond; // the cell that stays
+    int32_t back;   // its neighbour across the facet
 };
 
 // An entry of a hash table of the directed edges of the rim; those of other points than
@@ -143,40 +133,6 @@ static bool is_mirrored(const struct weighted_point *const p[5])
             return true;
     }
     return false;
-}
-
-// The centre of power of a cell, from its last vertex, and how far off it may be by
-// rounding, so that most tests need one look at the cell: for the rows r_k to the other
-// three, 2 r_k . c = |r_k|^2 - w_k + w. The bound is of each coordinate and generous.
-static void find_centre(const struct insertion *insertion, struct live_cell *cell)
-{
-    const struct weighted_point *last = &insertion->point[cell->vertex[3]];
-    struct vector row[3], centre = {0};
-    double right[3], terms[3], size[3], error = 0;
-    for (int k = 0; k < 3; k++) {
-        const struct weighted_point *p = &insertion->point[cell->vertex[k]];
-        row[k] = subtract(p->at, last->at);
-        const double square = dot(row[k], row[k]), lighter = last->weight - p->weight;
-        right[k] = 0.5 * (square + lighter);
-        terms[k] = square + fabs(lighter);
-        size[k] = largest(row[k]);
-    }
-    const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
-                                     cross(row[0], row[1])};
-    const double determinant = dot(row[0], across[0]);
-    const double slack = 16 * DBL_EPSILON * size[0] * size[1] * size[2];
-    cell->at = centre;
-    cell->error = INFINITY;
-    if (fabs(determinant) <= 2 * slack) return;
-    for (int k = 0; k < 3; k++) {
-        centre = add(centre, scale(right[k], across[k]));
-        error += terms[k] * size[(k + 1) % 3] * size[(k + 2) % 3];
-    }
-    cell->at = scale(1 / determinant, centre);
-    const double far = largest(cell->at);
-    cell->error = (float)(1.01 * (8 * DBL_EPSILON * error + far * slack) /
-                              (fabs(determinant) - slack) +
-                          8 * DBL_EPSILON * far);
 }
 
 static bool takes(struct insertion *insertion, const struct live_cell *cell, int32_t e);
@@ -322,15 +278,6 @@ static void widen_edge_table(struct insertion *insertion, uint32_t least)
     memset(insertion->edge, 0xff, length * sizeof *insertion->edge);
 }
 
-static void finish_cell(const struct insertion *insertion, struct live_cell *cell)
-{
-    cell->seen = 0;
-    cell->error = -1;
-    for (int k = 0; k < 4; k++)
-        if (cell->vertex[k] == INFINITE) return;
-    find_centre(insertion, cell);
-}
-
 static int32_t add_cell(struct insertion *insertion)
 {
     if (insertion->n_unused) return insertion->unused[--insertion->n_unused];
@@ -344,39 +291,47 @@ static int32_t add_cell(struct insertion *insertion)
     return insertion->n_cell++;
 }
 
-// Joins point E to the rim: cells in the place of those taken, next to each other where
-// their facets share an edge.
-static void fill_cavity(struct insertion *insertion, int32_t e)
+// Cells for all of the rim: those taken, then others.
+static void make_cells(struct insertion *insertion)
 {
-    widen_edge_table(insertion, 9 * (uint32_t)insertion->n_rim);
-    for (int f = 0; f < insertion->n_rim; f++) {
-        struct facet *facet = &insertion->rim[f];
-        const int32_t *v = facet->vertex;
-        const int32_t i =
-            f < insertion->n_cavity ? insertion->cavity[f] : add_cell(insertion);
-        for (int k = 0; k < 3; k++) {
-            const int32_t from = v[(k + 1) % 3], to = v[(k + 2) % 3];
-            *find_edge(insertion, from, to, e) = (struct edge){from, to, e, i};
-        }
-        struct live_cell *cell = &insertion->cell[i];
-        *cell = (struct live_cell){.vertex = {v[0], v[1], v[2], e},
-                                   .neighbour = {[3] = facet->beyond}};
-        insertion->cell[facet->beyond].neighbour[facet->back] = i;
-        finish_cell(insertion, cell);
-        facet->in_place = i;
-    }
-    for (int f = 0; f < insertion->n_rim; f++) {
-        const struct facet *facet = &insertion->rim[f];
-        const int32_t *v = facet->vertex;
-        for (int k = 0; k < 3; k++)
-            insertion->cell[facet->in_place].neighbour[k] =
-                find_edge(insertion, v[(k + 2) % 3], v[(k + 1) % 3], e)->cell;
-    }
+    if (insertion->n_rim > insertion->cavity_capacity)
+        insertion->cavity = reallocate(
+            insertion->cavity, (size_t)(insertion->cavity_capacity = insertion->n_rim),
+            sizeof *insertion->cavity);
+    for (int k = insertion->n_cavity; k < insertion->n_rim; k++)
+        insertion->cavity[k] = add_cell(insertion);
     for (int k = insertion->n_rim; k < insertion->n_cavity; k++) {
         GROW_ARRAY(insertion->unused, insertion->n_unused, insertion->unused_capacity);
         insertion->unused[insertion->n_unused++] = insertion->cavity[k];
     }
-    insertion->last = insertion->rim[0].in_place;
+}
+
+// Joins point E to the rim: cells in the place of those taken, next to each other where
+// their facets share an edge.
+static void fill_cavity(struct insertion *insertion, int32_t e)
+{
+    const int n_rim = insertion->n_rim;
+    widen_edge_table(insertion, 9 * (uint32_t)n_rim);
+    make_cells(insertion);
+    for (int f = 0; f < n_rim; f++) {
+        const struct facet *facet = &insertion->rim[f];
+        const int32_t *v = facet->vertex, i = insertion->cavity[f];
+        for (int k = 0; k < 3; k++) {
+            const int32_t from = v[(k + 1) % 3], to = v[(k + 2) % 3];
+            *find_edge(insertion, from, to, e) = (struct edge){from, to, e, i};
+        }
+        insertion->cell[i] = (struct live_cell){.vertex = {v[0], v[1], v[2], e},
+                                                .neighbour = {[3] = facet->beyond}};
+        insertion->cell[facet->beyond].neighbour[facet->back] = i;
+    }
+    for (int f = 0; f < n_rim; f++) {
+        const int32_t *v = insertion->rim[f].vertex;
+        for (int k = 0; k < 3; k++)
+            insertion->cell[insertion->cavity[f]].neighbour[k] =
+                find_edge(insertion, v[(k + 2) % 3], v[(k + 1) % 3], e)->cell;
+    }
+    find_centres(insertion->point, insertion->cell, insertion->cavity, n_rim);
+    insertion->last = insertion->cavity[0];
 }
 
 static bool same_place(struct vector a, struct vector b)
@@ -433,6 +388,7 @@ static void surround(struct insertion *insertion, const int32_t corner[4])
 {
     for (int c = 0; c < 5; c++) {
         struct live_cell *cell = &insertion->cell[add_cell(insertion)];
+        *cell = (struct live_cell){0};
         int32_t beside[4] = {1, 2, 3, 4};
         memcpy(cell->vertex, corner, sizeof cell->vertex);
         if (c > 0) {
@@ -445,8 +401,8 @@ static void surround(struct insertion *insertion, const int32_t corner[4])
             beside[b] = 1 + a;
         }
         memcpy(cell->neighbour, beside, sizeof cell->neighbour);
-        finish_cell(insertion, cell);
     }
+    find_centres(insertion->point, insertion->cell, (int32_t[]){0, 1, 2, 3, 4}, 5);
 }
 
 // The bits of X, two zeros between each.

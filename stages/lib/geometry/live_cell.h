@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A cell of a triangulation that is being made, and its sphere.
+#ifndef CRAQUELURE_LIVE_CELL_H
+#define CRAQUELURE_LIVE_CELL_H
+
+#include "geometry/exact.h"
+
+#include <assert.h>
+
+enum { INFINITE = -1 }; // in place of a vertex
+
+struct live_cell {
+    int32_t vertex[4], neighbour[4];
+    struct vector at; // centre of power, from the last vertex
+    float error;      // of each coordinate, at most; below 0: infinite
+    uint8_t seen;     // in the cavity, or no longer there
+};
+
+static_assert(sizeof(struct live_cell) == 64, "one cache line");
+
+// Finds the centres of COUNT cells, WHICH among CELLS, and how far off they may be by
+// rounding. They have their vertices, of which one may be infinite.
+void find_centres(const struct weighted_point *point, struct live_cell *cells,
+                  const int32_t *which, int count);
+
+#endif
