@@ -82,6 +82,36 @@ static void test_one_throat_near_boiling(void **state)
     network_free(&network);
 }
 
+// All is as at room temperature, but faster by the potential, which near boiling goes
+// with the logarithm of what is left to p_g.
+static void test_networks_near_boiling(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(5, 5, 5, spacing);
+    randomise_radii(&network, spacing, 0.3, 5);
+    for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_IMMOBILE; liquid++) {
+        struct drying_conditions conditions =
+            kharaghani_conditions((enum liquid_limit)liquid);
+        struct drying_history cold = dry_and_check(&network, &conditions);
+        for (double left = 1e-3; left > 1e-10; left *= 1e-2) {
+            conditions.saturation_pressure = conditions.gas_pressure * (1 - left);
+            struct drying_history hot = dry_and_check(&network, &conditions);
+            const double over =
+                (conditions.gas_pressure - conditions.saturation_pressure) /
+                conditions.gas_pressure; // LEFT as the numbers have it
+            const double faster = log(1 / over) / log(1e5 / (1e5 - 2339));
+            for (int k = 0; k < cold.n_event; k++) {
+                assert_int_equal(hot.event_throat[k], cold.event_throat[k]);
+                assert_true(fabs(hot.event_time[k] * faster / cold.event_time[k] - 1) <
+                            1e-11);
+            }
+            drying_history_free(&hot);
+        }
+        drying_history_free(&cold);
+    }
+    network_free(&network);
+}
+
 // The same events at the same moments; between recorded steps the rate is the mean.
 static void test_recording_less_changes_nothing(void **state)
 {
@@ -135,6 +165,7 @@ int main(void)
         cmocka_unit_test(test_equal_radii_in_a_stated_order),
         cmocka_unit_test(test_radii_over_six_decades),
         cmocka_unit_test(test_one_throat_near_boiling),
+        cmocka_unit_test(test_networks_near_boiling),
         cmocka_unit_test(test_recording_less_changes_nothing),
         cmocka_unit_test(test_large_networks_are_not_recorded_whole)};
     return cmocka_run_group_tests(tests, NULL, NULL);

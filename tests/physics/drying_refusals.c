@@ -69,6 +69,7 @@ static void test_impossible_networks(void **state)
     struct network network = lattice_network(3, 3, 3, spacing);
     network.throat_length[7] = 0;
     check_refused(&network, &conditions, "/throats/length: row 7");
+    check_refused(&network, &conditions, "merge-nodes removes short throats");
     network.throat_length[7] = spacing;
     network.throat_radius[9] = 0;
     check_refused(&network, &conditions, "/throats/radius: row 9");
