@@ -108,23 +108,36 @@ static void add_side(struct wedges *wedges, int throat, const struct side *side,
     }
 }
 
+// What the grain across a face that the network has not kept sees of it.
+static struct wedge seen_from_beyond(const struct wedge *wedge)
+{
+    return (struct wedge){.throat = wedge->throat,
+                          .grain = wedge->beyond,
+                          .beyond = wedge->grain,
+                          .face = -1,
+                          .centre = wedge->across,
+                          .across = wedge->centre,
+                          .foot = wedge->foot,
+                          .from = wedge->to,
+                          .to = wedge->from};
+}
+
 // The wedges of the face between the grains of A and B, which the network has not kept:
-// both have a wedge against a grain between them.
+// both have a wedge against a grain between them. Seen from the first the throat runs
+// the other way in the face on its other side, and so it does in that of the second.
 static void add_missing(struct wedges *wedges, int a, int b, int *n)
 {
-    const struct wedge one = wedges->wedge[a], other = wedges->wedge[b];
-    // Seen from ONE the throat runs the other way in the face on its other side, and
-    // so it does in that of OTHER.
-    const struct vector across =
-        add(other.centre, subtract(one.to, other.from)); // in one's box
-    const struct vector foot = foot_between(&wedges->network->packing, one.grain,
-                                            one.centre, other.grain, across);
-    *append(wedges, n) =
-        (struct wedge){one.throat, one.grain, other.grain, -1,      one.centre,
-                       across,     foot,      one.to,      one.from};
-    *append(wedges, n) =
-        (struct wedge){one.throat, other.grain, one.grain, -1,    across,
-                       one.centre, foot,        one.from,  one.to};
+    struct wedge wedge = wedges->wedge[a];
+    const struct wedge *other = &wedges->wedge[b];
+    wedge.beyond = other->grain;
+    wedge.face = -1;
+    wedge.across = add(other->centre, subtract(wedge.to, other->from));
+    wedge.foot = foot_between(&wedges->network->packing, wedge.grain, wedge.centre,
+                              wedge.beyond, wedge.across);
+    wedge.from = wedges->wedge[a].to;
+    wedge.to = wedges->wedge[a].from;
+    *append(wedges, n) = wedge;
+    *append(wedges, n) = seen_from_beyond(&wedge);
 }
 
 // Of the N wedges those of grains that have only this one, and so miss a face; returns
@@ -196,10 +209,8 @@ static void pair_cells(struct wedges *wedges, int throat, int *n)
     } else if (*n == 1 && !wedges->surface[throat]) {
         find_grain_across(wedges->network, &wedge[0]);
         if (wedge[0].beyond < 0) return;
-        const struct wedge one = wedge[0];
-        *append(wedges, n) =
-            (struct wedge){one.throat, one.beyond, one.grain, -1,      one.across,
-                           one.centre, one.foot,   one.to,    one.from};
+        const struct wedge one = wedge[0]; // the list may move
+        *append(wedges, n) = seen_from_beyond(&one);
     }
 }
 

@@ -363,6 +363,26 @@ def threads():
            "and forces")
 
 
+def scaled():
+    """From nanometres to kilometres: forces over surface tension and length."""
+    box = np.array((2.3e-6, 2.3e-6, 2.6e-6))
+    centres, radii = scatter(40, box)
+    first = None
+    for factor in 1, 2.0**-8, 2.0**32, 1 / 250:
+        drying("d", centres * factor, radii * factor, box * factor, [],
+               ["liquid=inviscid", "boundary_layer.from=thickness",
+                f"boundary_layer.thickness={5e-6 * factor}"])
+        force, _, _ = forces("d", "form=faces", "pressure=clusters", "contact_angle=30",
+                             "rings.left=suction", "largest_change=0.05")
+        if first is None:
+            first = force
+            continue
+        same = force.shape == first.shape
+        error = abs(force / factor - first).max() / abs(first).max() if same else "times"
+        ok(same and error < (1e-9 if factor == 1 / 250 else 1e-15),
+           f"lengths times {factor:g}: the same forces over lengths", error)
+
+
 def hardly_viscous():
     """With hardly any viscosity a connected liquid has the pressure of its widest meniscus."""
     box = (2.6e-6, 2.6e-6, 3e-6)
@@ -423,6 +443,7 @@ with scratch() as folder:
     times()
     rings()
     refusals()
+    scaled()
     hardly_viscous()
     overlaps()
     renumbered()

@@ -16,7 +16,9 @@ with scratch() as folder:
     settings = lambda words: [word for s in words for word in ("--set", s)]
     steps = 40
 
-    def forces(name, centres, radii, box, periodic, how):
+    every = ["form=faces", "contact_angle=30", "pressure=clusters", "rings.left=suction"]
+
+    def forces(name, centres, radii, box, periodic, how, also=()):
         np.savetxt(at("grains"), np.column_stack([centres, radii]), fmt="%.17g")
         sides = "[" + ",".join(["false", "true"][p] for p in periodic) + "]"
         run("pack", *settings(["method=import", "lower=[0,0,0]", f"upper={list(map(float, box))}",
@@ -24,7 +26,7 @@ with scratch() as folder:
         run("tessellate", *settings(how), at("p"), "-o", at("t"))
         run("merge-nodes", *settings(["measure=fraction", "threshold=0.1"]), at("t"), "-o", at("n"))
         run("dry", *settings(["liquid=immobile"]), at("n"), "-o", at(name + ".d"))
-        run("force-protocol", *settings([f"steps={steps}", "open_surface=pulls"]),
+        run("force-protocol", *settings([f"steps={steps}", "open_surface=pulls", *also]),
             at(name + ".d"), "-o", at(name))
         file = h5py.File(at(name))
         return file["force"][:], file["summary"].attrs["capillary_pressure"]
@@ -48,6 +50,10 @@ with scratch() as folder:
             moved = centres + np.array(sides) * (0.37, 0.61, 0) * box
             error = abs(forces("other", moved, radii, box, sides, how)[0] - force).max() / unit
             ok(error < 1e-8, f"{label} that begins elsewhere: the same forces", error)
+            here = forces("one", centres, radii, box, sides, how, every)[0]
+            error = abs(forces("other", moved, radii, box, sides, how, every)[0] - here).max()
+            ok(error < 1e-8 * abs(here).max(), "and with everything that can act",
+               error / abs(here).max())
         if not how:
             continue
         # [K 3.21] half way through the time, when saturations are between two steps.
