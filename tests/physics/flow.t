@@ -161,6 +161,14 @@ with scratch() as folder:
     ok(abs(squeezed["walls/inflow"][:].sum() + 0.01) < 1e-13, "squeezed: what is lost flows out",
        squeezed["walls/inflow"][:])
 
+    # Archimedes: grains weigh less by the fluid that they take the place of, and the piezometric
+    # pressure knows nothing of it.
+    wet = flow(path, density=1000, gravity="[1,0,-9.81]")
+    volume = 4 / 3 * np.pi * wet["particles/radius"][:] ** 3
+    lift = -1000 * volume[:, None] * [1, 0, -9.81]
+    ok(np.allclose(wet["particles/buoyancy"][:], lift, rtol=1e-13, atol=0), "buoyancy")
+    ok(permeability(wet) == both[0], "and the flow is the same", permeability(wet) / both[0] - 1)
+
     # Hard cases: one sphere, small ones in a void, overlap that closes throats.
     one = pack([(.5, .5, .5, .5)], at("one"))
     conserves(flow(one), "one sphere")
