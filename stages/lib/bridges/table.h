@@ -22,7 +22,8 @@ enum status bridge_table_create(const double radius[2], const double contact_ang
 void bridge_table_free(struct bridge_table *table);
 
 // The largest relative error of a force, measured between the nodes while the table was
-// made: below 4e-6 for contact angles up to 120 degrees. Where forces
+// made: below 5e-6 up to 110 degrees and 2e-5 beyond, and for unequal bodies near 32
+// degrees, where they rupture nearly by a break of symmetry. Where forces
 // change sign (contact angles near 90 degrees and beyond) it is relative to at least
 // BRIDGE_TABLE_FLOOR (1 + gap/(1.2 sqrt(volume)))^-2, a sixtieth of what a wetting
 // liquid pulls with.
