@@ -34,7 +34,7 @@ plot [10:1300] [0.6:1.1] \
 set title "Width of a front against a gradient G"
 set xlabel "1/G"; set logscale xy; set key top left
 set format x "10^{%T}"
-plot [20:15000] [0.8:100] file("front-2") using 1:2:3 with yerrorbars linestyle 2 title "2D, standard deviation", \
+plot [20:15000] [0.8:300] file("front-2") using 1:2:3 with yerrorbars linestyle 2 title "2D, standard deviation", \
     '' using 1:4 with lines linestyle 2 notitle, \
     file("tail-3") using 1:2:3 with yerrorbars linestyle 1 title "3D, tail", \
     '' using 1:4 with lines linestyle 1 notitle
