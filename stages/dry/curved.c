@@ -19,6 +19,7 @@ static const double NOISE = 1e-15;
 // what is on the verge would change its mind for rounding.
 static const double VERGE = 1e-10;
 
+// What is added to the diagonal of one of the menisci that float, of it.
 static const double STAY = 1e-12;
 
 // Largest part of the rate into the air that may be lost in that: late, wet nodes have
