@@ -5,7 +5,7 @@
 #     make irregular                  ->  build/runs/irregular/irregular.md, irregular.svg
 #     make irregular AGGREGATES=20
 
-AGGREGATES ?= 4# packings, each in all arms
+AGGREGATES ?= 6# packings, each in all arms
 IRREGULAR_VISCOSITY ?= 1e-4# m2/s, of viscous liquid; water: 1e-6
 
 pipeline_goals += irregular

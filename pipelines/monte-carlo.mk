@@ -5,7 +5,7 @@
 #     make monte-carlo REALISATIONS=1000 ENGINE=quasi-static
 #     make monte-carlo MONTE_CARLO_SCENE=samples/stiff-5x5x10.json
 #
-# More realisations keep those that are there.
+# More realisations keep those that are there: some 11 MB each.
 
 REALISATIONS ?= 10# in each limit; K: 10
 ENGINE ?= explicit
@@ -34,11 +34,11 @@ ifneq ($(filter monte-carlo,$(MAKECMDGOALS)),)
 $(call crack_network,$(monte_carlo_top),$(MONTE_CARLO_SCENE))
 monte_carlo_seeds := $(shell seq $(REALISATIONS))
 $(foreach limit,$(monte_carlo_limits),$(foreach seed,$(monte_carlo_seeds),$(call monte_carlo_run,$(seed),$(limit))))
-monte_carlo_responses = $(monte_carlo_seeds:%=$(monte_carlo_folder)/$1-%.h5)
-$(foreach limit,$(monte_carlo_limits),$(call step,$(monte_carlo_folder)/$(limit).json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),,$(foreach \
-	seed,$(monte_carlo_seeds),$(monte_carlo_folder)/$(limit)-$(seed).h5 $(monte_carlo_top)/drying/$(limit)-$(seed).h5)))
+# The realisations of limit $1, each with its drying.
+monte_carlo_runs = $(foreach seed,$(monte_carlo_seeds),$(monte_carlo_folder)/$1-$(seed).h5 $(monte_carlo_top)/drying/$1-$(seed).h5)
+$(foreach limit,$(monte_carlo_limits),$(call step,$(monte_carlo_folder)/$(limit).json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),,$(call monte_carlo_runs,$(limit))))
 $(call step,$(monte_carlo_folder)/test.json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),first_group=$(REALISATIONS),$(foreach \
-	limit,$(monte_carlo_limits),$(call monte_carlo_responses,$(limit))))
+	limit,$(monte_carlo_limits),$(call monte_carlo_runs,$(limit))))
 monte_carlo_counts := $(monte_carlo_limits:%=$(monte_carlo_folder)/%.json) $(monte_carlo_folder)/test.json
 $(call artifact,$(monte_carlo_folder)/table.md,stage=monte-carlo version=1,pipelines/monte-carlo $(monte_carlo_counts),pipelines/monte-carlo $(monte_carlo_counts) $(monte_carlo_folder)/table.md,)
 $(call artifact,$(monte_carlo_folder)/counts.svg,stage=monte-carlo-figure version=1,$(wildcard \
