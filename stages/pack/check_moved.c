@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What cannot come out well when grains move, said before they do.
 #include "methods.h"
+#include "pack.h"
 
 #include <math.h>
 
@@ -72,11 +73,10 @@ enum status check_moved(const struct pack_parameters *parameters,
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.periodic: must be false along z for deposition: grains "
                       "need a floor");
-    if (parameters->extra_layer &&
-        (domain->shape == DOMAIN_SPHERE || domain->periodic[2]))
-        return refuse(reason, STATUS_BAD_DATA,
-                      "pack.extra_layer: must be false where there is no top face");
-    const enum status status = check_target(parameters, sizes, reason);
+    enum status status = parameters->extra_layer
+                             ? check_layer(domain, parameters->extra_side, reason)
+                             : STATUS_OK;
+    if (!status) status = check_target(parameters, sizes, reason);
     if (status != STATUS_OK || !is_compressed(parameters)) return status;
     return check_periods(domain, sizes, reason);
 }

@@ -15,15 +15,18 @@ static double mean_radius(const struct packing *packing)
     return first + more;
 }
 
-static double highest_surface(const struct packing *packing)
+// How far along the axis of WALL, towards it, the surface of a grain reaches.
+static double farthest_surface(const struct packing *packing, int wall)
 {
-    double top = -HUGE_VAL;
+    const double sign = wall % 2 ? 1 : -1;
+    double far = -HUGE_VAL;
     for (int i = 0; i < packing->n_particle; i++)
-        top = fmax(top, packing->position[i].z + packing->radius[i]);
-    return top;
+        far = fmax(far, sign * component(packing->position[i], wall / 2) +
+                            packing->radius[i]);
+    return sign * far;
 }
 
-// Whether the side walls leave room there, whatever the height.
+// Whether the round walls leave room there, whatever the height.
 static bool within_sides(const struct domain *domain, struct vector place,
                          double radius)
 {
@@ -33,41 +36,76 @@ static bool within_sides(const struct domain *domain, struct vector place,
     return domain_holds(&tall, place, radius);
 }
 
-enum status add_layer(const struct domain *domain, struct packing *packing,
+enum status check_layer(const struct domain *domain, int wall, struct reason *reason)
+{
+    static const char *const names[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
+    const int axis = wall / 2;
+    const bool flat =
+        domain->shape == DOMAIN_BOX || (domain->shape != DOMAIN_SPHERE && axis == 2);
+    if (flat && !domain->periodic[axis] && !(domain->dimensions == 2 && axis == 1))
+        return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "pack.extra_layer: must be false where there is no flat side %s",
+                  names[wall]);
+}
+
+// As many as fit side by side, evenly spread, so that they also fit a side that
+// repeats.
+static double count_beside(const struct domain *domain, struct vector edge, int axis,
+                           double radius)
+{
+    if (domain->dimensions == 2 && axis == 1) return 1;
+    return fmax(floor(component(edge, axis) / (2 * radius) * (1 + 1e-9)), 1);
+}
+
+// The place in the layer that is I along the first direction and J along the second, of
+// COUNT.
+static struct vector place_of(const struct packing *packing, const int axis[2],
+                              const double count[2], int i, int j)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    struct vector place = packing->lower;
+    const double along[2] = {i + 0.5, j + 0.5};
+    for (int k = 0; k < 2; k++)
+        set_component(&place, axis[k],
+                      component(place, axis[k]) +
+                          component(edge, axis[k]) * along[k] / count[k]);
+    return place;
+}
+
+enum status add_layer(const struct domain *domain, int wall, struct packing *packing,
                       struct reason *reason)
 {
-    if (domain->shape == DOMAIN_SPHERE || packing->periodic[2])
-        return refuse(reason, STATUS_BAD_DATA,
-                      "pack.extra_layer: must be false where there is no top face");
+    const enum status status = check_layer(domain, wall, reason);
+    if (status) return status;
     if (!packing->n_particle)
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.extra_layer: must be false where there are no grains");
-    const double radius = mean_radius(packing), top = highest_surface(packing);
+    const int out = wall / 2, axis[2] = {out == 0 ? 1 : 0, out == 2 ? 1 : 2};
+    const double radius = mean_radius(packing), sign = wall % 2 ? 1 : -1;
+    const double far = farthest_surface(packing, wall);
     const struct vector edge = subtract(packing->upper, packing->lower);
-    // as many as fit, evenly spread, so that they also fit a side that repeats
-    const double across = fmax(floor(edge.x / (2 * radius) * (1 + 1e-9)), 1);
-    const double deep = domain->dimensions == 2
-                            ? 1
-                            : fmax(floor(edge.y / (2 * radius) * (1 + 1e-9)), 1);
-    if (across * deep > 1e8)
+    const double count[2] = {count_beside(domain, edge, axis[0], radius),
+                             count_beside(domain, edge, axis[1], radius)};
+    if (count[0] * count[1] > 1e8)
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.extra_layer: must make at most 1e8 grains");
-    const size_t most = (size_t)packing->n_particle + (size_t)(across * deep);
+    const size_t most = (size_t)packing->n_particle + (size_t)(count[0] * count[1]);
     packing->position = reallocate(packing->position, most, sizeof *packing->position);
     packing->radius = reallocate(packing->radius, most, sizeof *packing->radius);
     packing->kind = reallocate(packing->kind, most, sizeof *packing->kind);
     memset(packing->kind, GRAIN_SOLID, (size_t)packing->n_particle);
-    for (int x = 0; x < across; x++)
-        for (int y = 0; y < deep; y++) {
-            const struct vector place = {packing->lower.x + edge.x * (x + 0.5) / across,
-                                         packing->lower.y + edge.y * (y + 0.5) / deep,
-                                         top + radius};
+    for (int i = 0; i < count[0]; i++)
+        for (int j = 0; j < count[1]; j++) {
+            struct vector place = place_of(packing, axis, count, i, j);
+            set_component(&place, out, far + sign * radius);
             if (domain->shape != DOMAIN_BOX && !within_sides(domain, place, radius))
                 continue;
             packing->position[packing->n_particle] = place;
             packing->radius[packing->n_particle] = radius;
             packing->kind[packing->n_particle++] = GRAIN_AUXILIARY;
         }
-    packing->upper.z = top + 2 * radius;
+    set_component(wall % 2 ? &packing->upper : &packing->lower, out,
+                  far + sign * 2 * radius);
     return STATUS_OK;
 }

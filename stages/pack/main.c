@@ -215,11 +215,12 @@ static void make_bonds(struct packing *packing,
 }
 
 // The domain grows with the box, so that the porosity counts the layer.
-static void make_layer(struct domain *domain, struct packing *packing)
+static void make_layer(struct domain *domain, int wall, struct packing *packing)
 {
     struct reason reason;
-    const enum status status = add_layer(domain, packing, &reason);
+    const enum status status = add_layer(domain, wall, packing, &reason);
     if (status) die(status, "%s", reason.text);
+    domain->lower = packing->lower;
     domain->upper = packing->upper;
 }
 
@@ -257,7 +258,7 @@ int main(int argc, char **argv)
     struct packing packing =
         make_packing(&invocation, &parameters, inputs, &domain, &reached);
     make_bonds(&packing, &parameters, invocation.quiet);
-    if (parameters.extra_layer) make_layer(&domain, &packing);
+    if (parameters.extra_layer) make_layer(&domain, parameters.extra_side, &packing);
     if (parameters.method != METHOD_IMPORT)
         packing.n_body = domain_bodies(&domain, packing.body);
     write_packing(&packing, &domain, &invocation, inputs, &parameters, &reached);

@@ -73,11 +73,13 @@ enum status inward_spiral(const struct domain *domain, const struct sizes *sizes
 
 // ---- the extra layer ----------------------------------------------------------------
 
-// Lays a regular layer of grains of the mean radius on the highest grain, all across
-// the box and within the walls of DOMAIN, and raises the box to its top [K 3.3.5]. They
-// come last and have no bonds. STATUS_BAD_DATA where there is no top face.
-enum status add_layer(const struct domain *domain, struct packing *packing,
+// Lays a regular layer of grains of the mean radius on the outermost grain towards
+// WALL, 0 to 5, all across the box and within the walls of DOMAIN, and ends the box on
+// it [K 3.3.5]. They come last and have no bonds. STATUS_BAD_DATA where that side is
+// not flat, or is none: the box repeats.
+enum status add_layer(const struct domain *domain, int wall, struct packing *packing,
                       struct reason *reason);
+enum status check_layer(const struct domain *domain, int wall, struct reason *reason);
 
 // ---- import -------------------------------------------------------------------------
 

@@ -156,12 +156,13 @@ const struct parameter pack_table[] = {
      "sizes.smallest",
      AT(densify)},
     {"extra_layer", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "lay a regular layer of grains of the mean radius on the highest grain, across "
-     "the "
-     "box, for the boundary layer [K 3.3.5]; they come last, without bonds, and the "
-     "box "
-     "ends on them",
+     "lay a regular layer of grains of the mean radius on the outermost grain of "
+     "extra_side, across the box, for the boundary layer [K 3.3.5]; they come last, "
+     "without bonds, and the box ends on them",
      AT(extra_layer)},
+    {"extra_side", PARAMETER_CHOICE, "1", "\"+z\"", BOUND_NONE, 0, 0,
+     "-x|+x|-y|+y|-z|+z", "flat side of the box that the extra layer is at",
+     AT(extra_side)},
     {"frame", PARAMETER_INTEGER, "1", "-1", BOUND_BETWEEN, -1, 1e12, NULL,
      "of an imported LAMMPS dump, from 0; -1: the last", AT(frame)},
     {"bonds", PARAMETER_CHOICE, "1", "\"touching\"", BOUND_NONE, 0, 0,

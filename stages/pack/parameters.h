@@ -38,6 +38,7 @@ struct pack_parameters {
     struct domain_parameters domain;
     int64_t seed, most_trials, frame;
     bool densify, extra_layer;
+    int extra_side; // wall that the extra layer is at
     struct dynamics_parameters dynamics;
     double touching_gap; // of the sum of two radii
 };

@@ -812,7 +812,7 @@ for words in [f"{few} dynamics.most_cycles=4000", f"{dense} dynamics.most_cycles
           r".*unbalanced ratio .*", status=UNSTABLE)
 scene("an extra layer above no top is refused before grains move",
       f"{dense} extra_layer=true",
-      "pack.extra_layer: must be false where there is no top face")
+      r"pack.extra_layer: must be false where there is no flat side \+z")
 for words, line in [
         ("target=porosity", "must be given, for this target"),
         ("target=porosity target_value=1", "must be below 1 for a porosity, got 1"),
@@ -832,8 +832,12 @@ scene("a box that repeats too soon is refused", f"{dense} upper=[1.1e-6,1e-3,1e-
 scene("a box with walls does not close in", "method=domain_contraction count=100",
       r"pack.method: domain_contraction closes in a box that repeats along all axes "
       r"\(pack.periodic\); between walls use radius_expansion")
+scene("an extra layer beside needs flat sides",
+      "extra_layer=true extra_side=-x domain.shape=cylinder domain.radius=5 domain.height=9 "
+      "method=random_sequential count=9 bonds=none",
+      "pack.extra_layer: must be false where there is no flat side -x")
 scene("an extra layer needs a top", "extra_layer=true periodic=[false,false,true]",
-      "pack.extra_layer: must be false where there is no top face")
+      r"pack.extra_layer: must be false where there is no flat side \+z")
 for words, line in [
         ("uniform", "smallest: must be given, for this distribution"),
         ("power sizes.smallest=0.1", "largest: must be given, for this distribution"),

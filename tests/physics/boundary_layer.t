@@ -173,6 +173,13 @@ with scratch() as folder:
                 rate = dry("n", f"boundary_layer.columns={columns}")["rate"][0]
                 ok(abs(rate / face - 1) < 1e-12, f"{columns} columns {label}, {boundary}: the "
                    "first rate is that of the open face", rate / face - 1)
+    for k, wall in enumerate(WALLS):
+        network = make("n", [*settled, "extra_layer=true", f"extra_side={wall}"])
+        rate = dry("n", f'open=["{wall}"]', "boundary_layer.columns=auxiliary")["rate"][0]
+        face = one_dimension(network.face(k // 2), DIFFUSIVITY / 5.1)
+        ok(abs(rate / face - 1) < 1e-12 and len(network.feet()) > 10,
+           f"an auxiliary layer at {wall}: the first rate is that of the open face",
+           (rate / face - 1, len(network.feet())))
     ok("columns on the nodes of the auxiliary layer"
        in dry("n", "boundary_layer.columns=auxiliary")["model"], "the model says so")
 

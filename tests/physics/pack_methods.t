@@ -237,6 +237,14 @@ layered = Packing("radius=0.5", "counts=[4,3,5]", "periodic=[true,true,false]",
 ok(np.array_equal(layered.x[:60], bare.x) and np.array_equal(layered.bonds, bare.bonds)
    and np.array_equal(layered.x[60:], bare.x[bare.x[:, 2] > 4] + [0, 0, 1])
    and layered.upper[2] == 6, "an extra layer continues a cubic lattice, without bonds")
+for k, side in enumerate(["-x", "+x", "-y", "+y", "-z", "+z"]):
+    axis, sign = k // 2, 2 * (k % 2) - 1
+    end, all_along = bare.x[:, axis] * sign, np.eye(3)[axis] * sign
+    layered = Packing("radius=0.5", "counts=[4,3,5]", "extra_layer=true", f"extra_side={side}")
+    ok(np.array_equal(layered.x[:60], bare.x)
+       and np.allclose(layered.x[60:], bare.x[end == end.max()] + all_along, rtol=0, atol=1e-15)
+       and np.allclose(np.delete(layered.edge, axis), np.delete([4, 3, 5], axis))
+       and layered.edge[axis] == [4, 3, 5][axis] + 1, f"it does so at {side}", layered.x[60:])
 uneven = Packing("method=random_sequential", "upper=[10,10,10]", "count=300",
                  "sizes.distribution=uniform", "sizes.smallest=0.3", "sizes.largest=0.6",
                  "bonds=none", "extra_layer=true")
