@@ -3,18 +3,20 @@
 
 #include "basics/memory.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-// Steps of the elimination, in order. A pore passes a share of what it holds to each of
-// its neighbours, the rest to the last of them.
+// L D L' in the order of elimination. A pore passes a share of what it holds to each of
+// its neighbours. Shares are rounded to floats: the factor is only near Cholesky's
+// anyway, it stays symmetric, and bytes are time.
 struct sampled_factor {
     int n;
-    int *pore;       // (n) in the order of elimination
-    double *pivot;   // (n)
-    int64_t *offset; // (n+1) into what follows
-    int *neighbour;  // by their places in that order; n: where the pressure is given
-    double *share;
+    int *pore;      // (n) in the order of elimination
+    double *scale;  // (n) what D divides by
+    int *offset;    // (n+1) into what follows
+    int *neighbour; // by their places in that order; n: where the pressure is given
+    float *share;
     double *work; // (n+1)
 };
 
@@ -153,30 +155,30 @@ static void end(struct elimination *e)
 
 // ---- elimination --------------------------------------------------------------------
 
-static int compare(const struct elimination *e, int a, int b)
+typedef bool comes_first(const struct half *half, int a, int b);
+
+static bool is_narrower(const struct half *half, int a, int b)
 {
-    const struct half *x = &e->half[a], *y = &e->half[b];
-    if (x->width != y->width) return x->width < y->width ? -1 : 1;
-    return x->to != y->to ? (x->to < y->to ? -1 : 1) : (a > b) - (a < b);
+    const struct half *x = &half[a], *y = &half[b];
+    if (x->width < y->width || x->width > y->width) return x->width < y->width;
+    return x->to != y->to ? x->to < y->to : a < b;
 }
 
-static void sort_column(const struct elimination *e, int length)
+static bool goes_before(const struct half *half, int a, int b)
+{
+    return half[a].to != half[b].to ? half[a].to < half[b].to : a < b;
+}
+
+// The column's first LENGTH; nearly always a handful, so by insertion.
+static inline void sort(struct elimination *e, int length, comes_first *first)
 {
     for (int k = 1; k < length; k++) {
         const int half = e->column[k];
         int place = k;
-        for (; place > 0 && compare(e, half, e->column[place - 1]) < 0; place--)
+        for (; place > 0 && first(e->half, half, e->column[place - 1]); place--)
             e->column[place] = e->column[place - 1];
         e->column[place] = half;
     }
-}
-
-static int compare_targets(const void *a, const void *b, void *context)
-{
-    const struct half *half = context;
-    const int x = *(const int *)a, y = *(const int *)b;
-    if (half[x].to != half[y].to) return half[x].to < half[y].to ? -1 : 1;
-    return (x > y) - (x < y);
 }
 
 // The throats that pore I still has, parallel ones as one, the narrowest first.
@@ -192,7 +194,7 @@ static int gather(struct elimination *e, int i)
         }
         e->column[length++] = h;
     }
-    qsort_r(e->column, (size_t)length, sizeof *e->column, compare_targets, e->half);
+    sort(e, length, goes_before);
     int kept = 0;
     for (int k = 0; k < length; k++) {
         const int h = e->column[k];
@@ -204,7 +206,7 @@ static int gather(struct elimination *e, int i)
             e->column[kept++] = h;
         }
     }
-    sort_column(e, kept);
+    sort(e, kept, is_narrower);
     return kept;
 }
 
@@ -222,9 +224,9 @@ static int search(const double *sum, int from, int length, double r)
     return low;
 }
 
-// Takes out a pore; returns its pivot. New throats take the place of the old.
-static double eliminate(struct elimination *e, int length, int *neighbour,
-                        double *share)
+// Takes out a pore; returns the inverse of its entry of D. New throats take the place
+// of the old.
+static double eliminate(struct elimination *e, int length, int *neighbour, float *share)
 {
     double sum = 0, rest = 1;
     for (int k = 0; k < length; k++)
@@ -236,7 +238,7 @@ static double eliminate(struct elimination *e, int length, int *neighbour,
         const double r = e->sum[k] + draw(e) * (e->sum[length - 1] - e->sum[k]);
         const int other = e->half[e->column[search(e->sum, k + 1, length, r)]].to;
         neighbour[k] = j;
-        share[k] = f;
+        share[k] = (float)(f * rest);
         e->half[h ^ 1].to = other; // from j
         e->half[h ^ 1].width = f * (1 - f) * whole;
         e->half[h] = (struct half){f * (1 - f) * whole, j, e->first[other]};
@@ -248,10 +250,11 @@ static double eliminate(struct elimination *e, int length, int *neighbour,
     if (length == 0) return 0;
     const int last = e->column[length - 1];
     neighbour[length - 1] = e->half[last].to;
-    share[length - 1] = 1;
+    share[length - 1] = (float)rest;
     e->half[last ^ 1].width = 0;
     change_degree(e, e->half[last].to, -1);
-    return e->half[last].width * rest;
+    const double pivot = e->half[last].width * rest;
+    return pivot > 0 ? rest * rest / pivot : 0;
 }
 
 // Neighbours by when they are eliminated: solving then goes through memory in order.
@@ -261,7 +264,7 @@ static void renumber(struct sampled_factor *factor)
     for (int step = 0; step < factor->n; step++)
         place[factor->pore[step]] = step;
     place[factor->n] = factor->n;
-    for (int64_t k = 0; k < factor->offset[factor->n]; k++)
+    for (int k = 0; k < factor->offset[factor->n]; k++)
         factor->neighbour[k] = place[factor->neighbour[k]];
     free(place);
 }
@@ -273,22 +276,22 @@ struct sampled_factor *sampled_factor_make(const struct matrix *matrix)
     struct sampled_factor *factor = NEW_ARRAY(struct sampled_factor, 1);
     *factor = (struct sampled_factor){.n = n,
                                       .pore = NEW_ARRAY(int, n),
-                                      .pivot = NEW_ARRAY(double, n),
-                                      .offset = NEW_ARRAY(int64_t, n + 1),
+                                      .scale = NEW_ARRAY(double, n),
+                                      .offset = NEW_ARRAY(int, n + 1),
                                       .work = NEW_ARRAY(double, n + 1)};
     size_t capacity = 5 * (size_t)n + 64;
     factor->neighbour = NEW_ARRAY(int, capacity);
-    factor->share = NEW_ARRAY(double, capacity);
+    factor->share = NEW_ARRAY(float, capacity);
     for (int step = 0; step < n; step++) {
         const int i = take_lowest(&e), length = gather(&e, i);
-        const int64_t at = factor->offset[step];
-        if ((size_t)(at + length) > capacity) {
+        const int at = factor->offset[step];
+        if ((size_t)at + (size_t)length > capacity) {
             capacity = 2 * capacity + (size_t)length;
             factor->neighbour = reallocate(factor->neighbour, capacity, sizeof(int));
-            factor->share = reallocate(factor->share, capacity, sizeof(double));
+            factor->share = reallocate(factor->share, capacity, sizeof(float));
         }
         factor->pore[step] = i;
-        factor->pivot[step] =
+        factor->scale[step] =
             eliminate(&e, length, &factor->neighbour[at], &factor->share[at]);
         factor->offset[step + 1] = at + length;
     }
@@ -301,7 +304,7 @@ void sampled_factor_free(struct sampled_factor *factor)
 {
     if (!factor) return;
     free(factor->pore);
-    free(factor->pivot);
+    free(factor->scale);
     free(factor->offset);
     free(factor->neighbour);
     free(factor->share);
@@ -312,27 +315,22 @@ void sampled_factor_free(struct sampled_factor *factor)
 void sampled_factor_apply(struct sampled_factor *factor, const double *b, double *x)
 {
     const int n = factor->n;
-    double *y = factor->work;
+    double *restrict y = factor->work;
+    const int *neighbour = factor->neighbour;
+    const float *share = factor->share;
     for (int step = 0; step < n; step++)
         y[step] = b[factor->pore[step]];
     for (int step = 0; step < n; step++) {
-        double here = y[step];
-        for (int64_t k = factor->offset[step]; k < factor->offset[step + 1]; k++) {
-            y[factor->neighbour[k]] += factor->share[k] * here;
-            if (k + 1 < factor->offset[step + 1]) here *= 1 - factor->share[k];
-        }
-        y[step] = factor->pivot[step] > 0 ? here / factor->pivot[step] : 0;
+        const double here = y[step];
+        for (int k = factor->offset[step]; k < factor->offset[step + 1]; k++)
+            y[neighbour[k]] += (double)share[k] * here;
+        y[step] = here * factor->scale[step];
     }
     y[n] = 0;
     for (int step = n - 1; step >= 0; step--) {
         double here = y[step];
-        for (int64_t k = factor->offset[step + 1] - 1; k >= factor->offset[step]; k--) {
-            const double f = factor->share[k];
-            if (k + 1 == factor->offset[step + 1])
-                here += y[factor->neighbour[k]];
-            else
-                here = (1 - f) * here + f * y[factor->neighbour[k]];
-        }
+        for (int k = factor->offset[step]; k < factor->offset[step + 1]; k++)
+            here += (double)share[k] * y[neighbour[k]];
         y[step] = here;
     }
     for (int step = 0; step < n; step++)
