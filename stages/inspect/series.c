@@ -44,7 +44,8 @@ static double frame_saturation(int frame, int n_frame)
 static void drying_series(const struct artifact *artifact, struct series *series,
                           int n_frame)
 {
-    struct network network = artifact_get_network(artifact);
+    struct network network = artifact_get_periodic_network(artifact);
+    int32_t(*drawn)[2] = drawn_throats(&network);
     int n_step;
     double *time = artifact_get(artifact, "/history/time", &n_step);
     double *saturation = artifact_get(artifact, "/history/saturation", NULL);
@@ -63,7 +64,7 @@ static void drying_series(const struct artifact *artifact, struct series *series
     const struct vtu_grid grid = {.n_point = network.n_node,
                                   .point = network.node_position,
                                   .n_line = network.n_throat,
-                                  .line = (const int32_t(*)[2])network.throat_nodes,
+                                  .line = (const int32_t(*)[2])drawn,
                                   .cells = cells};
     for (int step = 0, frame = 0; step < n_step; step++) {
         for (int64_t k = offset[step]; k < offset[step + 1]; k++)
@@ -81,6 +82,7 @@ static void drying_series(const struct artifact *artifact, struct series *series
     free(changed);
     free(liquid);
     free(kind);
+    free(drawn);
     network_free(&network);
 }
 

@@ -1,20 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "artifacts/write_network.h"
-#include "basics/memory.h"
 
 #include <stdlib.h>
-
-// The ends of throats as they are drawn: one that leads into another repetition of the
-// box is a point, not a line across the box.
-static int32_t (*drawn_throats(const struct network *network))[2]
-{
-    int32_t(*ends)[2] =
-        duplicate(network->throat_nodes, (size_t)network->n_throat, sizeof *ends);
-    for (int t = 0; t < network->n_throat; t++)
-        if (!same_image(network->throat_image[t], (struct image){0}))
-            ends[t][1] = ends[t][0];
-    return ends;
-}
 
 static void put_drawing(struct artifact *artifact, const struct network *network)
 {

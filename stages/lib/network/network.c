@@ -44,6 +44,16 @@ struct vector along_throat(const struct network *network, int throat)
                        image_at(network->throat_image, throat));
 }
 
+int32_t (*drawn_throats(const struct network *network))[2]
+{
+    int32_t(*ends)[2] =
+        duplicate(network->throat_nodes, (size_t)network->n_throat, sizeof *ends);
+    for (int t = 0; t < network->n_throat; t++)
+        if (!same_image(image_at(network->throat_image, t), (struct image){0}))
+            ends[t][1] = ends[t][0];
+    return ends;
+}
+
 struct vector face_corner(const struct network *network, int64_t corner)
 {
     return add(

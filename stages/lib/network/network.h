@@ -56,6 +56,10 @@ bool is_layer(const struct network *network);
 // the box, if the throat leads there.
 struct vector along_throat(const struct network *network, int throat);
 
+// (n_throat,2) Ends of the throats as lines to draw: one that leads into another
+// repetition of the box is a point, not a line across the box. The caller frees it.
+int32_t (*drawn_throats(const struct network *network))[2];
+
 // Where the node face_nodes[CORNER] is, and the second grain of FACE (not a wall), both
 // in the repetition of the box in which the first grain of the face is.
 struct vector face_corner(const struct network *network, int64_t corner);
