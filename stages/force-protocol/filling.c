@@ -104,6 +104,37 @@ static double suction_at(const struct filling *filling, const double *pressure,
     return radius > 0 ? filling->law.meniscus / radius : filling->law.uniform;
 }
 
+// Whether the throat has liquid at an end in the COUNT snapshots from FIRST on.
+static bool is_wet(const struct filling *filling, int first, int count, int throat)
+{
+    const int32_t *node = filling->network->throat_nodes[throat];
+    const size_t n = (size_t)filling->network->n_node;
+    for (int s = first; s < first + count; s++) {
+        const double *pressure = filling->record->pressure + (size_t)s * n;
+        if (pressure[node[0]] == 0 && pressure[node[1]] == 0) return false;
+    }
+    return true;
+}
+
+double field_error(const struct filling *filling)
+{
+    const double *time = filling->record->snapshot_time;
+    const size_t n = (size_t)filling->network->n_throat;
+    double sum = 0, count = 0;
+    for (int s = 1; s + 1 < filling->record->n_snapshot; s++) {
+        const double length = time[s + 1] - time[s - 1];
+        const double share = length > 0 ? (time[s] - time[s - 1]) / length : 0;
+        const double *now = filling->field + (size_t)s * n;
+        for (size_t t = 0; t < n; t++) {
+            if (!is_wet(filling, s - 1, 3, (int)t)) continue;
+            const double before = now[t - n], after = now[t + n];
+            sum += fabs(now[t] - (before + share * (after - before)));
+            count++;
+        }
+    }
+    return sum / count / filling->law.uniform;
+}
+
 static double *field_of(const struct filling *filling)
 {
     const struct drying_record *record = filling->record;

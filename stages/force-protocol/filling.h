@@ -82,6 +82,11 @@ double filling_saturation(const struct filling *filling);
 // The loads of THROAT now.
 void filling_loads(const struct filling *filling, int throat, double load[LOADS]);
 
+// How far the suction of a throat that holds liquid is, in the mean, from the one
+// interpolated between the snapshots before and after, of UNIFORM: what every second
+// snapshot adds. NAN with fewer than three.
+double field_error(const struct filling *filling);
+
 // Names the connected pieces of liquid by the lowest throat of each, -1: no liquid.
 // Throats join at nodes where none has emptied. CLUSTER (n_throat); returns how many.
 int filling_clusters(const struct filling *filling, int *cluster);

@@ -138,6 +138,10 @@ static enum status find_action(struct wedges *wedges,
                                  .surface_tension = parameters->surface_tension,
                                  .contact_angle =
                                      parameters->contact_angle * (M_PI / 180)};
+    if (parameters->form == FORM_ARCS && !wedges->layer)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/faces/particles: form=arcs needs the network of a layer "
+                      "(tessellate.dimensions=2)");
     *action = (struct action){.scale = parameters->force_scale};
     *rings = (struct rings){0};
     struct patches *of = action->patches;
@@ -177,6 +181,7 @@ static struct protocol find_protocol(const struct process *process,
 struct findings {
     double largest, change, error; // N
     double net_force, net_moment;
+    double field_error; // NAN: there is no field, or no more than two snapshots of it
 };
 
 static struct findings examine(const struct process *process,
@@ -191,6 +196,8 @@ static struct findings examine(const struct process *process,
             input_name(path), process->law->uniform, process->action->scale);
     found.change = largest_change(protocol, packing->n_particle);
     found.error = interpolation_error(process, protocol);
+    found.field_error =
+        process->law->rule == SUCTION_FIELD ? process_field_error(process) : NAN;
     net_load(protocol, packing, &found.net_force, &found.net_moment);
     return found;
 }
@@ -204,6 +211,8 @@ static void put_summary(struct artifact *artifact, const struct process *process
     artifact_put_number(artifact, "/summary/largest_force", found->largest);
     artifact_put_number(artifact, "/summary/largest_change", found->change / unit);
     artifact_put_number(artifact, "/summary/interpolation_error", found->error / unit);
+    if (!isnan(found->field_error))
+        artifact_put_number(artifact, "/summary/field_error", found->field_error);
     artifact_put_number(artifact, "/summary/net_force", found->net_force);
     artifact_put_number(artifact, "/summary/net_moment", found->net_moment);
     artifact_put_number(artifact, "/summary/first_period_end_time",

@@ -116,6 +116,15 @@ double interpolation_error(const struct process *process,
     return worst;
 }
 
+double process_field_error(const struct process *process)
+{
+    struct filling filling =
+        filling_begin(process->network, process->record, process->law);
+    const double error = field_error(&filling);
+    filling_free(&filling);
+    return error;
+}
+
 // Of one time: sums of forces and moments, and of their magnitudes.
 struct sums {
     struct vector force, moment;

@@ -36,6 +36,9 @@ double largest_change(const struct protocol *protocol, int n_particle);
 double interpolation_error(const struct process *process,
                            const struct protocol *protocol);
 
+// field_error of the process; for SUCTION_FIELD.
+double process_field_error(const struct process *process);
+
 // Net force and moment about the middle of the box at any time, at most, of the largest
 // sums of their parts' magnitudes. A box that repeats has no moment: 0.
 void net_load(const struct protocol *protocol, const struct packing *packing,

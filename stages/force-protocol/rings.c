@@ -26,36 +26,54 @@ static struct bridge bridge_of(const double radius[2], const struct ring_law *la
 
 // --- one ring ----------------------------------------------------------------------
 
-// Smaller bridges have more suction. Those too small for the separation have none; if
-// the least that holds has less than the liquid around it, there is none in equilibrium
-// and *VOLUME is 0.
+// A trial volume: by how much the suction there is more than that of the liquid, as a
+// logarithm; -INFINITY where it is none, INFINITY where the bridge ruptures.
+struct trial {
+    double log_volume, excess;
+};
+
+static enum status try_volume(const double radius[2], double separation,
+                              const struct ring_law *law, struct trial *trial,
+                              struct reason *reason)
+{
+    const struct bridge bridge = bridge_of(radius, law, exp(trial->log_volume));
+    struct bridge_state state;
+    const enum status status = bridge_solve(&bridge, separation, &state, reason);
+    trial->excess = status == STATUS_NO ? INFINITY
+                    : state.suction > 0 ? log(state.suction / law->suction)
+                                        : -INFINITY;
+    return status == STATUS_NO ? STATUS_OK : status;
+}
+
+// Smaller bridges have more suction, until they rupture. By regula falsi, every third
+// step by halves. Where the least that holds has less suction than the liquid, there
+// is none in equilibrium and *VOLUME is 0.
 static enum status find_volume(const double radius[2], double separation,
                                const struct ring_law *law, double *volume,
                                struct reason *reason)
 {
-    static const double accuracy = 1e-10;
-    double low = LEAST, high = MOST;
-    bool in_reach = false; // whether LOW is a bridge of more suction
+    static const double accuracy = 1e-12;
+    struct trial low = {log(LEAST), INFINITY}, high = {log(MOST), -INFINITY};
     *volume = 0;
     // Between plates this far apart no liquid has that suction, still less between
     // spheres.
     if (separation * law->suction >= 2 * law->surface_tension * cos(law->contact_angle))
         return STATUS_OK;
-    while (high / low > 1 + accuracy) {
-        const double middle = sqrt(low * high);
-        const struct bridge bridge = bridge_of(radius, law, middle);
-        struct bridge_state state;
-        const enum status status = bridge_solve(&bridge, separation, &state, reason);
-        if (status && status != STATUS_NO) return status;
-        const bool more = !status && state.suction > law->suction;
-        if (more || status) {
-            low = middle;
-            in_reach = more;
-        } else {
-            high = middle;
-        }
+    for (int step = 1; high.log_volume - low.log_volume > accuracy; step++) {
+        const double share = low.excess / (low.excess - high.excess);
+        struct trial trial = {
+            low.log_volume + (step % 3 && isfinite(share) && share > 0 ? share : 0.5) *
+                                 (high.log_volume - low.log_volume),
+            0};
+        const enum status status = try_volume(radius, separation, law, &trial, reason);
+        if (status) return status;
+        if (fabs(trial.excess) <= accuracy) low = high = trial;
+        if (trial.excess > 0)
+            low = trial;
+        else
+            high = trial;
     }
-    if (in_reach) *volume = low;
+    if (low.excess < INFINITY) *volume = exp(low.log_volume);
     return STATUS_OK;
 }
 

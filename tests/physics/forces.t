@@ -326,6 +326,8 @@ def refusals():
            label, result.stderr)
     refused(["--set", "pressure=field", "d"], "dry with liquid=viscous and snapshots",
             "a field that is not there is asked for")
+    refused(["--set", "form=arcs", "d"], "needs the network of a layer",
+            "arcs in space are refused")
     shutil.copy("d", "one")
     with h5py.File("one", "a") as file:
         for name, rows in [("nodes/position", 1), ("nodes/kind", 1), ("faces/offset", 1)]:
@@ -413,6 +415,15 @@ def overlaps():
        "rings between them pull as in contact", last[0, 1, 1])
 
 
+def plain_arcs():
+    """[K 3.20] is the lune of a layer over pi/2, and of a layer only."""
+    box = (5e-6, 5e-7, 5e-6)
+    centres, radii = scatter(40, box, layer=True)
+    drying("d", centres, radii, box, ["dimensions=2"], ["liquid=inviscid"])
+    error = abs(forces("d")[0] - np.pi / 2 * forces("d", "form=arcs")[0]).max()
+    ok(error < 1e-15 * 1e6 * R**2, "the arcs of a layer are its lunes over pi/2", error)
+
+
 def renumbered():
     # immobile: throats that a node between them makes equally wide tie in the other
     box = (2.6e-6, 2.6e-6, 3e-6)
@@ -446,6 +457,7 @@ with scratch() as folder:
     scaled()
     hardly_viscous()
     overlaps()
+    plain_arcs()
     renumbered()
     threads()
     os.chdir(TOP)
