@@ -234,7 +234,7 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 .PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
-	bench-viscous bench-flow bench-dry \
+	bench-viscous bench-flow bench-dry bench-replay \
 	sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -264,6 +264,8 @@ bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cos
 	@tests/bench/bridge
 bench-viscous: all ## time to dryness with viscous liquid, next to none
 	@tests/bench/viscous
+bench-replay: all ## error of both engines of the replay against time, and time against time
+	@tests/bench/replay
 bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (minutes)
 	@tests/bench/dry
 bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++

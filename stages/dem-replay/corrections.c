@@ -107,8 +107,7 @@ bool corrections_add(struct corrections *c, int joint, int first)
     return true;
 }
 
-// ---- what is left of e - B K^-1 r + W q(e)
-// --------------------------------------------
+// ---- what is left of e - B K^-1 r + W q(e) ------------------------------------------
 
 static void resist(struct corrections *c, int t, const double (*from)[STRAINS])
 {
@@ -161,15 +160,12 @@ static double resist_all(struct corrections *c, const double (*from)[STRAINS])
     return find_left(c);
 }
 
-// ---- Newton's method
-// ------------------------------------------------------------------
+// ---- Newton's method ----------------------------------------------------------------
 
-// Gauss, with the largest pivot of each column.
-static bool factor(struct corrections *c, int n)
+// Columns FIRST to END-1 by Gauss, with the largest pivot of each.
+static bool factor_panel(struct corrections *c, int n, int first, int end)
 {
-    for (int k = 0; k < n; k++)
-        c->row[k] = k;
-    for (int k = 0; k < n; k++) {
+    for (int k = first; k < end; k++) {
         int best = k;
         for (int r = k + 1; r < n; r++)
             if (fabs(c->matrix[c->row[r]][k]) > fabs(c->matrix[c->row[best]][k]))
@@ -181,10 +177,38 @@ static bool factor(struct corrections *c, int n)
         if (!(fabs(above[k]) > 0)) return false;
         for (int r = k + 1; r < n; r++) {
             double *row = c->matrix[c->row[r]];
-            const double share = row[k] /= above[k];
-            if (share == 0) continue;
-            for (int l = k + 1; l < n; l++)
-                row[l] -= share * above[l];
+            row[k] /= above[k];
+            for (int l = k + 1; l < end; l++)
+                row[l] -= row[k] * above[l];
+        }
+    }
+    return true;
+}
+
+// Four columns at a time, so that the rest is read and written a quarter as often.
+static bool factor(struct corrections *c, int n)
+{
+    for (int k = 0; k < n; k++)
+        c->row[k] = k;
+    for (int first = 0; first < n; first += 4) {
+        const int end = first + 4 < n ? first + 4 : n;
+        if (!factor_panel(c, n, first, end)) return false;
+        if (end == n) break;
+        const double *above[4];
+        for (int k = 0; k < 4; k++) {
+            double *row = c->matrix[c->row[first + k]];
+            for (int i = 0; i < k; i++)
+                for (int l = end; l < n; l++)
+                    row[l] -= row[first + i] * above[i][l];
+            above[k] = row;
+        }
+        for (int r = end; r < n; r++) {
+            double *row = c->matrix[c->row[r]];
+            const double s[4] = {row[first], row[first + 1], row[first + 2],
+                                 row[first + 3]};
+            for (int l = end; l < n; l++)
+                row[l] -= s[0] * above[0][l] + s[1] * above[1][l] + s[2] * above[2][l] +
+                          s[3] * above[3][l];
         }
     }
     return true;
@@ -276,8 +300,7 @@ static bool newton(struct corrections *c, const double (*from)[STRAINS], double 
     return false;
 }
 
-// ---- joint by joint
-// -------------------------------------------------------------------
+// ---- joint by joint -----------------------------------------------------------------
 
 // Twist and bending are linear.
 static void settle_moments(const struct triple *triple, const struct surroundings *s,
