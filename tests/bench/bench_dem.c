@@ -219,25 +219,26 @@ static struct dem_setup at_rest(const struct packing *packing, const char *kind,
                                 int threads)
 {
     const bool smooth = strcmp(kind, "smooth") == 0;
-    return (struct dem_setup){.packing = packing,
-                              .law =
-                                  strcmp(kind, "hertz") == 0 ? DEM_HERTZ : DEM_LINEAR,
-                              .material = {.density = 2500,
-                                           .normal_stiffness = 2e4,
-                                           .shear_stiffness = 2e4 * 2 / 7,
-                                           .friction = smooth ? 0 : 0.5,
-                                           .damping_ratio = 0.2,
-                                           .young_modulus = 2.88e8,
-                                           .poisson_ratio = 0.25,
-                                           .restitution = 0.5},
-                              .bond = {.normal_stiffness = 1e9,
-                                       .shear_stiffness = 1e9,
-                                       .normal_strength = INFINITY,
-                                       .shear_strength = INFINITY,
-                                       .radius_fraction = 0.5},
-                              .time_step = 4.85e-6,
-                              .force_time_step = true,
-                              .threads = threads};
+    return (struct dem_setup){
+        .packing = packing,
+        .law = strcmp(kind, "hertz") == 0 || strncmp(kind, "wet", 3) == 0 ? DEM_HERTZ
+                                                                          : DEM_LINEAR,
+        .material = {.density = 2500,
+                     .normal_stiffness = 2e4,
+                     .shear_stiffness = 2e4 * 2 / 7,
+                     .friction = smooth ? 0 : 0.5,
+                     .damping_ratio = 0.2,
+                     .young_modulus = 2.88e8,
+                     .poisson_ratio = 0.25,
+                     .restitution = 0.5},
+        .bond = {.normal_stiffness = 1e9,
+                 .shear_stiffness = 1e9,
+                 .normal_strength = INFINITY,
+                 .shear_strength = INFINITY,
+                 .radius_fraction = 0.5},
+        .time_step = 4.85e-6,
+        .force_time_step = true,
+        .threads = threads};
 }
 
 // For some seconds after a tenth of that to warm up.
@@ -248,8 +249,8 @@ static int one_packing(const char *path, const char *kind, int threads)
         packing.bond = neighbour_pairs(&packing, 0, &packing.n_bond);
     struct dem_setup setup = at_rest(&packing, kind, threads);
     const bool exact = strcmp(kind, "wet-exact") == 0;
-    const struct dem_liquid liquid = {.model = exact ? BRIDGE_TABLE
-                                                     : BRIDGE_WILLETT_FULL,
+    const struct dem_liquid liquid = {.model =
+                                          exact ? BRIDGE_TABLE : BRIDGE_WILLETT_FULL,
                                       .surface_tension = 0.0728,
                                       .volume = 1e-12, // 1e-3 of the radius cubed
                                       .pulls_in_contact = true};
