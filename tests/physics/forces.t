@@ -316,6 +316,21 @@ def rings():
         ring = (force - bare)[:, 0, 2] / exact
         ok(ring[0] == 0 and (np.diff(ring) >= -1e-9).all(),
            "it grows from nothing as throats empty", ring[:3])
+    # in a layer, where the throat between two grains is the face
+    drying("d", [[2 * R, R, 2 * R], [4 * R, R, 2 * R]], [R, R], (6 * R, 2 * R, 4 * R),
+           ["dimensions=2"], ["liquid=immobile", 'imposed_empty=["-x","+x","-z"]'])
+    exact = json.loads(run("bridge", *settings(
+        [f"radius={R}", "separations=[0]", f"volume={1e-3 * R**3}", "surface_tension=0.07274"])))
+    last = forces("d", "rings.left=volume")[0][-1] / exact["force"][0]
+    ok(abs(last - [[1, 0, 0], [-1, 0, 0]]).max() < 1e-6, "and between two grains of a layer", last)
+    with h5py.File("d") as file:
+        x = file["nodes/position"][:, 0][file["throats/nodes"][:]]
+        width = file["throats/radius"][abs(x - 3 * R).max(1) < 1e-6 * R]
+    wet = forces("d", "form=faces", "contact_angle=30")[0][0]
+    dry = forces("d", "form=faces")[0][0] * np.cos(np.pi / 6)
+    line = (wet - dry)[:, 0] / (0.07274 * np.sin(np.pi / 6) * width)
+    ok(len(width) == 1 and abs(line - [2, -2]).max() < 1e-9,
+       "its upper meniscus pulls both grains with 2 r sigma sin(theta)", line)
 
 
 def refusals():
@@ -452,8 +467,8 @@ with scratch() as folder:
     unequal()
     gradient()
     times()
-    rings()
     refusals()
+    rings()
     scaled()
     hardly_viscous()
     overlaps()
