@@ -96,22 +96,19 @@ static void number_nodes(struct balance *balance, const struct conditions *condi
             parent[i] == i ? pressures->n_node++ : pressures->node[parent[i]];
     for (int wall = 0; wall < WALL_COUNT; wall++)
         if (plate[wall] >= 0) plate[wall] = pressures->node[plate[wall]];
+    pressures->node_of_cell = NEW_ARRAY(int32_t, balance->cells->n);
+    for (int c = 0; c < balance->cells->n; c++)
+        pressures->node_of_cell[c] = pressures->node[balance->cells->cell[c].pore];
     free(parent);
 }
 
-static int32_t node_of(const struct balance *balance, const struct pressures *pressures,
-                       int32_t cell)
-{
-    return pressures->node[balance->cells->cell[cell].pore];
-}
-
 // Both nodes of a throat that conducts; false: it does not.
-static bool nodes_of(const struct balance *balance, const struct pressures *pressures,
-                     const struct throat *throat, int32_t node[2])
+static bool nodes_of(const struct pressures *pressures, const struct throat *throat,
+                     int32_t node[2])
 {
     if (!(throat->conductance > 0)) return false;
-    node[0] = node_of(balance, pressures, throat->cell[0]);
-    node[1] = node_of(balance, pressures, throat->cell[1]);
+    node[0] = pressures->node_of_cell[throat->cell[0]];
+    node[1] = pressures->node_of_cell[throat->cell[1]];
     return node[0] != node[1];
 }
 
@@ -134,10 +131,11 @@ static void impose(struct balance *balance, const struct conditions *conditions,
         if (plate[wall] >= 0) balance->injected[plate[wall]] += conditions->flux[wall];
     balance->given =
         duplicate(balance->injected, (size_t)pressures->n_node, sizeof *balance->given);
+    if (!(norm(conditions->gradient) > 0)) return;
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
-        if (!nodes_of(balance, pressures, throat, node)) continue;
+        if (!nodes_of(pressures, throat, node)) continue;
         const double driven = throat->conductance *
                               dot(conditions->gradient,
                                   throat_step(balance->grains, balance->cells, throat));
@@ -157,7 +155,7 @@ static enum status find_pockets(struct balance *balance, struct pressures *press
         pocket[i] = i;
     for (int t = 0; t < balance->throats->n; t++) {
         int32_t node[2];
-        if (nodes_of(balance, pressures, &balance->throats->throat[t], node))
+        if (nodes_of(pressures, &balance->throats->throat[t], node))
             unite(pocket, node[0], node[1]);
     }
     for (int i = 0; i < n; i++) {
@@ -200,7 +198,7 @@ static void arrange(struct balance *balance, const struct pressures *pressures)
     matrix->offset = NEW_ARRAY(int, n_node + 2);
     for (int t = 0; t < balance->throats->n; t++) {
         int32_t node[2];
-        if (!nodes_of(balance, pressures, &balance->throats->throat[t], node)) continue;
+        if (!nodes_of(pressures, &balance->throats->throat[t], node)) continue;
         for (int end = 0; end < 2; end++)
             matrix->offset[balance->unknown[node[end]] + 2]++;
     }
@@ -213,7 +211,7 @@ static void arrange(struct balance *balance, const struct pressures *pressures)
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
-        if (!nodes_of(balance, pressures, throat, node)) continue;
+        if (!nodes_of(pressures, throat, node)) continue;
         for (int end = 0; end < 2; end++) {
             const int row = balance->unknown[node[end]];
             if (row >= n) continue;
@@ -248,10 +246,8 @@ double pressure_drop(const struct pressures *pressures, const struct grains *gra
                      const struct cells *cells, const struct throat *throat)
 {
     const struct compensated *value = pressures->value;
-    const struct compensated a =
-        value[pressures->node[cells->cell[throat->cell[0]].pore]];
-    const struct compensated b =
-        value[pressures->node[cells->cell[throat->cell[1]].pore]];
+    const struct compensated a = value[pressures->node_of_cell[throat->cell[0]]];
+    const struct compensated b = value[pressures->node_of_cell[throat->cell[1]]];
     const double drop = (a.value - b.value) + (a.lost - b.lost);
     if (!grains_repeat(grains)) return drop;
     return drop - dot(pressures->gradient, throat_step(grains, cells, throat));
@@ -261,7 +257,7 @@ double pore_pressure(const struct pressures *pressures, const struct cells *cell
                      int cell)
 {
     const struct pore_cell *at = &cells->cell[cell];
-    return compensated_value(pressures->value[pressures->node[at->pore]]) +
+    return compensated_value(pressures->value[pressures->node_of_cell[cell]]) +
            dot(pressures->gradient, at->centre);
 }
 
@@ -431,7 +427,7 @@ static void settle_pockets(const struct balance *balance, const int32_t *pocket,
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
         for (int end = 0; end < 2; end++)
-            node[end] = node_of(balance, pressures, throat->cell[end]);
+            node[end] = pressures->node_of_cell[throat->cell[end]];
         if (pocket[node[0]] == pocket[node[1]]) continue;
         const double drop =
             pressure_drop(pressures, balance->grains, balance->cells, throat);
@@ -477,7 +473,7 @@ static void find_inflow(const struct balance *balance,
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
-        if (!nodes_of(balance, pressures, throat, node)) continue;
+        if (!nodes_of(pressures, throat, node)) continue;
         const double flux =
             throat->conductance *
             pressure_drop(pressures, balance->grains, balance->cells, throat);
@@ -530,6 +526,7 @@ enum status solve_pressures(const struct grains *grains, const struct cells *cel
 void pressures_free(struct pressures *pressures)
 {
     free(pressures->node);
+    free(pressures->node_of_cell);
     free(pressures->value);
     *pressures = (struct pressures){0};
 }

@@ -26,6 +26,7 @@ struct solving {
 struct pressures {
     int n_node;                // pores behind one flux plate are one
     int32_t *node;             // (n_pore)
+    int32_t *node_of_cell;     // (n_cell) the same, for loops over throats
     struct compensated *value; // (n_node) Pa, without the mean gradient
     struct vector gradient;
     double inflow[WALL_COUNT]; // through each wall
