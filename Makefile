@@ -104,12 +104,13 @@ version_of = $(strip $(if $(wildcard stages/$1/version),$(file <stages/$1/versio
 VERSION := $(file <VERSION)
 
 # Two notes, rewritten only when they differ from what is on disk: other flags recompile
-# everything, an added or removed source relinks.
+# everything, an added or removed source relinks. `strip`: make 4.3 may leave the newline that
+# ends a file of more than 200 bytes.
 flags := $(strip $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(VERSION))
 sources := $(sort $(wildcard stages/*/*.c $(addprefix stages/lib/*/*.,c cpp S) \
 	tests/*/support_*.c))
 define note
-$(BUILD)/$1: $(if $(findstring |$($1)|,|$(file <$(BUILD)/$1)|),,FORCE)
+$(BUILD)/$1: $(if $(findstring |$($1)|,|$(strip $(file <$(BUILD)/$1))|),,FORCE)
 	@mkdir -p $$(@D) && printf '%s\n' '$($1)' >$$@
 endef
 $(foreach n,flags sources,$(eval $(call note,$n)))
@@ -287,7 +288,7 @@ tidy: ## look for mistakes with clang-tidy
 print-%: ## show a make variable: make print-CFLAGS
 	@echo '$($*)'
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z%-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z%-]+:.*## / { printf "  %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 endif
 
