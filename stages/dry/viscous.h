@@ -11,9 +11,9 @@
 // pressure. In a full one the meniscus stays at the mouth while the pressure behind it
 // is above that, and liquid flows to it as fast as it evaporates; otherwise it recedes,
 // losing more than flows in. Which do is an obstacle problem with a symmetric M-matrix:
-// it has one solution, and changing the menisci that break their condition, all at
-// once, reaches it in a few rounds because pressures only rise from the first round on
-// (Hintermueller, Ito and Kunisch 2002).
+// it has one solution. From the first round on those that must stop do, and those that
+// must most begin; as either only raises pressures, none comes back (Hintermueller, Ito
+// and Kunisch 2002 change all at once, and most of those would stop again).
 #ifndef CRAQUELURE_VISCOUS_H
 #define CRAQUELURE_VISCOUS_H
 
@@ -21,7 +21,7 @@
 #include "phases.h"
 
 struct loss;
-struct flow_solver; // the factorised matrix and room to solve in
+struct flow_solver; // what is kept from step to step, and room to solve in
 
 struct liquid_flow {
     const struct network *network;

@@ -154,7 +154,7 @@ with scratch() as folder:
                "periodic=[true,true,true]", "--set", "dynamics.friction=0"])
 
     dry = ["dry", "-p", SCENE, "--set", "step_interval=0.01"]
-    large, small = make_network(folder, "large", 18), make_network(folder, "small", 7)
+    large, small = make_network(folder, "large", 18), make_network(folder, "small", 10)
     for liquid, network in [("inviscid", large), ("immobile", large), ("viscous", small)]:
         this = [*dry, "--set", f"liquid={liquid}", network]
         in_pieces(f"dry, {liquid} liquid", this)
