@@ -36,8 +36,8 @@ struct wedges {
 // Finds all wedges of NETWORK, which must live as long. Where cut cells were left out
 // (boundary=eliminate) a throat between one that stays and two that do not has lost
 // the face between these two; its wedges are there all the same, so that all grains
-// around a throat feel it. In a layer the grain that lost its cell is that of least
-// power at the throat.
+// around a throat feel it, but for one between those two, as on lattices. In a layer
+// the grain that lost its cell is that of least power at the throat.
 //
 // STATUS_BAD_DATA when two neighbours in a face's loop are not joined by a throat, or
 // a cell is open elsewhere. The caller frees with wedges_free, also after a failure.
