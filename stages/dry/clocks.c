@@ -269,7 +269,8 @@ double clocks_saturation(const struct clocks *clocks, int throat)
 
 double clocks_imbalance(const struct clocks *clocks)
 {
-    const double rate = vapour_rate(&clocks->phases->vapour);
+    const struct vapour *vapour = &clocks->phases->vapour;
+    const double rate = vapour_rate(vapour) / vapour_scale(vapour);
     struct compensated sum = {.value = -rate};
     for (int k = 0; k < clocks->n; k++)
         compensated_add(&sum, clocks->rate[k]);
@@ -330,9 +331,10 @@ double clocks_advance(struct clocks *clocks)
 {
     struct phases *phases = clocks->phases;
     if (clocks->n == 0) return -1;
-    const double duration = time_to_first(clocks);
+    const double span = time_to_first(clocks);
+    const double duration = span / vapour_scale(&phases->vapour);
     compensated_add(&phases->total_liquid, -vapour_rate(&phases->vapour) * duration);
-    pass(clocks, duration);
+    pass(clocks, span);
     end_throats(clocks);
     return duration;
 }
@@ -356,19 +358,22 @@ static void empty_throat(struct clocks *clocks, int throat)
     charge_ends(clocks, throat);
 }
 
-void clocks_empty_ended(struct clocks *clocks)
+bool clocks_empty_ended(struct clocks *clocks)
 {
     struct phases *phases = clocks->phases;
-    struct star_mesh *mesh = &phases->vapour.mesh;
+    struct vapour *vapour = &phases->vapour;
     for (int k = 0; k < clocks->n_ended; k++) {
         touch(clocks, owner_of(clocks, clocks->ended[k]));
         empty_throat(clocks, clocks->ended[k]);
     }
-    for (int k = 0; k < mesh->n_changed; k++)
-        charge_node(clocks, mesh->changed[k],
-                    vapour_evaporation(&phases->vapour, mesh->changed[k]));
-    star_mesh_forget_changes(mesh);
+    const bool is_settled = vapour_settle(vapour);
+    int n_changed;
+    const int *changed = vapour_changes(vapour, &n_changed);
+    for (int k = 0; k < n_changed; k++)
+        charge_node(clocks, changed[k], vapour_evaporation(vapour, changed[k]));
+    vapour_forget_changes(vapour);
     set_touched(clocks);
+    return is_settled;
 }
 
 // --- state -------------------------------------------------------------------------

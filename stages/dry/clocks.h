@@ -48,8 +48,9 @@ struct clocks clocks_make(struct phases *phases, bool by_throat);
 // nothing evaporates any more.
 double clocks_advance(struct clocks *clocks);
 
-// Gas fills the ended throats. The clocks run on with the rates that follow.
-void clocks_empty_ended(struct clocks *clocks);
+// Gas fills the ended throats. The clocks run on with the rates that follow. False if
+// these are not within the tolerance.
+bool clocks_empty_ended(struct clocks *clocks);
 
 // Of a throat now: of its volume.
 double clocks_saturation(const struct clocks *clocks, int throat);

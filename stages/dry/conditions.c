@@ -103,6 +103,16 @@ enum status check_conditions(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "start_saturation: must be above 0 and at most 1, is %g",
                       conditions->start_saturation);
+    if (!(conditions->vapour_tolerance >= 0 && conditions->vapour_tolerance <= 0.5))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "vapour_tolerance: must be from 0 to 0.5, is %g",
+                      conditions->vapour_tolerance);
+    if (conditions->vapour_tolerance > 0 &&
+        (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "vapour_tolerance: must be 0 where liquid is viscous or menisci "
+                      "are curved (kelvin), is %g",
+                      conditions->vapour_tolerance);
     if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "step_interval: must be from 0 to 1, is %g",

@@ -203,7 +203,8 @@ static enum status make_phases(const struct network *network, struct run *run,
     const struct phases_form form = {.length = run->scale.length,
                                      .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
                                      .ease = ease,
-                                     .knudsen_radius = knudsen_radius(conditions)};
+                                     .knudsen_radius = knudsen_radius(conditions),
+                                     .vapour_tolerance = conditions->vapour_tolerance};
     status = phases_make(network, conditions->open_walls, &form, layer, &run->phases,
                          reason);
     free(ease);
@@ -261,6 +262,10 @@ enum status dry_network(const struct network *network,
                       .scale = drying_scale(network, conditions),
                       .recorder = recorder_make(history)};
     status = make_phases(network, &run, reason);
+    if (!status && conditions->vapour_tolerance > 0 && progress && progress->keeper)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "vapour_tolerance: must be 0 where a checkpoint is kept, is %g",
+                        conditions->vapour_tolerance);
     if (!status) status = begin_run(&run, progress ? progress->keeper : NULL, reason);
     if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);

@@ -66,6 +66,9 @@ struct drying_conditions {
     // throats.
     double start_saturation;
     const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    // What all wet nodes give off is known to this part of the rate, its errors added
+    // up; 0: exact.
+    double vapour_tolerance;
     // Fall of the network's saturation from one recorded step to the next; 0: each
     // event is a step.
     double step_interval;

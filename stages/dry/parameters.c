@@ -110,6 +110,11 @@ const struct parameter dry_table[] = {
      "INPUT "
      "is a drying, its state when it had as much",
      AT(conditions.start_saturation)},
+    {"vapour_tolerance", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.5, NULL,
+     "largest error of what wet nodes evaporate, all errors added up, over the rate; "
+     "0: "
+     "exact",
+     AT(conditions.vapour_tolerance)},
     {"step_interval", PARAMETER_NUMBER, "1", "null", BOUND_BETWEEN, 0, 1, NULL,
      "fall of the saturation from one recorded step to the next; 0: every event is a "
      "step (up to 100000 throats); null: 0 up to 30000 throats, 0.001 in larger "

@@ -37,6 +37,7 @@ struct phases_form {
     bool gas_parts;        // as in struct clusters
     const double *ease;    // (n_throat) as clusters_make takes it
     double knudsen_radius; // m, as vapour_make takes it
+    double vapour_tolerance; // likewise
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and

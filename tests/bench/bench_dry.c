@@ -2,7 +2,7 @@
 // Times drying on cubic lattices of nodes with random radii, without reading or
 // writing.
 //
-//     bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]
+//     bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE]
 //
 //     bench_dry invade NX NY NZ pure|trapping
 //
@@ -69,7 +69,7 @@ static struct network lattice(const int n[3])
 }
 
 // [K Table 3.1] under a boundary layer ten throats thick.
-static struct drying_conditions conditions(const char *liquid, double step_interval)
+static struct drying_conditions conditions(const char *liquid, double tolerance)
 {
     return (struct drying_conditions){
         .temperature = 293.15,
@@ -82,14 +82,15 @@ static struct drying_conditions conditions(const char *liquid, double step_inter
         .open_walls = WALL_Z_UPPER,
         .liquid = strcmp(liquid, "immobile") == 0 ? LIQUID_IMMOBILE : LIQUID_INVISCID,
         .start_saturation = 1,
-        .step_interval = step_interval,
+        .step_interval = 1e-3,
+        .vapour_tolerance = tolerance,
         .first_period_rate_fraction = 0.9};
 }
 
-static int dry(const int n[3], const char *liquid, double step_interval)
+static int dry(const int n[3], const char *liquid, double tolerance)
 {
     struct network network = lattice(n);
-    const struct drying_conditions c = conditions(liquid, step_interval);
+    const struct drying_conditions c = conditions(liquid, tolerance);
     struct drying_history history;
     struct reason reason;
     const double start = seconds();
@@ -128,12 +129,12 @@ static int invade_lattice(const int n[3], bool trapping)
 int main(int argc, char **argv)
 {
     if (argc < 6) {
-        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [STEP_INTERVAL]\n"
+        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE]\n"
                         "bench_dry invade NX NY NZ pure|trapping\n");
         return STATUS_USAGE;
     }
     const int n[3] = {atoi(argv[2]), atoi(argv[3]), atoi(argv[4])};
     if (strcmp(argv[1], "invade") == 0)
         return invade_lattice(n, strcmp(argv[5], "trapping") == 0);
-    return dry(n, argv[5], argc > 6 ? strtod(argv[6], NULL) : 1e-3);
+    return dry(n, argv[5], argc > 6 ? strtod(argv[6], NULL) : 0);
 }
