@@ -12,7 +12,9 @@
 // far more than any network needs.
 enum { MOST_ROUNDS = 200 };
 
-// Menisci begin to move at once that lack at least this part of what the worst does.
+// Menisci begin to move at once that lack at least this part of what the worst does;
+// all that must after so many rounds, as when a viscous cluster begins to dry.
+enum { PATIENT_ROUNDS = 20 };
 static const double BEGINNERS = 0.9;
 
 struct liquid_flow liquid_flow_make(const struct phases *phases, double length,
@@ -120,7 +122,8 @@ static double shortfall(const struct liquid_flow *flow, const struct piece *piec
 
 // Those that must stop do, and of those that must begin, those that must most: as they
 // do, the pressure rises for the others. Returns how many have changed.
-static int revise_menisci(struct liquid_flow *flow, const struct piece *piece)
+static int revise_menisci(struct liquid_flow *flow, const struct piece *piece,
+                          double beginners)
 {
     int n = 0;
     double most = 0;
@@ -134,8 +137,8 @@ static int revise_menisci(struct liquid_flow *flow, const struct piece *piece)
     }
     for (int t = first_meniscus(flow, piece); most > 0 && t >= 0;
          t = next_throat(flow, t)) {
-        if (flow->moving[t] || !(shortfall(flow, piece, t) >= BEGINNERS * most))
-            continue;
+        const double lack = flow->moving[t] ? 0 : shortfall(flow, piece, t);
+        if (!(lack > 0 && lack >= beginners * most)) continue;
         flow->moving[t] = true;
         n++;
     }
@@ -150,7 +153,8 @@ static enum status find_menisci(struct liquid_flow *flow, struct piece *piece,
         const enum status status = cluster_flow_solve(flow, piece, reason);
         if (status) return status;
         flow->rounds++;
-        if (revise_menisci(flow, piece) == 0) return STATUS_OK;
+        const double beginners = round < PATIENT_ROUNDS ? BEGINNERS : 0;
+        if (revise_menisci(flow, piece, beginners) == 0) return STATUS_OK;
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "no consistent menisci after %d rounds in a cluster of %d throats",
