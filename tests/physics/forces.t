@@ -263,7 +263,7 @@ def interpolated(time, force, at):
 def times():
     centres, radii = scatter(40, (2.3e-6, 2.3e-6, 2.6e-6))
     drying("d", centres, radii, (2.3e-6, 2.3e-6, 2.6e-6), [], ["liquid=inviscid"])
-    truth, when, _ = forces("d", steps=20001)
+    truth, when, _ = forces("d", steps=8001)
     largest = np.linalg.norm(truth, axis=2).max()
     for bound in 0.2, 0.02:
         force, time, summary = forces("d", f"largest_change={bound}")
