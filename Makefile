@@ -265,7 +265,7 @@ bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cos
 	@tests/bench/bridge
 bench-viscous: all ## time to dryness with viscous liquid, next to none
 	@tests/bench/viscous
-bench-replay: all ## error of both engines of the replay against time, and time against time
+bench-replay: all $(BENCHES) ## error of both engines of the replay against time, and time against time
 	@tests/bench/replay
 bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (minutes)
 	@tests/bench/dry

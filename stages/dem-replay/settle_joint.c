@@ -100,7 +100,7 @@ static double stretch_of(const struct joint *joint, const struct surroundings *s
     return s->from[1 + k] + x[1 + k] - joint->contact.anchor[k];
 }
 
-// Closed and slipping, x = smooth - force (cos(angle) give[0] + sin(angle) give[1]).
+// Closed and slipping, x = smooth - force (way[0] give[0] + way[1] give[1]).
 struct sliding {
     double smooth[3], give[2][3];
     double overlap, limit; // without friction; force over overlap
@@ -128,15 +128,15 @@ static bool begin_sliding(const struct joint *joint, const struct surroundings *
     return true;
 }
 
-// What comes of a slip at ANGLE: how far the spring is turned from it (then it cannot
-// be), and stretched along it beyond where it would stick (or else it cannot be).
+// What comes of a slip along WAY, a unit vector: where the spring lies then, how far it
+// is turned from that way (then it cannot be), and stretched along it beyond where it
+// would stick (or else it cannot be).
 struct slip {
-    double x[3], turned, along, beyond;
+    double x[3], stretch[2], turned, along, beyond;
 };
 
-static struct slip slip_at(const struct sliding *sliding, double angle)
+static struct slip slip_along(const struct sliding *sliding, const double way[2])
 {
-    const double way[2] = {cos(angle), sin(angle)};
     const double give = way[0] * sliding->give[0][0] + way[1] * sliding->give[1][0];
     const double force =
         sliding->limit * sliding->overlap / (1 - sliding->limit * give);
@@ -144,25 +144,32 @@ static struct slip slip_at(const struct sliding *sliding, double angle)
     for (int k = 0; k < 3; k++)
         slip.x[k] = sliding->smooth[k] - force * (way[0] * sliding->give[0][k] +
                                                   way[1] * sliding->give[1][k]);
-    const double stretch[2] = {slip.x[1] - sliding->anchor[0],
-                               slip.x[2] - sliding->anchor[1]};
-    slip.turned = way[0] * stretch[1] - way[1] * stretch[0];
-    slip.along = way[0] * stretch[0] + way[1] * stretch[1];
+    for (int k = 0; k < 2; k++)
+        slip.stretch[k] = slip.x[1 + k] - sliding->anchor[k];
+    slip.turned = way[0] * slip.stretch[1] - way[1] * slip.stretch[0];
+    slip.along = way[0] * slip.stretch[0] + way[1] * slip.stretch[1];
     slip.beyond = force >= 0 ? sliding->stiffness * slip.along - force : -1;
     return slip;
 }
 
+static struct slip slip_at(const struct sliding *sliding, double angle)
+{
+    return slip_along(sliding, (double[]){cos(angle), sin(angle)});
+}
+
 // From the way the spring lies to where the slip turns it, again and again.
-static bool follow_slip(const struct sliding *sliding, double angle, double x[3])
+static bool follow_slip(const struct sliding *sliding, double x[3])
 {
     enum { TURNS = 8 };
+    double way[2] = {x[1] - sliding->anchor[0], x[2] - sliding->anchor[1]};
     for (int k = 0; k < TURNS; k++) {
-        const struct slip slip = slip_at(sliding, angle);
+        const double size = sqrt(way[0] * way[0] + way[1] * way[1]);
+        if (!(size > 0)) return false;
+        const double unit[2] = {way[0] / size, way[1] / size};
+        const struct slip slip = slip_along(sliding, unit);
         if (!(slip.along > 0)) return false;
-        if (fabs(slip.turned) > 1e-6 * slip.along) {
-            angle += atan2(slip.turned, slip.along);
-            continue;
-        }
+        memcpy(way, slip.stretch, sizeof way);
+        if (fabs(slip.turned) > 1e-6 * slip.along) continue;
         if (slip.beyond < 0) return false;
         memcpy(x, slip.x, sizeof slip.x);
         return true;
@@ -207,7 +214,7 @@ static bool slip(const struct joint *joint, const struct surroundings *s, double
     if (joint->contact.touch == TOUCH_NONE || !begin_sliding(joint, s, &sliding))
         return false;
     const double angle = atan2(x[2] - sliding.anchor[1], x[1] - sliding.anchor[0]);
-    return follow_slip(&sliding, angle, x) || seek_slip(&sliding, angle, x);
+    return follow_slip(&sliding, x) || seek_slip(&sliding, angle, x);
 }
 
 bool settle_joint(const struct joint *joint, const struct surroundings *s, double x[3])

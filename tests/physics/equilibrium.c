@@ -270,6 +270,42 @@ static void the_whole_balances(void **state)
     packing_free(&packing);
 }
 
+// Turned by a quarter about the vertical, loads move grains the same way turned, slip
+// and all: no direction of the joints' own is left in what comes out.
+static void a_turned_block_answers_turned(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.material.friction = 0.1;
+    struct equilibrium *straight = make(&setup), *turned = make(&setup);
+    struct vector force[BLOCK], other[BLOCK], moved[BLOCK], answer[BLOCK], back[BLOCK];
+    int target[BLOCK];
+    for (int i = 0; i < BLOCK; i++) {
+        const int x = i % SIDE, y = i / SIDE % SIDE, z = i / (SIDE * SIDE);
+        target[i] = SIDE * SIDE * z + SIDE * x + (SIDE - 1 - y);
+    }
+    for (int step = 1; step <= 4; step++) {
+        load_block(force, step * 1e-9);
+        for (int i = 0; i < BLOCK; i++)
+            other[target[i]] = (struct vector){-force[i].y, force[i].x, force[i].z};
+        find(straight, force);
+        find(turned, other);
+    }
+    equilibrium_displacements(straight, moved);
+    equilibrium_displacements(turned, answer);
+    for (int i = 0; i < BLOCK; i++) {
+        const struct vector there = answer[target[i]];
+        back[i] = (struct vector){there.y, -there.x, there.z};
+    }
+    assert_true(apart(back, moved) < 1e-9);
+    equilibrium_free(straight);
+    equilibrium_free(turned);
+    packing_free(&packing);
+}
+
 // Every bond far past its strength at once: those that hold break, all are counted, and
 // what hung on them leaves, whole where nothing holds it back.
 static void every_bond_breaks(void **state)
@@ -365,6 +401,7 @@ int main(void)
         cmocka_unit_test(a_block_as_the_discrete_elements),
         cmocka_unit_test(forces_balance),
         cmocka_unit_test(the_whole_balances),
+        cmocka_unit_test(a_turned_block_answers_turned),
         cmocka_unit_test(one_bond_breaks),
         cmocka_unit_test(every_bond_breaks),
         cmocka_unit_test(stiffnesses_over_twelve_decades),
