@@ -109,6 +109,16 @@ static void must_fit(const struct study *study, const struct run *run, const cha
             run->n_snapshot, study->n_snapshot);
 }
 
+// A table of slices at each interval is written.
+static void check_classes(const struct crackstats_parameters *parameters)
+{
+    static const int64_t most = 1000000;
+    if (parameters->slices * parameters->intervals > most)
+        die(STATUS_BAD_DATA,
+            "crackstats.slices: times intervals must be at most %d, got %d times %d",
+            (int)most, (int)parameters->slices, (int)parameters->intervals);
+}
+
 static struct study read_study(const struct invocation *invocation, json_t *digests,
                                const struct crackstats_parameters *parameters)
 {
@@ -137,6 +147,7 @@ int main(int argc, char **argv)
 {
     struct crackstats_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    check_classes(&parameters);
     json_t *inputs = json_array();
     struct study study = read_study(&invocation, inputs, &parameters);
     json_t *report =

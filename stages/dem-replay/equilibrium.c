@@ -138,7 +138,12 @@ static bool break_one(struct equilibrium *e)
 
 static enum status check_small(const struct equilibrium *e, struct reason *reason)
 {
-    for (int i = 0; i < e->n; i++)
+    for (int i = 0; i < e->n; i++) {
+        if (!e->is_gone[i] && isnan(size_of(e->trial[i])))
+            return refuse(reason, STATUS_NOT_CONVERGED,
+                          "no equilibrium of grain %d that numbers hold: stiffnesses "
+                          "lie too far apart (engine=explicit solves no equations)",
+                          i);
         if (!e->is_gone[i] && !(size_of(e->trial[i]) <= furthest))
             return refuse(
                 reason, STATUS_NOT_CONVERGED,
@@ -146,6 +151,7 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
                 "and equilibrium is a matter of dynamics "
                 "(engine=explicit, or stiffer bonds)",
                 i, size_of(e->trial[i]));
+    }
     return STATUS_OK;
 }
 

@@ -97,5 +97,5 @@ double equilibrium_unbalanced_ratio(const struct equilibrium *e)
         carrying++;
     }
     if (!(left > 0)) return 0;
-    return carrying > 0 ? left / moving / (carried / carrying) : INFINITY;
+    return carrying > 0 ? left / moving / (carried / carrying) : 1; // all is unbalanced
 }

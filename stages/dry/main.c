@@ -11,6 +11,7 @@
 #include "write_drying.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +53,13 @@ static struct artifact *open_input(const char *path)
     return input;
 }
 
+static bool holds_liquid(const double *saturation, int n_throat)
+{
+    for (int t = 0; t < n_throat; t++)
+        if (saturation[t] > 0) return true;
+    return false;
+}
+
 // Throat by throat, from a drying; NULL from a network.
 static double *read_start(const struct artifact *input, const struct network *network,
                           double saturation)
@@ -70,6 +78,11 @@ static double *read_start(const struct artifact *input, const struct network *ne
         network,
         &(struct drying_record){n_step, history, offset, throat, throat_saturation},
         saturation);
+    if (!holds_liquid(start, network->n_throat))
+        die(STATUS_BAD_DATA,
+            "%s: /changes/saturation: no throat holds liquid any more at "
+            "dry.start_saturation %g",
+            input_name(input->path), saturation);
     free(history);
     free(offset);
     free(throat);

@@ -112,11 +112,25 @@ static bool nodes_of(const struct pressures *pressures, const struct throat *thr
     return node[0] != node[1];
 }
 
+// Where all that is imposed is one pressure, it is that of all pores: begun from there,
+// what does not flow is nothing, and not the rounding of a solution.
+static void begin_from_least(const struct conditions *conditions,
+                             struct pressures *pressures)
+{
+    double least = INFINITY;
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (fabs(conditions->pressure[wall]) < fabs(least))
+            least = conditions->pressure[wall];
+    for (int i = 0; i < pressures->n_node && isfinite(least); i++)
+        pressures->value[i].value = least;
+}
+
 static void impose(struct balance *balance, const struct conditions *conditions,
                    const double *source, const int32_t plate[WALL_COUNT],
                    struct pressures *pressures)
 {
     pressures->value = NEW_ARRAY(struct compensated, pressures->n_node);
+    begin_from_least(conditions, pressures);
     balance->known = NEW_ARRAY(uint8_t, pressures->n_node);
     balance->injected = NEW_ARRAY(double, pressures->n_node);
     for (int i = 0; i < balance->cells->n_pore; i++) {
@@ -358,8 +372,8 @@ static void reorder(const struct balance *balance, struct pressures *pressures,
             x[balance->unknown[i]] = pressures->value[i];
 }
 
-// Corrects the pressures until the balances close. From nothing, the first correction
-// is the whole solution.
+// Corrects the pressures until the balances close. The first correction is nearly the
+// whole solution.
 static enum status close_balances(const struct balance *balance,
                                   const struct solving *solving,
                                   struct pressures *pressures, struct reason *reason)

@@ -902,8 +902,39 @@ setting("a tolerance that is not met is reported", UNSTABLE, "tolerance=1e-12",
         "cycles", program=(*REPLAY, "--set", "time_step_safety=0.02", "--set", "cycles=9",
                              "--set", "most_cycles=9"))
 
+setting("a table of too many slices and intervals is refused", BAD_DATA, "slices=100000",
+        "crackstats.slices: times intervals must be at most 1000000, got 100000 times 11",
+        program=("crackstats", "response", "--set", "intervals=11"))
+refused("a drying that holds nothing any more does not go on", BAD_DATA,
+        ["dry", "--set", "start_saturation=0.5",
+         damaged("drying", value("history/saturation", slice(None), 1))],
+        "damaged: /changes/saturation: no throat holds liquid any more at "
+        "dry.start_saturation 0.5")
+setting("stiffnesses too far apart for equilibria are reported", UNSTABLE,
+        "bond.radius_fraction=1e-6", r"forces: step \d .*: no equilibrium of grain \d+ that "
+        "numbers hold: stiffnesses lie too far apart .*",
+        program=(*REPLAY, "--set", "engine=quasi-static"))
+
+# Sizes that are allowed one by one, and what comes of them is too large to write.
+for program, name, changes in [
+        ("dry", "history/rate", ["boundary_layer.from=thickness",
+                                 "boundary_layer.thickness=1e-300"]),
+        ("invade", "events/pressure", ["surface_tension=1e150"]),
+        ("flow", "throats/conductance", ["viscosity=1e-300"]),
+        ("flow", "particles/buoyancy", ["gravity=[0,0,1e150]", "density=1e150"])]:
+    refused(f"{program} refuses results that overflow: {name}", BAD_DATA,
+            [program, *(word for change in changes for word in ("--set", change)),
+             "packing" if program == "flow" else "network"],
+            f"the results overflow: /{name}: row 0: must be at most 1e150 in size, got .*")
+
 # ---- the command line -------------------------------------------------------------------
 
+os.symlink("out", "beside")
+for place in ["out/result", "./out/result", "out/../out/result", "beside/result",
+              os.path.abspath("out/result")]:
+    refused(f"a checkpoint at the output is refused however spelt", USAGE,
+            ["dry", "network", "--checkpoint", place],
+            f"--checkpoint {place}: is where the output goes: name another file")
 for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
                 "crackstats", "bridge", "flow", "invade", "inspect"]:
     refused_in_shell(f"{program} refuses an unknown option", USAGE,

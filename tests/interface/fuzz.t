@@ -40,18 +40,33 @@ REPLAY = ["--set", "time_step_safety=0.02", "--set", "cycles=20"]
 make("packing", "pack", "--set", "counts=[2,2,3]")
 make("degenerate", "tessellate", "packing")
 make("network", "merge-nodes", "degenerate")
-make("drying", "dry", "network")
+make("drying", "dry", "network", "--set", "liquid=viscous", "--set", "snapshots=[0.9,0.5]")
+make("invasion", "invade", "network")
+make("flow", "flow", "packing")
 make("forces", "force-protocol", "drying", "--set", "steps=5")
 make("response", "dem-replay", "forces", *REPLAY, "--set", "bond.normal_strength=1e3")
 
 READERS = {
-    "packing": [["tessellate"], ["pack", "--set", "method=import"]],
+    "packing": [["tessellate"], ["pack", "--set", "method=import"], ["flow"],
+                ["flow", "--set", "write=forces", "--set", "solver=iteration"]],
     "degenerate": [["merge-nodes"]],
     "network": [["merge-nodes", "--set", "measure=mean_length", "--set", "threshold=1"], ["dry"],
-                ["dry", "--set", "liquid=immobile"], ["invade"]],
-    "drying": [["force-protocol", "--set", "steps=5"]],
-    "forces": [["dem-replay", *REPLAY]],
+                ["dry", "--set", "liquid=immobile", "--set", "kelvin=true"],
+                ["dry", "--set", "liquid=viscous", "--set", "start_saturation=0.7",
+                 "--set", 'open=["+z","-x"]'],
+                ["invade"], ["invade", "--set", "rule=nodes", "--set", "gravity=9.81"]],
+    "drying": [["force-protocol", "--set", "steps=5"],
+               ["force-protocol", "--set", "pressure=clusters", "--set", "largest_change=0.2",
+                "--set", "form=faces", "--set", "rings.left=volume"],
+               ["force-protocol", "--set", "pressure=field", "--set", "form=arcs",
+                "--set", "contact_angle=30", "--set", "rings.left=suction", "--set", "steps=5"],
+               ["dry", "--set", "start_saturation=0.5"], ["crackstats", "response"]],
+    "forces": [["dem-replay", *REPLAY], ["dem-replay", "--set", "engine=quasi-static"],
+               ["dem-replay", *REPLAY, "--set", "bond.kind=contact",
+                "--set", "bridges.volume=1e-22", "--set", "bridges.shared=true"]],
     "response": [["crackstats"]],
+    "invasion": [],
+    "flow": [],
 }
 GOOD = {name: open(name, "rb").read() for name in READERS}
 
@@ -125,7 +140,7 @@ SCENE = {
     program: json.loads(subprocess.run([f"{BIN}/{program}", "--parameters"], check=True,
                                        stdout=subprocess.PIPE).stdout)
     for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
-                    "crackstats", "invade"]
+                    "crackstats", "invade", "flow"]
 }
 SCENE["pack"]["counts"] = [2, 2, 3]
 SCENE["dry"]["boundary_layer"]["layers"] = 2

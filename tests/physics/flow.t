@@ -156,6 +156,13 @@ with scratch() as folder:
     ok(abs(imposed["walls/pressure_force"][3, 1] - 1) < 1e-9, "a flux that is imposed",
        imposed["walls/pressure_force"][:])
 
+    # Where the pressure is the same everywhere, nothing flows.
+    for solver in ("cholesky", "iteration"):
+        still = flow(path, **{"pressure.y_upper": 3, "pressure.y_lower": "null",
+                              "pressure.x_lower": 3, "solver": solver})
+        ok(np.all(still["pores/pressure"][:] == 3) and np.all(still["throats/flux"][:] == 0),
+           f"one pressure, and no flow ({solver})", np.ptp(still["pores/pressure"][:]))
+
     # A box that is squeezed along x pushes out just its volume.
     squeezed = flow(path, **{"pressure.y_upper": 0, "strain_rate": "[-0.01,0,0]"})
     ok(abs(squeezed["walls/inflow"][:].sum() + 0.01) < 1e-13, "squeezed: what is lost flows out",

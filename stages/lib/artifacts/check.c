@@ -197,10 +197,11 @@ static enum status check_range(const struct subject *subject, const double *bloc
     } rules[] = {{"minimum", ">="}, {"maximum", "<="}, {"above", ">"}, {"below", "<"}};
     const hsize_t odd = first_breach(block, count, 4, largest_size);
     if (odd < count)
-        return refuse(
-            reason, STATUS_BAD_DATA, "%s: row %llu: must be %s, got %g", subject->name,
-            (unsigned long long)((first + odd) / subject->row_values),
-            isfinite(block[odd]) ? "at most 1e150 in size" : "finite", block[odd]);
+        return refuse(reason, isnan(block[odd]) ? STATUS_BAD_DATA : STATUS_NO,
+                      "%s: row %llu: must be %s, got %g", subject->name,
+                      (unsigned long long)((first + odd) / subject->row_values),
+                      isfinite(block[odd]) ? "at most 1e150 in size" : "finite",
+                      block[odd]);
     for (int r = 0; r < 4; r++) {
         double limit;
         if (!bound(subject->rules, rules[r].rule, symbols, &limit)) continue;

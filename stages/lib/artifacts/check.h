@@ -11,7 +11,8 @@
 // Every dataset is there, has the kind of numbers and the shape that the schema says,
 // with equal symbols meaning equal extents, and every value keeps its rules. IMAGE_SIZE
 // bounds what a dataset may claim to hold. Returns STATUS_BAD_DATA with dataset, row,
-// rule and value in REASON at the first breach. Reads each dataset once, in blocks.
+// rule and value in REASON at the first breach, STATUS_NO where that is only a number
+// too large. Reads each dataset once, in blocks.
 enum status check_file(hid_t file, const struct schema *schema, size_t image_size,
                        struct reason *reason);
 

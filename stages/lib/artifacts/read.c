@@ -85,7 +85,7 @@ static void check(const struct artifact *artifact)
     struct reason reason;
     const enum status status =
         check_file(artifact->file, artifact->schema, artifact->image.size, &reason);
-    if (status) die(status, "%s: %s", input_name(artifact->path), reason.text);
+    if (status) die(STATUS_BAD_DATA, "%s: %s", input_name(artifact->path), reason.text);
     for (int k = 0; provenance_names[k]; k++)
         free(artifact_get_text(artifact, provenance_names[k]));
 }

@@ -360,7 +360,11 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
     hsize_t size;
     done(H5Fget_filesize(artifact->file, &size), "size");
     struct reason reason;
-    if (check_file(artifact->file, artifact->schema, size, &reason))
+    const enum status status =
+        check_file(artifact->file, artifact->schema, size, &reason);
+    if (status == STATUS_NO) // of sizes given, none by itself too large
+        die(STATUS_BAD_DATA, "the results overflow: %s", reason.text);
+    if (status)
         die(STATUS_INTERNAL, "would write a %s that breaks its own schema: %s",
             artifact->schema->name, reason.text);
     wrote(artifact, H5Fclose(artifact->file));

@@ -241,6 +241,31 @@ void publish(int descriptor, const char *path)
     close(descriptor);
 }
 
+// Where PATH leads, whether or not something is there yet. The caller frees it.
+static char *absolute(const char *path)
+{
+    char *whole = realpath(path, NULL);
+    if (whole) return whole;
+    char *folder = folder_of(path), *in = realpath(folder, NULL);
+    free(folder);
+    if (!in) return strdup(path);
+    const char *slash = strrchr(path, '/');
+    char *joined = allocate(strlen(in) + strlen(path) + 2, 1);
+    sprintf(joined, "%s/%s", in, slash ? slash + 1 : path);
+    free(in);
+    return joined;
+}
+
+bool is_same_place(const char *a, const char *b)
+{
+    if (!strcmp(a, "-") || !strcmp(b, "-")) return !strcmp(a, b);
+    char *first = absolute(a), *second = absolute(b);
+    const bool same = !strcmp(first, second);
+    free(first);
+    free(second);
+    return same;
+}
+
 void check_output(const char *path)
 {
     if (!strcmp(path, "-")) return;

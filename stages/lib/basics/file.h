@@ -3,6 +3,7 @@
 #ifndef CRAQUELURE_FILE_H
 #define CRAQUELURE_FILE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 struct bytes {
@@ -33,6 +34,9 @@ void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME]);
 // Exits 73 at once, before any work, when the folder of PATH is not there or closed to
 // us.
 void check_output(const char *path);
+
+// Whether what is written to one would replace the other, however they are spelt.
+bool is_same_place(const char *a, const char *b);
 
 // SHA-256 as 64 hexadecimal digits, as sha256sum prints it.
 void sha256(const void *data, size_t size, char digest[65]);

@@ -285,7 +285,7 @@ static void check_other(const struct invocation *invocation, const char *option,
                         const char *path)
 {
     if (!path) return;
-    if (!strcmp(path, invocation->output))
+    if (is_same_place(path, invocation->output))
         die(STATUS_USAGE, "%s %s: is where the output goes: name another file", option,
             path);
     check_output(path);
@@ -297,7 +297,7 @@ static void check_checkpoint(const struct invocation *invocation)
     if (!path) return;
     if (!strcmp(path, "-"))
         die(STATUS_USAGE, "--checkpoint: must be a file, not standard output");
-    if (invocation->report && !strcmp(path, invocation->report))
+    if (invocation->report && is_same_place(path, invocation->report))
         die(STATUS_USAGE,
             "--checkpoint %s: is where the report goes: name another file", path);
     check_other(invocation, "--checkpoint", path);
