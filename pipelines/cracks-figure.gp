@@ -20,10 +20,9 @@ c = 0; r = 0; heading = "Cracks so far  (full: shear, dashed: normal)"
 set xlabel "saturation" offset 0,0.4
 set xrange [1:0]
 set yrange [0:*]
-set key left top samplen 2 textcolor "#222222"
-plot for [k = 1:n] table("saturation", k) using 1:3 with lines linewidth 2 linecolor rgb of(k) title title(k), \
-    for [k = 1:n] table("saturation", k) using 1:2 with lines linewidth 2 dashtype (6, 4) linecolor rgb of(k) notitle
 unset key
+plot for [k = 1:n] table("saturation", k) using 1:3 with lines linewidth 2 linecolor rgb of(k), \
+    for [k = 1:n] table("saturation", k) using 1:2 with lines linewidth 2 dashtype (6, 4) linecolor rgb of(k)
 
 c = 1; r = 0; heading = "Cracks in slices, from bottom to top"
 @panel
@@ -39,11 +38,13 @@ set xrange [0.8:*]
 set yrange [*:*]
 set logscale xy
 set format xy "%g"
+set key left bottom Left reverse samplen 2 textcolor "#222222"
 any = 0
 do for [k = 1:n] { any = any + rows("size", k) }
 if (any > 0) {
-    plot for [k = 1:n] (rows("size", k) > 0 ? table("size", k) : "< echo 1 nan") using 1:2 with steps linewidth 2 linecolor rgb of(k)
+    plot for [k = 1:n] (rows("size", k) > 0 ? table("size", k) : "< echo 1 nan") using 1:2 with steps linewidth 2 linecolor rgb of(k) title title(k)
 }
+unset key
 unset logscale
 set format
 

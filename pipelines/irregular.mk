@@ -39,11 +39,11 @@ ifneq ($(filter irregular,$(MAKECMDGOALS)),)
 irregular_seeds := $(shell seq $(AGGREGATES))
 $(foreach seed,$(irregular_seeds),$(call irregular_aggregate,$(seed)))
 irregular_tables := $(irregular_arms:%=$(irregular_folder)/%.json)
-$(foreach arm,$(irregular_arms),$(call step,$(irregular_folder)/$(arm).json,crackstats,$(CRACKSTATS),$(irregular_scene),,$(foreach \
-	seed,$(irregular_seeds),$(irregular_folder)/$(seed)/$(arm).h5 $(irregular_folder)/$(seed)/$(call irregular_liquid,$(arm)).h5)))
+# The aggregates in arm $1, each with its drying.
+irregular_runs = $(foreach seed,$(irregular_seeds),$(irregular_folder)/$(seed)/$1.h5 $(irregular_folder)/$(seed)/$(call irregular_liquid,$1).h5)
+$(foreach arm,$(irregular_arms),$(call step,$(irregular_folder)/$(arm).json,crackstats,$(CRACKSTATS),$(irregular_scene),,$(call irregular_runs,$(arm))))
 # Whether slow and fast drying differ, and whether the gradient does anything.
-irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(irregular_scene),first_group=$(AGGREGATES),$(foreach \
-	arm,$2,$(irregular_seeds:%=$(irregular_folder)/%/$(arm).h5)))
+irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(irregular_scene),first_group=$(AGGREGATES),$(foreach arm,$2,$(call irregular_runs,$(arm))))
 $(call irregular_test,limits.json,inviscid-uniform immobile-uniform)
 $(call irregular_test,gradient.json,viscous-uniform viscous-field)
 irregular_tests := $(irregular_folder)/limits.json $(irregular_folder)/gradient.json
