@@ -160,6 +160,7 @@ static void prepare(struct run *run)
                              menisci_make(network, run->conditions, &run->scale));
         run->losses = losses_make(network->n_throat);
     } else {
+        vapour_settle(&run->phases.vapour); // of what the start has emptied
         run->clocks =
             clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
     }
@@ -262,11 +263,13 @@ enum status dry_network(const struct network *network,
                       .scale = drying_scale(network, conditions),
                       .recorder = recorder_make(history)};
     status = make_phases(network, &run, reason);
-    if (!status && conditions->vapour_tolerance > 0 && progress && progress->keeper)
+    const struct keeper *keeper = progress ? progress->keeper : NULL;
+    if (!status && conditions->vapour_tolerance > 0 && keeper &&
+        (keeper->due || keeper->begin))
         status = refuse(reason, STATUS_BAD_DATA,
                         "vapour_tolerance: must be 0 where a checkpoint is kept, is %g",
                         conditions->vapour_tolerance);
-    if (!status) status = begin_run(&run, progress ? progress->keeper : NULL, reason);
+    if (!status) status = begin_run(&run, keeper, reason);
     if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);
     free_run(&run);
