@@ -1,179 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bridges/equilibrium.h"
 
+#include "bridges/newton.h"
+
 #include <math.h>
 #include <string.h>
 
-// Newton's method on four unknowns: the logarithms of both reaches and of the length,
-// and the turn. Three of the four equations are always the same (slope and radius at
-// the second body, volume); the fourth gives the gap, or how far to go along a
-// direction from a known bridge. At rupture two bridges of one gap meet: there the
-// first is singular, the second is not.
-struct unknowns {
-    double at[ARC_NUMBERS];
-};
-
-struct problem {
-    const struct bodies *bodies;
-    double volume; // of the liquid
-    double shared; // by overlapping bodies: the arc spans so much less
-    double gap;
-    bool symmetric;  // of two equal bodies only bridges with equal ends are looked for
-    bool to_turning; // the break of symmetry does not count
-    const struct unknowns *from; // NULL: the gap is given
-    const double *direction;     // of length 1
-    double distance;
-};
-
 // Along the branch, in the unknowns: some two from contact to rupture.
 static const double longest_stride = 0.5, shortest_stride = 1e-10;
-
-enum { MOST_STEPS = 25, HALVINGS = 4 };
-static const double converged = 1e-8; // last step; the next would be of its square
-static const double rounding = 1e-9;  // residuals that may be rounding alone
-static const double longest = 0.7;    // of a step
-
-static struct arc arc_of(const struct unknowns *unknowns)
-{
-    const double *at = unknowns->at;
-    return (struct arc){
-        {exp(at[ARC_FIRST]), exp(at[ARC_SECOND])}, exp(at[ARC_LENGTH]), at[ARC_TURN]};
-}
-
-struct system {
-    double residual[ARC_NUMBERS], slope[ARC_NUMBERS][ARC_NUMBERS];
-    double waist_slope[ARC_NUMBERS];
-};
-
-static struct system system_at(const struct problem *problem,
-                               const struct unknowns *unknowns)
-{
-    const struct arc arc = arc_of(unknowns);
-    const struct span span = span_of(problem->bodies, &arc);
-    const double scale = 1 / arc.length, share = 1 / problem->volume;
-    struct system is = {.residual = {span.miss[0] * scale, span.miss[1] * scale,
-                                     (span.volume + problem->shared) * share - 1,
-                                     (span.gap - problem->gap) * scale}};
-    if (problem->from) is.residual[3] = -problem->distance;
-    if (problem->symmetric) is.residual[0] = unknowns->at[0] - unknowns->at[1];
-    for (int n = 0; n < ARC_NUMBERS; n++) {
-        is.slope[0][n] =
-            problem->symmetric ? (n == 0) - (n == 1) : span.miss_slope[0][n] * scale;
-        is.slope[1][n] = span.miss_slope[1][n] * scale;
-        is.slope[2][n] = span.volume_slope[n] * share;
-        is.slope[3][n] = span.gap_slope[n] * scale;
-        if (!problem->from) continue;
-        is.slope[3][n] = problem->direction[n];
-        is.residual[3] +=
-            problem->direction[n] * (unknowns->at[n] - problem->from->at[n]);
-    }
-    return is;
-}
-
-static double size_of(const double residual[ARC_NUMBERS])
-{
-    double sum = 0;
-    for (int k = 0; k < ARC_NUMBERS; k++)
-        sum += residual[k] * residual[k];
-    return sum;
-}
-
-// Gauss' elimination: RIGHT becomes the solution. Returns the determinant; 0: singular.
-static double eliminate(double matrix[ARC_NUMBERS][ARC_NUMBERS],
-                        double right[ARC_NUMBERS])
-{
-    enum { N = ARC_NUMBERS };
-    double determinant = 1;
-    for (int k = 0; k < N; k++) {
-        int pivot = k;
-        for (int row = k + 1; row < N; row++)
-            if (fabs(matrix[row][k]) > fabs(matrix[pivot][k])) pivot = row;
-        if (!(fabs(matrix[pivot][k]) > 0)) return 0;
-        if (pivot != k) {
-            determinant = -determinant;
-            for (int n = 0; n < N; n++) {
-                const double kept = matrix[k][n];
-                matrix[k][n] = matrix[pivot][n];
-                matrix[pivot][n] = kept;
-            }
-            const double kept = right[k];
-            right[k] = right[pivot];
-            right[pivot] = kept;
-        }
-        determinant *= matrix[k][k];
-        for (int row = k + 1; row < N; row++) {
-            const double factor = matrix[row][k] / matrix[k][k];
-            for (int n = k; n < N; n++)
-                matrix[row][n] -= factor * matrix[k][n];
-            right[row] -= factor * right[k];
-        }
-    }
-    for (int k = N - 1; k >= 0; k--) {
-        for (int n = k + 1; n < N; n++)
-            right[k] -= matrix[k][n] * right[n];
-        right[k] /= matrix[k][k];
-    }
-    return determinant;
-}
-
-static struct unknowns moved(const struct unknowns *from,
-                             const double step[ARC_NUMBERS], double share)
-{
-    struct unknowns to;
-    for (int k = 0; k < ARC_NUMBERS; k++)
-        to.at[k] = from->at[k] + share * step[k];
-    return to;
-}
-
-static bool sensible(const struct bodies *bodies, const struct unknowns *unknowns)
-{
-    const struct arc arc = arc_of(unknowns);
-    for (int k = 0; k < 2; k++)
-        if (!(bodies->curvature[k] * arc.reach[k] < M_PI)) return false;
-    return fabs(arc.turn) < 2 * M_PI && isfinite(arc.length);
-}
-
-static double longest_of(const double step[ARC_NUMBERS])
-{
-    double most = 0;
-    for (int k = 0; k < ARC_NUMBERS; k++)
-        most = fmax(most, fabs(step[k]));
-    return most;
-}
-
-// Newton's method, damped. Returns whether it converged; COUNT grows by its steps.
-static bool converge(const struct problem *problem, struct unknowns *unknowns,
-                     int *count)
-{
-    struct system is = system_at(problem, unknowns);
-    for (int k = 0; k < MOST_STEPS; k++) {
-        double step[ARC_NUMBERS];
-        for (int n = 0; n < ARC_NUMBERS; n++)
-            step[n] = -is.residual[n];
-        if (eliminate(is.slope, step) == 0) return false;
-        const double size = longest_of(step), before = size_of(is.residual);
-        if (!isfinite(size)) return false;
-        (*count)++;
-        if (size < converged) {
-            *unknowns = moved(unknowns, step, 1);
-            return true;
-        }
-        double share = fmin(1, longest / size);
-        struct unknowns next = moved(unknowns, step, share);
-        for (int h = 0;; h++) {
-            if (sensible(problem->bodies, &next)) {
-                is = system_at(problem, &next);
-                if (size_of(is.residual) < before) break;
-            }
-            // Rounding may keep a converged residual from falling.
-            if (h == HALVINGS) return before < rounding * rounding;
-            share *= 0.5;
-            next = moved(unknowns, step, share);
-        }
-        *unknowns = next;
-    }
-    return false;
-}
 
 // A bridge found, and the direction of the branch there: that in which the gap widens
 // where the branch begins. The bridge is stable while the gap does widen, at the RATE,
@@ -252,12 +86,6 @@ static struct arc torus(const struct bodies *bodies, double volume, double gap)
     const double bend = fabs(arc.turn) < 1e-6 ? 1 : arc.turn / sin(arc.turn);
     arc.length = open * bend / fmax(cos(0.5 * (turned[0] - turned[1])), 0.1);
     return arc;
-}
-
-static struct unknowns unknowns_of(const struct arc *arc)
-{
-    return (struct unknowns){
-        {log(arc->reach[0]), log(arc->reach[1]), log(arc->length), arc->turn}};
 }
 
 static bool equal(const double of[2])
@@ -439,7 +267,7 @@ static enum status advance(const struct problem *problem, double gap,
         *ruptured = false;
         step *= 0.5;
     }
-    *ruptured = stability(state) < rounding;
+    *ruptured = stability(state) < RESIDUAL_ROUNDING;
     return *ruptured ? STATUS_OK : STATUS_NOT_CONVERGED;
 }
 
