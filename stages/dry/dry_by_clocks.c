@@ -42,12 +42,7 @@ enum status dry_by_clocks(struct run *run, struct reason *reason)
     struct clocks *clocks = &run->clocks;
     const double rate = rate_now(run);
     const double duration = clocks_advance(clocks);
-    if (duration < 0)
-        return refuse(
-            reason, STATUS_NOT_CONVERGED,
-            "nothing evaporates any more with %d throats still wet (rates too "
-            "small for the arithmetic)",
-            run->phases.n_full);
+    if (duration < 0) return refuse_standstill(run, reason);
     compensated_add(&run->time, duration);
     compensated_add(&run->evaporated, rate * duration);
     const double time = compensated_value(run->time) * run->scale.time;

@@ -6,12 +6,7 @@
 enum status dry_by_curvature(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
-    if (run->losses.n == 0)
-        return refuse(
-            reason, STATUS_NOT_CONVERGED,
-            "nothing evaporates any more with %d throats still wet (rates too "
-            "small for the arithmetic)",
-            phases->n_full);
+    if (run->losses.n == 0) return refuse_standstill(run, reason);
     const int n_before = phases->n_full;
     carry_out_losses(run);
     if (phases->n_full > 0) {

@@ -146,12 +146,7 @@ enum status dry_by_flow(struct run *run, struct reason *reason)
     if (status) return status;
     while (snapshot_is_due(run))
         keep_pressures(run);
-    if (run->losses.n == 0)
-        return refuse(
-            reason, STATUS_NOT_CONVERGED,
-            "nothing evaporates any more with %d throats still wet (rates too "
-            "small for the arithmetic)",
-            phases->n_full);
+    if (run->losses.n == 0) return refuse_standstill(run, reason);
     const int n_before = phases->n_full;
     carry_out_losses(run);
     run->n_flow_step++;

@@ -25,6 +25,14 @@ double rate_now(const struct run *run)
                                    : vapour_rate(&run->phases.vapour);
 }
 
+enum status refuse_standstill(const struct run *run, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "nothing evaporates any more with %d throats still wet (rates too "
+                  "small for the arithmetic)",
+                  run->phases.n_full);
+}
+
 bool snapshot_is_due(const struct run *run)
 {
     const int next = run->recorder.history->n_pressure;

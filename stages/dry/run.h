@@ -66,6 +66,9 @@ void carry_out_losses(struct run *run);
 // Records the step that follows if it is time for one; with losses.
 void record_losses(struct run *run);
 
+// STATUS_NOT_CONVERGED: no throat loses any more, and some are wet.
+enum status refuse_standstill(const struct run *run, struct reason *reason);
+
 // STATUS_NOT_CONVERGED if throats refill in turn for ever. IDLE: none has emptied.
 enum status note_idle(struct run *run, bool idle, struct reason *reason);
 

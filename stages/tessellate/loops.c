@@ -2,6 +2,7 @@
 #include "loops.h"
 
 #include "basics/memory.h"
+#include "reduce.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -112,14 +113,7 @@ static int *number_corners(const struct loops *loops, struct network *network)
         number[i] = -1;
     for (int64_t k = 0; k < loops->n_corner; k++)
         number[loops->corner[k].node] = 0;
-    int n = 0;
-    for (int i = 0; i < network->n_node; i++) {
-        if (number[i] < 0) continue;
-        network->node_position[n] = network->node_position[i];
-        network->node_walls[n] = network->node_walls[i];
-        number[i] = n++;
-    }
-    network->n_node = n;
+    pack_nodes(network, number);
     return number;
 }
 

@@ -118,7 +118,7 @@ static void keep_feet(const struct network *network, struct staying *stays)
             stays->node[network->throat_nodes[t][end]] = 0;
 }
 
-static void pack_nodes(struct network *network, int *number)
+void pack_nodes(struct network *network, int *number)
 {
     int n = 0;
     for (int i = 0; i < network->n_node; i++) {

@@ -25,6 +25,10 @@ int eliminate_cut_cells(struct network *network, bool layer);
 // cells, each with that wall as its second side.
 void reduce_to_plane(struct network *network);
 
+// Takes away nodes whose NUMBER, (n_node), is negative; of the others it becomes the
+// new one.
+void pack_nodes(struct network *network, int *number);
+
 // The first throat whose nodes do not come before these two.
 int first_throat(const struct network *network, const int32_t ends[2]);
 
