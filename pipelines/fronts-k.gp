@@ -23,8 +23,8 @@ do for [c = 0:3] {
     set label 1 "S = " . word(level, c + 1) at screen (60.0 + wide * (c + 0.5)) / across, screen 1 - 20 / total center textcolor '#222222'
     do for [r = 0:4] {
         set label 2 "" . (r + 1) at screen 25.0 / across, screen 1 - (40 + high * (r + 0.5)) / total center textcolor rgb colour[r + 1]
-        set lmargin at screen (60.0 + wide * c) / across
-        set rmargin at screen (60.0 + wide * (c + 1) - 10) / across
+        set lmargin at screen (60.0 + wide * (c + 0.5) - 0.5 * high) / across
+        set rmargin at screen (60.0 + wide * (c + 0.5) + 0.5 * high) / across
         set tmargin at screen 1 - (40.0 + high * r + 3) / total
         set bmargin at screen 1 - (40.0 + high * (r + 1) - 3) / total
         plot sprintf("%s/state-%d-%d", tables, r, c + 1) using 1:2:3:4 with vectors nohead linewidth 0.7 linecolor "#0a4a96"
@@ -43,7 +43,7 @@ set xrange [0:1]
 set yrange [0:1.02]
 set xtics 0.2
 set ytics 0.2
-place = "set lmargin at screen (75.0 + 2 * wide * c + 20 * c) / across; set rmargin at screen (75.0 + 2 * wide * (c + 1) - 50 + 20 * c) / across; \
+place = "set lmargin at screen (75.0 + 2 * wide * c + 20 * c) / across; set rmargin at screen (75.0 + 2 * wide * (c + 1) - 85 + 20 * c) / across; \
     set tmargin at screen 1 - (40.0 + 5 * high + chart * r + 40) / total; set bmargin at screen 1 - (40.0 + 5 * high + chart * (r + 1) - 55) / total"
 do for [r = 0:1] {
     c = 0
