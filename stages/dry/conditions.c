@@ -69,11 +69,9 @@ static enum status check_liquid(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
-enum status check_conditions(const struct drying_conditions *conditions,
+static enum status check_air(const struct drying_conditions *conditions,
                              struct reason *reason)
 {
-    const enum status status = check_positive(conditions, reason);
-    if (status) return status;
     if (conditions->saturation_pressure >= conditions->gas_pressure)
         return refuse(
             reason, STATUS_BAD_DATA,
@@ -99,6 +97,12 @@ enum status check_conditions(const struct drying_conditions *conditions,
     if (conditions->open_walls == 0 || conditions->open_walls >= 1u << WALL_COUNT)
         return refuse(reason, STATUS_BAD_DATA,
                       "open walls: must be one at least, or nothing would dry");
+    return STATUS_OK;
+}
+
+static enum status check_course(const struct drying_conditions *conditions,
+                                struct reason *reason)
+{
     if (!(conditions->start_saturation > 0 && conditions->start_saturation <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "start_saturation: must be above 0 and at most 1, is %g",
@@ -122,7 +126,17 @@ enum status check_conditions(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "first_period_rate_fraction: must be between 0 and 1, is %g",
                       conditions->first_period_rate_fraction);
-    return check_liquid(conditions, reason);
+    return STATUS_OK;
+}
+
+enum status check_conditions(const struct drying_conditions *conditions,
+                             struct reason *reason)
+{
+    enum status status = check_positive(conditions, reason);
+    if (!status) status = check_air(conditions, reason);
+    if (!status) status = check_course(conditions, reason);
+    if (!status) status = check_liquid(conditions, reason);
+    return status;
 }
 
 enum status check_gravity(const struct drying_conditions *conditions,

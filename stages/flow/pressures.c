@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pressures.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
-#include "cholesky.h"
-#include "sampled_factor.h"
-#include "sparse/conjugate_gradients.h"
+#include "linear_solver.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
-enum { DIRECT_MOST = 1500 };
-
 // Each correction gains what the solver promises, at most this; rounding ends it.
-enum { CORRECTIONS = 12, MOST_ITERATIONS = 500 };
+enum { CORRECTIONS = 12 };
 static const double first_reduction = 1e-8;
 
 // A network of nodes: those whose pressure is sought first.
@@ -28,19 +24,6 @@ struct balance {
     int32_t *unknown; // (n_node) place in the matrix
     struct matrix matrix;
 };
-
-static int32_t root(int32_t *parent, int32_t i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-static void unite(int32_t *parent, int32_t a, int32_t b)
-{
-    a = root(parent, a), b = root(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
 
 static unsigned walls_of_corners(const int32_t *corner, int n)
 {
@@ -170,10 +153,10 @@ static enum status find_pockets(struct balance *balance, struct pressures *press
     for (int t = 0; t < balance->throats->n; t++) {
         int32_t node[2];
         if (nodes_of(pressures, &balance->throats->throat[t], node))
-            unite(pocket, node[0], node[1]);
+            unite_sets(pocket, node[0], node[1]);
     }
     for (int i = 0; i < n; i++) {
-        pocket[i] = root(pocket, i);
+        pocket[i] = set_root(pocket, i);
         way_out[pocket[i]] |= balance->known[i];
         sum[pocket[i]] += balance->injected[i];
         size[pocket[i]] += fabs(balance->injected[i]);
@@ -289,68 +272,6 @@ static double find_throughput(const struct balance *balance,
     return sum;
 }
 
-struct solver_state {
-    const struct matrix *matrix;
-    struct cholesky *cholesky;
-    struct sampled_factor *factor;
-    double *residual, *work[3]; // (n) of conjugate gradients
-};
-
-static void multiply(void *context, const double *x, double *image)
-{
-    matrix_multiply(((const struct solver_state *)context)->matrix, x, image);
-}
-
-static void precondition(void *context, const double *residual, double *z)
-{
-    sampled_factor_apply(((const struct solver_state *)context)->factor, residual, z);
-}
-
-static void forget(struct solver_state *state)
-{
-    sampled_factor_free(state->factor);
-    cholesky_free(state->cholesky);
-    free(state->residual);
-    for (int k = 0; k < 3; k++)
-        free(state->work[k]);
-}
-
-static enum status prepare(const struct matrix *matrix, enum solver solver,
-                           struct solver_state *state, struct reason *reason)
-{
-    *state = (struct solver_state){.matrix = matrix};
-    if (solver == SOLVER_CHOLESKY ||
-        (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
-        return cholesky_make(matrix, &state->cholesky, reason);
-    state->factor = sampled_factor_make(matrix);
-    state->residual = NEW_ARRAY(double, matrix->n);
-    for (int k = 0; k < 3; k++)
-        state->work[k] = NEW_ARRAY(double, matrix->n);
-    return STATUS_OK;
-}
-
-static enum status correct(const struct matrix *matrix, struct solver_state *state,
-                           const double *b, double *x, double reduction,
-                           int *iterations, struct reason *reason)
-{
-    if (state->factor) {
-        const int n = matrix->n;
-        const struct linear_problem problem = {
-            n,
-            state,
-            multiply,
-            precondition,
-            {state->work[0], state->work[1], state->work[2]}};
-        memcpy(state->residual, b, (size_t)n * sizeof *b);
-        *iterations += conjugate_gradients(&problem, state->residual, x,
-                                           reduction * sqrt(dot_product(b, b, n)),
-                                           MOST_ITERATIONS);
-    } else if (!cholesky_solve(state->cholesky, b, x))
-        return refuse(reason, STATUS_INTERNAL,
-                      "out of memory in the balances of %d pores", matrix->n);
-    return STATUS_OK;
-}
-
 static double imbalance(const double *lack, int n)
 {
     double largest = 0, sum = 0;
@@ -386,9 +307,9 @@ static enum status close_balances(const struct balance *balance,
     for (int i = 0; i < matrix->n_all; i++)
         given[balance->unknown[i]] = balance->given[i];
     reorder(balance, pressures, x, false);
-    struct solver_state state;
-    enum status status = prepare(matrix, solving->solver, &state, reason);
-    pressures->direct = state.cholesky;
+    struct linear_solver solver;
+    enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
+    pressures->direct = solver.cholesky;
     find_lack(matrix, given, x, lack);
     double best = INFINITY;
     for (int round = 0; !status && round < CORRECTIONS; round++) {
@@ -396,8 +317,8 @@ static enum status close_balances(const struct balance *balance,
                                      ? first_reduction
                                      : fmax(first_reduction, 0.02 * solving->tolerance /
                                                                  pressures->imbalance);
-        status = correct(matrix, &state, lack, correction, reduction,
-                         &pressures->iterations, reason);
+        status = linear_solve(&solver, lack, correction, reduction,
+                              &pressures->iterations, reason);
         if (status) break;
         for (int i = 0; i < n; i++)
             compensated_add(&x[i], correction[i]);
@@ -412,7 +333,7 @@ static enum status close_balances(const struct balance *balance,
             break;
         best = fmin(best, pressures->imbalance);
     }
-    forget(&state);
+    linear_solver_free(&solver);
     free(x);
     free(lack);
     free(correction);

@@ -5,6 +5,7 @@
 
 #include "basics/compensated.h"
 #include "basics/status.h"
+#include "linear_solver.h"
 #include "throats.h"
 
 // In units of length, for a viscosity of 1: a flux is then in unit^3 Pa.
@@ -14,8 +15,6 @@ struct conditions {
                                  // over it; NAN: not imposed
     struct vector gradient;      // mean gradient where the box repeats, Pa/unit
 };
-
-enum solver { SOLVER_AUTO, SOLVER_CHOLESKY, SOLVER_ITERATION };
 
 struct solving {
     enum solver solver;

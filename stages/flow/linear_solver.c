@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear_solver.h"
+
+#include "basics/memory.h"
+#include "sparse/conjugate_gradients.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
+enum { DIRECT_MOST = 1500 };
+
+enum { MOST_ITERATIONS = 500 };
+
+static void multiply(void *context, const double *x, double *image)
+{
+    matrix_multiply(((const struct linear_solver *)context)->matrix, x, image);
+}
+
+static void precondition(void *context, const double *residual, double *z)
+{
+    sampled_factor_apply(((const struct linear_solver *)context)->factor, residual, z);
+}
+
+enum status linear_solver_make(const struct matrix *matrix, enum solver solver,
+                               struct linear_solver *linear, struct reason *reason)
+{
+    *linear = (struct linear_solver){.matrix = matrix};
+    if (solver == SOLVER_CHOLESKY ||
+        (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
+        return cholesky_make(matrix, &linear->cholesky, reason);
+    linear->factor = sampled_factor_make(matrix);
+    linear->residual = NEW_ARRAY(double, matrix->n);
+    for (int k = 0; k < 3; k++)
+        linear->work[k] = NEW_ARRAY(double, matrix->n);
+    return STATUS_OK;
+}
+
+void linear_solver_free(struct linear_solver *linear)
+{
+    sampled_factor_free(linear->factor);
+    cholesky_free(linear->cholesky);
+    free(linear->residual);
+    for (int k = 0; k < 3; k++)
+        free(linear->work[k]);
+    *linear = (struct linear_solver){0};
+}
+
+static int iterate(struct linear_solver *linear, const double *b, double *x,
+                   double reduction)
+{
+    const int n = linear->matrix->n;
+    const struct linear_problem problem = {
+        n,
+        linear,
+        multiply,
+        precondition,
+        {linear->work[0], linear->work[1], linear->work[2]}};
+    memcpy(linear->residual, b, (size_t)n * sizeof *b);
+    return conjugate_gradients(&problem, linear->residual, x,
+                               reduction * sqrt(dot_product(b, b, n)), MOST_ITERATIONS);
+}
+
+enum status linear_solve(struct linear_solver *linear, const double *b, double *x,
+                         double reduction, int *iterations, struct reason *reason)
+{
+    if (linear->factor)
+        *iterations += iterate(linear, b, x, reduction);
+    else if (!cholesky_solve(linear->cholesky, b, x))
+        return refuse(reason, STATUS_INTERNAL,
+                      "out of memory in the balances of %d pores", linear->matrix->n);
+    return STATUS_OK;
+}
