@@ -53,10 +53,10 @@ static struct artifact *open_input(const char *path)
     return input;
 }
 
-static bool holds_liquid(const double *saturation, int n_throat)
+static bool holds_liquid(const struct network *network, const double *saturation)
 {
-    for (int t = 0; t < n_throat; t++)
-        if (saturation[t] > 0) return true;
+    for (int t = 0; t < network->n_throat; t++)
+        if (network->throat_kind[t] == THROAT_NETWORK && saturation[t] > 0) return true;
     return false;
 }
 
@@ -78,7 +78,7 @@ static double *read_start(const struct artifact *input, const struct network *ne
         network,
         &(struct drying_record){n_step, history, offset, throat, throat_saturation},
         saturation);
-    if (!holds_liquid(start, network->n_throat))
+    if (!holds_liquid(network, start))
         die(STATUS_BAD_DATA,
             "%s: /changes/saturation: no throat holds liquid any more at "
             "dry.start_saturation %g",

@@ -910,6 +910,10 @@ refused("a drying that holds nothing any more does not go on", BAD_DATA,
          damaged("drying", value("history/saturation", slice(None), 1))],
         "damaged: /changes/saturation: no throat holds liquid any more at "
         "dry.start_saturation 0.5")
+refused("a drying whose last liquid is in throats imposed empty does not go on", BAD_DATA,
+        ["dry", "--set", "start_saturation=1e-9", "--set", 'imposed_empty=["+x"]', "drying"],
+        "drying: /changes/saturation: no throat holds liquid any more at "
+        "dry.start_saturation 1e-09")
 setting("stiffnesses too far apart for equilibria are reported", UNSTABLE,
         "bond.radius_fraction=1e-6", r"forces: step \d .*: no equilibrium of grain \d+ that "
         "numbers hold: stiffnesses lie too far apart .*",
@@ -1045,6 +1049,15 @@ if has_terminals():
            else [f"status {done.returncode}, shown {shown}"])
 else:
     result("binary output is not written to a terminal", [], "no terminal to be had, or no program `script`")
+
+# Hours before it is written.
+os.symlink("nowhere/x", "astray")
+for place, line in [("", ": No such file or directory"), ("astray", "astray: No such file or .*"),
+                    ("out", "out: is a directory")]:
+    for option in ["-o", "--checkpoint"]:
+        refused(f"{option} '{place}' is refused at once", CANNOT_CREATE,
+                ["dry", "no-such-input", option, place], line,
+                output=("-o", "out/result") if option == "--checkpoint" else ())
 
 # ---- signals ----------------------------------------------------------------------------
 

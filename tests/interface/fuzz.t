@@ -61,7 +61,7 @@ READERS = {
                ["force-protocol", "--set", "pressure=field", "--set", "form=arcs",
                 "--set", "contact_angle=30", "--set", "rings.left=suction", "--set", "steps=5"],
                ["dry", "--set", "start_saturation=0.5"], ["crackstats", "response"]],
-    "forces": [["dem-replay", *REPLAY], ["dem-replay", "--set", "engine=quasi-static"],
+    "forces": [["dem-replay", *REPLAY], ["dem-replay", "-q", "--set", "engine=quasi-static"],
                ["dem-replay", *REPLAY, "--set", "bond.kind=contact",
                 "--set", "bridges.volume=1e-22", "--set", "bridges.shared=true"]],
     "response": [["crackstats"]],

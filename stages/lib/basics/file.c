@@ -269,6 +269,7 @@ bool is_same_place(const char *a, const char *b)
 void check_output(const char *path)
 {
     if (!strcmp(path, "-")) return;
+    if (!*path) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(ENOENT));
     char *folder = folder_of(path);
     struct stat information;
     if (!stat(folder, &information) && !S_ISDIR(information.st_mode))
@@ -276,6 +277,8 @@ void check_output(const char *path)
     if (access(folder, W_OK | X_OK))
         die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
     free(folder);
+    check_replaceable(path);
+    if (!is_device(path)) free(follow_link(path));
 }
 
 void sha256(const void *data, size_t size, char digest[65])

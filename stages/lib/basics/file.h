@@ -32,7 +32,7 @@ enum { DESCRIPTOR_NAME = 32 };
 void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME]);
 
 // Exits 73 at once, before any work, when the folder of PATH is not there or closed to
-// us.
+// us, or what is at PATH cannot be replaced: a folder, a link that leads nowhere.
 void check_output(const char *path);
 
 // Whether what is written to one would replace the other, however they are spelt.
