@@ -3,40 +3,12 @@
 // LANES (4 or 8), ROWS and UPDATE_NAME, once for each width of vectors. Every entry
 // adds its products, fused with the sum, in the order of the sources: the digits are
 // the same.
+#include "lanes.h"
 #include "sheet.h"
-
-#include <math.h>
-#include <string.h>
-#if defined __x86_64__ && defined __FMA__
-#include <immintrin.h>
-#endif
-
-typedef double lanes __attribute__((vector_size(8 * LANES)));
-
-static inline lanes load(const double *from)
-{
-    lanes value;
-    memcpy(&value, from, sizeof value);
-    return value;
-}
 
 static inline void store(lanes value, double *to)
 {
     memcpy(to, &value, sizeof value);
-}
-
-static inline lanes fused(double a, lanes b, lanes c)
-{
-    const lanes all = a - (lanes){0};
-#if defined __x86_64__ && defined __FMA__ && LANES == 8
-    return (lanes)_mm512_fmadd_pd((__m512d)all, (__m512d)b, (__m512d)c);
-#elif defined __x86_64__ && defined __FMA__
-    return (lanes)_mm256_fmadd_pd((__m256d)all, (__m256d)b, (__m256d)c);
-#else
-    for (int l = 0; l < LANES; l++)
-        c[l] = fma(all[l], b[l], c[l]);
-    return c;
-#endif
 }
 
 // Two vectors of each of ROWS rows at once, in registers.

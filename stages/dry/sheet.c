@@ -2,6 +2,7 @@
 #include "sheet.h"
 
 #include "basics/memory.h"
+#include "basics/wide_vectors.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -10,16 +11,6 @@
 
 // As many at once make up for fetching and storing a block.
 enum { MANY_SOURCES = 32 };
-
-static bool has_wide_vectors(void)
-{
-#if defined __x86_64__
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-           __builtin_cpu_supports("avx512vl");
-#else
-    return false;
-#endif
-}
 
 struct sheet sheet_make(double threshold)
 {

@@ -3,6 +3,7 @@
 #include "dem/engine.h"
 
 #include "basics/memory.h"
+#include "basics/wide_vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -342,10 +343,8 @@ static enum status check_time_step(const struct dem *dem, const struct dem_setup
 
 static pair_sweep *choose_sweep(unsigned features)
 {
-    const bool wide = __builtin_cpu_supports("avx512f") &&
-                      __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl");
-    return wide ? pair_sweeps_wide[features] : pair_sweeps_narrow[features];
+    return has_wide_vectors() ? pair_sweeps_wide[features]
+                              : pair_sweeps_narrow[features];
 }
 
 static enum status build(struct dem *dem, const struct dem_setup *setup,
