@@ -138,6 +138,9 @@ with scratch() as folder:
     in_pieces("dem-replay to a tolerance",
               [*short, "--set", "cycles=100", "--set", "tolerance=0.02", "--set",
                "bond.normal_strength=1.2e4"])
+    in_pieces("dem-replay with liquid bridges and contact bonds",
+              [*short, "--set", "cycles=100", "--set", "bridges.volume=1e-22", "--set",
+               "bridges.shared=true", "--set", "bond.kind=contact"])
 
     pack = ["pack", "--quiet", "--set", "radius=1e-3", "--set"]
     in_pieces("pack by deposition", [*pack, "count=400", "--set", "method=deposition"])
