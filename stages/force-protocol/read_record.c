@@ -27,15 +27,20 @@ static bool *find_exposed(const struct artifact *input, const struct network *ne
 
 static void read_pressures(const struct artifact *input, struct drying_record *record)
 {
-    static const char name[] = "/snapshots/liquid_pressure";
-    if (artifact_has_dataset(input, name)) {
-        record->pressure = artifact_get(input, name, &record->n_snapshot);
-        record->snapshot_time = artifact_get(input, "/snapshots/time", NULL);
-    }
+    static const char *const needed[] = {"/snapshots/liquid_pressure",
+                                         "/snapshots/time"};
+    for (int k = 0; k < 2; k++)
+        if (!artifact_has_dataset(input, needed[k]))
+            die(STATUS_BAD_DATA,
+                "%s: %s: pressure=field needs it: dry with liquid=viscous and "
+                "snapshots",
+                input_name(input->path), needed[k]);
+    record->pressure = artifact_get(input, needed[0], &record->n_snapshot);
+    record->snapshot_time = artifact_get(input, needed[1], NULL);
     if (record->n_snapshot == 0)
         die(STATUS_BAD_DATA,
-            "%s: %s: pressure=field needs it: dry with liquid=viscous and snapshots",
-            input_name(input->path), name);
+            "%s: %s: pressure=field needs at least one row: dry with snapshots",
+            input_name(input->path), needed[0]);
 }
 
 struct drying_record read_record(const struct artifact *input,

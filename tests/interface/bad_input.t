@@ -914,6 +914,12 @@ refused("a drying whose last liquid is in throats imposed empty does not go on",
         ["dry", "--set", "start_saturation=1e-9", "--set", 'imposed_empty=["+x"]', "drying"],
         "drying: /changes/saturation: no throat holds liquid any more at "
         "dry.start_saturation 1e-09")
+make("viscous", "dry", "network", "--set", "liquid=viscous", "--set", "snapshots=[0.5]")
+for name in ["liquid_pressure", "time"]:
+    refused(f"pressures of viscous liquid need /snapshots/{name}", BAD_DATA,
+            ["force-protocol", "--set", "pressure=field",
+             damaged("viscous", removed(f"snapshots/{name}"))],
+            f"damaged: /snapshots/{name}: pressure=field needs it: .*")
 setting("stiffnesses too far apart for equilibria are reported", UNSTABLE,
         "bond.radius_fraction=1e-6", r"forces: step \d .*: no equilibrium of grain \d+ that "
         "numbers hold: stiffnesses lie too far apart .*",
