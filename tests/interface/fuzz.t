@@ -58,7 +58,7 @@ READERS = {
     "drying": [["force-protocol", "--set", "steps=5"],
                ["force-protocol", "--set", "pressure=clusters", "--set", "largest_change=0.2",
                 "--set", "form=faces", "--set", "rings.left=volume"],
-               ["force-protocol", "--set", "pressure=field", "--set", "form=arcs",
+               ["force-protocol", "--set", "pressure=field", "--set", "form=centres",
                 "--set", "contact_angle=30", "--set", "rings.left=suction", "--set", "steps=5"],
                ["dry", "--set", "start_saturation=0.5"], ["crackstats", "response"]],
     "forces": [["dem-replay", *REPLAY], ["dem-replay", "-q", "--set", "engine=quasi-static"],
