@@ -136,22 +136,29 @@ static bool break_one(struct equilibrium *e)
     return worst;
 }
 
+static enum status refuse_numbers(int grain, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "no equilibrium of grain %d that numbers hold: stiffnesses lie too "
+                  "far apart (engine=explicit solves no equations)",
+                  grain);
+}
+
 static enum status check_small(const struct equilibrium *e, struct reason *reason)
 {
     for (int i = 0; i < e->n; i++) {
-        if (!e->is_gone[i] && isnan(size_of(e->trial[i])))
-            return refuse(reason, STATUS_NOT_CONVERGED,
-                          "no equilibrium of grain %d that numbers hold: stiffnesses "
-                          "lie too far apart (engine=explicit solves no equations)",
-                          i);
-        if (!e->is_gone[i] && !(size_of(e->trial[i]) <= furthest))
-            return refuse(
-                reason, STATUS_NOT_CONVERGED,
-                "grain %d moves %.3g mean radii: displacements are not small, "
-                "and equilibrium is a matter of dynamics "
-                "(engine=explicit, or stiffer bonds)",
-                i, size_of(e->trial[i]));
+        if (e->is_gone[i] || size_of(e->trial[i]) <= furthest) continue;
+        if (isnan(size_of(e->trial[i]))) return refuse_numbers(i, reason);
+        return refuse(reason, STATUS_NOT_CONVERGED,
+                      "grain %d moves %.3g mean radii: displacements are not small, "
+                      "and equilibrium is a matter of dynamics "
+                      "(engine=explicit, or stiffer bonds)",
+                      i, size_of(e->trial[i]));
     }
+    for (int j = 0; j < e->n_joint; j++)
+        if (!e->joint[j].is_gone &&
+            isnan(norm(joint_loads(&e->joint[j], 0, e->resistance[j].load).shift)))
+            return refuse_numbers(e->joint[j].grain[0], reason);
     return STATUS_OK;
 }
 

@@ -914,6 +914,10 @@ refused("a drying whose last liquid is in throats imposed empty does not go on",
         ["dry", "--set", "start_saturation=1e-9", "--set", 'imposed_empty=["+x"]', "drying"],
         "drying: /changes/saturation: no throat holds liquid any more at "
         "dry.start_saturation 1e-09")
+refused("a grain too large for equilibria is reported", UNSTABLE,
+        ["dem-replay", "--set", "engine=quasi-static",
+         damaged("forces", value("particles/radius", 11, 1e150))],
+        r"damaged: step \d .*: no equilibrium of grain \d+ that numbers hold: .*")
 make("viscous", "dry", "network", "--set", "liquid=viscous", "--set", "snapshots=[0.5]")
 for name in ["liquid_pressure", "time"]:
     refused(f"pressures of viscous liquid need /snapshots/{name}", BAD_DATA,
