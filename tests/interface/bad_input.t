@@ -1087,6 +1087,7 @@ def interrupted(name):
 
 
 for name in ["SIGINT", "SIGTERM", "SIGHUP"]:
+    signal.signal(getattr(signal, name), signal.SIG_DFL)  # ignored in the background of a shell
     interrupted(name)
 
 print(f"1..{number}")
