@@ -258,7 +258,8 @@ static void front(int dimensions, double gradient, int run, uint64_t seed)
         squares += height * height;
     }
     const double mean = sum / n_front;
-    printf("%.1f %.6f %.6f\n", tip, below / n_below,
+    // In a small box gas may stay above the critical height: no tail.
+    printf("%.1f %.6f %.6f\n", tip, n_below > 0 ? below / n_below : 0,
            sqrt(squares / n_front - mean * mean));
     invasion_free(&invasion);
     network_free(&network);
