@@ -2,6 +2,7 @@
 #include "conditions.h"
 
 #include "basics/compensated.h"
+#include "network/checks.h"
 
 #include <stddef.h>
 
@@ -139,22 +140,12 @@ enum status check_conditions(const struct drying_conditions *conditions,
     return status;
 }
 
-enum status check_gravity(const struct drying_conditions *conditions,
-                          const struct network *network, struct reason *reason)
-{
-    if (conditions->gravity == 0 || !network->packing.periodic[2]) return STATUS_OK;
-    return refuse(reason, STATUS_BAD_DATA,
-                  "gravity: must be 0 in a box that repeats along z, is %g",
-                  conditions->gravity);
-}
-
 enum status check_throats(const struct network *network, struct reason *reason)
 {
     int n = 0;
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
         const double length = network->throat_length[t];
-        const double radius = network->throat_radius[t];
         const double volume = throat_volume(network, t);
         n++;
         if (!(length > 0) || !isfinite(length))
@@ -163,12 +154,8 @@ enum status check_throats(const struct network *network, struct reason *reason)
                 "/throats/length: row %d: must be above 0, is %g (merge-nodes "
                 "removes short throats)",
                 t, length);
-        if (!(radius > 0) || !isfinite(radius))
-            return refuse(
-                reason, STATUS_BAD_DATA,
-                "/throats/radius: row %d: must be above 0, is %g (grains that overlap "
-                "close it)",
-                t, radius);
+        const enum status status = check_throat_radius(network, t, reason);
+        if (status) return status;
         if (!(volume > 0) || !isfinite(volume))
             return refuse(reason, STATUS_BAD_DATA,
                           "/throats/volume: row %d: must be above 0, is %g", t, volume);

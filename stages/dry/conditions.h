@@ -20,10 +20,6 @@ struct drying_scale {
 enum status check_conditions(const struct drying_conditions *conditions,
                              struct reason *reason);
 
-// STATUS_BAD_DATA if there is gravity along an axis on which the box repeats.
-enum status check_gravity(const struct drying_conditions *conditions,
-                          const struct network *network, struct reason *reason);
-
 // STATUS_BAD_DATA with the dataset, the row, the rule and the value if a throat that
 // takes part has no length, no radius, or both its ends on one node, or if none takes
 // part.

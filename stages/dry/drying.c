@@ -4,6 +4,7 @@
 
 #include "basics/memory.h"
 #include "boundary_layer.h"
+#include "network/checks.h"
 #include "resume.h"
 #include "run.h"
 #include "start.h"
@@ -261,7 +262,7 @@ enum status dry_network(const struct network *network,
 {
     *history = (struct drying_history){0};
     enum status status = check_conditions(conditions, reason);
-    if (!status) status = check_gravity(conditions, network, reason);
+    if (!status) status = check_gravity(network, conditions->gravity, reason);
     if (!status) status = check_throats(network, reason);
     if (!status) status = check_curved(conditions, network, reason);
     if (!status) status = check_steps(conditions, network, reason);

@@ -2,6 +2,7 @@
 #include "entry.h"
 
 #include "basics/memory.h"
+#include "network/checks.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,15 +14,10 @@ static enum status check(const struct network *network,
     int n = 0;
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
-        const double radius = network->throat_radius[t];
         const double volume = throat_volume(network, t);
         n++;
-        if (!(radius > 0) || !isfinite(radius))
-            return refuse(
-                reason, STATUS_BAD_DATA,
-                "/throats/radius: row %d: must be above 0, is %g (grains that overlap "
-                "close it)",
-                t, radius);
+        const enum status status = check_throat_radius(network, t, reason);
+        if (status) return status;
         if (!(volume > 0) || !isfinite(volume))
             return refuse(reason, STATUS_BAD_DATA,
                           "%s: row %d: the throat must hold more than nothing, holds "
@@ -34,11 +30,7 @@ static enum status check(const struct network *network,
         return refuse(reason, STATUS_BAD_DATA,
                       "/throats/kind: no throat holds liquid, there is nothing to "
                       "invade");
-    if (conditions->gravity != 0 && network->packing.periodic[2])
-        return refuse(reason, STATUS_BAD_DATA,
-                      "gravity: must be 0 in a box that repeats along z, is %g",
-                      conditions->gravity);
-    return STATUS_OK;
+    return check_gravity(network, conditions->gravity, reason);
 }
 
 static double height_of(const struct network *network, int node)

@@ -76,12 +76,7 @@ static void test_tube_open_at_both_ends(void **state)
 {
     (void)state;
     const int n = 7;
-    struct network network = lattice_network(2, 2, n + 1, spacing);
-    for (int t = 0; t < network.n_throat; t++) {
-        const int32_t *node = network.throat_nodes[t];
-        if (node[1] - node[0] != 4 || node[0] % 4 != 0)
-            network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
-    }
+    struct network network = lattice_column(n, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     conditions.open_walls = WALL_Z_LOWER | WALL_Z_UPPER;
     struct drying_history history = dry_and_check(&network, &conditions);

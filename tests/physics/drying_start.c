@@ -122,12 +122,7 @@ static void test_tube_half_empty(void **state)
 {
     (void)state;
     const int n = 6;
-    struct network network = lattice_network(2, 2, n + 1, spacing);
-    for (int t = 0; t < network.n_throat; t++) {
-        const int32_t *node = network.throat_nodes[t];
-        if (node[1] - node[0] != 4 || node[0] % 4 != 0)
-            network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
-    }
+    struct network network = lattice_column(n, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     conditions.start_saturation = 3.5 / n;
     struct drying_history history = dry_from(&network, &conditions, NULL);

@@ -124,6 +124,17 @@ struct network lattice_network(int nx, int ny, int nz, double spacing)
     return network;
 }
 
+struct network lattice_column(int n, double spacing)
+{
+    struct network network = lattice_network(2, 2, n + 1, spacing);
+    for (int t = 0; t < network.n_throat; t++) {
+        const int32_t *node = network.throat_nodes[t];
+        if (node[1] - node[0] != 4 || node[0] % 4 != 0)
+            network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
+    }
+    return network;
+}
+
 void randomise_radii(struct network *network, double spacing, double spread,
                      uint64_t seed)
 {

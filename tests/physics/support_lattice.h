@@ -9,6 +9,9 @@
 // Of the faces only those on the walls, one square a grain. Freed with network_free.
 struct network lattice_network(int nx, int ny, int nz, double spacing);
 
+// One upright column of N throats that hold liquid; those beside it are imposed empty.
+struct network lattice_column(int n, double spacing);
+
 // Evenly distributed radii within (1 +- SPREAD) of 0.2 SPACING.
 void randomise_radii(struct network *network, double spacing, double spread,
                      uint64_t seed);

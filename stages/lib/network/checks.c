@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "network/checks.h"
+
+#include <math.h>
+
+enum status check_throat_radius(const struct network *network, int throat,
+                                struct reason *reason)
+{
+    const double radius = network->throat_radius[throat];
+    if (radius > 0 && isfinite(radius)) return STATUS_OK;
+    return refuse(
+        reason, STATUS_BAD_DATA,
+        "/throats/radius: row %d: must be above 0, is %g (grains that overlap "
+        "close it)",
+        throat, radius);
+}
+
+enum status check_gravity(const struct network *network, double gravity,
+                          struct reason *reason)
+{
+    if (gravity == 0 || !network->packing.periodic[2]) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "gravity: must be 0 in a box that repeats along z, is %g", gravity);
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a network must be for gas to come in.
+#ifndef CRAQUELURE_NETWORK_CHECKS_H
+#define CRAQUELURE_NETWORK_CHECKS_H
+
+#include "basics/status.h"
+#include "network/network.h"
+
+// STATUS_BAD_DATA: the radius of THROAT is not a number above 0.
+enum status check_throat_radius(const struct network *network, int throat,
+                                struct reason *reason);
+
+// STATUS_BAD_DATA: GRAVITY (m/s2) pulls along z, but the box repeats there.
+enum status check_gravity(const struct network *network, double gravity,
+                          struct reason *reason);
+
+#endif
