@@ -2,7 +2,7 @@
 #include "clusters.h"
 
 #include "basics/memory.h"
-#include "basics/ranks.h"
+#include "network/entry_order.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -235,7 +235,7 @@ int clusters_invasion_throat(struct clusters *clusters, int cluster)
 static void rank_throats(struct clusters *clusters, const double *ease)
 {
     const int n = clusters->network->n_throat;
-    rank_descending(ease, n, clusters->throat_at_rank);
+    order_throats(clusters->network, ease, clusters->throat_at_rank);
     for (int k = 0; k < n; k++)
         clusters->rank[clusters->throat_at_rank[k]] = k;
 }
@@ -283,7 +283,7 @@ struct clusters clusters_make(const struct network *network,
                                 .found_by = NEW_ARRAY(int, network->n_throat)};
     for (int i = 0; i < network->n_node; i++)
         clusters.joins[i] = true;
-    rank_throats(&clusters, ease ? ease : network->throat_radius);
+    rank_throats(&clusters, ease);
     find_clusters(&clusters);
     return clusters;
 }

@@ -48,8 +48,8 @@ struct clusters {
 };
 
 // All throats of kind THROAT_NETWORK hold liquid, all nodes join, no menisci yet. Gas
-// enters the throat of largest EASE (n_throat) first; NULL: the widest. Keeps NETWORK
-// and INCIDENCE, which must live as long. O(n log n).
+// enters throats as order_throats says for EASE (n_throat; NULL: their radii). Keeps
+// NETWORK and INCIDENCE, which must live as long. O(n log n).
 struct clusters clusters_make(const struct network *network,
                               const struct incidence *incidence, const double *ease,
                               bool gas_parts);
@@ -61,8 +61,8 @@ void clusters_add_menisci(struct clusters *clusters, int node);
 // THROAT has emptied and gas fills both its nodes.
 void clusters_empty_throat(struct clusters *clusters, int throat);
 
-// The meniscus throat of CLUSTER that gas enters most easily, the lowest index among
-// equals; -1 if no gas touches the cluster.
+// The meniscus throat of CLUSTER that gas enters first; -1 if no gas touches the
+// cluster.
 int clusters_invasion_throat(struct clusters *clusters, int cluster);
 
 void clusters_state(struct clusters *clusters, struct state *state);

@@ -4,6 +4,7 @@
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "basics/ranks.h"
+#include "network/entry_order.h"
 
 #include <stdlib.h>
 
@@ -90,8 +91,10 @@ static struct front front_make(const struct network *network,
                           .ahead = NEW_ARRAY(int32_t, throats ? n : 0),
                           .gas = NEW_ARRAY(bool, network->n_node),
                           .queue = rank_queue_make(n)};
-    rank_descending(conditions->ease ? conditions->ease : network->throat_radius, n,
-                    front.order);
+    if (throats)
+        order_throats(network, conditions->ease, front.order);
+    else
+        order_nodes(network, conditions->ease, front.order);
     for (int k = 0; k < n; k++)
         front.rank[front.order[k]] = k;
     link_nodes(&front);

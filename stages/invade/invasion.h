@@ -17,8 +17,8 @@ enum invasion_rule {
 
 struct invasion_conditions {
     enum invasion_rule rule;
-    // (n_throat, or n_node) What is larger is entered first, of equals the lowest
-    // index. NULL: the radii of the throats.
+    // (n_throat, or n_node) What is larger is entered first, of equals as
+    // network/entry_order.h says. NULL: the radii of the throats.
     const double *ease;
     unsigned inlet, outlet; // bits of enum wall
     // Liquid leaves only through the outlet: what gas has cut off from it stays.

@@ -139,18 +139,18 @@ static const char *describe(const struct invade_parameters *parameters, char tex
     char gravity[60];
     snprintf(gravity, sizeof gravity, "gravity: %.17g m/s2\n",
              parameters->entry.gravity);
-    snprintf(
-        text, 600,
-        "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
-        "touches that takes the least pressure, of equals that with the lowest number\n"
-        "%s\n%s"
-        "left out: viscosity, evaporation, compressibility, films, snap-off%s",
-        parameters->rule == INVADE_THROATS ? "throat" : "node",
-        parameters->invasion.trapping
-            ? "trapping: liquid leaves only through the outlet (Masson 2016)"
-            : "no trapping: liquid leaves from anywhere",
-        parameters->entry.gravity > 0 ? gravity : "",
-        parameters->entry.gravity > 0 ? "" : ", gravity");
+    snprintf(text, 600,
+             "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
+             "touches that takes the least pressure, of equals the shorter, then the "
+             "higher\n"
+             "%s\n%s"
+             "left out: viscosity, evaporation, compressibility, films, snap-off%s",
+             parameters->rule == INVADE_THROATS ? "throat" : "node",
+             parameters->invasion.trapping
+                 ? "trapping: liquid leaves only through the outlet (Masson 2016)"
+                 : "no trapping: liquid leaves from anywhere",
+             parameters->entry.gravity > 0 ? gravity : "",
+             parameters->entry.gravity > 0 ? "" : ", gravity");
     return text;
 }
 

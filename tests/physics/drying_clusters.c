@@ -26,6 +26,7 @@ struct reference {
 static struct network random_network(uint64_t *seed)
 {
     struct network network = {.n_node = NODES, .n_throat = THROATS};
+    network.node_position = NEW_ARRAY(struct vector, NODES); // all in one place
     network.throat_nodes = allocate(THROATS, sizeof *network.throat_nodes);
     network.throat_radius = NEW_ARRAY(double, THROATS);
     network.throat_length = NEW_ARRAY(double, THROATS);

@@ -23,8 +23,6 @@ with scratch() as folder:
         run("pack", *settings(["method=import", f"lower={lower}", f"upper={upper}",
                                f"periodic={sides}"]), at(name + ".txt"), "-o", at(name + ".p"))
         run("tessellate", *settings(how), at(name + ".p"), "-o", at(name + ".n"))
-        with h5py.File(at(name + ".n"), "r+") as file: # throats narrowest at a node they share
-            file["throats/radius"][:] += 0.01 * file["throats/length"][:] # would tie
 
     def dry(name, *how):
         run("dry", *settings(["boundary_layer.mass_transfer=5.1", *how]), at(name + ".n"),

@@ -78,7 +78,37 @@ static bool may_enter(const struct state *state, int e)
     return touched && (!trapping || leads_out(state, e));
 }
 
-// The easiest that gas may enter, of equals the first; -1 if there is none left.
+static double middle(const struct network *network, int throat, int axis)
+{
+    const int32_t *ends = network->throat_nodes[throat];
+    return (component(network->node_position[ends[0]], axis) +
+            component(network->node_position[ends[1]], axis)) /
+           2;
+}
+
+// Whether E is entered before F, of two that are as easy: what is shorter, holds less,
+// is higher, lower along x, along y; then by number.
+static bool is_before(const struct state *state, int e, int f)
+{
+    const struct network *network = state->network;
+    const bool throats = state->conditions->rule == INVADE_THROATS;
+    double difference = 0;
+    if (throats) {
+        difference = network->throat_length[e] - network->throat_length[f];
+        if (difference == 0)
+            difference = throat_volume(network, e) - throat_volume(network, f);
+    }
+    static const int axes[3] = {2, 0, 1};
+    for (int k = 0; k < 3 && difference == 0; k++) {
+        difference = throats ? middle(network, e, axes[k]) - middle(network, f, axes[k])
+                             : component(network->node_position[e], axes[k]) -
+                                   component(network->node_position[f], axes[k]);
+        if (axes[k] == 2) difference = -difference;
+    }
+    return difference != 0 ? difference < 0 : e < f;
+}
+
+// What gas enters first of all it may enter; -1 if there is none left.
 static int easiest(const struct state *state)
 {
     const bool throats = state->conditions->rule == INVADE_THROATS;
@@ -87,7 +117,10 @@ static int easiest(const struct state *state)
                                                  : state->network->throat_radius;
     int best = -1;
     for (int e = 0; e < n; e++)
-        if ((best < 0 || ease[e] > ease[best]) && may_enter(state, e)) best = e;
+        if ((best < 0 || ease[e] > ease[best] ||
+             (ease[e] == ease[best] && is_before(state, e, best))) &&
+            may_enter(state, e))
+            best = e;
     return best;
 }
 
@@ -167,17 +200,24 @@ static struct network random_network(int n_node, int n_throat, uint64_t *seed)
     struct network network = {.n_node = n_node, .n_throat = n_throat};
     network.node_walls = NEW_ARRAY(uint8_t, n_node);
     network.throat_nodes = allocate((size_t)n_throat, sizeof *network.throat_nodes);
+    network.node_position = NEW_ARRAY(struct vector, n_node);
     network.throat_radius = NEW_ARRAY(double, n_throat);
+    network.throat_length = NEW_ARRAY(double, n_throat);
     network.throat_kind = NEW_ARRAY(uint8_t, n_throat);
     for (int i = 0; i < n_node; i++) {
         if (next_random(seed) < 0.2) network.node_walls[i] |= WALL_Z_UPPER;
         if (next_random(seed) < 0.1) network.node_walls[i] |= WALL_Z_LOWER;
+        for (int axis = 0; axis < 3; axis++) // many tie
+            set_component(&network.node_position[i], axis,
+                          floor(3 * next_random(seed)));
     }
     for (int t = 0; t < n_throat; t++) {
         const int a = (int)(next_random(seed) * n_node);
         const int b = (a + 1 + (int)(next_random(seed) * (n_node - 1))) % n_node;
         network.throat_nodes[t][0] = a < b ? a : b;
         network.throat_nodes[t][1] = a < b ? b : a;
+        network.throat_length[t] = 1 + floor(2 * next_random(seed));
+        network.throat_radius[t] = 1 + floor(2 * next_random(seed));
         if (t > 0 && next_random(seed) < 0.1)
             network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
     }
@@ -332,43 +372,65 @@ static void shuffle(int *place, int n, uint64_t *seed)
     }
 }
 
-static void test_renumbered(void **state)
+// Of all values EASE (of throats, or nodes) only so many are DIFFERENT.
+static void check_renumbered(enum invasion_rule rule, int different)
 {
-    (void)state;
     uint64_t seed = 31;
     struct network one = lattice_network(6, 6, 6, 1), two = lattice_network(6, 6, 6, 1);
     int *node = NEW_ARRAY(int, one.n_node), *throat = NEW_ARRAY(int, one.n_throat);
     shuffle(node, one.n_node, &seed);
     shuffle(throat, one.n_throat, &seed);
-    randomise_radii(&one, 1, 0.5, 5);
-    for (int i = 0; i < one.n_node; i++)
+    const bool throats = rule == INVADE_THROATS;
+    const int n = throats ? one.n_throat : one.n_node;
+    double *ease[2] = {NEW_ARRAY(double, n), NEW_ARRAY(double, n)};
+    for (int i = 0; i < n; i++)
+        ease[1][throats ? throat[i] : node[i]] = ease[0][i] =
+            floor(different * next_random(&seed));
+    for (int i = 0; i < one.n_node; i++) {
         two.node_walls[node[i]] = one.node_walls[i];
+        two.node_position[node[i]] = one.node_position[i];
+    }
     for (int t = 0; t < one.n_throat; t++) {
-        two.throat_radius[throat[t]] = one.throat_radius[t];
         for (int end = 0; end < 2; end++)
             two.throat_nodes[throat[t]][1 - end] = node[one.throat_nodes[t][end]];
     }
     for (int trapping = 0; trapping < 2; trapping++) {
-        const struct invasion_conditions conditions = {
-            .inlet = WALL_X_LOWER, .outlet = WALL_X_UPPER, .trapping = trapping};
+        struct invasion_conditions conditions = {.rule = rule,
+                                                 .ease = ease[0],
+                                                 .inlet = WALL_X_LOWER,
+                                                 .outlet = WALL_X_UPPER,
+                                                 .trapping = trapping};
         struct invasion first, second;
         struct reason reason;
         assert_int_equal(invade(&one, &conditions, &first, &reason), 0);
+        conditions.ease = ease[1];
         assert_int_equal(invade(&two, &conditions, &second, &reason), 0);
         assert_int_equal(first.n, second.n);
         assert_int_equal(first.breakthrough, second.breakthrough);
         for (int k = 0; k < first.n; k++) {
-            assert_int_equal(throat[first.throat[k]], second.throat[k]);
+            if (throats) assert_int_equal(throat[first.throat[k]], second.throat[k]);
             assert_int_equal(first.node[k] < 0 ? -1 : node[first.node[k]],
                              second.node[k]);
         }
         invasion_free(&first);
         invasion_free(&second);
     }
+    free(ease[0]);
+    free(ease[1]);
     free(node);
     free(throat);
     network_free(&one);
     network_free(&two);
+}
+
+static void test_renumbered(void **state)
+{
+    (void)state;
+    static const int different[3] = {1000000, 4, 1};
+    for (int k = 0; k < 3; k++) {
+        check_renumbered(INVADE_THROATS, different[k]);
+        check_renumbered(INVADE_NODES, different[k]);
+    }
 }
 
 static void test_ranks_of_any_radii(void **state)
@@ -377,6 +439,7 @@ static void test_ranks_of_any_radii(void **state)
     enum { N = 5000 };
     static double radius[N];
     static int order[N];
+    static bool same[N];
     uint64_t seed = 3;
     for (int kind = 0; kind < 5; kind++) {
         for (int i = 0; i < N; i++) {
@@ -388,10 +451,11 @@ static void test_ranks_of_any_radii(void **state)
                                     : 2 - floor(5 * u); // below 0 too
         }
         if (kind == 2) radius[N / 2] = 1e-6; // leaves their keys no digits
-        rank_descending(radius, N, order);
+        rank_descending(radius, N, order, same);
         for (int k = 1; k < N; k++) {
             const double before = radius[order[k - 1]], here = radius[order[k]];
             assert_true(before > here || (before == here && order[k - 1] < order[k]));
+            assert_int_equal(same[k], before - here <= 0x1p-40 * fabs(before));
         }
     }
 }

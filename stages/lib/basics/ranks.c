@@ -3,7 +3,7 @@
 
 #include "basics/memory.h"
 
-#include <stdbool.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,7 +65,22 @@ static void sort_run(const double *value, int *order, int n)
     free(run);
 }
 
-void rank_descending(const double *value, int n, int *order)
+// Most ranks are told apart by the KEY of their values, which lie in order in memory as
+// the values do not.
+static void find_same(const double *value, int n, const int *order, const uint64_t *key,
+                      int shift, bool *same)
+{
+    static const double tolerance = 0x1p-40;
+    const uint64_t near = (UINT64_C(1) << 13 >> shift) + 1; // 2^13 last bits are more
+    for (int k = 0; k < n; k++) {
+        same[k] = k > 0 && (key[k] >> INDEX_BITS) - (key[k - 1] >> INDEX_BITS) <= near;
+        if (!same[k]) continue;
+        const double before = value[order[k - 1]];
+        same[k] = before - value[order[k]] <= tolerance * fabs(before);
+    }
+}
+
+void rank_descending(const double *value, int n, int *order, bool *same)
 {
     uint64_t lowest = UINT64_MAX, highest = 0;
     for (int i = 0; i < n; i++) {
@@ -93,6 +108,7 @@ void rank_descending(const double *value, int n, int *order)
             end++;
         sort_run(value, order + begin, end - begin);
     }
+    if (same) find_same(value, n, order, from, shift, same);
     free(from);
     free(to);
 }

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order in which gas enters throats: the widest first, of equals that with the
-// lowest index. And a queue of ranks.
+// Falling order of many numbers (network/entry_order.h says what gas enters when). And
+// a queue of ranks.
 #ifndef CRAQUELURE_RANKS_H
 #define CRAQUELURE_RANKS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 // ORDER (n): indices of VALUE, descending, ties by index. O(n) but for long runs of
-// values that are equal to nine digits and not quite.
-void rank_descending(const double *value, int n, int *order);
+// values that are equal to nine digits and not quite. SAME (n), unless NULL: whether
+// the value is that of the rank before to 12 digits.
+void rank_descending(const double *value, int n, int *order, bool *same);
 
 // A set of numbers below N, kept as bits, bits for words of bits, and so on: adding and
 // taking the lowest cost a few operations whatever the size.
