@@ -97,8 +97,9 @@ static bool include_joints(struct equilibrium *e)
         const bool broke = factored->is_bonded && (!joint->is_bonded || joint->is_gone);
         const bool same =
             here == there && here == factored->touch && here <= TOUCH_STICKS;
-        if (broke && !corrections_add(e->corrections, j, 3)) return false;
-        if ((broke || !same) && !corrections_add(e->corrections, j, 0)) return false;
+        const int shears = joint->contact_across > 0 ? 3 : 1;
+        const int strains = broke ? STRAINS : same ? 0 : shears;
+        if (strains > 0 && !corrections_add(e->corrections, j, strains)) return false;
     }
     return true;
 }
@@ -111,7 +112,7 @@ static enum outcome find_step(struct equilibrium *e)
     const double share = 1 / (1 + e->damping);
     for (int i = 0; i < e->n; i++)
         e->left[i] = scaled(share, e->left[i]);
-    if (!stiffness_solve(e->matrix, e->left, e->step)) return STUCK;
+    stiffness_solve(e->matrix, e->left, e->step);
     strain_joints(e, e->step, e->more);
     if (!include_joints(e)) return TOO_MANY;
     if (corrections_count(e->corrections) == 0) return FOUND;
@@ -123,7 +124,8 @@ static enum outcome find_step(struct equilibrium *e)
     if (!corrections_find(e->corrections, e->strain, e->more, share, enough))
         return STUCK;
     corrections_take_off(e->corrections, share, e->left);
-    return stiffness_solve(e->matrix, e->left, e->step) ? FOUND : STUCK;
+    stiffness_solve(e->matrix, e->left, e->step);
+    return FOUND;
 }
 
 // What is marked leaves: its load counts no more, and nothing touches it.
@@ -188,12 +190,13 @@ static bool improve(struct equilibrium *e, bool *is_fresh)
 // below what may be left, as forces on many grains add up, where that comes easily.
 static bool approach(struct equilibrium *e)
 {
-    enum { ROUNDS = 20, MOST = 600 };
+    enum { ROUNDS = 20 };
     resist(e);
     e->enough = e->setup.tolerance * e->largest_load;
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
     const double well = (e->damping > 0 ? 1 : 1e-4) * e->enough;
-    bool is_fresh = e->factors == 0 || corrections_count(e->corrections) > MOST;
+    bool is_fresh =
+        e->factors == 0 || corrections_work(e->corrections) > stiffness_work(e->matrix);
     if (is_fresh && !factor(e)) return false;
     double before = INFINITY;
     for (int round = 0; round < ROUNDS; round++) {

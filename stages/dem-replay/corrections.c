@@ -3,281 +3,325 @@
 
 #include "basics/memory.h"
 #include "settle_joint.h"
+#include "sparse/dense_system.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 240 }; // triples: beyond, the dense system costs more than a factor
+enum { MOST = 4000 }; // rows: beyond, the dense system is too large
 
-// Three strains of a joint, from the first or the fourth on.
-struct triple {
+// A joint and those of its strains, from the first on, that have a row.
+struct entry {
     int32_t joint;
-    int first;
-    double load[3];     // that they begin with
-    double slope[3][3]; // of q with the strains, now
+    int count, row[STRAINS];
+    double load[STRAINS];     // that it begins with
+    double slope[STRAINS][3]; // of q with the first three strains; of the others, each
+                              // with its own
 };
 
+struct addition {
+    int first; // row
+    struct halves halves;
+};
+
+// W and the matrix have rows CAPACITY apart.
 struct corrections {
     struct stiffness *stiffness;
-    int n, n_joint;
+    int n_joint;
     const struct joint *joint;
     const double (*tangent)[STRAINS];
     double share; // of the compliance that counts
-    int count;
-    struct triple triple[MOST];
-    int (*of)[2];                   // (n_joint) the triples of each, or -1
-    double (*compliance)[MOST * 3]; // W
-    double (*matrix)[MOST * 3];     // 1 + W dq/de of those that act, factored
-    int row[MOST * 3];              // of the matrix, as pivots chose
-    int n_acting, acting[MOST * 3];
-    double strain[MOST * 3], linear[MOST * 3], more[MOST * 3]; // e, B K^-1 r, q
-    double left[MOST * 3], step[MOST * 3];
-    struct displacement *answer; // (3 n)
+    double work;  // multiplications since there were none
+    int n_entry, entry_capacity;
+    struct entry *entry;
+    int *of; // (n_joint) the entry of each, or -1
+    int n_addition, addition_capacity;
+    struct addition *addition;
+    int count, capacity;            // rows
+    int *entry_of, *strain_of;      // (count)
+    double *compliance;             // W
+    double *matrix;                 // 1 + dq/de W of those that act, factored
+    int *order;                     // of the matrix's rows, as pivots chose
+    int n_acting, *acting;          // rows
+    int n_factored, *factored;      // those in the matrix
+    double (*factored_slope)[3];    // (n_factored)
+    double *strain, *linear, *more; // e, B K^-1 r, q
+    double *left, *step, *right, *answer;
 };
 
-struct corrections *corrections_new(struct stiffness *stiffness, int n, int n_joint,
+struct corrections *corrections_new(struct stiffness *stiffness, int n_joint,
                                     const struct joint *joint,
                                     const double (*tangent)[STRAINS])
 {
     struct corrections *c = NEW_ARRAY(struct corrections, 1);
     c->stiffness = stiffness;
-    c->n = n;
     c->n_joint = n_joint;
     c->joint = joint;
     c->tangent = tangent;
-    c->of = allocate((size_t)n_joint, sizeof *c->of);
-    c->compliance = allocate(MOST * 3, sizeof *c->compliance);
-    c->matrix = allocate(MOST * 3, sizeof *c->matrix);
-    c->answer = NEW_ARRAY(struct displacement, 3 * (size_t)n);
+    c->of = NEW_ARRAY(int, n_joint);
     corrections_clear(c);
     return c;
+}
+
+void corrections_clear(struct corrections *c)
+{
+    for (int k = 0; k < c->n_addition; k++)
+        halves_free(&c->addition[k].halves);
+    c->n_addition = c->n_entry = c->count = c->n_factored = 0;
+    c->work = 0;
+    for (int j = 0; j < c->n_joint; j++)
+        c->of[j] = -1;
 }
 
 void corrections_free(struct corrections *c)
 {
     if (!c) return;
-    free(c->of);
-    free(c->compliance);
-    free(c->matrix);
-    free(c->answer);
+    corrections_clear(c);
+    void *const owned[] = {
+        c->entry,  c->of,         c->addition,      c->entry_of, c->strain_of,
+        c->matrix, c->order,      c->acting,        c->factored, c->strain,
+        c->linear, c->more,       c->left,          c->step,     c->right,
+        c->answer, c->compliance, c->factored_slope};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
     free(c);
-}
-
-void corrections_clear(struct corrections *c)
-{
-    c->count = 0;
-    for (int j = 0; j < c->n_joint; j++)
-        c->of[j][0] = c->of[j][1] = -1;
 }
 
 int corrections_count(const struct corrections *c)
 {
-    return 3 * c->count;
+    return c->count;
 }
 
-static const struct displacement *answer_of(const struct corrections *c, int k,
-                                            int32_t grain)
+double corrections_work(const struct corrections *c)
 {
-    return grain < 0 ? NULL : &c->answer[(size_t)k * (size_t)c->n + (size_t)grain];
+    return c->work;
 }
 
-bool corrections_add(struct corrections *c, int joint, int first)
+// ---- rows ---------------------------------------------------------------------------
+
+static double *compliance_of(const struct corrections *c, int row)
 {
-    if (c->of[joint][first / 3] >= 0) return true;
-    if (c->count == MOST) return false;
-    if (!stiffness_solve_joint(c->stiffness, joint, first, c->answer)) return false;
-    const int new = c->count++;
-    c->of[joint][first / 3] = new;
-    c->triple[new] = (struct triple){.joint = joint, .first = first};
-    for (int t = 0; t <= new; t++) {
-        const struct triple *triple = &c->triple[t];
-        const struct joint *other = &c->joint[triple->joint];
-        for (int k = 0; k < 3; k++) {
-            double strain[STRAINS];
-            joint_strains(other, answer_of(c, k, other->grain[0]),
-                          answer_of(c, k, other->grain[1]), strain);
-            for (int l = 0; l < 3; l++) {
-                const double compliance = strain[triple->first + l];
-                c->compliance[3 * t + l][3 * new + k] = compliance;
-                c->compliance[3 * new + k][3 * t + l] = compliance;
+    return c->compliance + (size_t)row * (size_t)c->capacity;
+}
+
+static void make_room(struct corrections *c)
+{
+    const size_t before = (size_t)c->capacity, after = before ? 2 * before : 128;
+    double *compliance = NEW_ARRAY(double, after *after);
+    for (size_t row = 0; row < (size_t)c->count; row++)
+        memcpy(compliance + row * after, c->compliance + row * before,
+               (size_t)c->count * sizeof *compliance);
+    free(c->compliance);
+    c->compliance = compliance;
+    c->matrix = reallocate(c->matrix, after * after, sizeof *c->matrix);
+    c->n_factored = 0;
+    int **const whole[] = {&c->entry_of, &c->strain_of, &c->order, &c->acting,
+                           &c->factored};
+    for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
+        *whole[k] = reallocate(*whole[k], after, sizeof **whole);
+    double **const real[] = {&c->strain, &c->linear, &c->more,  &c->left,
+                             &c->step,   &c->right,  &c->answer};
+    for (size_t k = 0; k < sizeof real / sizeof *real; k++)
+        *real[k] = reallocate(*real[k], after, sizeof **real);
+    c->factored_slope = reallocate(c->factored_slope, after, sizeof *c->factored_slope);
+    c->capacity = (int)after;
+}
+
+static void fill_compliance(struct corrections *c, const struct addition *new)
+{
+    const int columns = new->halves.columns;
+    for (int k = 0; k < c->n_addition; k++) {
+        const struct addition *other = &c->addition[k];
+        double product[MOST_HALVES * MOST_HALVES];
+        stiffness_product(c->stiffness, &other->halves, &new->halves, product);
+        for (int i = 0; i < other->halves.columns; i++)
+            for (int j = 0; j < columns; j++) {
+                const double compliance = product[i * columns + j];
+                const int row = other->first + i, column = new->first + j;
+                compliance_of(c, row)[column] = compliance_of(c, column)[row] =
+                    compliance;
             }
-        }
     }
+}
+
+bool corrections_add(struct corrections *c, int joint, int strains)
+{
+    if (c->of[joint] < 0) {
+        GROW_ARRAY(c->entry, c->n_entry, c->entry_capacity);
+        c->entry[c->n_entry] = (struct entry){.joint = joint};
+        c->of[joint] = c->n_entry++;
+    }
+    struct entry *entry = &c->entry[c->of[joint]];
+    const int first = entry->count, new = strains - first;
+    if (new <= 0) return true;
+    if (c->count + new > MOST) return false;
+    if (c->count + new > c->capacity) make_room(c);
+    GROW_ARRAY(c->addition, c->n_addition, c->addition_capacity);
+    c->addition[c->n_addition++] =
+        (struct addition){c->count, stiffness_halves(c->stiffness, joint, first, new)};
+    for (; entry->count < strains; entry->count++, c->count++) {
+        entry->row[entry->count] = c->count;
+        c->entry_of[c->count] = c->of[joint];
+        c->strain_of[c->count] = entry->count;
+    }
+    fill_compliance(c, &c->addition[c->n_addition - 1]);
     return true;
 }
 
 // ---- what is left of e - B K^-1 r + W q(e) ------------------------------------------
 
-static void resist(struct corrections *c, int t, const double (*from)[STRAINS])
+static void resist(struct corrections *c, struct entry *entry,
+                   const double (*from)[STRAINS])
 {
-    struct triple *triple = &c->triple[t];
-    const int j = triple->joint, first = triple->first;
-    const double *tangent = c->tangent[j] + first, *more = c->strain + 3 * t;
+    const int j = entry->joint;
+    const double *tangent = c->tangent[j];
     double strain[STRAINS];
     memcpy(strain, from[j], sizeof strain);
-    for (int k = 0; k < 3; k++)
-        strain[first + k] += more[k];
+    for (int k = 0; k < entry->count; k++)
+        strain[k] += c->strain[entry->row[k]];
     const struct resistance resistance = joint_resistance(&c->joint[j], strain);
-    for (int k = 0; k < 3; k++) {
-        for (int l = 0; l < 3; l++) {
-            const double slope = first == 0 ? resistance.slope[k][l]
-                                 : k == l   ? resistance.stiffness[k]
-                                            : 0;
-            triple->slope[k][l] = slope - (k == l ? tangent[k] : 0);
+    for (int k = 0; k < entry->count; k++) {
+        const double more = c->strain[entry->row[k]];
+        double *q = &c->more[entry->row[k]];
+        if (k >= 3) {
+            entry->slope[k][0] = resistance.stiffness[k - 3] - tangent[k];
+            *q = entry->slope[k][0] * more;
+            continue;
         }
-        c->more[3 * t + k] =
-            first == 0 ? resistance.load[k] - triple->load[k] - tangent[k] * more[k]
-                       : triple->slope[k][k] * more[k];
+        for (int l = 0; l < 3; l++)
+            entry->slope[k][l] = resistance.slope[k][l] - (k == l ? tangent[k] : 0);
+        *q = resistance.load[k] - entry->load[k] - tangent[k] * more;
     }
 }
 
 // Adds W MORE in ROW to SUM; by columns, which are rows too: no sum waits for itself.
-static void add_answer(const struct corrections *c, int row, double more, double *sum)
+static void add_answer(const struct corrections *c, int row, double more,
+                       double *restrict sum)
 {
-    const double *compliance = c->compliance[row];
+    const double *restrict compliance = compliance_of(c, row);
     if (more == 0) return;
-    for (int k = 0; k < 3 * c->count; k++)
+    for (int k = 0; k < c->count; k++)
         sum[k] += c->share * more * compliance[k];
 }
 
 static double find_left(struct corrections *c)
 {
     double most = 0;
-    for (int k = 0; k < 3 * c->count; k++)
+    for (int k = 0; k < c->count; k++)
         c->left[k] = c->strain[k] - c->linear[k];
-    for (int k = 0; k < 3 * c->count; k++)
+    for (int k = 0; k < c->count; k++)
         add_answer(c, k, c->more[k], c->left);
-    for (int k = 0; k < 3 * c->count; k++)
+    for (int k = 0; k < c->count; k++)
         most = fmax(most, fabs(c->left[k]));
     return most;
 }
 
 static double resist_all(struct corrections *c, const double (*from)[STRAINS])
 {
-    for (int t = 0; t < c->count; t++)
-        resist(c, t, from);
+    for (int k = 0; k < c->n_entry; k++)
+        resist(c, &c->entry[k], from);
     return find_left(c);
 }
 
 // ---- Newton's method ----------------------------------------------------------------
 
-// Columns FIRST to END-1 by Gauss, with the largest pivot of each.
-static bool factor_panel(struct corrections *c, int n, int first, int end)
+static const double *slope_of(const struct corrections *c, int row)
 {
-    for (int k = first; k < end; k++) {
-        int best = k;
-        for (int r = k + 1; r < n; r++)
-            if (fabs(c->matrix[c->row[r]][k]) > fabs(c->matrix[c->row[best]][k]))
-                best = r;
-        const int pivot = c->row[best];
-        c->row[best] = c->row[k];
-        c->row[k] = pivot;
-        const double *above = c->matrix[pivot];
-        if (!(fabs(above[k]) > 0)) return false;
-        for (int r = k + 1; r < n; r++) {
-            double *row = c->matrix[c->row[r]];
-            row[k] /= above[k];
-            for (int l = k + 1; l < end; l++)
-                row[l] -= row[k] * above[l];
-        }
-    }
-    return true;
-}
-
-// Four columns at a time, so that the rest is read and written a quarter as often.
-static bool factor(struct corrections *c, int n)
-{
-    for (int k = 0; k < n; k++)
-        c->row[k] = k;
-    for (int first = 0; first < n; first += 4) {
-        const int end = first + 4 < n ? first + 4 : n;
-        if (!factor_panel(c, n, first, end)) return false;
-        if (end == n) break;
-        const double *above[4];
-        for (int k = 0; k < 4; k++) {
-            double *row = c->matrix[c->row[first + k]];
-            for (int i = 0; i < k; i++)
-                for (int l = end; l < n; l++)
-                    row[l] -= row[first + i] * above[i][l];
-            above[k] = row;
-        }
-        for (int r = end; r < n; r++) {
-            double *row = c->matrix[c->row[r]];
-            const double s[4] = {row[first], row[first + 1], row[first + 2],
-                                 row[first + 3]};
-            for (int l = end; l < n; l++)
-                row[l] -= s[0] * above[0][l] + s[1] * above[1][l] + s[2] * above[2][l] +
-                          s[3] * above[3][l];
-        }
-    }
-    return true;
-}
-
-static void substitute(const struct corrections *c, int n, const double *right,
-                       double *answer)
-{
-    for (int k = 0; k < n; k++) {
-        const double *row = c->matrix[c->row[k]];
-        answer[k] = right[c->row[k]];
-        for (int l = 0; l < k; l++)
-            answer[k] -= row[l] * answer[l];
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        const double *row = c->matrix[c->row[k]];
-        for (int l = k + 1; l < n; l++)
-            answer[k] -= row[l] * answer[l];
-        answer[k] /= row[k];
-    }
+    return c->entry[c->entry_of[row]].slope[c->strain_of[row]];
 }
 
 // Loads that change with the strains: rows of dq/de that are not 0.
 static void list_acting(struct corrections *c)
 {
     c->n_acting = 0;
-    for (int t = 0; t < c->count; t++)
-        for (int k = 0; k < 3; k++) {
-            const double *slope = c->triple[t].slope[k];
-            if (slope[0] != 0 || slope[1] != 0 || slope[2] != 0)
-                c->acting[c->n_acting++] = 3 * t + k;
+    for (int row = 0; row < c->count; row++) {
+        const double *slope = slope_of(c, row);
+        const bool is_moment = c->strain_of[row] >= 3;
+        if (slope[0] != 0 || (!is_moment && (slope[1] != 0 || slope[2] != 0)))
+            c->acting[c->n_acting++] = row;
+    }
+}
+
+// The matrix of another step does where little has changed: the same loads act, with
+// about the same slopes.
+static bool is_factored(const struct corrections *c)
+{
+    const double near = 1e-3;
+    if (c->n_acting != c->n_factored) return false;
+    for (int a = 0; a < c->n_acting; a++) {
+        if (c->acting[a] != c->factored[a]) return false;
+        const double *slope = slope_of(c, c->acting[a]), *old = c->factored_slope[a];
+        const int terms = c->strain_of[c->acting[a]] >= 3 ? 1 : 3;
+        double size = 0, apart = 0;
+        for (int k = 0; k < terms; k++) {
+            size = fmax(size, fabs(old[k]));
+            apart = fmax(apart, fabs(slope[k] - old[k]));
         }
+        if (apart > near * size) return false;
+    }
+    return true;
 }
 
 // 1 + dq/de W
 static void fill_matrix(struct corrections *c)
 {
     for (int a = 0; a < c->n_acting; a++) {
-        const int t = c->acting[a] / 3;
-        const double *slope = c->triple[t].slope[c->acting[a] % 3];
-        const double(*compliance)[MOST * 3] = c->compliance + 3 * t;
-        for (int b = 0; b < c->n_acting; b++) {
-            const int column = c->acting[b];
-            c->matrix[a][b] = c->share * (slope[0] * compliance[0][column] +
-                                          slope[1] * compliance[1][column] +
-                                          slope[2] * compliance[2][column]);
+        const int row = c->acting[a];
+        const struct entry *entry = &c->entry[c->entry_of[row]];
+        const bool is_moment = c->strain_of[row] >= 3;
+        const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
+        const int *of = is_moment ? &row : entry->row;
+        double *to = c->matrix + (size_t)a * (size_t)c->capacity;
+        memset(to, 0, (size_t)c->n_acting * sizeof *to);
+        for (int k = 0; k < terms; k++) {
+            const double slope = c->share * slope_of(c, row)[k];
+            const double *compliance = compliance_of(c, of[k]);
+            if (slope == 0) continue;
+            for (int b = 0; b < c->n_acting; b++)
+                to[b] += slope * compliance[c->acting[b]];
         }
-        c->matrix[a][a] += 1;
+        to[a] += 1;
     }
+}
+
+static bool factor(struct corrections *c)
+{
+    const double n = c->n_acting;
+    if (is_factored(c)) return true;
+    c->work += n * n * n / 3;
+    fill_matrix(c);
+    c->n_factored = 0;
+    if (!dense_factor(c->n_acting, c->matrix, c->capacity, c->order)) return false;
+    c->n_factored = c->n_acting;
+    memcpy(c->factored, c->acting, (size_t)c->n_acting * sizeof *c->acting);
+    for (int a = 0; a < c->n_acting; a++)
+        memcpy(c->factored_slope[a], slope_of(c, c->acting[a]),
+               sizeof *c->factored_slope);
+    return true;
 }
 
 // How q would change; the strains follow from it.
 static bool find_step(struct corrections *c)
 {
-    double right[MOST * 3], answer[MOST * 3];
     list_acting(c);
-    fill_matrix(c);
-    if (!factor(c, c->n_acting)) return false;
+    if (!factor(c)) return false;
     for (int a = 0; a < c->n_acting; a++) {
-        const int t = c->acting[a] / 3;
-        const double *slope = c->triple[t].slope[c->acting[a] % 3];
-        const double *left = c->left + 3 * t;
-        right[a] = -slope[0] * left[0] - slope[1] * left[1] - slope[2] * left[2];
+        const int row = c->acting[a];
+        const struct entry *entry = &c->entry[c->entry_of[row]];
+        const bool is_moment = c->strain_of[row] >= 3;
+        const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
+        const int *of = is_moment ? &row : entry->row;
+        c->right[a] = 0;
+        for (int k = 0; k < terms; k++)
+            c->right[a] -= slope_of(c, row)[k] * c->left[of[k]];
     }
-    substitute(c, c->n_acting, right, answer);
-    for (int row = 0; row < 3 * c->count; row++)
+    dense_substitute(c->n_acting, c->matrix, c->capacity, c->order, c->right,
+                     c->answer);
+    for (int row = 0; row < c->count; row++)
         c->step[row] = -c->left[row];
     for (int a = 0; a < c->n_acting; a++)
-        add_answer(c, c->acting[a], -answer[a], c->step);
+        add_answer(c, c->acting[a], -c->answer[a], c->step);
     return true;
 }
 
@@ -288,7 +332,7 @@ static bool newton(struct corrections *c, const double (*from)[STRAINS], double 
     double best = INFINITY;
     for (int waited = 0; waited < PATIENCE; waited++) {
         if (!find_step(c)) return false;
-        for (int row = 0; row < 3 * c->count; row++)
+        for (int row = 0; row < c->count; row++)
             c->strain[row] += c->step[row];
         const double left = resist_all(c, from);
         if (left <= enough) return true;
@@ -303,56 +347,64 @@ static bool newton(struct corrections *c, const double (*from)[STRAINS], double 
 // ---- joint by joint -----------------------------------------------------------------
 
 // Twist and bending are linear.
-static void settle_moments(const struct triple *triple, const struct surroundings *s,
+static void settle_moments(const struct entry *entry, const struct surroundings *s,
                            double x[3])
 {
     double m[3][3], right[3];
     for (int k = 0; k < 3; k++) {
         right[k] = s->given[k];
         for (int l = 0; l < 3; l++)
-            m[k][l] = (k == l) + s->compliance[k][l] * triple->slope[l][l];
+            m[k][l] = (k == l) + s->compliance[k][l] * entry->slope[3 + l][0];
     }
     if (solve_three(m, right)) memcpy(x, right, sizeof right);
 }
 
-static struct surroundings around(const struct corrections *c, int t,
+// Of strains FIRST to END - 1.
+static struct surroundings around(const struct corrections *c,
+                                  const struct entry *entry, int first, int end,
                                   const double from[STRAINS])
 {
-    const struct triple *triple = &c->triple[t];
-    struct surroundings s;
-    memcpy(s.from, from + triple->first, sizeof s.from);
-    memcpy(s.load, triple->load, sizeof s.load);
-    memcpy(s.tangent, c->tangent[triple->joint] + triple->first, sizeof s.tangent);
-    for (int k = 0; k < 3; k++) {
-        const double *compliance = c->compliance[3 * t + k] + 3 * t;
-        s.given[k] = c->strain[3 * t + k] - c->left[3 * t + k];
-        for (int l = 0; l < 3; l++) {
-            s.compliance[k][l] = c->share * compliance[l];
-            s.given[k] += s.compliance[k][l] * c->more[3 * t + l];
+    struct surroundings s = {.given = {0}};
+    memcpy(s.from, from + first, sizeof s.from);
+    memcpy(s.load, entry->load + first, sizeof s.load);
+    memcpy(s.tangent, c->tangent[entry->joint] + first, sizeof s.tangent);
+    for (int k = 0; k < end - first; k++) {
+        const int row = entry->row[first + k];
+        s.given[k] = c->strain[row] - c->left[row];
+        for (int l = 0; l < end - first; l++) {
+            const int other = entry->row[first + l];
+            s.compliance[k][l] = c->share * compliance_of(c, row)[other];
+            s.given[k] += s.compliance[k][l] * c->more[other];
         }
     }
     return s;
 }
 
-// The strains of one while the others push as they do.
-static void settle(struct corrections *c, int t, const double (*from)[STRAINS],
-                   double enough)
+// The strains of one from FIRST on, three at most, while the others push as they do.
+static void settle(struct corrections *c, struct entry *entry, int first,
+                   const double (*from)[STRAINS], double enough)
 {
-    const struct triple *triple = &c->triple[t];
-    double *strain = c->strain + 3 * t, *more = c->more + 3 * t,
-           *left = c->left + 3 * t;
-    if (fmax(fabs(left[0]), fmax(fabs(left[1]), fabs(left[2]))) <= enough) return;
-    const struct surroundings s = around(c, t, from[triple->joint]);
-    const double before[6] = {strain[0], strain[1], strain[2],
-                              more[0],   more[1],   more[2]};
-    if (triple->first == 0)
-        settle_joint(&c->joint[triple->joint], &s, strain);
+    const int count = entry->count - first < 3 ? entry->count - first : 3;
+    const int *row = entry->row + first;
+    double most = 0, before[3] = {0}, more[3], strain[3] = {0};
+    for (int k = 0; k < count; k++) {
+        most = fmax(most, fabs(c->left[row[k]]));
+        before[k] = strain[k] = c->strain[row[k]];
+        more[k] = c->more[row[k]];
+    }
+    if (most <= enough) return;
+    const struct surroundings s =
+        around(c, entry, first, first + count, from[entry->joint]);
+    if (first == 0)
+        settle_joint(&c->joint[entry->joint], &s, strain);
     else
-        settle_moments(triple, &s, strain);
-    resist(c, t, from);
-    for (int k = 0; k < 3; k++) {
-        left[k] += strain[k] - before[k];
-        add_answer(c, 3 * t + k, more[k] - before[3 + k], c->left);
+        settle_moments(entry, &s, strain);
+    for (int k = 0; k < count; k++)
+        c->strain[row[k]] = strain[k];
+    resist(c, entry, from);
+    for (int k = 0; k < count; k++) {
+        c->left[row[k]] += strain[k] - before[k];
+        add_answer(c, row[k], c->more[row[k]] - more[k], c->left);
     }
 }
 
@@ -363,8 +415,9 @@ static double settle_in_turn(struct corrections *c, const double (*from)[STRAINS
     enum { SWEEPS = 10 };
     double left = INFINITY;
     for (int sweep = 0; sweep < SWEEPS && left > enough; sweep++) {
-        for (int t = 0; t < c->count; t++)
-            settle(c, t, from, 0.5 * enough);
+        for (int k = 0; k < c->n_entry; k++)
+            for (int first = 0; first < c->entry[k].count; first += 3)
+                settle(c, &c->entry[k], first, from, 0.5 * enough);
         left = find_left(c);
     }
     return left;
@@ -373,14 +426,13 @@ static double settle_in_turn(struct corrections *c, const double (*from)[STRAINS
 static void begin(struct corrections *c, const double (*from)[STRAINS],
                   const double (*linear)[STRAINS])
 {
-    for (int t = 0; t < c->count; t++) {
-        struct triple *triple = &c->triple[t];
+    for (int e = 0; e < c->n_entry; e++) {
+        struct entry *entry = &c->entry[e];
         const struct resistance resistance =
-            joint_resistance(&c->joint[triple->joint], from[triple->joint]);
-        for (int k = 0; k < 3; k++) {
-            triple->load[k] = resistance.load[triple->first + k];
-            c->linear[3 * t + k] = linear[triple->joint][triple->first + k];
-        }
+            joint_resistance(&c->joint[entry->joint], from[entry->joint]);
+        memcpy(entry->load, resistance.load, sizeof entry->load);
+        for (int k = 0; k < entry->count; k++)
+            c->linear[entry->row[k]] = linear[entry->joint][k];
     }
 }
 
@@ -388,12 +440,13 @@ bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
                       const double (*linear)[STRAINS], double share, double enough)
 {
     enum { PATIENCE = 2 };
+    if (c->share != share) c->n_factored = 0;
     c->share = share;
     begin(c, strain, linear);
-    memset(c->strain, 0, sizeof c->strain);
+    memset(c->strain, 0, (size_t)c->count * sizeof *c->strain);
     if (resist_all(c, strain) <= enough) return true;
     if (newton(c, strain, enough)) return true;
-    memset(c->strain, 0, sizeof c->strain);
+    memset(c->strain, 0, (size_t)c->count * sizeof *c->strain);
     double best = resist_all(c, strain);
     for (int waited = 0; waited < PATIENCE; waited++) {
         const double left = settle_in_turn(c, strain, enough);
@@ -409,10 +462,12 @@ bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
 void corrections_take_off(const struct corrections *c, double share,
                           struct displacement *left)
 {
-    for (int t = 0; t < c->count; t++) {
-        const struct joint *joint = &c->joint[c->triple[t].joint];
+    for (int e = 0; e < c->n_entry; e++) {
+        const struct entry *entry = &c->entry[e];
+        const struct joint *joint = &c->joint[entry->joint];
         double load[STRAINS] = {0};
-        memcpy(load + c->triple[t].first, c->more + 3 * t, 3 * sizeof *load);
+        for (int k = 0; k < entry->count; k++)
+            load[k] = c->more[entry->row[k]];
         for (int end = 0; end < 2; end++) {
             if (joint->grain[end] < 0) continue;
             const struct displacement part = joint_loads(joint, end, load);

@@ -13,9 +13,9 @@
 
 struct corrections;
 
-// For N grains and N_JOINT joints, of which TANGENT (n_joint) is in the factor of
+// For N_JOINT joints, of which TANGENT (n_joint) is in the factor of
 // STIFFNESS; all are kept, not copied. The caller frees it with corrections_free.
-struct corrections *corrections_new(struct stiffness *stiffness, int n, int n_joint,
+struct corrections *corrections_new(struct stiffness *stiffness, int n_joint,
                                     const struct joint *joint,
                                     const double (*tangent)[STRAINS]);
 void corrections_free(struct corrections *corrections);
@@ -23,10 +23,13 @@ void corrections_free(struct corrections *corrections);
 // None, after a new factor.
 void corrections_clear(struct corrections *corrections);
 
-// Strains FIRST (0 or 3) to FIRST+2 of JOINT, unless they are in already. False: there
-// are too many, or no number came out; then a new factor is due.
-bool corrections_add(struct corrections *corrections, int joint, int first);
+// The first STRAINS of JOINT, unless they are in already. False: there are too many,
+// and a new factor is due.
+bool corrections_add(struct corrections *corrections, int joint, int strains);
 int corrections_count(const struct corrections *corrections); // of strains
+
+// Multiplications spent on dense systems since there were no corrections.
+double corrections_work(const struct corrections *corrections);
 
 // Finds q for grains that move on from STRAIN (n_joint) so that all joints, were they
 // as the factor says, would be strained by LINEAR (n_joint) more; strains to ENOUGH.

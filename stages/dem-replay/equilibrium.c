@@ -77,7 +77,7 @@ enum status equilibrium_new(struct equilibrium **result,
     e->fragments = fragments_new(n);
     e->soft = softness(e);
     e->matrix = stiffness_new(n, setup->fixed, e->n_joint, e->joint);
-    e->corrections = corrections_new(e->matrix, n, e->n_joint, e->joint, e->tangent);
+    e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
     *result = e;
     return STATUS_OK;
 }

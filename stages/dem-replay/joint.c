@@ -113,8 +113,10 @@ static void add_shear(const struct joint *joint, const double strain[STRAINS],
         anchor[k] = joint->contact.anchor[k];
         trial[k] = stiffness * (strain[STRAIN_ACROSS + k] - anchor[k]);
     }
-    const double size = hypot(trial[0], trial[1]);
-    if (size > limit) {
+    // One that slid lies where it begins to: it goes on, until it is seen to stick.
+    const double edge = joint->contact.touch == TOUCH_SLIPS ? 1 - 1e-11 : 1;
+    const double size = sqrt(trial[0] * trial[0] + trial[1] * trial[1]);
+    if (size > edge * limit) {
         slide(joint, trial, size, limit, resistance);
         return;
     }

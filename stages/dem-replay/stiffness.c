@@ -2,7 +2,6 @@
 #include "stiffness.h"
 
 #include "basics/memory.h"
-#include "sparse/plain_cholmod.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,13 +22,12 @@ struct stiffness {
     int n_moving;
     struct block *block; // sorted; those on the diagonal too
     int n_block;
-    int *block_of; // (n_joint) below the diagonal, or -1
-    int *diagonal; // (n_moving) blocks
-    cholmod_common common;
-    cholmod_sparse *matrix;
-    cholmod_factor *factor;
-    cholmod_dense *load, *loads;     // (n_moving * DEGREES) by 1 and by 3
-    cholmod_dense *solved, *work[2]; // CHOLMOD's own
+    int *block_of;    // (n_joint) below the diagonal, or -1
+    int *diagonal;    // (n_moving) blocks
+    int *start, *row; // lower triangle by columns, upper halves of diagonal blocks too
+    double *value;
+    struct supernodal *factor;
+    double *load; // (n_moving * DEGREES)
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -72,26 +70,25 @@ static int find_block(const struct stiffness *s, struct block block)
     return (int)(found - s->block);
 }
 
-// Lower triangle by columns; the upper halves of diagonal blocks are there and ignored.
 static void lay_out(struct stiffness *s)
 {
-    const size_t n = (size_t)s->n_moving * DEGREES;
-    s->matrix = cholmod_allocate_sparse(n, n, (size_t)s->n_block * DEGREES * DEGREES, 1,
-                                        1, -1, CHOLMOD_REAL, &s->common);
-    int *start = s->matrix->p, *row = s->matrix->i, at = 0;
+    s->start = NEW_ARRAY(int, s->n_moving *DEGREES + 1);
+    s->row = NEW_ARRAY(int, s->n_block *DEGREES *DEGREES);
+    s->value = NEW_ARRAY(double, s->n_block *DEGREES *DEGREES);
+    int at = 0;
     for (int first = 0, end; first < s->n_block; first = end) {
         const int32_t column = s->block[first].column;
         for (end = first; end < s->n_block && s->block[end].column == column;)
             end++;
         for (int c = 0; c < DEGREES; c++) {
-            start[column * DEGREES + c] = at;
+            s->start[column * DEGREES + c] = at;
             for (int k = first; k < end; k++)
                 for (int r = 0; r < DEGREES; r++)
-                    row[at++] = s->block[k].row * DEGREES + r;
+                    s->row[at++] = s->block[k].row * DEGREES + r;
         }
         s->diagonal[column] = first;
     }
-    start[n] = at;
+    s->start[s->n_moving * DEGREES] = at;
 }
 
 struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
@@ -109,30 +106,20 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
     list_blocks(s);
     for (int j = 0; j < n_joint; j++)
         s->block_of[j] = find_block(s, block_between(s, &joint[j]));
-    plain_cholmod_start(&s->common);
     lay_out(s);
-    const size_t size = (size_t)s->n_moving * DEGREES;
-    if (size > 0) s->factor = cholmod_analyze(s->matrix, &s->common);
-    s->load = cholmod_zeros(size, 1, CHOLMOD_REAL, &s->common);
-    s->loads = cholmod_zeros(size, 3, CHOLMOD_REAL, &s->common);
+    s->factor = supernodal_new(s->n_moving * DEGREES, s->start, s->row);
+    s->load = NEW_ARRAY(double, s->n_moving *DEGREES);
     return s;
 }
 
 void stiffness_free(struct stiffness *s)
 {
     if (!s) return;
-    cholmod_free_sparse(&s->matrix, &s->common);
-    cholmod_free_factor(&s->factor, &s->common);
-    cholmod_free_dense(&s->load, &s->common);
-    cholmod_free_dense(&s->loads, &s->common);
-    cholmod_free_dense(&s->solved, &s->common);
-    cholmod_free_dense(&s->work[0], &s->common);
-    cholmod_free_dense(&s->work[1], &s->common);
-    cholmod_finish(&s->common);
-    free(s->number);
-    free(s->block);
-    free(s->block_of);
-    free(s->diagonal);
+    supernodal_free(s->factor);
+    void *const owned[] = {s->number, s->block, s->block_of, s->diagonal,
+                           s->start,  s->row,   s->value,    s->load};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
     free(s);
 }
 
@@ -142,10 +129,9 @@ void stiffness_free(struct stiffness *s)
 static double *numbers_of(const struct stiffness *s, int block, int *stride)
 {
     const struct block *b = &s->block[block];
-    const int *start = s->matrix->p, column = b->column * DEGREES;
-    *stride = start[column + 1] - start[column];
-    return (double *)s->matrix->x + start[column] +
-           (block - s->diagonal[b->column]) * DEGREES;
+    const int column = b->column * DEGREES;
+    *stride = s->start[column + 1] - s->start[column];
+    return s->value + s->start[column] + (block - s->diagonal[b->column]) * DEGREES;
 }
 
 // What the loads of a joint do to the grain at END, six rows: B^T.
@@ -190,7 +176,7 @@ bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
                       double soft)
 {
     if (s->n_moving == 0) return true;
-    memset(s->matrix->x, 0, s->matrix->nzmax * sizeof(double));
+    memset(s->value, 0, (size_t)s->start[s->n_moving * DEGREES] * sizeof *s->value);
     for (int j = 0; j < s->n_joint; j++)
         add_joint(s, j, tangent[j]);
     for (int k = 0; k < s->n_moving; k++) {
@@ -199,55 +185,51 @@ bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
         for (int r = 0; r < DEGREES; r++)
             numbers[r * stride + r] += soft;
     }
-    return cholmod_factorize(s->matrix, s->factor, &s->common) &&
-           s->common.status == CHOLMOD_OK;
+    return supernodal_factor(s->factor, s->value);
 }
 
 // ---- answers ------------------------------------------------------------------------
 
-static void scatter(const struct stiffness *s, const struct displacement *moving,
-                    struct displacement *answer)
-{
-    for (int i = 0; i < s->n; i++)
-        answer[i] = s->number[i] < 0 ? (struct displacement){{0, 0, 0}, {0, 0, 0}}
-                                     : moving[s->number[i]];
-}
-
-static const struct displacement *solve(struct stiffness *s, cholmod_dense *load)
-{
-    if (!cholmod_solve2(CHOLMOD_A, s->factor, load, NULL, &s->solved, NULL, &s->work[0],
-                        &s->work[1], &s->common))
-        return NULL;
-    return s->solved->x;
-}
-
-bool stiffness_solve(struct stiffness *s, const struct displacement *load,
+void stiffness_solve(struct stiffness *s, const struct displacement *load,
                      struct displacement *answer)
 {
-    struct displacement *moving = s->load->x;
     for (int i = 0; i < s->n; i++)
-        if (s->number[i] >= 0) moving[s->number[i]] = load[i];
-    const struct displacement *solved = s->n_moving ? solve(s, s->load) : moving;
-    if (!solved) return false;
-    scatter(s, solved, answer);
-    return true;
+        if (s->number[i] >= 0)
+            memcpy(s->load + s->number[i] * DEGREES, &load[i], sizeof load[i]);
+    if (s->n_moving > 0) supernodal_solve(s->factor, s->load);
+    memset(answer, 0, (size_t)s->n * sizeof *answer);
+    for (int i = 0; i < s->n; i++)
+        if (s->number[i] >= 0)
+            memcpy(&answer[i], s->load + s->number[i] * DEGREES, sizeof answer[i]);
 }
 
-bool stiffness_solve_joint(struct stiffness *s, int j, int first,
-                           struct displacement *answer)
+struct halves stiffness_halves(struct stiffness *s, int j, int first, int count)
 {
     const struct joint *joint = &s->joint[j];
-    struct displacement *loads = s->loads->x;
-    for (int k = 0; k < 3; k++)
-        for (int end = 0; end < 2; end++) {
-            const int32_t grain = joint->grain[end];
-            if (grain >= 0 && s->number[grain] >= 0)
-                loads[k * s->n_moving + s->number[grain]] =
-                    joint_arm(joint, end, first + k);
+    double value[STRAINS * 2 * DEGREES];
+    int index[2 * DEGREES], rows = 0, grain[2], ends = 0;
+    for (int end = 0; end < 2; end++) {
+        if (joint->grain[end] < 0 || s->number[joint->grain[end]] < 0) continue;
+        grain[ends++] = end;
+        for (int r = 0; r < DEGREES; r++)
+            index[rows++] = s->number[joint->grain[end]] * DEGREES + r;
+    }
+    for (int k = 0; k < count; k++)
+        for (int m = 0; m < ends; m++) {
+            const struct displacement arm = joint_arm(joint, grain[m], first + k);
+            memcpy(value + k * rows + m * DEGREES, &arm, sizeof arm);
         }
-    const struct displacement *solved = s->n_moving ? solve(s, s->loads) : loads;
-    for (int k = 0; solved && k < 3; k++)
-        scatter(s, solved + k * s->n_moving, answer + (size_t)k * (size_t)s->n);
-    memset(loads, 0, 3 * (size_t)s->n_moving * sizeof *loads);
-    return solved;
+    return s->n_moving > 0 ? supernodal_halves(s->factor, count, rows, index, value)
+                           : (struct halves){.columns = count};
+}
+
+void stiffness_product(const struct stiffness *s, const struct halves *a,
+                       const struct halves *b, double *product)
+{
+    halves_product(s->factor, a, b, product);
+}
+
+double stiffness_work(const struct stiffness *s)
+{
+    return s->factor ? supernodal_work(s->factor) : 0;
 }

@@ -5,6 +5,7 @@
 #define CRAQUELURE_STIFFNESS_H
 
 #include "joint.h"
+#include "sparse/supernodal.h"
 
 struct stiffness;
 
@@ -20,13 +21,19 @@ bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[STRAI
                       double soft);
 
 // Into ANSWER (n) the displacements under LOAD (n), forces and moments, by the last
-// factor; 0 for fixed grains. False: no number came out.
-bool stiffness_solve(struct stiffness *stiffness, const struct displacement *load,
+// factor; 0 for fixed grains.
+void stiffness_solve(struct stiffness *stiffness, const struct displacement *load,
                      struct displacement *answer);
 
-// The same under each of the unit loads FIRST, FIRST+1 and FIRST+2 of JOINT, one after
-// the other: ANSWER (3 n).
-bool stiffness_solve_joint(struct stiffness *stiffness, int joint, int first,
-                           struct displacement *answer);
+// Halves of the answers to COUNT unit loads of JOINT from strain FIRST on. The product
+// of halves of two joints is how the strains of the one answer loads of the other. The
+// caller frees them with halves_free.
+struct halves stiffness_halves(struct stiffness *stiffness, int joint, int first,
+                               int count);
+void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
+                       const struct halves *b, double *product);
+
+// Multiplications that a factor takes.
+double stiffness_work(const struct stiffness *stiffness);
 
 #endif

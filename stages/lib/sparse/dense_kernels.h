@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small dense products, columns one after the other, STRIDE apart: four numbers at a
+// time, summed in the same order whatever the machine.
+#ifndef CRAQUELURE_DENSE_KERNELS_H
+#define CRAQUELURE_DENSE_KERNELS_H
+
+#include <stdbool.h>
+
+typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+
+static inline four load_four(const double *from)
+{
+    return *(const four *)from;
+}
+
+static inline double dot_product(int n, const double *a, const double *b)
+{
+    four sum[2] = {{0}};
+    int i = 0;
+    for (; i + 8 <= n; i += 8)
+        for (int k = 0; k < 2; k++)
+            sum[k] += load_four(a + i + 4 * k) * load_four(b + i + 4 * k);
+    const four both = sum[0] + sum[1];
+    double total = (both[0] + both[1]) + (both[2] + both[3]);
+    for (; i < n; i++)
+        total += a[i] * b[i];
+    return total;
+}
+
+// C (m by n) = A (m by k) B (n by k)^T, of a square C at least the lower triangle where
+// LOWER. WORK (4 k).
+void multiply_transposed(int m, int n, int k, const double *a, int a_stride,
+                         const double *b, int b_stride, double *c, int c_stride,
+                         bool lower, double *work);
+
+#endif

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "supernodal_state.h"
+
+#include "basics/memory.h"
+#include "dense_kernels.h"
+#include "plain_cholmod.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- pattern ------------------------------------------------------------------------
+
+static void copy_supernodes(struct supernodal *f, const cholmod_factor *analysed)
+{
+    const int *first = analysed->super, *start = analysed->pi, *place = analysed->Perm;
+    f->n_super = (int)analysed->nsuper;
+    f->super = NEW_ARRAY(struct supernode, f->n_super);
+    f->super_of = NEW_ARRAY(int, f->n);
+    f->place = NEW_ARRAY(int, f->n);
+    f->row = duplicate(analysed->s, analysed->ssize, sizeof *f->row);
+    for (int k = 0; k < f->n; k++)
+        f->place[place[k]] = k;
+    for (int s = 0; s < f->n_super; s++) {
+        struct supernode *super = &f->super[s];
+        *super = (struct supernode){.first = first[s],
+                                    .columns = first[s + 1] - first[s],
+                                    .rows = start[s + 1] - start[s],
+                                    .row = f->row + start[s]};
+        for (int c = 0; c < super->columns; c++)
+            f->super_of[super->first + c] = s;
+        f->size += (size_t)super->columns * (size_t)super->rows;
+        if (super->columns > f->widest) f->widest = super->columns;
+        if (super->rows > f->tallest) f->tallest = super->rows;
+    }
+    f->panels = NEW_ARRAY(double, f->size + 4);
+    double *panel = f->panels;
+    for (int s = 0; s < f->n_super; s++) {
+        struct supernode *super = &f->super[s];
+        super->panel = panel;
+        panel += (size_t)super->columns * (size_t)super->rows;
+        super->parent =
+            super->rows > super->columns ? f->super_of[super->row[super->columns]] : -1;
+    }
+}
+
+static int find_row(const struct supernode *super, int row)
+{
+    int low = 0, high = super->rows;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        if (super->row[middle] <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void find_targets(struct supernodal *f, const int *start, const int *row)
+{
+    f->target = NEW_ARRAY(long, f->n_entry);
+    for (int c = 0; c < f->n; c++)
+        for (int k = start[c]; k < start[c + 1]; k++) {
+            f->target[k] = -1;
+            if (row[k] < c) continue;
+            const int i = f->place[row[k]], j = f->place[c];
+            const int column = i < j ? i : j;
+            const struct supernode *super = &f->super[f->super_of[column]];
+            f->target[k] = super->panel - f->panels + find_row(super, i < j ? j : i) +
+                           (long)(column - super->first) * super->rows;
+        }
+}
+
+struct supernodal *supernodal_new(int n, const int *start, const int *row)
+{
+    if (n == 0) return NULL;
+    struct supernodal *f = NEW_ARRAY(struct supernodal, 1);
+    f->n = n;
+    f->n_entry = start[n];
+    cholmod_common common;
+    plain_cholmod_start(&common);
+    common.supernodal = CHOLMOD_SUPERNODAL; // the analysis only: no BLAS in that
+    cholmod_sparse matrix = {.nrow = (size_t)n,
+                             .ncol = (size_t)n,
+                             .nzmax = (size_t)start[n],
+                             .p = duplicate(start, (size_t)n + 1, sizeof *start),
+                             .i = duplicate(row, (size_t)start[n], sizeof *row),
+                             .stype = -1,
+                             .itype = CHOLMOD_INT,
+                             .xtype = CHOLMOD_PATTERN,
+                             .sorted = 1,
+                             .packed = 1};
+    cholmod_factor *analysed = cholmod_analyze(&matrix, &common);
+    copy_supernodes(f, analysed);
+    cholmod_free_factor(&analysed, &common);
+    cholmod_finish(&common);
+    free(matrix.p);
+    free(matrix.i);
+    find_targets(f, start, row);
+    f->work = NEW_ARRAY(double, ((size_t)f->tallest + 4) * (size_t)f->widest);
+    f->local = NEW_ARRAY(int, f->tallest);
+    f->is_on_way = NEW_ARRAY(bool, f->n_super);
+    for (int k = 0; k < MOST_HALVES; k++)
+        f->column[k] = NEW_ARRAY(double, n);
+    return f;
+}
+
+void supernodal_free(struct supernodal *f)
+{
+    if (!f) return;
+    void *const owned[] = {f->super,  f->super_of, f->place, f->row,      f->panels,
+                           f->target, f->work,     f->local, f->is_on_way};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    for (int k = 0; k < MOST_HALVES; k++)
+        free(f->column[k]);
+    free(f);
+}
+
+double supernodal_work(const struct supernodal *f)
+{
+    double work = 0;
+    for (int s = 0; s < f->n_super; s++)
+        for (int c = 0; c < f->super[s].columns; c++)
+            work += 0.5 * (f->super[s].rows - c) * (double)(f->super[s].rows - c);
+    return work;
+}
+
+// ---- numbers ------------------------------------------------------------------------
+
+// Columns FIRST to END - 1 of a panel, whose earlier columns are done with. A pivot is
+// not less than what rounding leaves of the matrix's own.
+static bool factor_columns(const struct supernode *super, int first, int end,
+                           const double *diagonal)
+{
+    for (int j = first; j < end; j++) {
+        double *column = super->panel + (long)j * super->rows;
+        const double pivot = sqrt(fmax(column[j], DBL_EPSILON * diagonal[j - first]));
+        if (!(pivot > 0 && isfinite(pivot))) return false;
+        column[j] = pivot;
+        for (int i = j + 1; i < super->rows; i++)
+            column[i] /= pivot;
+        for (int l = j + 1; l < end; l++) {
+            double *other = super->panel + (long)l * super->rows;
+            for (int i = l; i < super->rows; i++)
+                other[i] -= column[i] * column[l];
+        }
+    }
+    return true;
+}
+
+static bool factor_panel(struct supernodal *f, const struct supernode *super)
+{
+    enum { WIDE = 8 };
+    const int rows = super->rows;
+    double *product = f->work, *packed = f->work + (long)f->tallest * f->widest;
+    for (int first = 0; first < super->columns; first += WIDE) {
+        const int end = first + WIDE < super->columns ? first + WIDE : super->columns;
+        double *panel = super->panel + (long)first * rows + first, diagonal[WIDE];
+        for (int j = 0; j < end - first; j++)
+            diagonal[j] = panel[(long)j * rows + j];
+        if (first > 0) {
+            const double *before = super->panel + first;
+            multiply_transposed(rows - first, end - first, first, before, rows, before,
+                                rows, product, rows, true, packed);
+            for (int j = 0; j < end - first; j++)
+                for (int i = j; i < rows - first; i++)
+                    panel[(long)j * rows + i] -= product[(long)j * rows + i];
+        }
+        if (!factor_columns(super, first, end, diagonal)) return false;
+    }
+    return true;
+}
+
+// Takes L L^T of the rows from FIRST to END - 1 of SUPER, which are columns of ABOVE,
+// off that.
+static void update(struct supernodal *f, const struct supernode *super, int first,
+                   int end, const struct supernode *above)
+{
+    const int rows = super->rows - first, columns = end - first;
+    double *product = f->work, *packed = f->work + (long)f->tallest * f->widest;
+    const double *panel = super->panel + first;
+    multiply_transposed(rows, columns, super->columns, panel, super->rows, panel,
+                        super->rows, product, rows, true, packed);
+    for (int i = 0, at = 0; i < rows; i++) {
+        while (above->row[at] < super->row[first + i])
+            at++;
+        f->local[i] = at;
+    }
+    for (int j = 0; j < columns; j++) {
+        double *to = above->panel + (long)f->local[j] * above->rows;
+        const double *from = product + (long)j * rows;
+        for (int i = j; i < rows; i++)
+            to[f->local[i]] -= from[i];
+    }
+}
+
+static void update_above(struct supernodal *f, const struct supernode *super)
+{
+    for (int first = super->columns, end; first < super->rows; first = end) {
+        const int above = f->super_of[super->row[first]];
+        for (end = first; end < super->rows && f->super_of[super->row[end]] == above;)
+            end++;
+        update(f, super, first, end, &f->super[above]);
+    }
+}
+
+bool supernodal_factor(struct supernodal *f, const double *value)
+{
+    memset(f->panels, 0, f->size * sizeof *f->panels);
+    for (int k = 0; k < f->n_entry; k++)
+        if (f->target[k] >= 0) f->panels[f->target[k]] = value[k];
+    for (int s = 0; s < f->n_super; s++) {
+        if (!factor_panel(f, &f->super[s])) return false;
+        update_above(f, &f->super[s]);
+    }
+    return true;
+}

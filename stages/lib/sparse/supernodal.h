@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cholesky factors of sparse symmetric positive matrices that are factored again and
+// again: CHOLMOD orders and finds columns of like pattern (supernodes), dense kernels
+// of our own work on these. No BLAS, so the same bytes everywhere.
+#ifndef CRAQUELURE_SUPERNODAL_H
+#define CRAQUELURE_SUPERNODAL_H
+
+#include <stdbool.h>
+
+struct supernodal;
+
+// For N by N matrices whose lower triangle has in column c the rows ROW[START[c]] to
+// ROW[START[c + 1] - 1]; entries above the diagonal are ignored. The caller frees it
+// with supernodal_free. NULL: N is 0.
+struct supernodal *supernodal_new(int n, const int *start, const int *row);
+void supernodal_free(struct supernodal *factor);
+
+// VALUE as ROW. A pivot that rounding has taken becomes one of its size. False: there
+// is one that no number holds.
+bool supernodal_factor(struct supernodal *factor, const double *value);
+
+// Multiplications that a factor takes.
+double supernodal_work(const struct supernodal *factor);
+
+// X (n), the right-hand side, becomes the answer.
+void supernodal_solve(struct supernodal *factor, double *x);
+
+// L^-1 of sparse right-hand sides: not 0 only on the way from their rows to the root of
+// the elimination tree. Products of such halves are entries of B^T A^-1 B.
+enum { MOST_HALVES = 6 };
+
+struct halves {
+    int columns;
+    int n_super, *super; // the way, in ascending order
+    int size;            // of a column
+    double *value;       // (columns * size)
+};
+
+// Of COLUMNS right-hand sides with VALUE[column * COUNT + k] in row INDEX[k]. The
+// caller frees it with halves_free.
+struct halves supernodal_halves(struct supernodal *factor, int columns, int count,
+                                const int *index, const double *value);
+void halves_free(struct halves *halves);
+
+// PRODUCT[k * b->columns + l] of column k of A and l of B, which may be the same.
+void halves_product(const struct supernodal *factor, const struct halves *a,
+                    const struct halves *b, double *product);
+
+#endif

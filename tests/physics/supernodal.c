@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sparse Cholesky factors and small dense systems against what they are put into.
+#include "sparse/supernodal.h"
+#include "basics/memory.h"
+#include "sparse/dense_system.h"
+
+// clang-format off
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+// clang-format on
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIDE = 9, N = SIDE * SIDE * SIDE };
+
+// The lower triangle, and of the upper what must be ignored.
+struct springs {
+    int start[N + 1], row[5 * N];
+    double value[5 * N];
+};
+
+// Between neighbours of a cube, uneven, and SOFT ones to the ground.
+static struct springs *make_springs(double soft)
+{
+    struct springs *s = NEW_ARRAY(struct springs, 1);
+    double diagonal[N] = {0};
+    const int step[3] = {1, SIDE, SIDE * SIDE};
+    int count = 0;
+    for (int c = 0; c < N; c++) {
+        s->start[c] = count;
+        if (c > 0) s->row[count] = c - 1, s->value[count++] = 1e30;
+        s->row[count++] = c;
+        for (int axis = 0; axis < 3; axis++) {
+            if (c / step[axis] % SIDE == SIDE - 1) continue;
+            const double spring = 1 + (c * 7 + axis) % 5;
+            s->row[count] = c + step[axis];
+            s->value[count++] = -spring;
+            diagonal[c] += spring;
+            diagonal[c + step[axis]] += spring;
+        }
+    }
+    s->start[N] = count;
+    for (int c = 0; c < N; c++)
+        for (int k = s->start[c]; k < s->start[c + 1]; k++)
+            if (s->row[k] == c) s->value[k] = diagonal[c] + soft;
+    return s;
+}
+
+static void multiply(const struct springs *s, const double *x, double *product)
+{
+    for (int i = 0; i < N; i++)
+        product[i] = 0;
+    for (int c = 0; c < N; c++)
+        for (int k = s->start[c]; k < s->start[c + 1]; k++) {
+            const int r = s->row[k];
+            if (r < c) continue;
+            product[r] += s->value[k] * x[c];
+            if (r != c) product[c] += s->value[k] * x[r];
+        }
+}
+
+static void answers_are_those_of_the_matrix(void **state)
+{
+    (void)state;
+    struct springs *s = make_springs(0.1);
+    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    double x[N], product[N];
+    for (int again = 0; again < 2; again++) {
+        assert_true(supernodal_factor(factor, s->value));
+        for (int i = 0; i < N; i++)
+            x[i] = sin(i);
+        supernodal_solve(factor, x);
+        multiply(s, x, product);
+        for (int i = 0; i < N; i++)
+            assert_true(fabs(product[i] - sin(i)) < 1e-12);
+    }
+    supernodal_free(factor);
+    free(s);
+}
+
+// b^T A^-1 c by halves and by solving.
+static void halves_make_the_same_products(void **state)
+{
+    (void)state;
+    struct springs *s = make_springs(0.1);
+    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    assert_true(supernodal_factor(factor, s->value));
+    const int index[2][3] = {{3, 77, 500}, {78, 3, 700}};
+    const double value[2][6] = {{1, 2, -1, 0.5, 0, 3}, {-1, 1, 2, 4, 0.1, 0}};
+    struct halves halves[2];
+    for (int k = 0; k < 2; k++)
+        halves[k] = supernodal_halves(factor, 2, 3, index[k], value[k]);
+    for (int k = 0; k < 16; k++) {
+        const int a = k / 8, b = k / 4 % 2, i = k / 2 % 2, j = k % 2;
+        double product[4], x[N] = {0}, expected = 0;
+        halves_product(factor, &halves[a], &halves[b], product);
+        for (int m = 0; m < 3; m++)
+            x[index[b][m]] = value[b][3 * j + m];
+        supernodal_solve(factor, x);
+        for (int m = 0; m < 3; m++)
+            expected += value[a][3 * i + m] * x[index[a][m]];
+        assert_true(fabs(product[2 * i + j] - expected) < 1e-13);
+    }
+    halves_free(&halves[0]);
+    halves_free(&halves[1]);
+    supernodal_free(factor);
+    free(s);
+}
+
+// Nothing holds the cube: a pivot is rounding, the answer to a load in balance a number
+// all the same. A matrix that is none is refused.
+static void a_pivot_of_rounding_stays_a_number(void **state)
+{
+    (void)state;
+    struct springs *s = make_springs(0);
+    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    assert_true(supernodal_factor(factor, s->value));
+    double x[N] = {[0] = 1, [N - 1] = -1}, product[N];
+    supernodal_solve(factor, x);
+    multiply(s, x, product);
+    for (int i = 1; i < N - 1; i++)
+        assert_true(fabs(product[i]) < 1e-6);
+    s->value[0] = NAN;
+    assert_false(supernodal_factor(factor, s->value));
+    supernodal_free(factor);
+    free(s);
+    assert_null(supernodal_new(0, &(int){0}, NULL));
+}
+
+// Without a diagonal, so that pivots must be sought.
+static void dense_systems(void **state)
+{
+    (void)state;
+    enum { MOST = 30 };
+    for (int n = 2; n <= MOST; n++) {
+        double whole[MOST][MOST], matrix[MOST][MOST], right[MOST], answer[MOST];
+        int order[MOST];
+        for (int i = 0; i < n; i++) {
+            right[i] = cos(i);
+            for (int j = 0; j < n; j++)
+                whole[i][j] = matrix[i][j] = i == j ? 0 : sin(3 * i + 7 * j * j);
+        }
+        assert_true(dense_factor(n, matrix[0], MOST, order));
+        dense_substitute(n, matrix[0], MOST, order, right, answer);
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++)
+                right[i] -= whole[i][j] * answer[j];
+            assert_true(fabs(right[i]) < 1e-9);
+        }
+    }
+    double none[4] = {1, 2, 2, 4};
+    int order[2];
+    assert_false(dense_factor(2, none, 2, order));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(answers_are_those_of_the_matrix),
+        cmocka_unit_test(halves_make_the_same_products),
+        cmocka_unit_test(a_pivot_of_rounding_stays_a_number),
+        cmocka_unit_test(dense_systems)};
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
