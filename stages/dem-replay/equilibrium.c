@@ -61,6 +61,7 @@ enum status equilibrium_new(struct equilibrium **result,
                                        .material = &e->setup.material,
                                        .bond = &e->setup.bond,
                                        .has_wall = setup->has_wall,
+                                       .unstressed = setup->unstressed,
                                        .length = e->length,
                                        .stiffness = e->stiffness};
     e->joint = make_joints(&joints, &e->n_joint);

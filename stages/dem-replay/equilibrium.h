@@ -23,6 +23,7 @@ struct equilibrium_setup {
     const struct packing *packing; // with its bonds
     const uint8_t *fixed;          // (n_particle)
     bool has_wall;                 // beneath, at the lower z wall
+    bool unstressed;               // overlaps of the packing do not push
     struct dem_material material;  // density and damping have no part in it
     struct dem_bond_material bond; // parallel
     double tolerance; // largest force or moment left on a grain, of the largest load

@@ -13,6 +13,7 @@
 struct replay_parameters {
     struct replay_settings settings;
     int support, engine, bond, bridge_model;
+    bool prestress;
     double contact_strength;
     struct number_list snapshots;
 };
@@ -58,6 +59,10 @@ static const struct parameter table[] = {
     {"bond.contact_strength", PARAMETER_NUMBER, "N", "null", BOUND_MINIMUM, 0, 0, NULL,
      "tension or shear force that breaks a contact bond; null: none does",
      AT(contact_strength)},
+    {"prestress", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "overlaps of the packing push from the start; false: grains lie at rest, and what "
+     "they come closer pushes",
+     AT(prestress)},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", BOUND_NONE, 0, 0, "free|fixed|wall",
      "free: net force and moment are taken off; fixed: grains at the lower z wall are "
      "held; "
@@ -208,9 +213,11 @@ static void write_response(const struct packing *packing, const struct load *loa
     snprintf(model, sizeof model,
              "%s\n"
              "support: %s\n"
+             "overlaps of the packing %s\n"
              "%s"
              "left out: gravity, %smoments of capillary forces\n",
              engine, supports[settings->support],
+             settings->unstressed ? "lie at rest" : "push from the start",
              settings->liquid.volume > 0
                  ? "liquid bridges between grains that have touched [G 2]\n"
                  : "",
@@ -253,6 +260,7 @@ int main(int argc, char **argv)
     struct replay_settings *settings = &parameters.settings;
     settings->support = (enum support)parameters.support;
     settings->engine = (enum engine)parameters.engine;
+    settings->unstressed = !parameters.prestress;
     settings->liquid.model = (enum bridge_model)parameters.bridge_model;
     settings->liquid.contact_angle *= M_PI / 180;
     choose_bonds(&parameters, settings);

@@ -59,6 +59,7 @@ static struct joint touching(const struct joint_setup *setup, int i, int j,
     joint.overlap = overlap_of(setup, r[0] + r[1] - norm(separation) / setup->length);
     for (int end = 0; end < 2; end++)
         joint.arm[end] = r[end] - 0.5 * joint.overlap;
+    if (setup->unstressed) joint.overlap = fmin(joint.overlap, 0);
     return in_contact(setup, joint, 0.5); // two grains in series
 }
 
@@ -71,6 +72,7 @@ static struct joint on_wall(const struct joint_setup *setup, int i)
     find_axes(&joint, (struct vector){0, 0, -1});
     joint.overlap = overlap_of(setup, radius - height);
     joint.arm[0] = radius - joint.overlap;
+    if (setup->unstressed) joint.overlap = fmin(joint.overlap, 0);
     return in_contact(setup, joint, 1);
 }
 

@@ -12,6 +12,7 @@ struct joint_setup {
     const struct dem_material *material;
     const struct dem_bond_material *bond;
     bool has_wall;
+    bool unstressed;          // overlaps of the packing do not push
     double length, stiffness; // units, m and N/m
 };
 

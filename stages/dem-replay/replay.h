@@ -31,6 +31,7 @@ struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
     struct dem_liquid liquid; // of no volume: none
+    bool unstressed;          // overlaps of the packing do not push
     enum support support;
     enum engine engine;
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load

@@ -325,6 +325,23 @@ static enum status check_pairs(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
+// From now on the overlaps that there are do not push. Where there are none, nothing is
+// taken off.
+static void lie_at_rest(struct dem *dem)
+{
+    for (int k = 0; k < dem->pairs.n_group; k++)
+        for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
+            double *overlap = &dem->pairs.group[k].overlap[lane];
+            dem->unstressed |= *overlap > 0;
+            *overlap = fmin(*overlap, 0);
+        }
+    for (int k = 0; k < dem->n_wall_pair; k++) {
+        double *depth = &dem->wall_pair[k].depth;
+        dem->unstressed |= *depth > 0;
+        *depth = fmin(*depth, 0);
+    }
+}
+
 static enum status check_time_step(const struct dem *dem, const struct dem_setup *setup,
                                    struct reason *reason)
 {
@@ -371,6 +388,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     find_pairs(dem);
     status = check_pairs(dem, reason);
     if (status != STATUS_OK) return status;
+    if (setup->unstressed) lie_at_rest(dem);
     if (dem->liquid) form_bridges(dem);
     dem->time_step_limit = stability_limit(dem, false);
     if (setup->force_time_step) return STATUS_OK;

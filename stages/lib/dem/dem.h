@@ -135,8 +135,11 @@ struct dem_setup {
     double time_step;       // s; > 0: this and not the safety decides
     double largest_overlap; // Hertz: expected, over the mean radius; 0: 0.01
     bool force_time_step;   // run even past the stability limit
-    bool balance_energy;    // keep the books that dem_energy reports
-    int threads;            // >= 1; used where there is enough to share
+    // Grains that overlap at the start, or a plane, cylinder or sphere, do so at rest:
+    // only what they come closer pushes (the reference gap of PFC).
+    bool unstressed;
+    bool balance_energy; // keep the books that dem_energy reports
+    int threads;         // >= 1; used where there is enough to share
 };
 
 enum dem_crack_mode { DEM_CRACK_NORMAL = 0, DEM_CRACK_SHEAR = 1 };
@@ -177,9 +180,9 @@ struct dem_momentum {
 
 struct dem;
 
-// Starts at rest. Overlaps in the packing push from the start, but those of the
-// rounding of coordinates count as touching; bonds are stress free as they lie. On
-// success *RESULT is the caller's to free with dem_free; otherwise it is NULL.
+// Starts at rest. Overlaps in the packing push from the start, unless UNSTRESSED, but
+// those of the rounding of coordinates count as touching; bonds are stress free as they
+// lie. On success *RESULT is the caller's to free with dem_free; otherwise it is NULL.
 // STATUS_BAD_DATA: a physically impossible number, coincident bonded grains, a bond
 // between grains that do not exist or listed twice, or a periodic box too narrow for
 // one image of each pair. STATUS_NOT_CONVERGED: the time step is past the stability

@@ -63,7 +63,7 @@ struct pair_group {
     int32_t second[PAIRS_IN_GROUP];
     double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
     double distance[PAIRS_IN_GROUP];      // |separation|
-    double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance
+    double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance; 0 if that is at rest
 };
 
 // Where the loads on the two grains of each pair are added up: rows of dem->sum.
@@ -240,6 +240,7 @@ struct dem {
     bool density_scaling;
     double largest_radius, smallest_radius;
     double coordinate_error; // rounding of the positions as given
+    bool unstressed;         // overlaps at the start count as none
     double period[3];        // 0 where the box does not repeat
     double box_lower[3], box_upper[3];
 
@@ -423,6 +424,13 @@ static inline double places_ahead(const struct dem *dem)
 
 // The numbers of pair PAIR, its own or those of all.
 struct contact_law law_of_pair(const struct dem *dem, int pair);
+
+// An overlap at the start, as it counts; one of the rounding of coordinates is none.
+static inline double given_overlap(const struct dem *dem, double overlap)
+{
+    if (dem->unstressed && overlap > 0) return 0;
+    return fabs(overlap) <= dem->coordinate_error ? 0 : overlap;
+}
 
 // The bond of a pair, broken or not, or -1.
 static inline int bond_of_pair(const struct dem *dem, int pair)

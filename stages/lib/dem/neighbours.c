@@ -113,14 +113,6 @@ static struct lane lane_of(int pair)
     return (struct lane){pair / PAIRS_IN_GROUP, pair % PAIRS_IN_GROUP};
 }
 
-// Pairs that touch as given come with an overlap of the rounding of their coordinates;
-// it counts as none.
-static double given_overlap(const struct dem *dem, double sum_of_radii, double distance)
-{
-    const double overlap = sum_of_radii - distance;
-    return fabs(overlap) <= dem->coordinate_error ? 0 : overlap;
-}
-
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
 {
     const int i = group->first[lane], j = group->second[lane];
@@ -133,7 +125,7 @@ void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
     const double distance = norm(separation);
     group->distance[lane] = distance;
     group->overlap[lane] =
-        given_overlap(dem, dem->place[i].radius + dem->place[j].radius, distance);
+        given_overlap(dem, dem->place[i].radius + dem->place[j].radius - distance);
 }
 
 void set_pair_law(struct dem *dem, int pair)

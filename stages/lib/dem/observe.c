@@ -84,11 +84,14 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
     lie.normal = scale(1 / length, separation);
     lie.stretch = dot(apart, add(start, separation)) / (length + g->distance[lane]);
     lie.overlap = g->overlap[lane] - lie.stretch;
+    const double radius = dem->place[i].radius;
+    const double shared = dem->unstressed ? radius + dem->place[j].radius -
+                                                g->distance[lane] - lie.stretch
+                                          : lie.overlap;
     const struct vector centre =
         subtract(add(dem->start[i], as_vector(dem->place[i].displacement)),
                  scale(back * dem->time_step, as_vector(dem->motion[i].linear)));
-    lie.position =
-        add(centre, scale(dem->place[i].radius - 0.5 * lie.overlap, lie.normal));
+    lie.position = add(centre, scale(radius - 0.5 * shared, lie.normal));
     return lie;
 }
 

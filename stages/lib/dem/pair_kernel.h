@@ -386,8 +386,14 @@ INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, in
     m.overlap = load(g->overlap + at) - m.stretch;
     const lanes radius = splat(dem->place[0].radius); // of all, unless they differ
     const bool differ = features & FEATURE_OWN;
-    m.first_arm = (differ ? transpose(lie->place_i).w : radius) - 0.5 * m.overlap;
-    m.second_arm = (differ ? transpose(lie->place_j).w : radius) - 0.5 * m.overlap;
+    const lanes first_radius = differ ? transpose(lie->place_i).w : radius;
+    const lanes second_radius = differ ? transpose(lie->place_j).w : radius;
+    // Arms that together are the distance, also where an overlap does not push.
+    const lanes shared = dem->unstressed ? first_radius + second_radius -
+                                               load(g->distance + at) - m.stretch
+                                         : m.overlap;
+    m.first_arm = first_radius - 0.5 * shared;
+    m.second_arm = second_radius - 0.5 * shared;
     m.normal_velocity = dot3(velocity, m.turning.normal);
     if (!(features & FEATURE_TURN)) return m;
     const struct spinning spins = spins_of(&m, motions + 4, i, j, features);

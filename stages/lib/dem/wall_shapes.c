@@ -50,12 +50,6 @@ static struct vector some_perpendicular(struct vector axis)
     return scale(1 / norm(found), found);
 }
 
-// An overlap of the rounding of coordinates counts as none.
-static double given_overlap(const struct dem *dem, double overlap)
-{
-    return fabs(overlap) <= dem->coordinate_error ? 0 : overlap;
-}
-
 // Unit vectors towards the wall.
 
 static struct vector meet_plane(const struct dem *dem, const struct dem_wall *wall,
