@@ -140,20 +140,24 @@ static void summarise(const struct run *run, struct drying_history *history)
 }
 
 // Takes the liquid that is not there at the start.
-static void start(struct run *run)
+static enum status start(struct run *run, struct reason *reason)
 {
     const struct drying_conditions *conditions = run->conditions;
     struct phases *phases = &run->phases;
-    if (!conditions->start && conditions->start_saturation == 1) return;
-    double *invaded = conditions->start
-                          ? NULL
-                          : invaded_saturations(phases, conditions->start_saturation);
-    const double *left = invaded ? invaded : conditions->start;
-    start_from(phases, left);
-    for (int t = 0; t < phases->network->n_throat; t++)
+    const int n = phases->network->n_throat;
+    if (!conditions->start && conditions->start_saturation == 1) return STATUS_OK;
+    double *invaded = NEW_ARRAY(double, n);
+    const double *left = conditions->start ? conditions->start : invaded;
+    enum status status = STATUS_OK;
+    if (!conditions->start)
+        status = invaded_saturations(phases, conditions->start_saturation,
+                                     conditions->start_trapping, invaded, reason);
+    if (!status) start_from(phases, left);
+    for (int t = 0; !status && t < n; t++)
         if (phases->volume[t] > 0 && left[t] < 1)
             recorder_add_change(&run->recorder, t, left[t]);
     free(invaded);
+    return status;
 }
 
 // What the liquid needs, and the first step.
@@ -236,9 +240,10 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
         const enum status status = go_on_from(run, keeper->begin, reason);
         return status ? status : find_curved(run, reason);
     }
-    start(run);
+    enum status status = start(run, reason);
+    if (status) return status;
     prepare(run);
-    const enum status status = find_curved(run, reason);
+    status = find_curved(run, reason);
     if (!status) begin(run);
     return status;
 }

@@ -65,6 +65,7 @@ struct drying_conditions {
     // come in through the open walls, the widest throat it touches first. Or by
     // throats.
     double start_saturation;
+    bool start_trapping; // what gas then cuts off from the walls opposite stays
     const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
     // What all wet nodes give off is known to this part of the rate, its errors added
     // up; 0: exact.

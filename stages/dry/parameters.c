@@ -110,6 +110,11 @@ const struct parameter dry_table[] = {
      "INPUT "
      "is a drying, its state when it had as much",
      AT(conditions.start_saturation)},
+    {"start_trapping", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "as gas comes in for start_saturation, liquid leaves only through the closed "
+     "walls "
+     "opposite the open ones: what gas has cut off from them stays",
+     AT(conditions.start_trapping)},
     {"vapour_tolerance", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.5, NULL,
      "largest error of what wet nodes evaporate, all errors added up, over the rate; "
      "0: "

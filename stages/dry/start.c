@@ -2,45 +2,75 @@
 #include "start.h"
 
 #include "basics/memory.h"
-#include "basics/ranks.h"
+#include "network/invasion.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+// Of all liquid, in which rounding may end when all that can leave has left.
+static const double LEAST_REST = 1e-12;
+
 // --- by invasion -------------------------------------------------------------------
 
-// Throats may come into the queue again from their other end, but none that is EMPTY.
-static void reach_node(const struct phases *phases, int node, const double *saturation,
-                       struct rank_queue *queue)
-{
-    const struct incidence *incidence = &phases->incidence;
-    for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
-        if (saturation[incidence->throat[k]] > 0)
-            rank_queue_add(queue, phases->clusters.rank[incidence->throat[k]]);
-}
+// As gas sees it here: in place of walls, nodes that are exposed and those on far
+// walls.
+enum { INLET = 1, OUTLET = 2 };
 
-double *invaded_saturations(const struct phases *phases, double saturation)
+static uint8_t *ways_in_and_out(const struct phases *phases)
 {
     const struct network *network = phases->network;
-    double *left = NEW_ARRAY(double, network->n_throat);
-    for (int t = 0; t < network->n_throat; t++)
-        left[t] = phases->volume[t] > 0;
-    struct rank_queue queue = rank_queue_make(network->n_throat);
+    uint8_t *ways = NEW_ARRAY(uint8_t, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        ways[i] = network->node_walls[i] & phases->far_walls ? OUTLET : 0;
     for (int i = 0; i < phases->layer.n_exposed; i++)
-        reach_node(phases, phases->layer.exposed[i], left, &queue);
+        ways[phases->layer.exposed[i]] |= INLET;
+    return ways;
+}
+
+static enum status find_invasion(const struct phases *phases, bool trapping,
+                                 struct invasion *invasion, struct reason *reason)
+{
+    struct network network = *phases->network;
+    double *ease = NEW_ARRAY(double, network.n_throat);
+    for (int t = 0; t < network.n_throat; t++)
+        ease[t] = -phases->clusters.rank[t];
+    network.node_walls = ways_in_and_out(phases);
+    const struct invasion_conditions conditions = {
+        .ease = ease, .inlet = INLET, .outlet = OUTLET, .trapping = trapping};
+    enum status status = invade(&network, &conditions, invasion, reason);
+    if (status && trapping)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "start_trapping: no throat reaches a closed wall opposite an "
+                        "open one, through which liquid could leave");
+    free(network.node_walls);
+    free(ease);
+    return status;
+}
+
+enum status invaded_saturations(const struct phases *phases, double saturation,
+                                bool trapping, double *left, struct reason *reason)
+{
+    struct invasion invasion;
+    enum status status = find_invasion(phases, trapping, &invasion, reason);
+    if (status) return status;
+    for (int t = 0; t < phases->network->n_throat; t++)
+        left[t] = phases->volume[t] > 0;
     struct compensated excess = {.value = (1 - saturation) * phases->capacity};
-    for (int rank; (rank = rank_queue_take(&queue)) >= 0;) {
-        const int throat = phases->clusters.throat_at_rank[rank];
-        const double rest = compensated_value(excess);
-        if (!(rest > 0)) break;
-        left[throat] = fmax(0, 1 - rest / phases->volume[throat]);
-        compensated_add(&excess, -phases->volume[throat]);
-        for (int end = 0; end < 2; end++)
-            reach_node(phases, network->throat_nodes[throat][end], left, &queue);
+    for (int k = 0; k < invasion.n && compensated_value(excess) > 0; k++) {
+        const int throat = invasion.throat[k];
+        const double volume = phases->volume[throat];
+        left[throat] = fmax(0, 1 - compensated_value(excess) / volume);
+        compensated_add(&excess, -volume);
     }
-    rank_queue_free(&queue);
-    return left;
+    invasion_free(&invasion);
+    const double rest = compensated_value(excess) / phases->capacity;
+    if (rest > LEAST_REST)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "start_saturation: must be above %.6g, which gas cuts off "
+                        "(start_trapping), is %g",
+                        saturation + rest, saturation);
+    return status;
 }
 
 // --- from a record -----------------------------------------------------------------

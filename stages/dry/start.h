@@ -5,12 +5,16 @@
 
 #include "phases.h"
 
-// What is left in each throat (n_throat; 0 where none takes part) when gas has come in
-// through the nodes that are exposed, always into the throat it enters most easily of
+// LEFT (n_throat; 0 where none takes part): what is left in each throat when gas has
+// come in through the nodes that are exposed, always into the throat it enters first of
 // those it touches, until the liquid is SATURATION of all; the last throat only in
-// part. Liquid that gas cuts off may leave all the same (a film leads it away). PHASES
-// is full. The caller frees the result.
-double *invaded_saturations(const struct phases *phases, double saturation);
+// part. With TRAPPING liquid leaves only through the closed walls opposite the open
+// ones, and what gas has cut off from them stays (network/invasion.h); else it leaves
+// all the same (a film leads it away). PHASES is full.
+//
+// STATUS_BAD_DATA with trapping: no throat reaches such a wall; more stays.
+enum status invaded_saturations(const struct phases *phases, double saturation,
+                                bool trapping, double *left, struct reason *reason);
 
 // The state of a run when the liquid was SATURATION of all, between two steps linear in
 // time as the run was. Starts at step 0 from a full NETWORK with what changed then.

@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_ENTRY_H
 #define CRAQUELURE_ENTRY_H
 
-#include "invasion.h"
+#include "network/invasion.h"
 
 struct entry_conditions {
     double surface_tension; // N/m, above 0

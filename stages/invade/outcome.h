@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_OUTCOME_H
 #define CRAQUELURE_OUTCOME_H
 
-#include "invasion.h"
+#include "network/invasion.h"
 
 // Events count from 1; 0: gas from the start; -1: liquid in the end. Where gas enters
 // nodes, a throat empties with the first of its two.

@@ -9,7 +9,7 @@
 // print throats, seconds, throats a second and what rounding leaves of the balances; or
 // throats, seconds, throats invaded, and those when gas first reaches the far side.
 #include "dry/drying.h"
-#include "invade/invasion.h"
+#include "network/invasion.h"
 
 #include "basics/memory.h"
 

@@ -20,7 +20,7 @@
 // deviation of the height of its nodes next to liquid that leads down.
 //
 // What is random is evenly distributed from 0 to 1. All networks repeat sideways.
-#include "invade/invasion.h"
+#include "network/invasion.h"
 #include "tessellate/diagram.h"
 
 #include "basics/memory.h"

@@ -6,7 +6,7 @@
 
 #include "basics/memory.h"
 #include "dry/start.h"
-#include "invade/invasion.h"
+#include "network/invasion.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -85,17 +85,47 @@ static void test_on_from_the_middle(void **state)
     network_free(&network);
 }
 
-static void test_gas_has_come_in(void **state)
+// Liquid in NETWORK when gas has come in, of all.
+static double rest_of_invasion(const struct network *network,
+                               const struct invasion *invasion)
 {
-    (void)state;
+    double *left = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        left[t] = 1;
+    for (int k = 0; k < invasion->n; k++)
+        left[invasion->throat[k]] = 0;
+    const double rest = liquid_in(network, left);
+    free(left);
+    return rest;
+}
+
+static void check_refused(const struct network *network,
+                          const struct drying_conditions *conditions, const char *why)
+{
+    struct drying_history history;
+    struct reason reason = {""};
+    assert_int_equal(dry_network(network, conditions, NULL, &history, &reason),
+                     STATUS_BAD_DATA);
+    assert_non_null(strstr(reason.text, why));
+    drying_history_free(&history);
+}
+
+// The throats that invade says, with trapping down to just above what it says is
+// trapped, and no further.
+static void check_gas_has_come_in(bool trapping)
+{
     struct network network = lattice_network(8, 8, 8, spacing);
     randomise_radii(&network, spacing, 0.3, 6);
     struct invasion invasion;
     struct reason reason = {""};
-    const struct invasion_conditions gas = {.inlet = WALL_Z_UPPER};
+    const struct invasion_conditions gas = {
+        .inlet = WALL_Z_UPPER, .outlet = WALL_Z_LOWER, .trapping = trapping};
     assert_int_equal(invade(&network, &gas, &invasion, &reason), 0);
+    const double rest = rest_of_invasion(&network, &invasion);
+    const double saturation = trapping ? rest + 0.001 : 0.617;
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
-    conditions.start_saturation = 0.617;
+    conditions.start_saturation = saturation;
+    conditions.start_trapping = trapping;
     struct drying_history history = dry_from(&network, &conditions, NULL);
     double *left = NEW_ARRAY(double, network.n_throat);
     for (int t = 0; t < network.n_throat; t++)
@@ -103,17 +133,29 @@ static void test_gas_has_come_in(void **state)
     const int64_t n_gone = history.change_offset[1];
     for (int64_t c = 0; c < n_gone; c++)
         left[history.change_throat[c]] = history.change_saturation[c];
-    assert_true(fabs(liquid_in(&network, left) - 0.617) < 1e-13);
-    assert_true(fabs(history.saturation[0] - 0.617) < 1e-13);
+    assert_true(fabs(liquid_in(&network, left) - saturation) < 1e-13);
+    assert_true(fabs(history.saturation[0] - saturation) < 1e-13);
     for (int64_t k = 0; k + 1 < n_gone; k++)
         assert_true(left[invasion.throat[k]] == 0);
     const double last = left[invasion.throat[n_gone - 1]];
     assert_true(last >= 0 && last < 1);
     assert_int_equal(history.n_event, network.n_throat - n_gone + (last > 0));
+    assert_true(trapping == (rest > 0.1));
+    conditions.start_saturation = rest - 0.001;
+    if (trapping) check_refused(&network, &conditions, "cuts off");
+    conditions.open_walls |= WALL_Z_LOWER;
+    if (trapping) check_refused(&network, &conditions, "opposite");
     free(left);
     invasion_free(&invasion);
     drying_history_free(&history);
     network_free(&network);
+}
+
+static void test_gas_has_come_in(void **state)
+{
+    (void)state;
+    check_gas_has_come_in(false);
+    check_gas_has_come_in(true);
 }
 
 // One column of N throats, half of the third gone: the layer, two throats, and that is
@@ -153,12 +195,7 @@ static void test_more_than_full_is_refused(void **state)
     const double wrong[] = {0, -1, 1.5, NAN};
     for (int k = 0; k < 4; k++) {
         conditions.start_saturation = wrong[k];
-        struct drying_history history;
-        struct reason reason = {""};
-        assert_int_equal(dry_network(&network, &conditions, NULL, &history, &reason),
-                         STATUS_BAD_DATA);
-        assert_non_null(strstr(reason.text, "start_saturation"));
-        drying_history_free(&history);
+        check_refused(&network, &conditions, "start_saturation");
     }
     network_free(&network);
 }

@@ -2,7 +2,7 @@
 // Invasion percolation against the rule itself, step by step: on small lattices and on
 // random networks with parallel throats, loose pieces and throats imposed empty; with
 // ties; however it is numbered. And ranks against sorting.
-#include "invade/invasion.h"
+#include "network/invasion.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"

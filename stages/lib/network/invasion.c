@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "invasion.h"
+#include "network/invasion.h"
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"

@@ -2,8 +2,8 @@
 // Invasion percolation by itself (Wilkinson & Willemsen 1983): gas comes in through
 // walls, and at each step enters the easiest throat, or node, that it touches. What is
 // entered when, and without clocks, vapour or viscosity what that leaves behind.
-#ifndef CRAQUELURE_INVASION_H
-#define CRAQUELURE_INVASION_H
+#ifndef CRAQUELURE_NETWORK_INVASION_H
+#define CRAQUELURE_NETWORK_INVASION_H
 
 #include "basics/status.h"
 #include "network/network.h"
