@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_FLOW_SOLVER_H
 #define CRAQUELURE_FLOW_SOLVER_H
 
-#include "kron.h"
+#include "sparse/kron.h"
 #include "liquid_graph.h"
 #include "sparse/plain_cholmod.h"
 #include "throat_lists.h"

@@ -13,7 +13,7 @@
 #include "basics/compensated.h"
 #include "boundary_layer.h"
 #include "loose_mesh.h"
-#include "potential.h"
+#include "sparse/potential.h"
 #include "star_mesh.h"
 
 struct vapour {

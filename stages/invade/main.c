@@ -6,6 +6,7 @@
 #include "entry.h"
 #include "network/drawn_radii.h"
 #include "outcome.h"
+#include "transport.h"
 
 #include <stdio.h>
 
@@ -14,6 +15,7 @@ struct invade_parameters {
     struct entry_conditions entry;
     struct drawn_radii radii;
     int rule, until;
+    bool transport;
     unsigned imposed_empty;
 };
 
@@ -37,6 +39,10 @@ static const struct parameter table[] = {
      "walls through which gas comes in", AT(invasion.inlet)},
     {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", BOUND_NONE, 0, 0, WALLS,
      "walls through which liquid leaves", AT(invasion.outlet)},
+    {"transport", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "find how well gas and liquid flow, and diffuse, from inlet to outlet at "
+     "saturations of 1, 0.9, 0.8, ... (relative permeability, effective diffusivity)",
+     AT(transport)},
     {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0,
      WALLS "|outer|inner",
      "walls whose throats hold no liquid and let nothing through, as in dry",
@@ -134,6 +140,27 @@ static void put_outcome(struct artifact *artifact, const struct network *network
                                            "/throats/event", "/throats/cluster", NULL});
 }
 
+static void put_transport(struct artifact *artifact, const struct transport *transport)
+{
+    static const char *const name[PHASES][PROPERTIES] = {
+        {"/transport/gas_permeability", "/transport/gas_diffusivity"},
+        {"/transport/liquid_permeability", "/transport/liquid_diffusivity"}};
+    artifact_put(artifact, "/transport/saturation", transport->saturation,
+                 transport->n);
+    for (int k = 0; k < PHASES * PROPERTIES; k++)
+        artifact_put(artifact, name[k / PROPERTIES][k % PROPERTIES],
+                     transport->relative[k / PROPERTIES][k % PROPERTIES], transport->n);
+    artifact_put_number(artifact, "/summary/hydraulic_conductance",
+                        transport->conductance[PERMEABILITY]);
+    artifact_put_number(artifact, "/summary/diffusive_conductance",
+                        transport->conductance[DIFFUSIVITY]);
+    if (isnan(transport->material[PERMEABILITY])) return;
+    artifact_put_number(artifact, "/summary/permeability",
+                        transport->material[PERMEABILITY]);
+    artifact_put_number(artifact, "/summary/diffusivity",
+                        transport->material[DIFFUSIVITY]);
+}
+
 static const char *describe(const struct invade_parameters *parameters, char text[600])
 {
     char gravity[60];
@@ -154,8 +181,11 @@ static const char *describe(const struct invade_parameters *parameters, char tex
     return text;
 }
 
-static void check_walls(const struct invasion_conditions *conditions)
+static void check_walls(const struct invasion_conditions *conditions, bool transport)
 {
+    if (transport && conditions->outlet == 0)
+        die(STATUS_BAD_DATA,
+            "invade.outlet: must name a wall for transport, names none");
     if (conditions->inlet == 0)
         die(STATUS_BAD_DATA, "invade.inlet: must name a wall, names none");
     if (conditions->inlet & conditions->outlet)
@@ -170,7 +200,7 @@ int main(int argc, char **argv)
     struct invasion_conditions *conditions = &parameters.invasion;
     conditions->rule = (enum invasion_rule)parameters.rule;
     conditions->until_breakthrough = parameters.until == UNTIL_BREAKTHROUGH;
-    check_walls(conditions);
+    check_walls(conditions, parameters.transport);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_periodic_network(input);
 
@@ -187,15 +217,21 @@ int main(int argc, char **argv)
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     struct outcome outcome =
         outcome_make(&network, conditions, &invasion, entry.pressure);
+    struct transport transport = {0};
+    if (parameters.transport)
+        status = transport_find(&network, conditions, &outcome, &transport, &reason);
+    if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
     char model[600];
     struct artifact *artifact = artifact_create("invasion", invocation.output);
     artifact_put_network(artifact, &network);
     put_outcome(artifact, &network, &invasion, &outcome);
     put_summary(artifact, &network, conditions, &invasion, &outcome, &entry);
+    if (parameters.transport) put_transport(artifact, &transport);
     artifact_finish(artifact, &invocation, one_input(input),
                     describe(&parameters, model));
 
+    transport_free(&transport);
     outcome_free(&outcome);
     invasion_free(&invasion);
     entry_free(&entry);

@@ -137,6 +137,23 @@ with scratch() as folder:
                        "weight flattens the front of gas from above: full is what lies below it")
     ok(at_breakthrough["-z", 1e10] > 0.9, "and draws gas from below straight up", at_breakthrough)
 
+    # The curves of both phases, whose numbers tests/physics/transport.c has.
+    run("invade", "--set", "transport=true", "--set", "trapping=false", at("network.h5"),
+        "-o", at("invasion.h5"))
+    with h5py.File(at("invasion.h5")) as file:
+        level = file["transport/saturation"][:]
+        gas, liquid = ([file[f"transport/{phase}_{what}"][:] for what in
+                        ("permeability", "diffusivity")] for phase in ("gas", "liquid"))
+        ok(np.allclose(level, np.linspace(1, 0, 11), atol=0.01) and (np.diff(level) < 0).all(),
+           "both phases are measured at multiples of 0.1", level)
+        ok(all(abs(g[-1] - 1) < 1e-9 and g[0] == 0 and abs(l[0] - 1) < 1e-9 and l[-1] == 0
+               and (np.diff(g) > -1e-9).all() and (np.diff(l) < 1e-9).all()
+               for g, l in zip(gas, liquid)), "as one gains the other loses, from all to nothing")
+        box = file["domain/upper"][:] - file["domain/lower"][:]
+        s = file["summary"].attrs
+        ok(abs(s["permeability"] / s["hydraulic_conductance"] * box[0] * box[1] / box[2] - 1) < 1e-12,
+           "permeability is conductance times length over section")
+
     drawn = []
     for stage in "dry", "invade":
         run(stage, "--quiet", "--set", "throat_radius.distribution=lognormal", "--set",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flow through networks of conductances over many decades, by elimination and by a
 // graph with a factor that follows, next to Gauss's elimination in 600 bits (MPFR).
-#include "dry/kron.h"
+#include "sparse/kron.h"
 #include "dry/liquid_graph.h"
 
 #include "basics/memory.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The vapour's potential at every site: 1 in the air, 0 at sites that are held (wet),
-// balanced at those that are free (dry), found by iteration from where it was last.
+// Potentials of vapour (or of what else spreads in proportion to its fall) at every
+// site: 1 in the air, 0 at sites that are held (wet), balanced at those that are free
+// (dry), found by iteration from where it was last.
 //
 // What is left of the balances of free sites belongs to held sites or the air, nowhere
 // else: each unit of it ends there, as a random walk does. So its sum of sizes bounds

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Capillary pressure, permeabilities and diffusivities over saturation. Variable: tables, the
+# folder that pipelines/curves makes.
+set terminal svg size 1260,440 font "Helvetica,15" linewidth 1 background "#ffffff"
+set multiplot layout 1,3
+set border 3 linecolor "#555555"
+set tics nomirror out scale 0.6 textcolor "#222222"
+set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+blue = "#0a4a96"; pale = "#7fa4cf"; red = "#d6201c"; rose = "#eda29f"
+set xrange [0:1]; set xtics 0.2; set xlabel "saturation"
+
+set title "capillary pressure, MPa"
+set yrange [0:*]; set key top right
+plot tables . "/pressure-free" using 1:($2 / 1e6) with steps linewidth 1.8 linecolor rgb blue title "none trapped", \
+    tables . "/pressure-trapping" using 1:($2 / 1e6) with steps linewidth 1.4 linecolor rgb pale title "trapping"
+
+set yrange [0:1.02]; set ytics 0.2; set key top center
+do for [c = 0:1] {
+    set title (c ? "effective diffusivity, of one phase alone" : "permeability, of one phase alone")
+    plot tables . "/states-free" using 1:(column(2 + c)) with linespoints linewidth 1.8 pointtype 7 pointsize 0.5 linecolor rgb red title "gas", \
+        tables . "/states-free" using 1:(column(4 + c)) with linespoints linewidth 1.8 pointtype 7 pointsize 0.5 linecolor rgb blue title "liquid", \
+        tables . "/states-trapping" using 1:(column(2 + c)) with linespoints linewidth 1.2 pointtype 6 pointsize 0.5 linecolor rgb rose title "gas, trapping", \
+        tables . "/states-trapping" using 1:(column(4 + c)) with linespoints linewidth 1.2 pointtype 6 pointsize 0.5 linecolor rgb pale title "liquid, trapping"
+}

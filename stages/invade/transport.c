@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "transport.h"
+
+#include "basics/memory.h"
+#include "sparse/kron.h"
+#include "sparse/potential.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Of what passes.
+static const double TOLERANCE = 1e-10;
+
+enum { MOST_ROUNDS = 6, MOST_ELIMINATED = 20000, MOST_STATES = 11 };
+
+struct passage {
+    const struct network *network;
+    struct incidence incidence;
+    unsigned inlet, outlet;
+    double length, radius; // m, the largest: units
+    double *conductance;   // (n_throat) scaled; 0: lets nothing through
+    int *site;             // (n_node) balances; 0: the outlet; -1: not reached
+    int n_site, *queue;    // (n_node)
+    bool reached;          // the outlet
+};
+
+static bool is_inlet(const struct passage *passage, int node)
+{
+    return passage->network->node_walls[node] & passage->inlet;
+}
+
+static bool is_outlet(const struct passage *passage, int node)
+{
+    return passage->network->node_walls[node] & passage->outlet;
+}
+
+// --- one network of conductances -----------------------------------------------------
+
+// From NODE on, which is reached.
+static void look_around(struct passage *passage, int node, int *n_queue)
+{
+    const struct incidence *incidence = &passage->incidence;
+    for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++) {
+        const int32_t *ends = passage->network->throat_nodes[incidence->throat[k]];
+        const int other = ends[ends[0] == node];
+        if (!(passage->conductance[incidence->throat[k]] > 0) ||
+            is_inlet(passage, other))
+            continue;
+        if (is_outlet(passage, other)) {
+            passage->site[other] = 0;
+            passage->reached = true;
+        } else if (passage->site[other] < 0) {
+            passage->site[other] = passage->n_site++;
+            passage->queue[(*n_queue)++] = other;
+        }
+    }
+}
+
+// Numbers the nodes that something leads to from the inlet.
+static void find_sites(struct passage *passage)
+{
+    const int n_node = passage->network->n_node;
+    int n_queue = 0;
+    passage->n_site = 1;
+    passage->reached = false;
+    for (int i = 0; i < n_node; i++) {
+        passage->site[i] = -1;
+        if (is_inlet(passage, i)) passage->queue[n_queue++] = i;
+    }
+    for (int k = 0; k < n_queue; k++)
+        look_around(passage, passage->queue[k], &n_queue);
+}
+
+// Links between sites; INFLOW (n_site) what leads to each from the inlet. Returns how
+// many.
+static int link_sites(const struct passage *passage, struct link *link, double *inflow)
+{
+    int n = 0;
+    for (int t = 0; t < passage->network->n_throat; t++) {
+        const int32_t *ends = passage->network->throat_nodes[t];
+        const int a = passage->site[ends[0]], b = passage->site[ends[1]];
+        if (!(passage->conductance[t] > 0) || a == b) continue;
+        if (a >= 0 && b >= 0)
+            link[n++] = (struct link){{a, b}, passage->conductance[t]};
+        else if (is_inlet(passage, ends[0]) || is_inlet(passage, ends[1]))
+            inflow[a >= 0 ? a : b] += passage->conductance[t];
+    }
+    return n;
+}
+
+// Until what the balances lack is a small part of what passes.
+static bool balance(struct potential *potential)
+{
+    double least = 0;
+    for (int i = 0; i < potential->n_site; i++)
+        least += TOLERANCE * potential->air[i];
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        if (!potential_solve(potential, least)) return false;
+        if (least <= TOLERANCE * potential->rate) return true;
+        least = TOLERANCE / 2 * potential->rate;
+    }
+    return false;
+}
+
+static bool iterate(const struct passage *passage, int n_link, const struct link *link,
+                    const double *inflow, double *conductance)
+{
+    struct potential potential = potential_make(passage->n_site, n_link, link, inflow);
+    for (int i = 1; i < passage->n_site; i++)
+        potential_free_site(&potential, i);
+    const bool good = n_link == 0 || balance(&potential);
+    *conductance = potential.rate;
+    potential_free(&potential);
+    return good;
+}
+
+static double fall_of_one(const void *context, int b, int a)
+{
+    (void)context;
+    return b - a; // the inlet is end 1, the outlet end 0
+}
+
+// Loses no digits, however far apart conductances are.
+static double eliminate(const struct passage *passage, int n_link,
+                        const struct link *link, const double *inflow)
+{
+    const int n = passage->n_site - 1, outlet = n, inlet = n + 1;
+    struct kron kron = {0};
+    kron_begin(&kron, n, 2);
+    for (int k = 0; k < n_link; k++) {
+        const int a = link[k].site[0], b = link[k].site[1];
+        kron_link(&kron, a ? a - 1 : outlet, b ? b - 1 : outlet, link[k].conductance);
+    }
+    for (int i = 1; i <= n; i++)
+        if (inflow[i] > 0) kron_link(&kron, i - 1, inlet, inflow[i]);
+    kron_eliminate(&kron);
+    const double flow = kron_flow(&kron, 0, fall_of_one, NULL);
+    kron_free(&kron);
+    return flow;
+}
+
+static enum status find_conductance(struct passage *passage, double *conductance,
+                                    struct reason *reason)
+{
+    *conductance = 0;
+    find_sites(passage);
+    if (!passage->reached) return STATUS_OK;
+    struct link *link = NEW_ARRAY(struct link, passage->network->n_throat);
+    double *inflow = NEW_ARRAY(double, passage->n_site);
+    const int n_link = link_sites(passage, link, inflow);
+    const double direct = inflow[0];
+    inflow[0] = 0;
+    bool good = iterate(passage, n_link, link, inflow, conductance);
+    if (!good && passage->n_site <= MOST_ELIMINATED) {
+        *conductance = eliminate(passage, n_link, link, inflow);
+        good = true;
+    }
+    *conductance += direct;
+    free(link);
+    free(inflow);
+    if (good) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "transport: the balances of %d nodes cannot be closed to %g of what "
+                  "passes, conductances are too far apart (throats of more even radii, "
+                  "or fewer than %d nodes, would do)",
+                  passage->n_site - 1, TOLERANCE, MOST_ELIMINATED);
+}
+
+// --- states ------------------------------------------------------------------------
+
+static double property_of(const struct passage *passage, int throat,
+                          enum property property)
+{
+    const double r = passage->network->throat_radius[throat] / passage->radius;
+    const double length = passage->network->throat_length[throat] / passage->length;
+    return property == PERMEABILITY ? M_PI * (r * r) * (r * r) / (8 * length)
+                                    : M_PI * (r * r) / length;
+}
+
+static double unit_of(const struct passage *passage, enum property property)
+{
+    const double section = passage->radius * passage->radius;
+    return section / passage->length * (property == PERMEABILITY ? section : 1);
+}
+
+// After EVENT events gas has come to what has a number up to it, but 0: nothing was
+// there.
+static bool holds(enum phase phase, int number, int event)
+{
+    return (number >= 0 && number <= event) == (phase == GAS);
+}
+
+static bool leads_through(const struct passage *passage, const struct outcome *outcome,
+                          enum phase phase, int node, int event)
+{
+    return is_inlet(passage, node) || is_outlet(passage, node) ||
+           holds(phase, outcome->node_event[node], event);
+}
+
+// OUTCOME is NULL for one phase alone.
+static void fill_passage(struct passage *passage, const struct outcome *outcome,
+                         enum phase phase, enum property property, int event)
+{
+    for (int t = 0; t < passage->network->n_throat; t++) {
+        const int32_t *ends = passage->network->throat_nodes[t];
+        bool open = passage->network->throat_kind[t] == THROAT_NETWORK;
+        if (outcome)
+            open &= holds(phase, outcome->throat_event[t], event) &&
+                    leads_through(passage, outcome, phase, ends[0], event) &&
+                    leads_through(passage, outcome, phase, ends[1], event);
+        passage->conductance[t] = open ? property_of(passage, t, property) : 0;
+    }
+}
+
+// Events after which the network is in each state. Returns how many states.
+static int find_states(const struct outcome *outcome, int *event)
+{
+    int n = 0, k = 0;
+    event[n++] = 0;
+    for (int tenths = 9; tenths > 0; tenths--) {
+        while (k < outcome->n && outcome->saturation[k] > tenths / 10.0)
+            k++;
+        if (k == outcome->n) break;
+        if (event[n - 1] != k + 1) event[n++] = k + 1;
+    }
+    if (event[n - 1] != outcome->n) event[n++] = outcome->n;
+    return n;
+}
+
+// --- the whole ---------------------------------------------------------------------
+
+static enum status check(const struct passage *passage, struct reason *reason)
+{
+    const struct network *network = passage->network;
+    for (int i = 0; i < network->n_node; i++)
+        if (is_inlet(passage, i) && is_outlet(passage, i))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "transport: node %d is at the inlet and at the outlet", i);
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        const double length = network->throat_length[t];
+        if (!(length > 0) || !isfinite(length))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/throats/length: row %d: must be above 0 for transport, is "
+                          "%g (merge-nodes removes short throats)",
+                          t, length);
+    }
+    return STATUS_OK;
+}
+
+static struct passage passage_make(const struct network *network,
+                                   const struct invasion_conditions *conditions)
+{
+    struct passage passage = {.network = network,
+                              .incidence = network_incidence(network),
+                              .inlet = conditions->inlet,
+                              .outlet = conditions->outlet,
+                              .conductance = NEW_ARRAY(double, network->n_throat),
+                              .site = NEW_ARRAY(int, network->n_node),
+                              .queue = NEW_ARRAY(int, network->n_node)};
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        passage.length = fmax(passage.length, network->throat_length[t]);
+        passage.radius = fmax(passage.radius, network->throat_radius[t]);
+    }
+    return passage;
+}
+
+static void passage_free(struct passage *passage)
+{
+    incidence_free(&passage->incidence);
+    free(passage->conductance);
+    free(passage->site);
+    free(passage->queue);
+}
+
+// Length over section of the box along the axis whose sides are inlet and outlet.
+static double shape_of_box(const struct passage *passage)
+{
+    const struct packing *packing = &passage->network->packing;
+    const struct vector box = subtract(packing->upper, packing->lower);
+    for (int axis = 0; axis < 3; axis++) {
+        const unsigned lower = 1u << 2 * axis, upper = 2u << 2 * axis;
+        if (packing->n_body == 0 &&
+            (passage->inlet | passage->outlet) == (lower | upper) &&
+            passage->inlet != (lower | upper))
+            return component(box, axis) /
+                   (component(box, (axis + 1) % 3) * component(box, (axis + 2) % 3));
+    }
+    return NAN;
+}
+
+static enum status find_one_phase(struct passage *passage, struct transport *transport,
+                                  struct reason *reason)
+{
+    for (enum property property = 0; property < PROPERTIES; property++) {
+        double *conductance = &transport->conductance[property];
+        fill_passage(passage, NULL, GAS, property, 0);
+        const enum status status = find_conductance(passage, conductance, reason);
+        if (status) return status;
+        if (!(*conductance > 0))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "transport: no throats lead from inlet to outlet");
+        *conductance *= unit_of(passage, property);
+        transport->material[property] = *conductance * shape_of_box(passage);
+    }
+    return STATUS_OK;
+}
+
+static enum status find_relative(struct passage *passage, const struct outcome *outcome,
+                                 int state, int event, struct transport *transport,
+                                 struct reason *reason)
+{
+    for (enum phase phase = 0; phase < PHASES; phase++)
+        for (enum property property = 0; property < PROPERTIES; property++) {
+            double conductance;
+            fill_passage(passage, outcome, phase, property, event);
+            const enum status status = find_conductance(passage, &conductance, reason);
+            if (status) return status;
+            transport->relative[phase][property][state] =
+                conductance * unit_of(passage, property) /
+                transport->conductance[property];
+        }
+    return STATUS_OK;
+}
+
+enum status transport_find(const struct network *network,
+                           const struct invasion_conditions *conditions,
+                           const struct outcome *outcome, struct transport *transport,
+                           struct reason *reason)
+{
+    int event[MOST_STATES];
+    *transport = (struct transport){.n = find_states(outcome, event),
+                                    .saturation = NEW_ARRAY(double, MOST_STATES)};
+    for (int k = 0; k < PHASES * PROPERTIES; k++)
+        transport->relative[k / PROPERTIES][k % PROPERTIES] =
+            NEW_ARRAY(double, MOST_STATES);
+    struct passage passage = passage_make(network, conditions);
+    enum status status = check(&passage, reason);
+    if (!status) status = find_one_phase(&passage, transport, reason);
+    for (int k = 0; !status && k < transport->n; k++) {
+        transport->saturation[k] = event[k] ? outcome->saturation[event[k] - 1] : 1;
+        status = find_relative(&passage, outcome, k, event[k], transport, reason);
+    }
+    passage_free(&passage);
+    return status;
+}
+
+void transport_free(struct transport *transport)
+{
+    free(transport->saturation);
+    for (int k = 0; k < PHASES * PROPERTIES; k++)
+        free(transport->relative[k / PROPERTIES][k % PROPERTIES]);
+    *transport = (struct transport){0};
+}

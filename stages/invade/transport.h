@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How well gas and liquid flow, and diffuse, from inlet to outlet as the one gives way
+// to the other: what is known as relative permeabilities and diffusivities.
+#ifndef CRAQUELURE_TRANSPORT_H
+#define CRAQUELURE_TRANSPORT_H
+
+#include "outcome.h"
+
+enum property { PERMEABILITY, DIFFUSIVITY, PROPERTIES };
+enum phase { GAS, LIQUID_PHASE, PHASES };
+
+struct transport {
+    int n; // states: full; when the saturation first is 0.9, 0.8, ... 0.1 or less; last
+    double *saturation;                   // (n) falling
+    double *relative[PHASES][PROPERTIES]; // (n) each, of what one phase alone has
+
+    // Of one phase alone, in all throats, from inlet to outlet: volume flow times
+    // viscosity over the fall of pressure (m3), and amount over the fall of
+    // concentration and the diffusivity (m).
+    double conductance[PROPERTIES];
+    // These as if the box were of one material: times its length over its section, m2
+    // and 1. Where inlet and outlet are not the two sides of one axis, NAN.
+    double material[PROPERTIES];
+};
+
+// A throat lets through pi r^4 / (8 L), and pi r^2 / L, if it is of kind THROAT_NETWORK;
+// nodes resist nothing. A phase leads through the throats it fills and through nodes at
+// which no gas has arrived, or has; those of inlet and outlet are open to both. Linear
+// balances hold at all nodes; their errors add up to 1e-10 of what passes at most. Where
+// rounding forbids that, they are eliminated without differences. The caller frees
+// TRANSPORT with transport_free, also after a failure.
+//
+// STATUS_BAD_DATA: nothing leads from inlet to outlet, or a node is on both, or a throat
+// has no length. STATUS_NOT_CONVERGED: conductances too far apart in a network too large
+// to eliminate.
+enum status transport_find(const struct network *network,
+                           const struct invasion_conditions *conditions,
+                           const struct outcome *outcome, struct transport *transport,
+                           struct reason *reason);
+
+void transport_free(struct transport *transport);
+
+#endif
