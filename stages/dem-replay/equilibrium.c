@@ -127,7 +127,9 @@ static bool break_one(struct equilibrium *e)
         const struct overload overload =
             joint_overload(joint, e->strain[j], e->setup.bond.normal_strength / stress,
                            e->setup.bond.shear_strength / stress);
-        const double larger = fmax(overload.normal, overload.shear);
+        const double *relative = e->setup.relative_strength;
+        const double larger = fmax(overload.normal, overload.shear) /
+                              (relative ? relative[joint->bond] : 1);
         if (!(larger >= most) || (worst && larger == most)) continue;
         most = larger;
         worst = joint;

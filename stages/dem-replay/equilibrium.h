@@ -26,6 +26,7 @@ struct equilibrium_setup {
     bool unstressed;               // overlaps of the packing do not push
     struct dem_material material;  // density and damping have no part in it
     struct dem_bond_material bond; // parallel
+    const double *relative_strength; // (n_bond) of that of the material; NULL: 1
     double tolerance; // largest force or moment left on a grain, of the largest load
     int64_t most_iterations; // steps in time to one equilibrium
 };
@@ -52,6 +53,10 @@ void equilibrium_displacements(const struct equilibrium *equilibrium,
 void equilibrium_bonds_intact(const struct equilibrium *equilibrium, uint8_t *intact);
 struct dem_contact *equilibrium_contacts(const struct equilibrium *equilibrium,
                                          int *count);
+// What held grains and the wall carry: force, N, and moment about ABOUT, N m, that they
+// put on the other grains.
+void equilibrium_reaction(const struct equilibrium *equilibrium, struct vector about,
+                          struct vector *force, struct vector *moment);
 double equilibrium_unbalanced_ratio(const struct equilibrium *equilibrium);
 
 int equilibrium_iterations(const struct equilibrium *equilibrium); // so far

@@ -2,7 +2,10 @@
 // dem-replay: what the capillary forces do to the bonded grains.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
+#include "basics/memory.h"
 #include "basics/status.h"
+#include "bonds.h"
+#include "held.h"
 #include "replay.h"
 #include "write_response.h"
 
@@ -12,9 +15,11 @@
 
 struct replay_parameters {
     struct replay_settings settings;
-    int support, engine, bond, bridge_model;
+    struct held held;
+    struct strength_scatter scatter;
+    int support, engine, bond, bonds_by, strength_law, bridge_model;
     bool prestress;
-    double contact_strength;
+    double bond_gap, contact_strength;
     struct number_list snapshots;
 };
 
@@ -50,6 +55,26 @@ static const struct parameter table[] = {
      AT(settings.bond.shear_strength)},
     {"bond.radius_fraction", PARAMETER_NUMBER, "1", "0.5858", BOUND_BETWEEN, 1e-6, 1,
      NULL, "bond radius, of the smaller grain's", AT(settings.bond.radius_fraction)},
+    {"bond.by", PARAMETER_CHOICE, "1", "\"packing\"", BOUND_NONE, 0, 0,
+     "packing|touching|distance",
+     "which grains are bonded: those the packing lists, those that touch, or those "
+     "within bond.gap",
+     AT(bonds_by)},
+    {"bond.gap", PARAMETER_NUMBER, "1", "0.01", BOUND_BETWEEN, 0, 10, NULL,
+     "largest gap that a bond spans, of the sum of the two radii; for by=distance",
+     AT(bond_gap)},
+    {"bond.strength.distribution", PARAMETER_CHOICE, "1", "\"one\"", BOUND_NONE, 0, 0,
+     "one|normal|weibull",
+     "of the strengths of bonds about those above, one number a bond for tension and "
+     "shear; normal: cut off at 0",
+     AT(strength_law)},
+    {"bond.strength.variation", PARAMETER_NUMBER, "1", "0.2", BOUND_BETWEEN, 0, 1, NULL,
+     "normal: standard deviation over mean, before the cut", AT(scatter.variation)},
+    {"bond.strength.modulus", PARAMETER_NUMBER, "1", "5", BOUND_BETWEEN, 0.5, 1e6, NULL,
+     "Weibull: m; the strengths above stay the means", AT(scatter.modulus)},
+    {"bond.strength.seed", PARAMETER_INTEGER, "1", "1", BOUND_BETWEEN, 1, 4294967295,
+     NULL, "of the strengths (mt19937), drawn in the order of the bonds",
+     AT(scatter.seed)},
     {"bond.kind", PARAMETER_CHOICE, "1", "\"parallel\"", BOUND_NONE, 0, 0,
      "parallel|contact",
      "parallel: cylinders of glue [K 4.31-4.44]; contact: the contact's own springs "
@@ -64,11 +89,18 @@ static const struct parameter table[] = {
      "they come closer pushes",
      AT(prestress)},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", BOUND_NONE, 0, 0, "free|fixed|wall",
-     "free: net force and moment are taken off; fixed: grains at the lower z wall are "
-     "held; "
-     "wall: "
-     "a rigid wall beneath",
+     "free: net force and moment are taken off; fixed: the grains of held neither move "
+     "nor turn; wall: a rigid wall at the lower z side",
      AT(support)},
+    {"held.walls", PARAMETER_CHOICES, "1", "[\"-z\"]", BOUND_NONE, 0, 0,
+     "-x|+x|-y|+y|-z|+z", "for support=fixed: the grains that touch these sides",
+     AT(held.walls)},
+    {"held.grains", PARAMETER_LIST, "1", "[]", BOUND_MINIMUM, 0, 0, NULL,
+     "and these, by number", AT(held.grains)},
+    {"held.lower", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL,
+     "and those with their centres between this corner", AT(held.lower)},
+    {"held.upper", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL,
+     "and this one", AT(held.upper)},
     {"engine", PARAMETER_CHOICE, "1", "\"explicit\"", BOUND_NONE, 0, 0,
      "explicit|quasi-static",
      "explicit: cycles of discrete elements [K 4]; quasi-static: equilibrium itself, "
@@ -155,6 +187,22 @@ static void choose_bonds(const struct replay_parameters *parameters,
     settings->bond.shear_strength = settings->bond.normal_strength;
 }
 
+// The caller frees what it gives to SETTINGS.
+static void choose_grains(const struct replay_parameters *parameters,
+                          struct packing *packing, struct replay_settings *settings)
+{
+    struct strength_scatter scatter = parameters->scatter;
+    scatter.law = (enum strength_law)parameters->strength_law;
+    bond_grains(packing, (enum bonds_by)parameters->bonds_by, parameters->bond_gap);
+    settings->relative_strength = draw_strengths(&scatter, packing->n_bond);
+    struct held held = parameters->held;
+    if (settings->support != SUPPORT_FIXED)
+        held = (struct held){.lower = {NAN, NAN, NAN}, .upper = {NAN, NAN, NAN}};
+    struct reason reason;
+    const enum status status = find_held(packing, &held, &settings->held, &reason);
+    if (status) die(status, "dem-replay.%s", reason.text);
+}
+
 static struct load read_load(const struct artifact *input)
 {
     struct load load;
@@ -199,7 +247,7 @@ static void write_response(const struct packing *packing, const struct load *loa
                            const struct artifact *input)
 {
     static const char *const supports[] = {"free, net force and moment taken off",
-                                           "grains at the lower z wall held",
+                                           "%d grains held",
                                            "a rigid wall beneath"};
     static const char *const engines[] = {
         "discrete elements: leapfrog, linear contacts, slip, dashpots, %s bonds [K 4]",
@@ -209,21 +257,25 @@ static void write_response(const struct packing *packing, const struct load *loa
     char engine[200];
     snprintf(engine, sizeof engine, engines[settings->engine],
              bonds[settings->bond.kind]);
-    char model[700];
+    char support[60], model[900];
+    int n_held = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        n_held += settings->held[i];
+    snprintf(support, sizeof support, supports[settings->support], n_held);
     snprintf(model, sizeof model,
              "%s\n"
              "support: %s\n"
              "overlaps of the packing %s\n"
              "%s"
              "left out: gravity, %smoments of capillary forces\n",
-             engine, supports[settings->support],
+             engine, support,
              settings->unstressed ? "lie at rest" : "push from the start",
              settings->liquid.volume > 0
                  ? "liquid bridges between grains that have touched [G 2]\n"
                  : "",
              settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
-    put_response(artifact, packing, load, response);
+    put_response(artifact, packing, load, settings, response);
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         artifact_get_number(input, "/summary/first_period_end_time"));
     artifact_finish(artifact, invocation, one_input(input), model);
@@ -276,6 +328,7 @@ int main(int argc, char **argv)
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
     struct packing packing = artifact_get_packing(input);
     struct load load = read_load(input);
+    choose_grains(&parameters, &packing, settings);
 
     json_t *digest = one_input(input);
     struct checkpoint checkpoint;
@@ -289,6 +342,8 @@ int main(int argc, char **argv)
     checkpoint_end(&checkpoint);
     json_decref(digest);
     response_free(&response);
+    free(settings->relative_strength);
+    free(settings->held);
     free_load(&load);
     packing_free(&packing);
     artifact_close(input);

@@ -1,76 +1,144 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "net_load.h"
 
+#include <gsl/gsl_eigen.h>
 #include <math.h>
 
-// Mass in units of the first grain's; lengths below in units of its radius.
-static double mass_of(const struct packing *packing, int i)
+// Masses in units of the first grain's, lengths of its radius, from the lower corner of
+// the box: no large numbers.
+struct whole {
+    const struct packing *packing;
+    const struct vector *displacement; // NULL: none
+    double length, mass;               // unit, and sum
+    struct vector centre;              // of mass
+    struct vector inertia[3];          // rows of the tensor about it
+};
+
+static double mass_of(const struct whole *whole, int i)
 {
-    return pow(packing->radius[i] / packing->radius[0], 3);
+    return pow(whole->packing->radius[i] / whole->length, 3);
 }
 
-static struct vector place_of(const struct packing *packing, int i,
-                              struct vector origin)
+static struct vector place_of(const struct whole *whole, int i)
 {
-    return scale(1 / packing->radius[0], subtract(packing->position[i], origin));
+    struct vector from = subtract(whole->packing->position[i], whole->packing->lower);
+    if (whole->displacement) from = add(from, whole->displacement[i]);
+    return subtract(scale(1 / whole->length, from), whole->centre);
 }
 
-static struct vector centre_of_mass(const struct packing *packing, double *mass)
+// The tensor is sum m (r.r 1 - r r).
+static struct whole whole_of(const struct packing *packing,
+                           const struct vector *displacement)
 {
-    struct vector sum = {0};
-    *mass = 0;
-    for (int i = 0; i < packing->n_particle; i++) { // from one corner: no large numbers
-        const struct vector from = subtract(packing->position[i], packing->lower);
-        sum = add(sum, scale(mass_of(packing, i), from));
-        *mass += mass_of(packing, i);
-    }
-    return add(packing->lower, scale(1 / *mass, sum));
-}
-
-// Rows of the inertia tensor sum m (r.r 1 - r r) about ORIGIN.
-static void inertia(const struct packing *packing, struct vector origin,
-                    struct vector row[3])
-{
-    row[0] = row[1] = row[2] = (struct vector){0};
+    struct whole whole = {.packing = packing,
+                        .displacement = displacement,
+                        .length = packing->n_particle ? packing->radius[0] : 1};
+    struct vector sum = {0, 0, 0};
     for (int i = 0; i < packing->n_particle; i++) {
-        const struct vector r = place_of(packing, i, origin);
+        sum = add(sum, scale(mass_of(&whole, i), place_of(&whole, i)));
+        whole.mass += mass_of(&whole, i);
+    }
+    if (whole.mass > 0) whole.centre = scale(1 / whole.mass, sum);
+    for (int i = 0; i < packing->n_particle; i++) {
+        const struct vector r = place_of(&whole, i);
         for (int axis = 0; axis < 3; axis++) {
             struct vector part = scale(-component(r, axis), r);
             set_component(&part, axis, component(part, axis) + dot(r, r));
-            row[axis] = add(row[axis], scale(mass_of(packing, i), part));
+            whole.inertia[axis] =
+                add(whole.inertia[axis], scale(mass_of(&whole, i), part));
         }
     }
+    return whole;
 }
 
-// The angular acceleration that MOMENT gives, by Cramer's rule; none for grains in a
-// line or at one point, which have no inertia about some axis.
-static struct vector angular_acceleration(const struct vector row[3],
-                                          struct vector moment)
+// Of a box that repeats along one axis only what turns about that one is free; along
+// two, nothing is.
+static bool turns_about(const struct packing *packing, int axis)
 {
-    const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
-                                     cross(row[0], row[1])};
-    const double determinant = dot(row[0], across[0]);
-    const double size = norm(row[0]) + norm(row[1]) + norm(row[2]);
-    if (!(determinant > 1e-9 * size * size * size)) return (struct vector){0};
-    return scale(1 / determinant,
-                 add(scale(moment.x, across[0]),
-                     add(scale(moment.y, across[1]), scale(moment.z, across[2]))));
+    return !packing->periodic[(axis + 1) % 3] && !packing->periodic[(axis + 2) % 3];
 }
 
-void take_off_net_load(const struct packing *packing, struct vector *force)
+// What MOMENT turns the grains with, by the principal axes; none for grains in a line
+// about that, which have no inertia.
+static struct vector turn_of(const struct whole *whole, struct vector moment)
 {
-    double mass;
-    const struct vector origin = centre_of_mass(packing, &mass);
-    struct vector net = {0}, moment = {0}, row[3];
-    for (int i = 0; i < packing->n_particle; i++) {
-        net = add(net, force[i]);
-        moment = add(moment, cross(place_of(packing, i, origin), force[i]));
+    double tensor[9], own[3], axes[9];
+    for (int k = 0; k < 9; k++) {
+        const bool free = turns_about(whole->packing, k / 3) &&
+                          turns_about(whole->packing, k % 3);
+        tensor[k] = free ? component(whole->inertia[k / 3], k % 3) : 0;
+        if (!turns_about(whole->packing, k / 3)) set_component(&moment, k / 3, 0);
     }
-    inertia(packing, origin, row);
-    const struct vector turn = angular_acceleration(row, moment);
-    for (int i = 0; i < packing->n_particle; i++) {
-        const struct vector push =
-            add(scale(1 / mass, net), cross(turn, place_of(packing, i, origin)));
-        force[i] = subtract(force[i], scale(mass_of(packing, i), push));
+    gsl_matrix_view matrix = gsl_matrix_view_array(tensor, 3, 3);
+    gsl_matrix_view vectors = gsl_matrix_view_array(axes, 3, 3);
+    gsl_vector_view values = gsl_vector_view_array(own, 3);
+    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(3);
+    gsl_eigen_symmv(&matrix.matrix, &values.vector, &vectors.matrix, space);
+    gsl_eigen_symmv_free(space);
+    const double size = own[0] + own[1] + own[2];
+    struct vector turn = {0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        const struct vector axis = {axes[k], axes[3 + k], axes[6 + k]};
+        if (own[k] > 1e-9 * size)
+            turn = add(turn, scale(dot(axis, moment) / own[k], axis));
     }
+    return turn;
+}
+
+// The moment about the centre of mass.
+static struct net_load about_centre(const struct whole *whole, const struct vector *force)
+{
+    struct net_load net = {0};
+    for (int i = 0; i < whole->packing->n_particle; i++) {
+        net.force = add(net.force, force[i]);
+        net.moment = add(net.moment, cross(place_of(whole, i), force[i]));
+    }
+    return net;
+}
+
+static struct net_load about_corner(const struct whole *whole, struct net_load net)
+{
+    const struct vector moment = add(net.moment, cross(whole->centre, net.force));
+    return (struct net_load){net.force, scale(whole->length, moment)};
+}
+
+// What stops the grains within the time, and has them at rest from then on.
+static struct net_load stopping(const struct whole *whole,
+                                const struct moving_grains *now)
+{
+    struct net_load sum = {0};
+    for (int i = 0; i < whole->packing->n_particle; i++) {
+        const double mass = mass_of(whole, i);
+        const double r = whole->packing->radius[i] / whole->length;
+        const struct vector push = scale(mass, now->velocity[i]);
+        const struct vector own = scale(0.4 * mass * r * r * whole->length, now->spin[i]);
+        sum.force = add(sum.force, push);
+        sum.moment = add(sum.moment, add(cross(place_of(whole, i), push), own));
+    }
+    const double unit = now->density * 4 * M_PI / 3 * pow(whole->length, 3) / now->time;
+    return (struct net_load){scale(unit, sum.force), scale(unit, sum.moment)};
+}
+
+struct net_load take_off_net_load(const struct packing *packing,
+                                  const struct moving_grains *now,
+                                  struct vector *force)
+{
+    const struct whole whole = whole_of(packing, now ? now->displacement : NULL);
+    const struct net_load net = about_centre(&whole, force);
+    const struct net_load stop =
+        now ? stopping(&whole, now) : (struct net_load){{0, 0, 0}, {0, 0, 0}};
+    const struct vector turn = turn_of(&whole, add(net.moment, stop.moment));
+    const struct vector push = scale(1 / whole.mass, add(net.force, stop.force));
+    for (int i = 0; i < packing->n_particle; i++) {
+        const struct vector each = add(push, cross(turn, place_of(&whole, i)));
+        force[i] = subtract(force[i], scale(mass_of(&whole, i), each));
+    }
+    return about_corner(&whole, net);
+}
+
+struct net_load net_load(const struct packing *packing,
+                         const struct vector *displacement, const struct vector *force)
+{
+    const struct whole whole = whole_of(packing, displacement);
+    return about_corner(&whole, about_centre(&whole, force));
 }

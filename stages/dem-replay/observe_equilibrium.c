@@ -79,6 +79,35 @@ struct dem_contact *equilibrium_contacts(const struct equilibrium *e, int *count
     return contact;
 }
 
+// Where END of a joint is loaded: the centre of a grain, or the wall at the contact.
+static struct vector loaded_at(const struct equilibrium *e, const struct joint *joint,
+                               int end)
+{
+    if (joint->grain[end] >= 0) return e->packing->position[joint->grain[end]];
+    return add(e->packing->position[joint->grain[0]],
+               scale(e->length * joint->arm[0], joint->axis[0]));
+}
+
+void equilibrium_reaction(const struct equilibrium *e, struct vector about,
+                          struct vector *force, struct vector *moment)
+{
+    const double unit = e->stiffness * e->length;
+    *force = *moment = (struct vector){0, 0, 0};
+    for (int j = 0; j < e->n_joint; j++)
+        for (int end = 0; end < 2 && !e->joint[j].is_gone; end++) {
+            const int grain = e->joint[j].grain[end];
+            if (grain >= 0 && !e->setup.fixed[grain]) continue;
+            const struct displacement load =
+                joint_loads(&e->joint[j], end, e->resistance[j].load);
+            const struct vector pull = scale(unit, load.shift);
+            const struct vector from =
+                subtract(loaded_at(e, &e->joint[j], end), about);
+            const struct vector turn = scale(unit * e->length, load.turn);
+            *force = add(*force, pull);
+            *moment = add(*moment, add(cross(from, pull), turn));
+        }
+}
+
 // [K 4.20].
 double equilibrium_unbalanced_ratio(const struct equilibrium *e)
 {

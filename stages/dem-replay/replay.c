@@ -3,27 +3,12 @@
 
 #include "basics/memory.h"
 #include "equilibrium.h"
-#include "net_load.h"
+#include "reaction.h"
 #include "resume.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// ---- supports -----------------------------------------------------------------------
-
-static const double touching = 1e-6; // of the radius
-
-static uint8_t *fixed_grains(const struct packing *packing, enum support support)
-{
-    uint8_t *fixed = NEW_ARRAY(uint8_t, packing->n_particle);
-    for (int i = 0; i < packing->n_particle && support == SUPPORT_FIXED; i++)
-        fixed[i] = packing->position[i].z - packing->lower.z <=
-                   (1 + touching) * packing->radius[i];
-    return fixed;
-}
-
-// ---- one replay ---------------------------------------------------------------------
 
 struct run {
     const struct packing *packing;
@@ -33,39 +18,53 @@ struct run {
     const struct keeper *keeper;
     struct dem *dem; // of the two engines the one asked for
     struct equilibrium *equilibrium;
-    uint8_t *fixed;       // (n_particle)
     struct vector *force; // (n_particle) of this step
+    struct net_load taken_off;
     struct replay_place place;
 };
 
-static enum status begin_equilibrium(struct run *run, const uint8_t *fixed,
-                                     struct reason *reason)
+static enum status begin_equilibrium(struct run *run, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
     const struct equilibrium_setup setup = {
         .packing = run->packing,
-        .fixed = fixed,
+        .fixed = settings->held,
         .has_wall = settings->support == SUPPORT_WALL,
         .material = settings->material,
         .bond = settings->bond,
         .unstressed = settings->unstressed,
+        .relative_strength = settings->relative_strength,
         .tolerance = settings->equilibrium_tolerance,
         .most_iterations = settings->most_iterations};
     return equilibrium_new(&run->equilibrium, &setup, reason);
 }
 
-static enum status begin_dem(struct run *run, const uint8_t *fixed,
-                             struct reason *reason)
+// NULL: all have the mean.
+static double *strengths(const struct run *run, double mean)
+{
+    const double *relative = run->settings->relative_strength;
+    if (!relative) return NULL;
+    double *strength = NEW_ARRAY(double, run->packing->n_bond);
+    for (int b = 0; b < run->packing->n_bond; b++)
+        strength[b] = mean * relative[b];
+    return strength;
+}
+
+static enum status begin_dem(struct run *run, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
     const struct packing *packing = run->packing;
     const struct dem_wall beneath = {.point = packing->lower, .normal = {0, 0, 1}};
+    double *normal = strengths(run, settings->bond.normal_strength);
+    double *shear = strengths(run, settings->bond.shear_strength);
     const struct dem_setup setup = {
         .packing = packing,
         .material = settings->material,
         .bond = settings->bond,
+        .normal_strength = normal,
+        .shear_strength = shear,
         .liquid = settings->liquid.volume > 0 ? &settings->liquid : NULL,
-        .fixed = fixed,
+        .fixed = settings->held,
         .unstressed = settings->unstressed,
         .n_wall = settings->support == SUPPORT_WALL,
         .wall = &beneath,
@@ -73,6 +72,8 @@ static enum status begin_dem(struct run *run, const uint8_t *fixed,
         .force_time_step = settings->force_time_step,
         .threads = settings->threads};
     const enum status status = dem_create(&run->dem, &setup, reason);
+    free(normal);
+    free(shear);
     if (status) return status;
     run->response->time_step = dem_time_step(run->dem);
     // Where nothing can touch no step is too long: then what [K 4.47] says is written.
@@ -89,17 +90,39 @@ static bool is_explicit(const struct run *run)
 
 static enum status begin(struct run *run, struct reason *reason)
 {
-    run->fixed = fixed_grains(run->packing, run->settings->support);
-    return is_explicit(run) ? begin_dem(run, run->fixed, reason)
-                            : begin_equilibrium(run, run->fixed, reason);
+    return is_explicit(run) ? begin_dem(run, reason) : begin_equilibrium(run, reason);
 }
 
+// Forces keep their directions when grains turn as one, and would turn them further:
+// what is taken off follows the grains, often enough to bring all such motion to rest.
+enum { TAKE_OFF_EVERY = 16 }; // cycles
+
+static void take_off(struct run *run)
+{
+    if (!is_explicit(run)) {
+        run->taken_off = take_off_net_load(run->packing, NULL, run->force);
+        return;
+    }
+    struct vector *state[3];
+    for (int k = 0; k < 3; k++)
+        state[k] = NEW_ARRAY(struct vector, run->packing->n_particle);
+    dem_displacements(run->dem, state[0]);
+    dem_velocities(run->dem, state[1]);
+    dem_spins(run->dem, state[2]);
+    const struct moving_grains now = {state[0], state[1], state[2],
+                                      run->settings->material.density,
+                                      TAKE_OFF_EVERY * dem_time_step(run->dem)};
+    run->taken_off = take_off_net_load(run->packing, &now, run->force);
+    for (int k = 0; k < 3; k++)
+        free(state[k]);
+}
+
+// The load of STEP, on the grains as they are.
 static void apply_load(struct run *run, int step)
 {
     const size_t n = (size_t)run->packing->n_particle;
     memcpy(run->force, run->load->force + (size_t)step * n, n * sizeof *run->force);
-    if (run->settings->support == SUPPORT_FREE)
-        take_off_net_load(run->packing, run->force);
+    if (run->settings->support == SUPPORT_FREE) take_off(run);
     if (is_explicit(run)) dem_set_force(run->dem, run->force);
 }
 
@@ -120,15 +143,20 @@ static bool is_loaded(const struct run *run)
     return false;
 }
 
-// CYCLES more, cut where the state may be kept.
+// CYCLES more, cut where the state may be kept, and where the load follows the grains,
+// which must not depend on it.
 static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
 {
+    const bool is_free = run->settings->support == SUPPORT_FREE;
     const int64_t end = dem_cycle(run->dem) + cycles;
-    const int64_t most = cycles_between_questions(run->packing->n_particle);
+    const int64_t most =
+        is_free ? TAKE_OFF_EVERY : cycles_between_questions(run->packing->n_particle);
     while (dem_cycle(run->dem) < end) {
-        const int64_t left = end - dem_cycle(run->dem);
-        const enum status status = dem_run(run->dem, left < most ? left : most, reason);
+        const int64_t now = dem_cycle(run->dem), left = end - now;
+        const int64_t next = is_free ? most - (now - run->place.began) % most : most;
+        const enum status status = dem_run(run->dem, left < next ? left : next, reason);
         if (status) return status;
+        if (is_free) apply_load(run, run->place.step);
         if (is_due(run->keeper))
             keep_state(run->keeper, run->dem,
                        save_response(run->response, run->packing, run->load->n_time,
@@ -175,6 +203,19 @@ static enum status settle_dem(struct run *run, struct reason *reason)
     return status ? status : run_on(run, reason);
 }
 
+static struct net_load reaction(const struct run *run)
+{
+    const enum support support = run->settings->support;
+    const uint8_t *held = run->settings->held;
+    if (support == SUPPORT_FREE)
+        return (struct net_load){scale(-1, run->taken_off.force),
+                                 scale(-1, run->taken_off.moment)};
+    return is_explicit(run) ? reaction_of_dem(run->packing, run->dem, held,
+                                              support == SUPPORT_WALL)
+                            : reaction_of_equilibrium(run->packing, run->equilibrium,
+                                                      held, run->force);
+}
+
 static enum status settle(struct run *run, int step, struct reason *reason)
 {
     const enum status status =
@@ -184,6 +225,7 @@ static enum status settle(struct run *run, int step, struct reason *reason)
     run->response->unbalanced_ratio[step] =
         is_explicit(run) ? unbalanced_ratio(run->dem)
                          : equilibrium_unbalanced_ratio(run->equilibrium);
+    run->response->reaction[step] = reaction(run);
     if (!status) return STATUS_OK;
     struct reason cause = *reason;
     return refuse(reason, status, "step %d of the load (saturation %.3f): %.400s", step,
@@ -269,6 +311,7 @@ enum status replay(const struct packing *packing, const struct load *load,
         (struct response){.unbalanced_ratio = NEW_ARRAY(double, load->n_time),
                           .cycles = NEW_ARRAY(int64_t, load->n_time),
                           .cracks = NEW_ARRAY(int32_t, load->n_time),
+                          .reaction = NEW_ARRAY(struct net_load, load->n_time),
                           .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot)};
     struct run run = {.packing = packing,
                       .load = load,
@@ -290,7 +333,6 @@ enum status replay(const struct packing *packing, const struct load *load,
     }
     dem_free(run.dem);
     equilibrium_free(run.equilibrium);
-    free(run.fixed);
     free(run.force);
     if (status) response_free(response);
     return status;
@@ -310,5 +352,6 @@ void response_free(struct response *response)
     free(response->unbalanced_ratio);
     free(response->cycles);
     free(response->cracks);
+    free(response->reaction);
     *response = (struct response){0};
 }

@@ -6,12 +6,13 @@
 #include "basics/status.h"
 #include "dem/dem.h"
 #include "dem/keeper.h"
+#include "net_load.h"
 
 #include <stdbool.h>
 
 enum support {
     SUPPORT_FREE,  // nothing holds the aggregate; net force and moment are taken off
-    SUPPORT_FIXED, // grains that touch the lower z wall neither move nor turn
+    SUPPORT_FIXED, // some grains are held: they neither move nor turn
     SUPPORT_WALL   // a rigid wall beneath, at the lower z wall
 };
 
@@ -30,6 +31,8 @@ struct load {
 struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
+    double *relative_strength; // (n_bond) of those of `bond`; NULL: 1
+    uint8_t *held;             // (n_particle) 1: neither moves nor turns
     struct dem_liquid liquid; // of no volume: none
     bool unstressed;          // overlaps of the packing do not push
     enum support support;
@@ -63,6 +66,8 @@ struct response {
     double *unbalanced_ratio; // (n_time) at the end of each step
     int64_t *cycles;          // (n_time) of time steps; quasi-static: of iterations
     int32_t *cracks;          // (n_time) so far
+    struct net_load *reaction; // (n_time) of supports on the grains, or in place of
+                               // them: what was taken off, the other way
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static

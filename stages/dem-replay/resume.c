@@ -96,6 +96,7 @@ struct array_list save_response(const struct response *response,
               response->unbalanced_ratio);
     add_array(&list, "cycles", DEM_INT64, n_time, response->cycles);
     add_array(&list, "cracks", DEM_INT32, n_time, response->cracks);
+    add_array(&list, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, response->reaction);
     add_array(&list, "crack_step", DEM_INT32, response->n_crack, response->crack_step);
     save_snapshots(&list, response, packing);
     save_contacts(&list, response);
@@ -117,12 +118,15 @@ static enum status restore_history(struct response *response, int n_time,
         read_array(reader, "cycles", DEM_INT64, n_time, 0, most_cycles);
     const int32_t *cracks =
         read_array(reader, "cracks", DEM_INT32, n_time, 0, INT32_MAX);
+    const struct net_load *reaction = read_array(
+        reader, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, -largest, largest);
     if (reader->failed) return STATUS_BAD_DATA;
     const size_t n = (size_t)n_time;
     *place = (struct replay_place){(int)*step, *began};
     memcpy(response->unbalanced_ratio, ratio, n * sizeof *ratio);
     memcpy(response->cycles, cycles, n * sizeof *cycles);
     memcpy(response->cracks, cracks, n * sizeof *cracks);
+    memcpy(response->reaction, reaction, n * sizeof *reaction);
     return STATUS_OK;
 }
 

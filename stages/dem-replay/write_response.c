@@ -43,6 +43,28 @@ static void put_history(struct artifact *artifact, const struct load *load,
                  load->n_time);
     artifact_put(artifact, "/history/cycles", response->cycles, load->n_time);
     artifact_put(artifact, "/history/cracks", response->cracks, load->n_time);
+    struct vector *force = NEW_ARRAY(struct vector, load->n_time);
+    struct vector *moment = NEW_ARRAY(struct vector, load->n_time);
+    for (int k = 0; k < load->n_time; k++) {
+        force[k] = response->reaction[k].force;
+        moment[k] = response->reaction[k].moment;
+    }
+    artifact_put(artifact, "/history/reaction_force", force, load->n_time);
+    artifact_put(artifact, "/history/reaction_moment", moment, load->n_time);
+    free(force);
+    free(moment);
+}
+
+static void put_settings(struct artifact *artifact, const struct packing *packing,
+                         const struct replay_settings *settings)
+{
+    const int n = packing->n_bond;
+    double *relative = NEW_ARRAY(double, n);
+    for (int b = 0; b < n; b++)
+        relative[b] = settings->relative_strength ? settings->relative_strength[b] : 1;
+    artifact_put(artifact, "/bonds/relative_strength", relative, n);
+    artifact_put(artifact, "/particles/held", settings->held, packing->n_particle);
+    free(relative);
 }
 
 // ---- contacts of all snapshots ------------------------------------------------------
@@ -165,9 +187,11 @@ static double largest(const double *values, int count)
 }
 
 void put_response(struct artifact *artifact, const struct packing *packing,
-                  const struct load *load, const struct response *response)
+                  const struct load *load, const struct replay_settings *settings,
+                  const struct response *response)
 {
     artifact_put_packing(artifact, packing);
+    put_settings(artifact, packing, settings);
     put_cracks(artifact, load, response);
     put_history(artifact, load, response);
     struct contact_list contacts = all_contacts(packing, response);

@@ -7,7 +7,8 @@
 
 // Puts cracks, history, contacts and snapshots into a response artifact.
 void put_response(struct artifact *artifact, const struct packing *packing,
-                  const struct load *load, const struct response *response);
+                  const struct load *load, const struct replay_settings *settings,
+                  const struct response *response);
 
 // Of any grain at any snapshot, m.
 double largest_displacement(const struct packing *packing,

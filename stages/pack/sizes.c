@@ -95,7 +95,7 @@ static enum status prepare_normal(const struct size_parameters *parameters,
     sizes->deviation = spread * parameters->radius;
     sizes->thinned = parameters->by == SHARE_OF_MASS;
     const double span = log(sizes->largest / sizes->smallest);
-    sizes->n_piece = sizes->thinned ? (int)fmin(SIZE_PIECES, ceil(span / log(1.1))) : 1;
+    sizes->n_piece = sizes->thinned ? (int)fmin(64, ceil(span / log(1.1))) : 1;
     double total = 0;
     for (int k = 0; k <= sizes->n_piece; k++)
         sizes->edge[k] = sizes->smallest * exp(span * k / sizes->n_piece);

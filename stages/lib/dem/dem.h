@@ -274,6 +274,10 @@ void dem_spins(const struct dem *dem, struct vector *spin);
 void dem_radii(const struct dem *dem, double *radius);                           // m
 void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper); // m
 
+// Net force, N, and moment about the centre, N m, on every grain (n_particle) in the
+// last cycle, from outside too.
+void dem_loads(const struct dem *dem, struct vector *force, struct vector *moment);
+
 // The contacts by first, then second grain, then those with walls; a new array of
 // *COUNT that the caller frees.
 struct dem_contact *dem_contacts(const struct dem *dem, int *count);

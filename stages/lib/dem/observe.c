@@ -48,6 +48,17 @@ void dem_spins(const struct dem *dem, struct vector *spin)
             scale(1 / dem->unit.time, as_vector(dem->motion[i].angular));
 }
 
+void dem_loads(const struct dem *dem, struct vector *force, struct vector *moment)
+{
+    const double unit = dem->unit.stiffness * dem->unit.length;
+    for (int i = 0; i < dem->n_particle; i++) {
+        const struct motion load = load_on_grain(dem, i);
+        force[dem->identity[i]] = scale(unit, as_vector(load.linear));
+        moment[dem->identity[i]] =
+            scale(unit * dem->unit.length, as_vector(load.angular));
+    }
+}
+
 void dem_radii(const struct dem *dem, double *radius)
 {
     for (int i = 0; i < dem->n_particle; i++)

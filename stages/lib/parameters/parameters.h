@@ -22,8 +22,8 @@ enum parameter_type {
     PARAMETER_LIST    // struct number_list
 };
 
-// A short list of numbers, in the order given.
-enum { LIST_MOST = 64 };
+// A list of numbers, in the order given.
+enum { LIST_MOST = 1024 };
 struct number_list {
     int count;
     double value[LIST_MOST];

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "held.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double touching = 1e-6; // of the radius
+
+static bool touches(const struct packing *packing, int grain, unsigned walls)
+{
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        const double x = component(packing->position[grain], wall / 2);
+        const double at = wall_position(packing, wall);
+        const double inwards = wall % 2 ? at - x : x - at;
+        if (walls >> wall & 1 && inwards <= (1 + touching) * packing->radius[grain])
+            return true;
+    }
+    return false;
+}
+
+static bool lies_within(struct vector x, const double lower[3], const double upper[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (!(component(x, axis) >= lower[axis] && component(x, axis) <= upper[axis]))
+            return false;
+    return true;
+}
+
+static enum status check_region(const struct held *held, struct reason *reason)
+{
+    if (isnan(held->lower[0]) != isnan(held->upper[0]))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "held.%s: must be given, as the other corner is",
+                      isnan(held->lower[0]) ? "lower" : "upper");
+    for (int axis = 0; axis < 3; axis++)
+        if (held->lower[axis] > held->upper[axis])
+            return refuse(reason, STATUS_BAD_DATA,
+                          "held.upper: %c must be >= %g, of held.lower, got %g",
+                          "xyz"[axis], held->lower[axis], held->upper[axis]);
+    return STATUS_OK;
+}
+
+static enum status check_grains(const struct packing *packing, const struct held *held,
+                                struct reason *reason)
+{
+    for (int k = 0; k < held->grains.count; k++) {
+        const double grain = held->grains.value[k];
+        if (grain != floor(grain) || grain >= packing->n_particle)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "held.grains: must be whole numbers below %d, got %g",
+                          packing->n_particle, grain);
+    }
+    return STATUS_OK;
+}
+
+enum status find_held(const struct packing *packing, const struct held *held,
+                      uint8_t **is_held, struct reason *reason)
+{
+    enum status status = check_region(held, reason);
+    if (!status) status = check_grains(packing, held, reason);
+    if (status) return status;
+    *is_held = NEW_ARRAY(uint8_t, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        (*is_held)[i] =
+            touches(packing, i, held->walls) ||
+            lies_within(packing->position[i], held->lower, held->upper);
+    for (int k = 0; k < held->grains.count; k++)
+        (*is_held)[(int)held->grains.value[k]] = 1;
+    return STATUS_OK;
+}

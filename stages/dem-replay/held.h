@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which grains are held: they neither move nor turn.
+#ifndef CRAQUELURE_HELD_H
+#define CRAQUELURE_HELD_H
+
+#include "basics/status.h"
+#include "geometry/packing.h"
+#include "parameters/parameters.h"
+
+// All of these together.
+struct held {
+    unsigned walls;            // bit k: the grains that touch wall k of the box
+    struct number_list grains; // by number
+    double lower[3], upper[3]; // grains with their centres in here; NAN: none
+};
+
+// 1 for each grain that is held, (n_particle), that the caller frees. STATUS_BAD_DATA:
+// a grain that does not exist, or half a region.
+enum status find_held(const struct packing *packing, const struct held *held,
+                      uint8_t **is_held, struct reason *reason);
+
+#endif
