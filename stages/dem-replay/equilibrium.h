@@ -20,12 +20,12 @@
 #include "dem/dem.h"
 
 struct equilibrium_setup {
-    const struct packing *packing; // with its bonds
-    const uint8_t *fixed;          // (n_particle)
-    bool has_wall;                 // beneath, at the lower z wall
-    bool unstressed;               // overlaps of the packing do not push
-    struct dem_material material;  // density and damping have no part in it
-    struct dem_bond_material bond; // parallel
+    const struct packing *packing;   // with its bonds
+    const uint8_t *fixed;            // (n_particle)
+    bool has_wall;                   // beneath, at the lower z wall
+    bool unstressed;                 // overlaps of the packing do not push
+    struct dem_material material;    // density and damping have no part in it
+    struct dem_bond_material bond;   // parallel
     const double *relative_strength; // (n_bond) of that of the material; NULL: 1
     double tolerance; // largest force or moment left on a grain, of the largest load
     int64_t most_iterations; // steps in time to one equilibrium
@@ -60,6 +60,8 @@ void equilibrium_reaction(const struct equilibrium *equilibrium, struct vector a
 double equilibrium_unbalanced_ratio(const struct equilibrium *equilibrium);
 
 int equilibrium_iterations(const struct equilibrium *equilibrium); // so far
+// (n_particle) of those that have left.
+const bool *equilibrium_is_gone(const struct equilibrium *equilibrium);
 // Grains that have left, and the FIRST of them.
 int equilibrium_gone(const struct equilibrium *equilibrium, int *first);
 // Loads under which something held did not come to rest, and the grain that had most

@@ -38,7 +38,7 @@ static enum status check_region(const struct held *held, struct reason *reason)
         if (held->lower[axis] > held->upper[axis])
             return refuse(reason, STATUS_BAD_DATA,
                           "held.upper: %c must be >= %g, of held.lower, got %g",
-                          "xyz"[axis], held->lower[axis], held->upper[axis]);
+                          "xyz"[axis], held -> lower[axis], held -> upper[axis]);
     return STATUS_OK;
 }
 
@@ -63,9 +63,8 @@ enum status find_held(const struct packing *packing, const struct held *held,
     if (status) return status;
     *is_held = NEW_ARRAY(uint8_t, packing->n_particle);
     for (int i = 0; i < packing->n_particle; i++)
-        (*is_held)[i] =
-            touches(packing, i, held->walls) ||
-            lies_within(packing->position[i], held->lower, held->upper);
+        (*is_held)[i] = touches(packing, i, held->walls) ||
+                        lies_within(packing->position[i], held->lower, held->upper);
     for (int k = 0; k < held->grains.count; k++)
         (*is_held)[(int)held->grains.value[k]] = 1;
     return STATUS_OK;

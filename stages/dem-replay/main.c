@@ -99,8 +99,8 @@ static const struct parameter table[] = {
      "and these, by number", AT(held.grains)},
     {"held.lower", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL,
      "and those with their centres between this corner", AT(held.lower)},
-    {"held.upper", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL,
-     "and this one", AT(held.upper)},
+    {"held.upper", PARAMETER_POINT, "m", "null", BOUND_NONE, 0, 0, NULL, "and this one",
+     AT(held.upper)},
     {"engine", PARAMETER_CHOICE, "1", "\"explicit\"", BOUND_NONE, 0, 0,
      "explicit|quasi-static",
      "explicit: cycles of discrete elements [K 4]; quasi-static: equilibrium itself, "
@@ -247,8 +247,7 @@ static void write_response(const struct packing *packing, const struct load *loa
                            const struct artifact *input)
 {
     static const char *const supports[] = {"free, net force and moment taken off",
-                                           "%d grains held",
-                                           "a rigid wall beneath"};
+                                           "%d grains held", "a rigid wall beneath"};
     static const char *const engines[] = {
         "discrete elements: leapfrog, linear contacts, slip, dashpots, %s bonds [K 4]",
         "equilibria: linear contacts, slip, %s bonds that break one by one [K 4], "

@@ -28,11 +28,11 @@ static struct vector place_of(const struct whole *whole, int i)
 
 // The tensor is sum m (r.r 1 - r r).
 static struct whole whole_of(const struct packing *packing,
-                           const struct vector *displacement)
+                             const struct vector *displacement)
 {
     struct whole whole = {.packing = packing,
-                        .displacement = displacement,
-                        .length = packing->n_particle ? packing->radius[0] : 1};
+                          .displacement = displacement,
+                          .length = packing->n_particle ? packing->radius[0] : 1};
     struct vector sum = {0, 0, 0};
     for (int i = 0; i < packing->n_particle; i++) {
         sum = add(sum, scale(mass_of(&whole, i), place_of(&whole, i)));
@@ -64,8 +64,8 @@ static struct vector turn_of(const struct whole *whole, struct vector moment)
 {
     double tensor[9], own[3], axes[9];
     for (int k = 0; k < 9; k++) {
-        const bool free = turns_about(whole->packing, k / 3) &&
-                          turns_about(whole->packing, k % 3);
+        const bool free =
+            turns_about(whole->packing, k / 3) && turns_about(whole->packing, k % 3);
         tensor[k] = free ? component(whole->inertia[k / 3], k % 3) : 0;
         if (!turns_about(whole->packing, k / 3)) set_component(&moment, k / 3, 0);
     }
@@ -86,7 +86,8 @@ static struct vector turn_of(const struct whole *whole, struct vector moment)
 }
 
 // The moment about the centre of mass.
-static struct net_load about_centre(const struct whole *whole, const struct vector *force)
+static struct net_load about_centre(const struct whole *whole,
+                                    const struct vector *force)
 {
     struct net_load net = {0};
     for (int i = 0; i < whole->packing->n_particle; i++) {
@@ -111,7 +112,8 @@ static struct net_load stopping(const struct whole *whole,
         const double mass = mass_of(whole, i);
         const double r = whole->packing->radius[i] / whole->length;
         const struct vector push = scale(mass, now->velocity[i]);
-        const struct vector own = scale(0.4 * mass * r * r * whole->length, now->spin[i]);
+        const struct vector own =
+            scale(0.4 * mass * r * r * whole->length, now->spin[i]);
         sum.force = add(sum.force, push);
         sum.moment = add(sum.moment, add(cross(place_of(whole, i), push), own));
     }
@@ -120,8 +122,7 @@ static struct net_load stopping(const struct whole *whole,
 }
 
 struct net_load take_off_net_load(const struct packing *packing,
-                                  const struct moving_grains *now,
-                                  struct vector *force)
+                                  const struct moving_grains *now, struct vector *force)
 {
     const struct whole whole = whole_of(packing, now ? now->displacement : NULL);
     const struct net_load net = about_centre(&whole, force);

@@ -18,6 +18,11 @@ int equilibrium_iterations(const struct equilibrium *e)
     return e->iterations;
 }
 
+const bool *equilibrium_is_gone(const struct equilibrium *e)
+{
+    return e->is_gone;
+}
+
 int equilibrium_gone(const struct equilibrium *e, int *first)
 {
     *first = e->first_gone;
@@ -100,8 +105,7 @@ void equilibrium_reaction(const struct equilibrium *e, struct vector about,
             const struct displacement load =
                 joint_loads(&e->joint[j], end, e->resistance[j].load);
             const struct vector pull = scale(unit, load.shift);
-            const struct vector from =
-                subtract(loaded_at(e, &e->joint[j], end), about);
+            const struct vector from = subtract(loaded_at(e, &e->joint[j], end), about);
             const struct vector turn = scale(unit * e->length, load.turn);
             *force = add(*force, pull);
             *moment = add(*moment, add(cross(from, pull), turn));

@@ -40,7 +40,6 @@ struct net_load reaction_of_equilibrium(const struct packing *packing,
     struct net_load sum = {0};
     equilibrium_reaction(equilibrium, packing->lower, &sum.force, &sum.moment);
     for (int i = 0; i < packing->n_particle; i++)
-        if (held[i])
-            add_load(packing, i, -1, force[i], (struct vector){0, 0, 0}, &sum);
+        if (held[i]) add_load(packing, i, -1, force[i], (struct vector){0, 0, 0}, &sum);
     return sum;
 }

@@ -210,10 +210,10 @@ static struct net_load reaction(const struct run *run)
     if (support == SUPPORT_FREE)
         return (struct net_load){scale(-1, run->taken_off.force),
                                  scale(-1, run->taken_off.moment)};
-    return is_explicit(run) ? reaction_of_dem(run->packing, run->dem, held,
-                                              support == SUPPORT_WALL)
-                            : reaction_of_equilibrium(run->packing, run->equilibrium,
-                                                      held, run->force);
+    return is_explicit(run)
+               ? reaction_of_dem(run->packing, run->dem, held, support == SUPPORT_WALL)
+               : reaction_of_equilibrium(run->packing, run->equilibrium, held,
+                                         run->force);
 }
 
 static enum status settle(struct run *run, int step, struct reason *reason)

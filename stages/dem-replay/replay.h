@@ -33,8 +33,8 @@ struct replay_settings {
     struct dem_bond_material bond;
     double *relative_strength; // (n_bond) of those of `bond`; NULL: 1
     uint8_t *held;             // (n_particle) 1: neither moves nor turns
-    struct dem_liquid liquid; // of no volume: none
-    bool unstressed;          // overlaps of the packing do not push
+    struct dem_liquid liquid;  // of no volume: none
+    bool unstressed;           // overlaps of the packing do not push
     enum support support;
     enum engine engine;
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load
@@ -62,10 +62,10 @@ struct snapshot {
 struct response {
     int n_crack;
     struct dem_crack *crack;
-    int *crack_step;          // (n_crack) row of the load it broke under
-    double *unbalanced_ratio; // (n_time) at the end of each step
-    int64_t *cycles;          // (n_time) of time steps; quasi-static: of iterations
-    int32_t *cracks;          // (n_time) so far
+    int *crack_step;           // (n_crack) row of the load it broke under
+    double *unbalanced_ratio;  // (n_time) at the end of each step
+    int64_t *cycles;           // (n_time) of time steps; quasi-static: of iterations
+    int32_t *cracks;           // (n_time) so far
     struct net_load *reaction; // (n_time) of supports on the grains, or in place of
                                // them: what was taken off, the other way
     int n_snapshot;

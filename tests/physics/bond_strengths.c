@@ -82,7 +82,8 @@ static void drawn_as_the_distribution_says(void **state)
 static void one_number_a_bond(void **state)
 {
     (void)state;
-    struct strength_scatter scatter = {.law = STRENGTH_WEIBULL, .modulus = 5, .seed = 7};
+    struct strength_scatter scatter = {
+        .law = STRENGTH_WEIBULL, .modulus = 5, .seed = 7};
     double *few = draw_strengths(&scatter, 10), *many = draw_strengths(&scatter, 1000);
     assert_memory_equal(few, many, 10 * sizeof *few);
     scatter.seed = 8;
@@ -131,19 +132,19 @@ static int pull_chain(int n, double *relative, enum engine engine, double share,
         load.force[k * (n + 1) + n].x = most * (k + 1) / steps;
     struct dem_setup stiff = stiff_setup(&packing);
     stiff.material.damping_ratio = 0.05; // bonds are soft beside contacts
-    const struct replay_settings settings = {.material = stiff.material,
-                                             .bond = {8e14, 8e14, strength, strength,
-                                                      fraction, DEM_PARALLEL_BOND},
-                                             .relative_strength = relative,
-                                             .held = held,
-                                             .support = SUPPORT_FIXED,
-                                             .engine = engine,
-                                             .equilibrium_tolerance = 1e-10,
-                                             .most_iterations = 40,
-                                             .time_step_safety = 0.045,
-                                             .cycles = 1000,
-                                             .tolerance = NAN,
-                                             .threads = 1};
+    const struct replay_settings settings = {
+        .material = stiff.material,
+        .bond = {8e14, 8e14, strength, strength, fraction, DEM_PARALLEL_BOND},
+        .relative_strength = relative,
+        .held = held,
+        .support = SUPPORT_FIXED,
+        .engine = engine,
+        .equilibrium_tolerance = 1e-10,
+        .most_iterations = 40,
+        .time_step_safety = 0.045,
+        .cycles = 1000,
+        .tolerance = NAN,
+        .threads = 1};
     const struct keeper none = {0};
     struct response response;
     struct reason reason = {""};
@@ -176,12 +177,10 @@ static void a_chain_is_as_strong_as_its_weakest_link(void **state)
                 .law = STRENGTH_WEIBULL, .modulus = m, .seed = seed};
             double *relative = draw_strengths(&scatter, n);
             int first;
-            assert_int_equal(pull_chain(n, relative, ENGINE_QUASI_STATIC, 1 - 1e-6, 1,
-                                        &first),
-                             0);
-            assert_int_equal(pull_chain(n, relative, ENGINE_QUASI_STATIC, 1 + 1e-6, 1,
-                                        &first),
-                             1);
+            assert_int_equal(
+                pull_chain(n, relative, ENGINE_QUASI_STATIC, 1 - 1e-6, 1, &first), 0);
+            assert_int_equal(
+                pull_chain(n, relative, ENGINE_QUASI_STATIC, 1 + 1e-6, 1, &first), 1);
             assert_int_equal(first, weakest(relative, n));
             sum += relative[first] / SEEDS;
             free(relative);

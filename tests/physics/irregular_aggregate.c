@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains of many sizes at irregular places, in both engines of the replay: balance of
+// the whole, energy, bonds that stay broken, and scenes that are turned or numbered
+// anew.
+#include "dem-replay/bonds.h"
+#include "dem-replay/reaction.h"
+#include "dem-replay/replay.h"
+#include "dem_scene.h"
+#include "support_irregular.h"
+
+enum { SIDE = 4, N = SIDE * SIDE * SIDE };
+
+static const double size = 1e-9;    // N, of loads that crack
+static const double strength = 6e4; // N/m2, the mean
+static const struct vector axis = {1, 2, 3};
+static const double full = 1;
+
+static struct replay_settings settings_of(enum engine engine, uint8_t *held)
+{
+    return (struct replay_settings){
+        .material = {.density = 3230,
+                     .normal_stiffness = 3e4,
+                     .shear_stiffness = 3e4,
+                     .friction = 0.5,
+                     .damping_ratio = 0.7},
+        .bond = {8e16, 8e16, strength, strength, 0.5858, DEM_PARALLEL_BOND},
+        .held = held,
+        .support = SUPPORT_FIXED,
+        .engine = engine,
+        .equilibrium_tolerance = 1e-12,
+        .most_iterations = 40,
+        .time_step_safety = 0.02,
+        .cycles = 500,
+        .tolerance = NAN,
+        .n_snapshot = 1,
+        .snapshot = &full,
+        .threads = 1};
+}
+
+// Some bonds are weak: they break one here, one there, and the rest holds.
+static double *weak_and_strong(const struct packing *packing)
+{
+    return draw_strengths(
+        &(struct strength_scatter){.law = STRENGTH_WEIBULL, .modulus = 1.5, .seed = 1},
+        packing->n_bond);
+}
+
+static double *in_stress(const double *relative, int n)
+{
+    double *each = NEW_ARRAY(double, n);
+    for (int b = 0; b < n; b++)
+        each[b] = strength * relative[b];
+    return each;
+}
+
+// FORCE, grown to all of it in STEPS equal ones, and let go again in as many.
+static struct load there_and_back(const struct vector *force, int n, int steps)
+{
+    struct load load = {.n_time = 2 * steps,
+                        .time = NEW_ARRAY(double, 2 * steps),
+                        .saturation = NEW_ARRAY(double, 2 * steps),
+                        .force = NEW_ARRAY(struct vector, 2 * steps * n)};
+    for (int k = 0; k < 2 * steps; k++)
+        for (int i = 0; i < n; i++)
+            load.force[k * n + i] =
+                scale(fmin(k + 1, 2 * steps - 1 - k) / steps, force[i]);
+    return load;
+}
+
+static struct response replayed(const struct packing *packing, const struct load *load,
+                                const struct replay_settings *settings)
+{
+    const struct keeper none = {0};
+    struct response response;
+    struct reason reason = {""};
+    if (replay(packing, load, settings, NULL, &none, &response, &reason))
+        fail_msg("%s", reason.text);
+    return response;
+}
+
+static void load_free(struct load *load)
+{
+    free(load->time);
+    free(load->saturation);
+    free(load->force);
+}
+
+// ---- the whole ----------------------------------------------------------------------
+
+static struct vector moment_of(const struct packing *packing,
+                               const struct vector *position,
+                               const struct vector *force, double *total)
+{
+    struct vector sum = {0, 0, 0};
+    *total = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const struct vector from = subtract(position[i], packing->lower);
+        sum = add(sum, cross(from, force[i]));
+        *total += norm(from) * norm(force[i]);
+    }
+    return sum;
+}
+
+// What the load and the supports give is what the grains gain of momentum, in every
+// cycle that is looked at: while bonds break and contacts slip.
+static void the_whole_balances_in_motion(void **state)
+{
+    (void)state;
+    struct packing packing = irregular_packing(SIDE, RADIUS, false);
+    uint8_t *held = lowest_grains(&packing, SIDE);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.bond.normal_stiffness = setup.bond.shear_stiffness = 8e16;
+    double *relative = weak_and_strong(&packing);
+    double *each = in_stress(relative, packing.n_bond);
+    setup.normal_strength = setup.shear_strength = each;
+    setup.fixed = held;
+    struct dem *dem = create(&setup);
+    free(relative);
+    free(each);
+    struct vector *whole = shrinking_load(&packing, size), force[N], position[N];
+    for (int step = 1; step <= 40; step++) {
+        struct vector net = {0, 0, 0};
+        double total = 0, lever;
+        for (int i = 0; i < N; i++) {
+            force[i] = scale(step / 40.0, whole[i]);
+            net = add(net, force[i]);
+            total += norm(force[i]);
+        }
+        dem_set_force(dem, force);
+        run(dem, 99);
+        dem_positions(dem, position);
+        const struct vector moment = moment_of(&packing, position, force, &lever);
+        const struct dem_momentum before = dem_momentum(dem);
+        run(dem, 1);
+        const struct dem_momentum after = dem_momentum(dem);
+        const struct net_load reaction = reaction_of_dem(&packing, dem, held, false);
+        const double rate = 1 / dem_time_step(dem);
+        const struct vector gain = scale(rate, subtract(after.linear, before.linear));
+        const struct vector turn = scale(rate, subtract(after.angular, before.angular));
+        assert_true(distance(add(net, reaction.force), gain) < 1e-10 * total);
+        assert_true(distance(add(moment, reaction.moment), turn) < 1e-10 * lever);
+        assert_true(norm(reaction.force) > 0.01 * norm(net));
+    }
+    int cracks;
+    dem_cracks(dem, &cracks);
+    assert_in_range(cracks, 5, packing.n_bond - 1);
+    dem_free(dem);
+    free(whole);
+    free(held);
+    packing_free(&packing);
+}
+
+static struct equilibrium *new_equilibrium(const struct packing *packing,
+                                           const uint8_t *held, double friction,
+                                           const double *relative)
+{
+    const struct replay_settings settings = settings_of(ENGINE_QUASI_STATIC, NULL);
+    struct equilibrium_setup setup = {.packing = packing,
+                                      .fixed = held,
+                                      .material = settings.material,
+                                      .bond = settings.bond,
+                                      .relative_strength = relative,
+                                      .tolerance = 1e-12,
+                                      .most_iterations = 40};
+    setup.material.friction = friction;
+    struct equilibrium *equilibrium;
+    struct reason reason = {""};
+    if (equilibrium_new(&equilibrium, &setup, &reason)) fail_msg("%s", reason.text);
+    return equilibrium;
+}
+
+// At rest nothing is left, of forces and of moments about any point.
+static void the_whole_balances_at_rest(void **state)
+{
+    (void)state;
+    for (int repeats = 0; repeats < 2; repeats++) {
+        struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
+        uint8_t *held = lowest_grains(&packing, SIDE);
+        double *relative = weak_and_strong(&packing);
+        struct equilibrium *equilibrium =
+            new_equilibrium(&packing, held, 0.5, relative);
+        struct vector *whole = shrinking_load(&packing, size), force[N];
+        const bool *is_gone = equilibrium_is_gone(equilibrium);
+        int cracks = 0;
+        for (int step = 1; step <= 20; step++) {
+            for (int i = 0; i < N; i++)
+                force[i] = scale(is_gone[i] ? 0 : step / 20.0, whole[i]);
+            struct reason reason = {""};
+            if (equilibrium_find(equilibrium, force, &reason))
+                fail_msg("%s", reason.text);
+            struct vector net = {0, 0, 0};
+            double total = 0, lever;
+            for (int i = 0; i < N; i++) {
+                if (is_gone[i]) force[i] = (struct vector){0, 0, 0};
+                net = add(net, force[i]);
+                total += norm(force[i]);
+            }
+            const struct vector moment =
+                moment_of(&packing, packing.position, force, &lever);
+            const struct net_load reaction =
+                reaction_of_equilibrium(&packing, equilibrium, held, force);
+            const double left = norm(add(net, reaction.force));
+            const double turn = norm(add(moment, reaction.moment));
+            if (!(left < 1e-10 * total && (repeats || turn < 1e-10 * lever)))
+                fail_msg("step %d: %g of the load, %g of its moment", step,
+                         left / total, turn / lever);
+        }
+        equilibrium_cracks(equilibrium, &cracks);
+        assert_in_range(cracks, 5, packing.n_bond - 1);
+        equilibrium_free(equilibrium);
+        free(relative);
+        free(whole);
+        free(held);
+        packing_free(&packing);
+    }
+}
+
+// ---- energy, and bonds that stay broken ---------------------------------------------
+
+// What is missing of what came in, over some cycles of SAFETY.
+static double imbalance(const struct packing *packing, const uint8_t *held,
+                        const struct vector *force, double safety)
+{
+    struct dem_setup setup = stiff_setup(packing);
+    setup.bond.normal_stiffness = setup.bond.shear_stiffness = 8e16;
+    double *relative = weak_and_strong(packing);
+    double *each = in_stress(relative, packing->n_bond);
+    setup.normal_strength = setup.shear_strength = each;
+    setup.balance_energy = true;
+    setup.fixed = held;
+    setup.material.damping_ratio = 0.2;
+    setup.time_step_safety = safety;
+    struct dem *dem = create(&setup);
+    free(relative);
+    free(each);
+    dem_set_force(dem, force);
+    struct dem_energy was = dem_energy(dem);
+    for (int k = 0; k < 20; k++) {
+        run(dem, (int64_t)(4 / safety));
+        const struct dem_energy now = dem_energy(dem);
+        assert_true(now.dashpots >= was.dashpots && now.slip >= was.slip &&
+                    now.broken >= was.broken);
+        was = now;
+    }
+    int cracks;
+    dem_cracks(dem, &cracks);
+    assert_in_range(cracks, 5, packing->n_bond);
+    assert_true(was.broken > 0.01 * was.gained);
+    const double lost = was.dashpots + was.slip + was.broken;
+    dem_free(dem);
+    return fabs(was.kinetic + was.elastic + lost - was.gained) / was.gained;
+}
+
+static void energy_is_not_created(void **state)
+{
+    (void)state;
+    for (int repeats = 0; repeats < 2; repeats++) {
+        struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
+        uint8_t *held = lowest_grains(&packing, SIDE);
+        struct vector *force = shrinking_load(&packing, size);
+        const double coarse = imbalance(&packing, held, force, 0.02);
+        const double fine = imbalance(&packing, held, force, 0.005);
+        if (!(fine < 2e-3 && fine < 0.5 * coarse))
+            fail_msg("missing %g, and %g in longer steps", fine, coarse);
+        free(held);
+        free(force);
+        packing_free(&packing);
+    }
+}
+
+// However the load comes and goes.
+static void bonds_never_heal(void **state)
+{
+    (void)state;
+    struct packing packing = irregular_packing(SIDE, RADIUS, true);
+    uint8_t *held = lowest_grains(&packing, SIDE);
+    double *relative = weak_and_strong(&packing);
+    struct vector *force = shrinking_load(&packing, size);
+    struct load load = there_and_back(force, N, 10);
+    for (int engine = 0; engine < 2; engine++) {
+        struct replay_settings settings = settings_of((enum engine)engine, held);
+        settings.relative_strength = relative;
+        double snapshot[20];
+        for (int k = 0; k < 20; k++) {
+            load.saturation[k] = 1 - k / 20.0;
+            snapshot[k] = load.saturation[k];
+        }
+        settings.snapshot = snapshot;
+        settings.n_snapshot = 20;
+        struct response response = replayed(&packing, &load, &settings);
+        assert_int_equal(response.n_snapshot, 20);
+        assert_in_range(response.n_crack, 5, packing.n_bond - 1);
+        for (int k = 0; k < 20; k++) {
+            int broken = 0;
+            for (int b = 0; b < packing.n_bond; b++) {
+                const bool intact = response.snapshot[k].intact[b];
+                assert_false(k && intact && !response.snapshot[k - 1].intact[b]);
+                broken += !intact;
+            }
+            assert_int_equal(broken, response.cracks[k]);
+        }
+        response_free(&response);
+    }
+    load_free(&load);
+    free(relative);
+    free(force);
+    free(held);
+    packing_free(&packing);
+}
+
+// ---- turned, and numbered anew ------------------------------------------------------
+
+static int bond_between(const struct packing *packing, int i, int j)
+{
+    for (int b = 0; b < packing->n_bond; b++)
+        if (packing->bond[b][0] == (i < j ? i : j) &&
+            packing->bond[b][1] == (i < j ? j : i))
+            return b;
+    return -1;
+}
+
+// The largest difference, of the largest displacement; the same bonds must have broken.
+static double difference(const struct packing *first, const struct response *a,
+                         const struct packing *second, const struct response *b,
+                         double angle, const int *order)
+{
+    double most = 0, largest = 0;
+    int number[N];
+    for (int i = 0; i < N; i++) {
+        const struct vector was = a->snapshot[0].displacement[order[i]];
+        const struct vector is = b->snapshot[0].displacement[i];
+        most = fmax(most, distance(turned(was, axis, angle), is));
+        largest = fmax(largest, norm(was));
+        number[order[i]] = i;
+    }
+    for (int k = 0; k < first->n_bond; k++) {
+        const int other =
+            bond_between(second, number[first->bond[k][0]], number[first->bond[k][1]]);
+        assert_true(other >= 0);
+        assert_int_equal(a->snapshot[0].intact[k], b->snapshot[0].intact[other]);
+    }
+    return most / largest;
+}
+
+static void turned_and_renumbered_the_same(void **state)
+{
+    (void)state;
+    struct packing packing = irregular_packing(SIDE, RADIUS, false);
+    int *order = shuffled(N, 3);
+    const double angle = 0.7;
+    struct packing other = turned_packing(&packing, axis, angle, order);
+    uint8_t *held = lowest_grains(&packing, SIDE), *held_there = NEW_ARRAY(uint8_t, N);
+    double *relative = weak_and_strong(&packing);
+    double *relative_there = NEW_ARRAY(double, packing.n_bond);
+    struct vector *force = shrinking_load(&packing, size), there[N];
+    int number[N];
+    for (int i = 0; i < N; i++) {
+        held_there[i] = held[order[i]];
+        there[i] = turned(force[order[i]], axis, angle);
+        number[order[i]] = i;
+    }
+    for (int b = 0; b < packing.n_bond; b++)
+        relative_there[bond_between(&other, number[packing.bond[b][0]],
+                                    number[packing.bond[b][1]])] = relative[b];
+    struct load load = there_and_back(force, N, 5);
+    struct load turned_load = there_and_back(there, N, 5);
+    load.n_time = turned_load.n_time = 5; // there only
+    const double last[1] = {0};
+    for (int k = 0; k < 5; k++)
+        load.saturation[k] = turned_load.saturation[k] = 4 - k;
+    for (int engine = 0; engine < 2; engine++) {
+        struct replay_settings settings = settings_of((enum engine)engine, held);
+        settings.snapshot = last;
+        settings.relative_strength = relative;
+        struct response a = replayed(&packing, &load, &settings);
+        settings.held = held_there;
+        settings.relative_strength = relative_there;
+        struct response b = replayed(&other, &turned_load, &settings);
+        assert_in_range(a.n_crack, 5, packing.n_bond - 1);
+        const double off = difference(&packing, &a, &other, &b, angle, order);
+        if (!(off < 1e-7)) fail_msg("engine %d: off by %g", engine, off);
+        response_free(&a);
+        response_free(&b);
+    }
+    load_free(&load);
+    load_free(&turned_load);
+    free(relative);
+    free(relative_there);
+    free(force);
+    free(held);
+    free(held_there);
+    free(order);
+    packing_free(&packing);
+    packing_free(&other);
+}
+
+// Enough grains to share.
+static void threads_make_no_difference(void **state)
+{
+    (void)state;
+    struct packing packing = irregular_packing(10, RADIUS, true);
+    uint8_t *held = lowest_grains(&packing, 10);
+    struct vector *force = shrinking_load(&packing, size);
+    struct load load = there_and_back(force, packing.n_particle, 1);
+    struct replay_settings settings = settings_of(ENGINE_EXPLICIT, held);
+    double *relative = settings.relative_strength = weak_and_strong(&packing);
+    struct response one = replayed(&packing, &load, &settings);
+    settings.threads = 3;
+    struct response three = replayed(&packing, &load, &settings);
+    assert_in_range(one.n_crack, 5, packing.n_bond - 1);
+    assert_int_equal(one.n_crack, three.n_crack);
+    for (int k = 0; k < one.n_crack; k++)
+        assert_int_equal(one.crack[k].bond, three.crack[k].bond);
+    assert_memory_equal(one.snapshot[0].displacement, three.snapshot[0].displacement,
+                        (size_t)packing.n_particle * sizeof(struct vector));
+    assert_memory_equal(one.reaction, three.reaction, 2 * sizeof *one.reaction);
+    response_free(&one);
+    response_free(&three);
+    load_free(&load);
+    free(relative);
+    free(force);
+    free(held);
+    packing_free(&packing);
+}
+
+// ---- one engine and the other -------------------------------------------------------
+
+// So small a load that grains do not turn to speak of, without friction: cycles come to
+// the equilibrium, the more of them the nearer.
+static void cycles_come_to_equilibrium(void **state)
+{
+    (void)state;
+    for (int repeats = 0; repeats < 2; repeats++) {
+        struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
+        uint8_t *held = lowest_grains(&packing, SIDE);
+        struct vector *force = shrinking_load(&packing, 1e-6 * size), moved[N];
+        struct equilibrium *equilibrium = new_equilibrium(&packing, held, 0, NULL);
+        struct reason reason = {""};
+        if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+        equilibrium_displacements(equilibrium, moved);
+        double largest = 0, before = INFINITY;
+        for (int i = 0; i < N; i++)
+            largest = fmax(largest, norm(moved[i]));
+        struct load load = there_and_back(force, N, 1);
+        load.n_time = 1;
+        for (int64_t cycles = 14000; cycles <= 56000; cycles += 14000) {
+            struct replay_settings settings = settings_of(ENGINE_EXPLICIT, held);
+            settings.material.friction = 0;
+            settings.time_step_safety = 0.036;
+            settings.cycles = cycles;
+            struct response response = replayed(&packing, &load, &settings);
+            double error = 0;
+            for (int i = 0; i < N; i++)
+                error = fmax(error,
+                             distance(response.snapshot[0].displacement[i], moved[i]));
+            error /= largest;
+            response_free(&response);
+            if (!(error < fmax(0.05 * before, 1e-10)))
+                fail_msg("%lld cycles: %g after %g", (long long)cycles, error, before);
+            before = error;
+        }
+        if (!(before < 1e-7)) fail_msg("off by %g in the end", before);
+        load_free(&load);
+        equilibrium_free(equilibrium);
+        free(force);
+        free(held);
+        packing_free(&packing);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_whole_balances_in_motion),
+        cmocka_unit_test(the_whole_balances_at_rest),
+        cmocka_unit_test(energy_is_not_created),
+        cmocka_unit_test(bonds_never_heal),
+        cmocka_unit_test(turned_and_renumbered_the_same),
+        cmocka_unit_test(threads_make_no_difference),
+        cmocka_unit_test(cycles_come_to_equilibrium),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
