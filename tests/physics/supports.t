@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What dem-replay holds and what it bonds: by sides, list and region; listed, touching and by
+# distance; strengths from a seed. The artifact says all of it.
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, SCENE, done, ok, run, scratch
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    words = lambda settings: [word for s in settings for word in ("--set", s)]
+    small = ("pack", "-p", SCENE, "--set", "counts=[4,4,4]")
+    network = run("merge-nodes", "-p", SCENE, input=run("tessellate", "-p", SCENE,
+                                                        input=run(*small)))
+    run("force-protocol", "-p", SCENE, "--set", "steps=4", "-o", at("forces"),
+        input=run("dry", "-p", SCENE, input=network))
+    force = h5py.File(at("forces"))["force"][:]
+
+    def replay(*settings):
+        run("dem-replay", "-q", "-p", SCENE, *words(("cycles=50", *settings)), at("forces"),
+            "-o", at("response"))
+        return h5py.File(at("response"))
+
+    def refused(*settings):
+        tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(settings), at("forces"),
+                                "-o", at("refused")], capture_output=True, text=True)
+        return tried.returncode, tried.stderr
+
+    # ---- supports
+    place = h5py.File(at("forces"))["particles/position"][:] / 500e-9  # 0.5 to 3.5
+    near = lambda *wanted: np.isin(np.arange(64), wanted).astype(int)
+    for settings, held, what in (
+            ((), place[:, 2] < 1, "the bottom, unless told otherwise"),
+            (("held.walls=[\"-x\",\"+y\"]",), (place[:, 0] < 1) | (place[:, 1] > 3), "two sides"),
+            (("held.walls=[]", "held.grains=[63,5,5]"), near(5, 63), "a list"),
+            (("held.walls=[]", "held.lower=[0,0,4e-7]", "held.upper=[2e-6,5e-7,13e-7]"),
+             (place[:, 1] < 1) & (abs(place[:, 2] - 2) < 1), "a region"),
+            (("held.grains=[63]",), (place[:, 2] < 1) | near(63), "a side and a grain"),
+            (("support=free",), near(), "none")):
+        for engine in "explicit", "quasi-static":
+            response = replay(f"engine={engine}", *settings)
+            is_held = response["particles/held"][:].astype(bool)
+            moved = abs(response["snapshots/displacement"][:]).max(axis=(0, 2)) > 0
+            ok(np.array_equal(is_held, held) and np.array_equal(moved, ~is_held)
+               and (settings == ("support=free",)
+                    or f"{held.sum()} grains held" in str(response.attrs["model"])),
+               f"{engine}: {what}", (is_held.nonzero(), response.attrs["model"]))
+    response = replay("engine=quasi-static", "friction=0", "bond.normal_strength=1e9",
+                      "bond.shear_strength=1e9")
+    net = abs(force.sum(axis=1) + response["history/reaction_force"][:]).max(axis=1)
+    ok((net <= 1e-10 * abs(force).sum(axis=(1, 2)).max()).all(), "held grains give the load back", net)
+    for settings, says in ((("held.grains=[64]",), "held.grains: must be whole numbers below 64"),
+                           (("held.grains=[0.5]",), "held.grains: must be whole"),
+                           (("held.lower=[0,0,0]",), "held.upper: must be given"),
+                           (("held.lower=[0,0,1]", "held.upper=[1,1,0]"), "held.upper: z must")):
+        status, message = refused(*settings)
+        ok(status == 65 and says in message, f"refused: {says}", message)
+
+    # ---- bonds
+    response = replay("bond.by=touching")
+    listed = h5py.File(at("forces"))["bonds/particles"][:]
+    ok(np.array_equal(response["bonds/particles"][:], listed), "touching grains are those listed")
+    response = replay("bond.by=distance", "bond.gap=0.42", "time_step_safety=0.009")
+    apart = np.linalg.norm(place[:, None] - place, axis=2)
+    wanted = np.argwhere(np.triu(apart < 1.42, 1))
+    ok(np.array_equal(response["bonds/particles"][:], wanted) and len(wanted) > len(listed),
+       "by distance, diagonals too", (len(wanted), len(response["bonds/particles"])))
+    for engine in "explicit", "quasi-static":
+        rows = [replay(f"engine={engine}", "bond.strength.distribution=weibull",
+                       "bond.strength.modulus=2", f"bond.strength.seed={seed}",
+                       f"bond.normal_strength={mean}", f"bond.shear_strength={mean}")
+                ["bonds/relative_strength"][:] for seed, mean in ((1, 1e4), (1, 2e4), (2, 1e4))]
+        ok(np.array_equal(rows[0], rows[1]) and not np.isclose(rows[0], rows[2]).any(),
+           f"{engine}: strengths are those of the seed, whatever their mean")
+    ok((replay()["bonds/relative_strength"][:] == 1).all(), "one strength unless told otherwise")
+done()
