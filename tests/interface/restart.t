@@ -142,6 +142,10 @@ with scratch() as folder:
               [*short, "--set", "cycles=100", "--set", "bridges.volume=1e-22", "--set",
                "bridges.shared=true", "--set", "bond.kind=contact"])
 
+    in_pieces("dem-replay of a body that nothing holds",
+              [*short, "--set", "cycles=100", "--set", "support=free", "--set",
+               "bond.strength.distribution=weibull"])
+
     pack = ["pack", "--quiet", "--set", "radius=1e-3", "--set"]
     in_pieces("pack by deposition", [*pack, "count=400", "--set", "method=deposition"])
     grow = [*pack, "method=radius_expansion", "--set"]

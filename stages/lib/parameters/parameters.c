@@ -27,7 +27,7 @@ static const char *const type_names[] = {
     "true or false",  "one of",
     "a list of",      "a text",
     "three integers", "three of true or false",
-    "three numbers",  "a list of at most 64 numbers"};
+    "three numbers",  "a list of at most 1024 numbers"};
 
 char *json_canonical(const json_t *json)
 {
