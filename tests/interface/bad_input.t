@@ -663,7 +663,7 @@ parameters("flags that are numbers are refused", "pack", {"periodic": [0, 0, 1]}
 parameters("a point of words is refused", "pack", {"lower": ["a", "b", "c"]},
            r'pack.lower: must be three numbers, got \["a","b","c"\]')
 parameters("too long a list is refused", "dem-replay", {"snapshots": [0] * 1025},
-           r"dem-replay.snapshots: must be a list of at most 1024 numbers, got \[[0,]+\]")
+           r"dem-replay.snapshots: must be a list of at most 1024 numbers, got \[[0,]+")
 parameters("a negative radius is refused", "pack", {"radius": -1},
            "pack.radius: must be > 0 m, got -1")
 parameters("a number whose square overflows is refused among parameters", "pack",
