@@ -135,8 +135,8 @@ static void let_go(struct equilibrium *e, const bool *leaves)
         if (!leaves[e->fragments.of[i]] || e->is_gone[i]) continue;
         e->is_gone[i] = true;
         if (e->n_gone++ == 0) e->first_gone = i;
-        e->load[i] = nothing;
     }
+    load_grains(e);
     for (int j = 0; j < e->n_joint; j++)
         for (int end = 0; end < 2; end++) {
             const int32_t grain = e->joint[j].grain[end];

@@ -168,12 +168,10 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
 enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
                              struct reason *reason)
 {
-    const double unit = e->stiffness * e->length;
-    for (int i = 0; i < e->n; i++) {
-        const bool counts = !e->is_gone[i] && !e->setup.fixed[i];
-        e->load[i].shift = scale(counts ? 1 / unit : 0, force[i]);
+    e->force = force;
+    load_grains(e);
+    for (int i = 0; i < e->n; i++)
         e->largest_load = fmax(e->largest_load, norm(e->load[i].shift));
-    }
     do
         balance(e);
     while (break_one(e));

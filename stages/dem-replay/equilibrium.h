@@ -18,6 +18,7 @@
 #define CRAQUELURE_EQUILIBRIUM_H
 
 #include "dem/dem.h"
+#include "net_load.h"
 
 struct equilibrium_setup {
     const struct packing *packing;   // with its bonds
@@ -27,6 +28,7 @@ struct equilibrium_setup {
     struct dem_material material;    // density and damping have no part in it
     struct dem_bond_material bond;   // parallel
     const double *relative_strength; // (n_bond) of that of the material; NULL: 1
+    bool is_free;     // nothing holds the grains: their net load is taken off
     double tolerance; // largest force or moment left on a grain, of the largest load
     int64_t most_iterations; // steps in time to one equilibrium
 };
@@ -57,6 +59,9 @@ struct dem_contact *equilibrium_contacts(const struct equilibrium *equilibrium,
 // put on the other grains.
 void equilibrium_reaction(const struct equilibrium *equilibrium, struct vector about,
                           struct vector *force, struct vector *moment);
+// The forces from outside that count, (n_particle) N, and what was taken off them.
+struct net_load equilibrium_load(const struct equilibrium *equilibrium,
+                                 struct vector *force);
 double equilibrium_unbalanced_ratio(const struct equilibrium *equilibrium);
 
 int equilibrium_iterations(const struct equilibrium *equilibrium); // so far

@@ -7,6 +7,7 @@
 #include "corrections.h"
 #include "equilibrium.h"
 #include "fragments.h"
+#include "net_load.h"
 #include "stiffness.h"
 
 #include <math.h>
@@ -35,7 +36,9 @@ struct equilibrium {
     double (*more)[STRAINS];       // (n_joint) that a step would add
     struct resistance *resistance; // (n_joint) of the trial
     struct displacement *trial;    // (n) and once found, the equilibrium
-    struct displacement *load;     // (n) from outside
+    const struct vector *force;    // (n) N, from outside, while one is looked for
+    struct displacement *load;     // (n) of it what counts
+    struct net_load taken_off;     // of the load, where nothing holds the grains
     double damping;                // of dashpots, over the stiffness and a time step
     struct displacement *dashpots; // (n) what they pull at that damping of 1
     struct displacement *left;     // (n) what is not balanced at the trial
@@ -57,6 +60,9 @@ struct equilibrium {
     int n_crack, crack_capacity;
     struct dem_crack *crack;
 };
+
+// The force from outside becomes the load, as far as grains are there and free.
+void load_grains(struct equilibrium *equilibrium);
 
 // Equilibrium under the load: at once or, where that is not found, in time. What does
 // not even then come to rest leaves if nothing supports it; else it goes on moving

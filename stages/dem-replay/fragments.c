@@ -26,7 +26,7 @@ static void hold_largest(struct fragments *fragments, const bool *is_gone)
         if (!is_gone[i]) size[fragments->of[i]]++;
     for (int i = 1; i < fragments->n; i++)
         if (size[i] > size[largest]) largest = i;
-    if (fragments->n > 0) fragments->is_held[largest] = true;
+    if (fragments->n > 0 && size[largest] > 1) fragments->is_held[largest] = true;
     free(size);
 }
 

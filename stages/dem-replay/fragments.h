@@ -15,7 +15,7 @@ struct fragments fragments_new(int n);
 void fragments_free(struct fragments *fragments);
 
 // Held are those with a FIXED grain, or where there is none, the largest (the first of
-// equals).
+// equals), if it is more than one grain.
 void fragments_find(struct fragments *fragments, const struct joint *joint, int n_joint,
                     const uint8_t *fixed, const bool *is_gone);
 

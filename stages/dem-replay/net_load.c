@@ -8,6 +8,7 @@
 // the box: no large numbers.
 struct whole {
     const struct packing *packing;
+    const bool *is_gone;               // NULL: none is
     const struct vector *displacement; // NULL: none
     double length, mass;               // unit, and sum
     struct vector centre;              // of mass
@@ -16,6 +17,7 @@ struct whole {
 
 static double mass_of(const struct whole *whole, int i)
 {
+    if (whole->is_gone && whole->is_gone[i]) return 0;
     return pow(whole->packing->radius[i] / whole->length, 3);
 }
 
@@ -27,10 +29,11 @@ static struct vector place_of(const struct whole *whole, int i)
 }
 
 // The tensor is sum m (r.r 1 - r r).
-static struct whole whole_of(const struct packing *packing,
+static struct whole whole_of(const struct packing *packing, const bool *is_gone,
                              const struct vector *displacement)
 {
     struct whole whole = {.packing = packing,
+                          .is_gone = is_gone,
                           .displacement = displacement,
                           .length = packing->n_particle ? packing->radius[0] : 1};
     struct vector sum = {0, 0, 0};
@@ -121,10 +124,11 @@ static struct net_load stopping(const struct whole *whole,
     return (struct net_load){scale(unit, sum.force), scale(unit, sum.moment)};
 }
 
-struct net_load take_off_net_load(const struct packing *packing,
+struct net_load take_off_net_load(const struct packing *packing, const bool *is_gone,
                                   const struct moving_grains *now, struct vector *force)
 {
-    const struct whole whole = whole_of(packing, now ? now->displacement : NULL);
+    const struct whole whole =
+        whole_of(packing, is_gone, now ? now->displacement : NULL);
     const struct net_load net = about_centre(&whole, force);
     const struct net_load stop =
         now ? stopping(&whole, now) : (struct net_load){{0, 0, 0}, {0, 0, 0}};
@@ -140,6 +144,6 @@ struct net_load take_off_net_load(const struct packing *packing,
 struct net_load net_load(const struct packing *packing,
                          const struct vector *displacement, const struct vector *force)
 {
-    const struct whole whole = whole_of(packing, displacement);
+    const struct whole whole = whole_of(packing, NULL, displacement);
     return about_corner(&whole, about_centre(&whole, force));
 }

@@ -22,10 +22,10 @@ struct moving_grains {
 // Takes off what would move the grains as one: from every grain, by its mass, the one
 // acceleration and the one angular acceleration that leave FORCE, in N (n_particle),
 // without net force and net moment where the grains are NOW (NULL: where they began, at
-// rest), and that stop what they have of such motion. Grains turn about the centre of
-// mass as points; not about an axis across which the box repeats. Returns what was
-// taken off, but for what stops.
-struct net_load take_off_net_load(const struct packing *packing,
+// rest), and that stop what they have of such motion. Those that ARE GONE (NULL: none)
+// have no mass. Grains turn about the centre of mass as points; not about an axis
+// across which the box repeats. Returns what was taken off, but for what stops.
+struct net_load take_off_net_load(const struct packing *packing, const bool *is_gone,
                                   const struct moving_grains *now,
                                   struct vector *force);
 

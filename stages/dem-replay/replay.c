@@ -30,6 +30,7 @@ static enum status begin_equilibrium(struct run *run, struct reason *reason)
         .packing = run->packing,
         .fixed = settings->held,
         .has_wall = settings->support == SUPPORT_WALL,
+        .is_free = settings->support == SUPPORT_FREE,
         .material = settings->material,
         .bond = settings->bond,
         .unstressed = settings->unstressed,
@@ -99,10 +100,6 @@ enum { TAKE_OFF_EVERY = 16 }; // cycles
 
 static void take_off(struct run *run)
 {
-    if (!is_explicit(run)) {
-        run->taken_off = take_off_net_load(run->packing, NULL, run->force);
-        return;
-    }
     struct vector *state[3];
     for (int k = 0; k < 3; k++)
         state[k] = NEW_ARRAY(struct vector, run->packing->n_particle);
@@ -112,7 +109,7 @@ static void take_off(struct run *run)
     const struct moving_grains now = {state[0], state[1], state[2],
                                       run->settings->material.density,
                                       TAKE_OFF_EVERY * dem_time_step(run->dem)};
-    run->taken_off = take_off_net_load(run->packing, &now, run->force);
+    run->taken_off = take_off_net_load(run->packing, NULL, &now, run->force);
     for (int k = 0; k < 3; k++)
         free(state[k]);
 }
@@ -122,8 +119,9 @@ static void apply_load(struct run *run, int step)
 {
     const size_t n = (size_t)run->packing->n_particle;
     memcpy(run->force, run->load->force + (size_t)step * n, n * sizeof *run->force);
+    if (!is_explicit(run)) return; // equilibria see to it
     if (run->settings->support == SUPPORT_FREE) take_off(run);
-    if (is_explicit(run)) dem_set_force(run->dem, run->force);
+    dem_set_force(run->dem, run->force);
 }
 
 // [K 4.20] has no denominator once no contact carries a force: then all that is applied
@@ -203,6 +201,14 @@ static enum status settle_dem(struct run *run, struct reason *reason)
     return status ? status : run_on(run, reason);
 }
 
+static enum status settle_equilibrium(struct run *run, struct reason *reason)
+{
+    const enum status status = equilibrium_find(run->equilibrium, run->force, reason);
+    if (run->settings->support == SUPPORT_FREE)
+        run->taken_off = equilibrium_load(run->equilibrium, run->force);
+    return status;
+}
+
 static struct net_load reaction(const struct run *run)
 {
     const enum support support = run->settings->support;
@@ -219,8 +225,7 @@ static struct net_load reaction(const struct run *run)
 static enum status settle(struct run *run, int step, struct reason *reason)
 {
     const enum status status =
-        is_explicit(run) ? settle_dem(run, reason)
-                         : equilibrium_find(run->equilibrium, run->force, reason);
+        is_explicit(run) ? settle_dem(run, reason) : settle_equilibrium(run, reason);
     run->response->cycles[step] = cycles_done(run) - run->place.began;
     run->response->unbalanced_ratio[step] =
         is_explicit(run) ? unbalanced_ratio(run->dem)

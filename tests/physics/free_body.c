@@ -32,7 +32,7 @@ static void nothing_is_left(void **state)
         struct vector *force = random_vectors(N, 1e-9, 3);
         const double total = total_of(force, N);
         const struct net_load before = net_load(&packing, NULL, force);
-        const struct net_load off = take_off_net_load(&packing, NULL, force);
+        const struct net_load off = take_off_net_load(&packing, NULL, NULL, force);
         const struct net_load after = net_load(&packing, NULL, force);
         assert_true(norm(before.force) > 1e-3 * total);
         assert_true(distance(off.force, before.force) < 1e-14 * total);
@@ -51,7 +51,7 @@ static void a_row_turns_across_itself_only(void **state)
     struct packing packing = cubic_lattice(5, 1, 1, false);
     struct vector force[5] = {
         {0, 1e-9, 0}, {3e-9, 0, 0}, {0, 0, 0}, {0, 0, 2e-9}, {0, 0, 0}};
-    take_off_net_load(&packing, NULL, force);
+    take_off_net_load(&packing, NULL, NULL, force);
     const struct net_load left = net_load(&packing, NULL, force);
     assert_true(norm(left.force) < 1e-23 && norm(left.moment) < 1e-22 * RADIUS);
     packing_free(&packing);
@@ -67,13 +67,13 @@ static void a_box_that_repeats_does_not_turn(void **state)
         packing.periodic[1] = axes == 2;
         struct vector *force = random_vectors(N, 1e-9, 4);
         struct vector *other = duplicate(force, N, sizeof *force);
-        take_off_net_load(&packing, NULL, force);
+        take_off_net_load(&packing, NULL, NULL, force);
         const double edge = packing.upper.x - packing.lower.x;
         for (int i = 0; i < N; i++) {
             double *x = &packing.position[i].x;
             *x += *x > 0.4 * edge ? -0.4 * edge : 0.6 * edge;
         }
-        take_off_net_load(&packing, NULL, other);
+        take_off_net_load(&packing, NULL, NULL, other);
         const double total = total_of(force, N);
         for (int i = 0; i < N; i++)
             assert_true(distance(force[i], other[i]) < 1e-13 * total);
@@ -180,7 +180,7 @@ static void pressed_it_stays_as_it_is(void **state)
     struct replay_settings settings = settings_of(ENGINE_EXPLICIT, SUPPORT_FREE);
     struct vector *end = moved(&packing, force, &settings);
     const double held = turn_of(&packing, end);
-    take_off_net_load(&packing, NULL, force);
+    take_off_net_load(&packing, NULL, NULL, force);
     settings.support = SUPPORT_FIXED; // and no grain is
     struct vector *fell = moved(&packing, force, &settings);
     const double free_turn = turn_of(&packing, fell);
