@@ -12,6 +12,7 @@
 struct action {
     struct patches patches[LOADS];
     double scale;
+    double balance_change; // of the suction's pulls (balance.h); 0: none
 };
 void action_free(struct action *action);
 

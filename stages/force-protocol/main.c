@@ -2,6 +2,7 @@
 // force-protocol: the capillary force on every grain over the time of drying.
 #include "artifacts/artifact.h"
 #include "auxiliary.h"
+#include "balance.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "protocol.h"
@@ -18,6 +19,7 @@ enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
 struct force_parameters {
     double surface_tension, contact_angle, force_scale, largest_change, ring_volume;
     int open_surface, form, suction, rings;
+    bool balanced;
     int64_t steps;
 };
 #define AT(member) offsetof(struct force_parameters, member)
@@ -41,6 +43,12 @@ static const struct parameter table[] = {
      "pairs; K's plain sums: towards the middles of the throats [K 5.1], or in a layer "
      "over the arcs of a circle [K 3.20]",
      AT(form)},
+    {"balanced", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
+     "change the pulls of the form as little as it takes for each throat alone to "
+     "leave "
+     "the grains around it in balance, forces and moments; nothing changes on cubic "
+     "lattices",
+     AT(balanced)},
     {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", BOUND_NONE, 0, 0,
      "uniform|clusters|field",
      "suction of the liquid: that of a throat of mean radius everywhere; of each "
@@ -145,7 +153,13 @@ static enum status find_action(struct wedges *wedges,
     *action = (struct action){.scale = parameters->force_scale};
     *rings = (struct rings){0};
     struct patches *of = action->patches;
-    of[LOAD_SUCTION] = find_patches(wedges, (enum form)parameters->form);
+    if (parameters->balanced) {
+        const enum status status =
+            find_balanced_patches(wedges, (enum form)parameters->form,
+                                  &of[LOAD_SUCTION], &action->balance_change, reason);
+        if (status) return status;
+    } else
+        of[LOAD_SUCTION] = find_patches(wedges, (enum form)parameters->form);
     if (parameters->contact_angle > 0)
         of[LOAD_CONTACT_LINE] = find_contact_lines(wedges);
     for (int l = 0; l < LOAD_EMPTINESS; l++) {
@@ -213,6 +227,8 @@ static void put_summary(struct artifact *artifact, const struct process *process
     artifact_put_number(artifact, "/summary/interpolation_error", found->error / unit);
     if (!isnan(found->field_error))
         artifact_put_number(artifact, "/summary/field_error", found->field_error);
+    artifact_put_number(artifact, "/summary/balance_change",
+                        process->action->balance_change);
     artifact_put_number(artifact, "/summary/net_force", found->net_force);
     artifact_put_number(artifact, "/summary/net_moment", found->net_moment);
     artifact_put_number(artifact, "/summary/first_period_end_time",
@@ -238,13 +254,14 @@ static void describe(const struct force_parameters *parameters,
                  "and do not evaporate",
                  rings->count, rings->largest);
     snprintf(text, size,
-             "capillary force: %s\n"
+             "capillary force: %s%s\n"
              "throats in the open wall: %s\n"
              "%s\n"
              "contact line: %s\n"
              "%s\n"
              "left out: weight of the liquid\n",
              forms[parameters->form],
+             parameters->balanced ? ", balanced at each throat" : "",
              parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull",
              suctions[parameters->suction],
              parameters->contact_angle > 0 ? "pulls grains towards throats with menisci"

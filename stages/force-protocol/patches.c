@@ -116,26 +116,16 @@ static struct vector contact_line(const struct wedges *wedges,
 
 // --- lists -------------------------------------------------------------------------
 
-// Of the wedges of one throat, one patch a grain.
-static void append_patches(const struct wedges *wedges, int n, struct patches *patches,
-                           int *capacity, pull_of_wedge *make, const void *context)
+void patches_add(struct patches *patches, int throat, int grain, struct vector pull)
 {
-    const int first = patches->n;
-    for (int k = 0; k < n; k++) {
-        const struct wedge *wedge = &wedges->wedge[k];
-        if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
-        const struct vector pull = make(wedges, wedge, context);
-        int p = first;
-        while (p < patches->n && patches->patch[p].particle != wedge->grain)
-            p++;
-        if (p < patches->n) {
+    int p = patches->n;
+    while (--p >= 0 && patches->patch[p].throat == throat)
+        if (patches->patch[p].particle == grain) {
             patches->patch[p].pull = add(patches->patch[p].pull, pull);
-            continue;
+            return;
         }
-        GROW_ARRAY(patches->patch, patches->n, *capacity);
-        patches->patch[patches->n++] =
-            (struct patch){wedge->throat, wedge->grain, pull};
-    }
+    GROW_ARRAY(patches->patch, patches->n, patches->capacity);
+    patches->patch[patches->n++] = (struct patch){throat, grain, pull};
 }
 
 static void find_begins(struct patches *patches, int n_particle)
@@ -148,8 +138,7 @@ static void find_begins(struct patches *patches, int n_particle)
         patches->begin[i + 1] += patches->begin[i];
 }
 
-// From the order of throats, which stays that of each grain.
-static void sort_by_grain(struct patches *patches, int n_particle)
+void patches_sort(struct patches *patches, int n_particle)
 {
     find_begins(patches, n_particle);
     struct patch *sorted = NEW_ARRAY(struct patch, patches->n);
@@ -165,23 +154,29 @@ struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
                                const void *context)
 {
     struct patches patches = {0};
-    int capacity = 0;
     for (int t = 0; t < wedges->network->n_throat; t++) {
         const int n = wedges_at(wedges, t);
-        append_patches(wedges, n, &patches, &capacity, make, context);
+        for (int k = 0; k < n; k++) {
+            const struct wedge *wedge = &wedges->wedge[k];
+            if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
+            patches_add(&patches, t, wedge->grain, make(wedges, wedge, context));
+        }
     }
-    sort_by_grain(&patches, wedges->network->packing.n_particle);
+    patches_sort(&patches, wedges->network->packing.n_particle);
     return patches;
+}
+
+pull_of_wedge *pull_of(enum form form)
+{
+    return form == FORM_SOLID_ANGLE ? solid_angle
+           : form == FORM_FACES     ? face_area
+           : form == FORM_CENTRES   ? to_centre
+                                    : in_plane;
 }
 
 struct patches find_patches(struct wedges *wedges, enum form form)
 {
-    return collect_patches(wedges,
-                           form == FORM_SOLID_ANGLE ? solid_angle
-                           : form == FORM_FACES     ? face_area
-                           : form == FORM_CENTRES   ? to_centre
-                                                    : in_plane,
-                           NULL);
+    return collect_patches(wedges, pull_of(form), NULL);
 }
 
 struct patches find_contact_lines(struct wedges *wedges)

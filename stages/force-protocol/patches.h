@@ -32,6 +32,7 @@ struct patches {
     int n;
     struct patch *patch;
     int *begin; // (n_particle+1) patches of each grain
+    int capacity;
 };
 
 // The pull of a unit of suction (m2).
@@ -47,9 +48,15 @@ struct patches find_contact_lines(struct wedges *wedges);
 // Patches of what MAKE returns for each wedge.
 typedef struct vector pull_of_wedge(const struct wedges *, const struct wedge *,
                                     const void *context);
+pull_of_wedge *pull_of(enum form form); // its context is not looked at
 struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
                                const void *context);
 void patches_free(struct patches *patches);
+
+// Adds PULL to what THROAT does to GRAIN; throats in rising order. When all are there,
+// by grain.
+void patches_add(struct patches *patches, int throat, int grain, struct vector pull);
+void patches_sort(struct patches *patches, int n_particle);
 
 // STATUS_BAD_DATA when a node lies in the centre of a grain: it is in no direction.
 enum status check_patches(const struct patches *patches, struct reason *reason);

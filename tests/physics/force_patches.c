@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The patches of a grain's surface that face its throats, in a cubic cell.
 #include "basics/memory.h"
+#include "force-protocol/balance.h"
 #include "force-protocol/patches.h"
 #include "support_lattice.h"
 
@@ -231,24 +232,76 @@ static void a_throat_is_felt_by_all_grains_around_it(void **state)
 }
 
 // Each throat alone leaves grains as a whole at rest: forces and moments.
+static void check_pairs(const struct network *network, const struct patches *patches)
+{
+    for (int t = 0; t < network->n_throat; t++) {
+        struct vector force = {0}, moment = {0};
+        for (int k = 0; k < patches->n; k++) {
+            const struct patch *patch = &patches->patch[k];
+            if (patch->throat != t) continue;
+            force = add(force, patch->pull);
+            moment = add(
+                moment, cross(network->packing.position[patch->particle], patch->pull));
+        }
+        assert_true(size(force) < 1e-15);
+        assert_true(size(moment) < 2e-15);
+    }
+}
+
 static void pairs_are_in_balance(void **state)
 {
     (void)state;
     struct network network = cell_among_six(0.7);
     struct patches patches = patches_of(&network, FORM_FACES);
-    for (int t = 0; t < network.n_throat; t++) {
-        struct vector force = {0}, moment = {0};
-        for (int k = 0; k < patches.n; k++) {
-            const struct patch *patch = &patches.patch[k];
-            if (patch->throat != t) continue;
-            force = add(force, patch->pull);
-            moment = add(moment,
-                         cross(network.packing.position[patch->particle], patch->pull));
-        }
-        assert_true(size(force) < 1e-15);
-        assert_true(size(moment) < 2e-15);
-    }
+    check_pairs(&network, &patches);
     patches_free(&patches);
+    network_free(&network);
+}
+
+static struct patches balanced_patches_of(const struct network *network, enum form form)
+{
+    struct wedges wedges;
+    struct patches patches;
+    struct reason reason;
+    double change;
+    assert_int_equal(wedges_find(network, &wedges, &reason), STATUS_OK);
+    assert_int_equal(find_balanced_patches(&wedges, form, &patches, &change, &reason),
+                     STATUS_OK);
+    assert_true(form == FORM_FACES ? change < 1e-15 : change > 0.01 && change < 1);
+    wedges_free(&wedges);
+    return patches;
+}
+
+static double product(const struct patches *a, const struct patches *b)
+{
+    assert_int_equal(a->n, b->n);
+    double sum = 0;
+    for (int k = 0; k < a->n; k++)
+        sum += dot(a->patch[k].pull, b->patch[k].pull);
+    return sum;
+}
+
+// What balance changes is orthogonal to all pulls in balance, so nothing nearer to the
+// form is one. Unequal grains, one closed cell.
+static void balance_changes_as_little_as_it_takes(void **state)
+{
+    (void)state;
+    struct network network = cell_among_six(0.7);
+    struct patches form[3], balanced[3];
+    for (enum form f = FORM_SOLID_ANGLE; f <= FORM_CENTRES; f++) {
+        form[f] = patches_of(&network, f);
+        balanced[f] = balanced_patches_of(&network, f);
+        check_pairs(&network, &balanced[f]);
+        if (f != FORM_CENTRES) assert_true(size(sum_of(&balanced[f], 0)) < 1e-15);
+    }
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            assert_true(fabs(product(&balanced[b], &form[a]) -
+                             product(&balanced[b], &balanced[a])) < 1e-14);
+    for (int f = 0; f < 3; f++) {
+        patches_free(&form[f]);
+        patches_free(&balanced[f]);
+    }
     network_free(&network);
 }
 
@@ -401,6 +454,7 @@ int main(void)
         cmocka_unit_test(patches_close_around_a_grain_in_its_face),
         cmocka_unit_test(a_throat_is_felt_by_all_grains_around_it),
         cmocka_unit_test(pairs_are_in_balance),
+        cmocka_unit_test(balance_changes_as_little_as_it_takes),
         cmocka_unit_test(contact_lines_pull_in_pairs),
         cmocka_unit_test(pulls_turn_with_the_scene),
         cmocka_unit_test(patches_and_menisci_are_in_balance),

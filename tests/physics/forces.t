@@ -136,7 +136,7 @@ def full_networks():
         layer = len(how) > 1
         centres, radii = scatter(n, box, layer)
         drying("d", centres, radii, box, how, ["liquid=immobile"])
-        force, _, summary = forces("d")
+        force, _, summary = forces("d", "balanced=false")
         unit = summary["capillary_pressure"] * radii[:, None]**2
         with h5py.File("d") as file:
             sides = file["faces/particles"][:]
@@ -149,6 +149,9 @@ def full_networks():
         error = abs((force[0] - wanted) / unit).max()
         ok(error < 1e-5 and abs(force[0] / unit).max() > 1,
            f"{label}: forces on the others as integrated point by point", error)
+        force, _, _ = forces("d")
+        inner = abs(force[0] / unit)[closed].max()
+        ok(inner < 1e-13, f"{label}: balanced, those with cells still feel none", inner)
 
 
 def cell_is_closed(file, grain):
@@ -176,17 +179,23 @@ def imbalance(force, centres, middle):
 
 
 def balance():
-    every = ["form=faces", "contact_angle=40", "rings.left=suction"]
-    for label, n, box, how, dry in [
-            ("cells left out", 90, (3.1e-6, 3.1e-6, 3.6e-6), ["boundary=eliminate"], []),
-            ("a box, empty sides", 60, (2.6e-6, 2.6e-6, 3e-6), [], [SIDES]),
+    faces = ["form=faces", "balanced=false"]
+    every = [*faces, "contact_angle=40", "rings.left=suction", "pressure=clusters"]
+    nearest = ["form=solid-angle", *every[2:]]
+    for label, n, box, how, dry, merge, forms in [
+            ("cells left out", 90, (3.1e-6, 3.1e-6, 3.6e-6), ["boundary=eliminate"], [], 0,
+             [faces, every, nearest]),
+            ("a box, empty sides", 60, (2.6e-6, 2.6e-6, 3e-6), [], [SIDES], 0,
+             [faces, every, nearest]),
+            ("merged", 60, (2.6e-6, 2.6e-6, 3e-6), [], [SIDES], 0.1,
+             [nearest, ["form=faces"], ["form=centres"]]),
             ("a layer, empty sides", 60, (5e-6, 5e-7, 5e-6), ["dimensions=2"],
-             ['imposed_empty=["-x","+x","-z"]'])]:
+             ['imposed_empty=["-x","+x","-z"]'], 0, [faces, every, nearest, ["form=arcs"]])]:
         layer = "dimensions=2" in how
         centres, radii = scatter(n, box, layer)
         for liquid in "inviscid", "immobile":
-            drying("d", centres, radii, box, how, [f"liquid={liquid}", *dry])
-            for also in [["form=faces"], [*every, "pressure=clusters"]]:
+            drying("d", centres, radii, box, how, [f"liquid={liquid}", *dry], merge)
+            for also in forms:
                 force, _, _ = forces("d", *also)
                 net, moment = imbalance(force, centres, np.array(box) / 2)
                 ok(net < 1e-10 and moment < 1e-10,
@@ -209,9 +218,9 @@ def unequal():
     with h5py.File("d") as file:
         sides = file["faces/particles"][:]
     inner = np.setdiff1d(np.arange(201), sides[sides[:, 1] < 0, 0])
-    for form in "solid-angle", "faces":
-        force, _, summary = forces("d", "open_surface=pulls", f"form={form}")
-        reach = {"solid-angle": radii, "faces": np.full(201, radii[0])}[form]
+    for form, reach in [("solid-angle", radii[0]), ("faces", radii[0]),
+                        ("solid-angle balanced=false", radii)]:
+        force, _, summary = forces("d", "open_surface=pulls", *f"form={form}".split())
         most = (np.linalg.norm(force[0], axis=1) / (
             summary["capillary_pressure"] * reach**2)).max()
         ok(np.isfinite(force).all() and most < 1e-14,
@@ -244,6 +253,9 @@ def gradient():
         error = abs(force[0, inner] - [0, 0, wanted]).max() / wanted
         ok(inner.sum() > 8 and error < 1e-10, f"{form}: a gradient pulls inner grains in its "
            "closed form", error)
+    same = [forces("d", f"balanced={b}")[0] for b in ("true", "false")]
+    ok((same[0] == same[1]).all() and same[0].any(),
+       "on a cubic lattice balance changes no bit")
     # pressures that do not change in space are those of uniform suction
     with h5py.File("d", "a") as file:
         level = forces("d")[2]["capillary_pressure"]
@@ -270,8 +282,8 @@ def times():
         change = np.linalg.norm(np.diff(force, axis=0), axis=2).max() / largest
         ok(change <= bound * (1 + 1e-6) and len(time) < 3000,
            f"largest_change = {bound}: kept, in {len(time)} times", change)
-        ok(abs(summary["largest_change"] / change - 1) < 1e-3, "and said",
-           (summary["largest_change"], change))
+        said = summary["largest_change"] * np.linalg.norm(force, axis=2).max() / largest
+        ok(abs(said / change - 1) < 1e-3, "and said", (said, change))
         found = np.linalg.norm(interpolated(time, force, when) - truth, axis=2).max() / largest
         said = summary["interpolation_error"]
         ok(0.9 * said < found < 1.001 * said and said <= bound * (1 + 1e-6),
@@ -435,7 +447,8 @@ def plain_arcs():
     box = (5e-6, 5e-7, 5e-6)
     centres, radii = scatter(40, box, layer=True)
     drying("d", centres, radii, box, ["dimensions=2"], ["liquid=inviscid"])
-    error = abs(forces("d")[0] - np.pi / 2 * forces("d", "form=arcs")[0]).max()
+    lune, arc = (forces("d", "balanced=false", f"form={f}")[0] for f in ("solid-angle", "arcs"))
+    error = abs(lune - np.pi / 2 * arc).max()
     ok(error < 1e-15 * 1e6 * R**2, "the arcs of a layer are its lunes over pi/2", error)
 
 

@@ -57,6 +57,7 @@ with scratch() as folder:
         if not how:
             continue
         # [K 3.21] half way through the time, when saturations are between two steps.
+        force = forces("one", centres, radii, box, sides, how, ["balanced=false"])[0]
         with h5py.File(at("one.d")) as d:
             saturation = np.ones(len(d["throats/length"]))
             offset, throat, value = (d[f"changes/{k}"][:] for k in ("offset", "throat", "saturation"))

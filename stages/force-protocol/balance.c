@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces f on the grains around one throat are in balance when they are orthogonal to
+// all rigid motions of these grains; P takes the rigid part off. Wanted are the f
+// nearest to f0, what the form says, with P f = f at each throat and, for each grain
+// that f0 leaves at rest when all throats are full, the same. With a multiplier m for
+// each such grain f = P (f0 - m); m follows from the sums over its throats: symmetric,
+// positive, sparse.
+#include "balance.h"
+
+#include "basics/memory.h"
+#include "sparse/conjugate_gradients.h"
+
+#include <stdlib.h>
+
+// A grain beside a throat.
+struct corner {
+    int32_t throat, grain;
+    struct vector arm;     // from the middle of the throat to the grain
+    struct vector pull;    // f0, then f
+    struct vector turn[3]; // its part in three turns of the grains around the throat,
+                           // orthonormal over these, or 0
+    struct vector now;     // P of the vectors asked for last
+};
+
+struct throats {
+    int n_throat, n_grain, n_corner, capacity;
+    struct corner *corner; // (n_corner)
+    int *first;            // (n_throat+1) corners of each throat
+    int *begin, *own;      // (n_grain+1) into OWN (n_corner): corners of each grain
+    bool *borne;           // (n_throat) something else takes what is left: P is 1
+    bool *closed;          // (n_grain) the pulls on it sum to zero
+};
+
+static void throats_free(struct throats *throats)
+{
+    free(throats->corner);
+    free(throats->first);
+    free(throats->begin);
+    free(throats->own);
+    free(throats->borne);
+    free(throats->closed);
+}
+
+// --- corners -----------------------------------------------------------------------
+
+// In its repetition of the box: in a small one a grain can be around a throat twice.
+static struct corner *corner_of(struct throats *throats, const struct wedge *wedge)
+{
+    const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
+    const struct vector arm = subtract(wedge->centre, middle);
+    for (int k = throats->first[wedge->throat]; k < throats->n_corner; k++)
+        if (throats->corner[k].grain == wedge->grain &&
+            distance(throats->corner[k].arm, arm) <= 1e-6 * norm(arm))
+            return &throats->corner[k];
+    GROW_ARRAY(throats->corner, throats->n_corner, throats->capacity);
+    struct corner *corner = &throats->corner[throats->n_corner++];
+    *corner =
+        (struct corner){.throat = wedge->throat, .grain = wedge->grain, .arm = arm};
+    return corner;
+}
+
+// Auxiliary grains are not there, and walls are no grains: both bear what is left.
+static void find_corners(struct throats *throats, struct wedges *wedges, enum form form)
+{
+    for (int t = 0; t < throats->n_throat; t++) {
+        throats->first[t] = throats->n_corner;
+        const int n = wedges_at(wedges, t);
+        for (int k = 0; k < n; k++) {
+            const struct wedge *wedge = &wedges->wedge[k];
+            const bool is_grain =
+                !is_auxiliary(&wedges->network->packing, wedge->grain);
+            if (!is_grain || wedge->beyond < 0) throats->borne[t] = true;
+            if (!is_grain) continue;
+            struct corner *corner = corner_of(throats, wedge);
+            corner->pull = add(corner->pull, pull_of(form)(wedges, wedge, NULL));
+        }
+    }
+    throats->first[throats->n_throat] = throats->n_corner;
+}
+
+static void list_by_grain(struct throats *throats)
+{
+    for (int k = 0; k < throats->n_corner; k++)
+        throats->begin[throats->corner[k].grain + 1]++;
+    for (int i = 0; i < throats->n_grain; i++)
+        throats->begin[i + 1] += throats->begin[i];
+    throats->own = NEW_ARRAY(int, throats->n_corner);
+    int *next = duplicate(throats->begin, (size_t)throats->n_grain + 1, sizeof *next);
+    for (int k = 0; k < throats->n_corner; k++)
+        throats->own[next[throats->corner[k].grain]++] = k;
+    free(next);
+}
+
+static void find_closed(struct throats *throats)
+{
+    for (int i = 0; i < throats->n_grain; i++) {
+        struct vector sum = {0};
+        double sizes = 0;
+        for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++) {
+            const struct vector pull = throats->corner[throats->own[k]].pull;
+            sum = add(sum, pull);
+            sizes += norm(pull);
+        }
+        throats->closed[i] = sizes > 0 && norm(sum) <= 1e-10 * sizes;
+    }
+}
+
+// --- rigid motions -----------------------------------------------------------------
+
+static struct vector mean_arm(const struct corner *corner, int n)
+{
+    struct vector sum = {0};
+    for (int c = 0; c < n; c++)
+        sum = add(sum, corner[c].arm);
+    return scale(1.0 / n, sum);
+}
+
+// Takes the turns before the Kth, orthonormal or 0, out of it; twice, for rounding.
+static void take_out(struct corner *corner, int n, int k)
+{
+    for (int former = 0; former < 2 * k; former++) {
+        double share = 0;
+        for (int c = 0; c < n; c++)
+            share += dot(corner[c].turn[k], corner[c].turn[former % k]);
+        for (int c = 0; c < n; c++)
+            corner[c].turn[k] =
+                subtract(corner[c].turn[k], scale(share, corner[c].turn[former % k]));
+    }
+}
+
+// Grains in one line have two turns, and one grain none.
+static void find_turns(struct corner *corner, int n)
+{
+    const struct vector middle = mean_arm(corner, n);
+    double reach = 0;
+    for (int c = 0; c < n; c++)
+        reach = fmax(reach, norm(corner[c].arm));
+    for (int k = 0; k < 3; k++) {
+        struct vector axis = {0};
+        set_component(&axis, k, 1);
+        for (int c = 0; c < n; c++)
+            corner[c].turn[k] = cross(axis, subtract(corner[c].arm, middle));
+        take_out(corner, n, k);
+        double size = 0;
+        for (int c = 0; c < n; c++)
+            size += dot(corner[c].turn[k], corner[c].turn[k]);
+        const double unit = size > 1e-20 * reach * reach ? 1 / sqrt(size) : 0;
+        for (int c = 0; c < n; c++)
+            corner[c].turn[k] = scale(unit, corner[c].turn[k]);
+    }
+}
+
+// NOW without its rigid part.
+static void project(struct corner *corner, int n)
+{
+    struct vector mean = {0};
+    double turn[3] = {0};
+    for (int c = 0; c < n; c++) {
+        mean = add(mean, scale(1.0 / n, corner[c].now));
+        for (int k = 0; k < 3; k++)
+            turn[k] += dot(corner[c].now, corner[c].turn[k]);
+    }
+    for (int c = 0; c < n; c++) {
+        corner[c].now = subtract(corner[c].now, mean);
+        for (int k = 0; k < 3; k++)
+            corner[c].now = subtract(corner[c].now, scale(turn[k], corner[c].turn[k]));
+    }
+}
+
+// NOW = P (SHARE pull - MULTIPLIER of the grain).
+static void balance(struct throats *throats, double share,
+                    const struct vector *multiplier)
+{
+#pragma omp parallel for
+    for (int t = 0; t < throats->n_throat; t++) {
+        const int n = throats->first[t + 1] - throats->first[t];
+        struct corner *corner = &throats->corner[throats->first[t]];
+        for (int c = 0; c < n; c++)
+            corner[c].now =
+                subtract(scale(share, corner[c].pull), multiplier[corner[c].grain]);
+        if (!throats->borne[t]) project(corner, n);
+    }
+}
+
+// --- the multipliers ---------------------------------------------------------------
+
+// SIGN times the sum of NOW on each grain that is closed.
+static void sum_up(const struct throats *throats, double sign, struct vector *sum)
+{
+#pragma omp parallel for
+    for (int i = 0; i < throats->n_grain; i++) {
+        sum[i] = (struct vector){0};
+        if (!throats->closed[i]) continue;
+        for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
+            sum[i] = add(sum[i], scale(sign, throats->corner[throats->own[k]].now));
+    }
+}
+
+static void multiply(void *context, const double *x, double *image)
+{
+    struct throats *throats = context;
+    balance(throats, 0, (const struct vector *)x);
+    sum_up(throats, -1, (struct vector *)image);
+}
+
+// By the throats of each grain. On grains that are not closed all is 0.
+static void precondition(void *context, const double *residual, double *z)
+{
+    const struct throats *throats = context;
+    for (int i = 0; i < throats->n_grain; i++)
+        for (int axis = 0; axis < 3; axis++)
+            z[3 * i + axis] = residual[3 * i + axis] /
+                              fmax(1, throats->begin[i + 1] - throats->begin[i]);
+}
+
+static double pulls_squared(const struct throats *throats)
+{
+    double sum = 0;
+    for (int k = 0; k < throats->n_corner; k++)
+        sum += dot(throats->corner[k].pull, throats->corner[k].pull);
+    return sum;
+}
+
+static enum status find_multipliers(struct throats *throats, struct vector *multiplier,
+                                    struct reason *reason)
+{
+    static const int most = 10000;
+    const int n = 3 * throats->n_grain;
+    struct vector *residual = NEW_ARRAY(struct vector, throats->n_grain);
+    struct linear_problem problem = {n, throats, multiply, precondition, {0}};
+    for (int k = 0; k < 3; k++)
+        problem.work[k] = NEW_ARRAY(double, n);
+    balance(throats, 1, multiplier);
+    sum_up(throats, 1, residual);
+    const double aim = 1e-15 * sqrt(pulls_squared(throats));
+    const int count =
+        conjugate_gradients(&problem, &residual->x, &multiplier->x, aim, most);
+    const double left = sqrt(dot_product(&residual->x, &residual->x, n));
+    for (int k = 0; k < 3; k++)
+        free(problem.work[k]);
+    free(residual);
+    if (left <= 10 * aim) return STATUS_OK;
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "the balance of the throats' pulls: %g of %g left after %d iterations", left,
+        aim, count);
+}
+
+// --- pulls -------------------------------------------------------------------------
+
+// How far NOW is from PULL, root mean square, of the pulls.
+static double change_of(const struct throats *throats)
+{
+    double sum = 0;
+    for (int k = 0; k < throats->n_corner; k++) {
+        const struct corner *corner = &throats->corner[k];
+        const struct vector change = subtract(corner->now, corner->pull);
+        sum += dot(change, change);
+    }
+    const double all = pulls_squared(throats);
+    return all > 0 ? sqrt(sum / all) : 0;
+}
+
+static enum status balance_pulls(struct throats *throats, double *change,
+                                 struct reason *reason)
+{
+    static const double rounding = 1e-12;
+    struct vector *multiplier = NEW_ARRAY(struct vector, throats->n_grain);
+    balance(throats, 1, multiplier);
+    *change = change_of(throats);
+    enum status status = STATUS_OK;
+    if (*change > rounding) {
+        status = find_multipliers(throats, multiplier, reason);
+        balance(throats, 1, multiplier);
+        *change = change_of(throats);
+        for (int k = 0; k < throats->n_corner; k++)
+            throats->corner[k].pull = throats->corner[k].now;
+    }
+    free(multiplier);
+    return status;
+}
+
+enum status find_balanced_patches(struct wedges *wedges, enum form form,
+                                  struct patches *patches, double *change,
+                                  struct reason *reason)
+{
+    const int n_throat = wedges->network->n_throat;
+    const int n_grain = wedges->network->packing.n_particle;
+    struct throats throats = {.n_throat = n_throat,
+                              .n_grain = n_grain,
+                              .first = NEW_ARRAY(int, n_throat + 1),
+                              .begin = NEW_ARRAY(int, n_grain + 1),
+                              .borne = NEW_ARRAY(bool, n_throat),
+                              .closed = NEW_ARRAY(bool, n_grain)};
+    find_corners(&throats, wedges, form);
+    list_by_grain(&throats);
+    find_closed(&throats);
+    for (int t = 0; t < n_throat; t++)
+        find_turns(&throats.corner[throats.first[t]],
+                   throats.first[t + 1] - throats.first[t]);
+    const enum status status = balance_pulls(&throats, change, reason);
+    *patches = (struct patches){0};
+    for (int k = 0; k < throats.n_corner && !status; k++)
+        patches_add(patches, throats.corner[k].throat, throats.corner[k].grain,
+                    throats.corner[k].pull);
+    patches_sort(patches, n_grain);
+    throats_free(&throats);
+    return status;
+}
