@@ -10,7 +10,7 @@
 struct crackstats_parameters {
     int64_t slices, intervals, first_group;
     double confidence;
-    bool same_bonds;
+    bool same_bonds, paired;
 };
 
 #define AT(member) offsetof(struct crackstats_parameters, member)
@@ -28,6 +28,13 @@ static const struct parameter table[] = {
     {"first_group", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 1000000, NULL,
      "the first so many runs are tested against the others; 0: no test",
      AT(first_group)},
+    {"paired", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "runs of the two groups belong together, the first of one and the first of the "
+     "other "
+     "and so on, as of one aggregate that dries in two ways: their differences are "
+     "tested "
+     "too",
+     AT(paired)},
     {"same_bonds", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
      "all runs must have as many bonds as the first; false: runs of other packings",
      AT(same_bonds)},
@@ -140,6 +147,11 @@ static struct study read_study(const struct invocation *invocation, json_t *dige
         die(STATUS_BAD_DATA,
             "crackstats.first_group: must leave runs to test against, got %d of %d",
             (int)parameters->first_group, study.n_run);
+    if (parameters->paired && 2 * parameters->first_group != study.n_run)
+        die(STATUS_BAD_DATA,
+            "crackstats.paired: takes two groups of as many runs, got first_group = %d "
+            "of %d",
+            (int)parameters->first_group, study.n_run);
     return study;
 }
 
@@ -154,7 +166,8 @@ int main(int argc, char **argv)
         json_pack("{s:s,s:i,s:o}", "schema", "craquelure/crackstats/1", "runs",
                   study.n_run, "bonds", json_value(study.bonds / study.n_run));
     report_tables(report, &study);
-    report_facts(report, &study, parameters.confidence, (int)parameters.first_group);
+    report_facts(report, &study, parameters.confidence,
+                 (struct groups){(int)parameters.first_group, parameters.paired});
     finish_json(report, &invocation, inputs,
                 study.n_liquid == study.n_run
                     ? "counts by mode, drying period, slice, saturation and time; "

@@ -12,10 +12,13 @@
 void report_tables(json_t *report, const struct study *study);
 
 // Puts in the facts: mean, sd and confidence_interval over the runs (null for one run),
-// each run's own; and, where FIRST_GROUP is not 0, the test of the first so many runs
-// against the others.
+// each run's own; and the test of the groups.
+struct groups {
+    int first;   // runs in the first, tested against the others; 0: no test
+    bool paired; // the groups are as large, and runs belong together in their order
+};
 void report_facts(json_t *report, const struct study *study, double confidence,
-                  int first_group);
+                  struct groups groups);
 
 // Whole numbers as integers: one run has no halves. What is not finite is null.
 json_t *json_value(double value);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "basics/memory.h"
+#include "pairs.h"
 #include "report.h"
 #include "sample.h"
 
@@ -11,6 +12,7 @@ struct column {
     const struct study *study;
     int first, n;
     double confidence;
+    bool paired; // with the runs before the first
 };
 
 // The caller frees the values.
@@ -62,6 +64,20 @@ static json_t *table(struct column column, json_t *of(struct column, enum fact))
     return object;
 }
 
+static void test_pairs(json_t *test, struct sample a, struct sample b)
+{
+    const struct paired_t t = paired_t_test(a, b);
+    const struct wilcoxon rank = wilcoxon_test(a, b);
+    json_object_set_new(test, "paired_t",
+                        json_pack("{s:o,s:o,s:o,s:o,s:o}", "mean", json_value(t.mean),
+                                  "sd", json_value(t.sd), "t", json_value(t.t),
+                                  "degrees_of_freedom", json_value(t.degrees), "p",
+                                  json_value(t.p)));
+    json_object_set_new(test, "wilcoxon",
+                        json_pack("{s:o,s:o,s:b}", "v", json_value(rank.v), "p",
+                                  json_value(rank.p), "exact", rank.exact));
+}
+
 static json_t *test_samples(struct sample a, struct sample b)
 {
     if (isnan(sample_mean(a)) || isnan(sample_mean(b))) return json_null();
@@ -80,35 +96,40 @@ static json_t *test_samples(struct sample a, struct sample b)
 static json_t *test_of(struct column column, enum fact fact)
 {
     const struct sample a =
-        take((struct column){column.study, 0, column.first, 0}, fact);
+        take((struct column){.study = column.study, .n = column.first}, fact);
     const struct sample b = take(column, fact);
     json_t *test = test_samples(a, b);
+    if (column.paired && json_is_object(test)) test_pairs(test, a, b);
     free((void *)a.value);
     free((void *)b.value);
     return test;
 }
 
-static json_t *test(const struct study *study, int first_group)
+static json_t *test(const struct study *study, struct groups groups)
 {
-    if (first_group == 0) return json_null();
-    const int rest = study->n_run - first_group;
-    json_t *test = table((struct column){study, first_group, rest, 0}, test_of);
-    json_object_set_new(test, "groups", json_pack("[i,i]", first_group, rest));
+    if (groups.first == 0) return json_null();
+    const struct column second = {.study = study,
+                                  .first = groups.first,
+                                  .n = study->n_run - groups.first,
+                                  .paired = groups.paired};
+    json_t *test = table(second, test_of);
+    json_object_set_new(test, "groups", json_pack("[i,i]", groups.first, second.n));
     return test;
 }
 
 void report_facts(json_t *report, const struct study *study, double confidence,
-                  int first_group)
+                  struct groups groups)
 {
-    const struct column all = {study, 0, study->n_run, confidence};
+    const struct column all = {study, 0, study->n_run, confidence, false};
     const bool many = study->n_run > 1;
     json_object_set_new(report, "mean", table(all, mean_of));
     json_object_set_new(report, "sd", many ? table(all, deviation_of) : json_null());
     json_object_set_new(report, "confidence_interval",
                         many ? table(all, interval_of) : json_null());
-    json_object_set_new(report, "test", test(study, first_group));
+    json_object_set_new(report, "test", test(study, groups));
     json_t *each = json_array();
     for (int r = 0; r < study->n_run; r++)
-        json_array_append_new(each, table((struct column){study, r, 1, 0}, mean_of));
+        json_array_append_new(each,
+                              table((struct column){study, r, 1, 0, false}, mean_of));
     json_object_set_new(report, "each", each);
 }

@@ -2,9 +2,10 @@
 // Confidence intervals and tests of two samples, against published outcomes: Student's
 // sleep data, Hollander and Wolfe's membranes, the manual of scipy; and U by counting
 // all orders.
-#include "crackstats/sample.h"
+#include "crackstats/pairs.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 // clang-format off
 #include <stdarg.h>
@@ -40,6 +41,76 @@ static void test_welch_on_student_sleep(void **state)
     assert_digits(found.t, -1.8608, 1e-4);
     assert_digits(found.degrees, 17.776, 1e-3);
     assert_digits(found.p, 0.07939, 1e-5);
+}
+
+// The drugs were given to the same ten: t.test(..., paired = TRUE) and
+// wilcox.test(..., paired = TRUE). One slept as long with both.
+static void test_pairs_of_student_sleep(void **state)
+{
+    (void)state;
+    const struct paired_t t = paired_t_test(SAMPLE(first_drug), SAMPLE(second_drug));
+    assert_digits(t.mean, -1.58, 1e-2);
+    assert_digits(t.t, -4.0621, 1e-4);
+    assert_close(t.degrees, 9, 0);
+    assert_digits(t.p, 0.002833, 1e-6);
+    const struct wilcoxon rank = wilcoxon_test(SAMPLE(first_drug), SAMPLE(second_drug));
+    assert_close(rank.v, 0, 0);
+    assert_digits(rank.p, 0.009091, 1e-6);
+    assert_false(rank.exact);
+}
+
+// Depression before and after a tranquiliser (Hollander and Wolfe 1973, p. 29), in R's
+// manual of wilcox.test: V = 40, p = 0.01953 one-sided, of 2^9 orders of signs 10.
+static void test_signed_ranks_of_depression(void **state)
+{
+    (void)state;
+    static const double before[] = {1.83, 0.50, 1.62, 2.48, 1.68,
+                                    1.88, 1.55, 3.06, 1.30};
+    static const double after[] = {0.878, 0.647, 0.598, 2.05, 1.06,
+                                   1.29,  1.06,  3.14,  1.29};
+    const struct wilcoxon found = wilcoxon_test(SAMPLE(before), SAMPLE(after));
+    assert_close(found.v, 40, 0);
+    assert_close(found.p, 2 * 10.0 / 512, 1e-15);
+    assert_true(found.exact);
+    assert_close(wilcoxon_test(SAMPLE(after), SAMPLE(before)).p, found.p, 0);
+}
+
+// All signs of n differences, one by one.
+static void test_signed_ranks_by_counting(void **state)
+{
+    (void)state;
+    enum { N = 8 };
+    double zero[N] = {0}, value[N];
+    for (int signs = 0; signs < 1 << N; signs++) {
+        int v = 0, as_far = 0;
+        for (int k = 0; k < N; k++) {
+            value[k] = (signs >> k & 1 ? 1 : -1) * (k + 1.5);
+            if (signs >> k & 1) v += k + 1;
+        }
+        const int far = abs(2 * v - N * (N + 1) / 2);
+        for (int other = 0; other < 1 << N; other++) {
+            int w = 0;
+            for (int k = 0; k < N; k++)
+                if (other >> k & 1) w += k + 1;
+            as_far += abs(2 * w - N * (N + 1) / 2) >= far;
+        }
+        const struct wilcoxon found = wilcoxon_test(SAMPLE(value), SAMPLE(zero));
+        assert_close(found.v, v, 0);
+        assert_close(found.p, fmin(1, (double)as_far / (1 << N)), 1e-14);
+    }
+}
+
+static void test_pairs_that_say_little(void **state)
+{
+    (void)state;
+    static const double same[] = {3, 4, 5}, more[] = {4, 5, 6}, unknown[] = {1, NAN, 2};
+    assert_close(paired_t_test(SAMPLE(same), SAMPLE(same)).p, 1, 0);
+    assert_close(paired_t_test(SAMPLE(more), SAMPLE(same)).p, 0, 0);
+    assert_close(wilcoxon_test(SAMPLE(same), SAMPLE(same)).p, 1, 0);
+    assert_true(isnan(paired_t_test(SAMPLE(unknown), SAMPLE(same)).p));
+    assert_true(isnan(wilcoxon_test(SAMPLE(unknown), SAMPLE(same)).p));
+    assert_true(
+        isnan(paired_t_test((struct sample){same, 1}, (struct sample){more, 1}).p));
 }
 
 static void test_interval_of_student_sleep(void **state)
@@ -136,6 +207,10 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_welch_on_student_sleep),
+        cmocka_unit_test(test_pairs_of_student_sleep),
+        cmocka_unit_test(test_signed_ranks_of_depression),
+        cmocka_unit_test(test_signed_ranks_by_counting),
+        cmocka_unit_test(test_pairs_that_say_little),
         cmocka_unit_test(test_interval_of_student_sleep),
         cmocka_unit_test(test_ranks_of_student_sleep_with_ties),
         cmocka_unit_test(test_ranks_of_hollander_and_wolfe),

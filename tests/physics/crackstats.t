@@ -102,7 +102,7 @@ with scratch() as folder:
         paths.append(at(f"run-{len(paths)}"))
         shutil.copy(at("response"), paths[-1])
         by_hand(paths[-1], list(range(n)), [end] * n, [0.5] * n, [0] * n)
-    stats = crackstats("--set", "first_group=10", *paths)
+    stats = crackstats("--set", "first_group=10", "--set", "paired=true", *paths)
     test = stats["test"]["cracks"]["total"]
     ok(stats["test"]["groups"] == [10, 10] and test["mean"] == [np.mean(first), np.mean(second)],
        "two groups of ten runs", test)
@@ -111,6 +111,9 @@ with scratch() as folder:
        and round(test["welch"]["p"], 5) == 0.07939, "Welch's t test, as published", test)
     ok(test["mann_whitney"]["u"] == 25.5 and round(test["mann_whitney"]["p"], 5) == 0.06933
        and not test["mann_whitney"]["exact"], "Mann and Whitney's test, as published", test)
+    ok(round(test["paired_t"]["t"], 4) == -4.0621 and round(test["paired_t"]["p"], 6) == 0.002833
+       and abs(test["paired_t"]["mean"] + 15.8) < 1e-12 and test["wilcoxon"]["v"] == 0
+       and round(test["wilcoxon"]["p"], 6) == 0.009091, "and both tests of pairs", test)
     ok(stats["test"]["cracks"]["shear"]["welch"]["p"] == 1
        and stats["test"]["cracks"]["shear"]["mann_whitney"]["p"] == 1,
        "what is the same in all runs does not differ")
