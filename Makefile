@@ -51,8 +51,10 @@ HDF5_LIBS = $(call once,HDF5_LIBS,pkg-config --libs-only-L hdf5-serial 2>/dev/nu
 	|| pkg-config --libs-only-L hdf5 2>/dev/null \
 	|| echo -L/usr/lib/$$($(CC) -print-multiarch)/hdf5/serial)
 CPPFLAGS = -Istages/lib $(HDF5_CPPFLAGS) -I/usr/include/suitesparse
-LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig -lgsl -lgslcblas -ljansson \
-	-lcrypto -lstdc++ -lmpfr -lgmp -lm
+STATIC_LIBS = $(call once,STATIC_LIBS,tools/static-libraries '$(CC)' $(HDF5_LIBS))
+SHARED_LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig
+LIBS = $(or $(STATIC_LIBS),$(SHARED_LIBS)) -lgsl -lgslcblas -ljansson -lcrypto -lstdc++ -lmpfr \
+	-lgmp -lm
 
 PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
 	libjansson-dev libssl-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
