@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 // Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
 enum { DIRECT_MOST = 1500 };
@@ -47,19 +46,27 @@ void linear_solver_free(struct linear_solver *linear)
     *linear = (struct linear_solver){0};
 }
 
+// In units of the norm of B, for the preconditioner has floats.
 static int iterate(struct linear_solver *linear, const double *b, double *x,
                    double reduction)
 {
     const int n = linear->matrix->n;
+    const double size = sqrt(dot_product(b, b, n));
     const struct linear_problem problem = {
         n,
         linear,
         multiply,
         precondition,
-        {linear->work[0], linear->work[1], linear->work[2]}};
-    memcpy(linear->residual, b, (size_t)n * sizeof *b);
-    return conjugate_gradients(&problem, linear->residual, x,
-                               reduction * sqrt(dot_product(b, b, n)), MOST_ITERATIONS);
+        {linear->work[0], linear->work[1], linear->work[2]},
+        linear->begun};
+    linear->begun = true;
+    for (int i = 0; i < n; i++)
+        linear->residual[i] = size > 0 ? b[i] / size : 0;
+    const int iterations =
+        conjugate_gradients(&problem, linear->residual, x, reduction, MOST_ITERATIONS);
+    for (int i = 0; i < n; i++)
+        x[i] *= size;
+    return iterations;
 }
 
 enum status linear_solve(struct linear_solver *linear, const double *b, double *x,

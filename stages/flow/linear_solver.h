@@ -15,6 +15,7 @@ struct linear_solver {
     struct cholesky *cholesky; // one of the two, the other NULL
     struct sampled_factor *factor;
     double *residual, *work[3]; // (n) of conjugate gradients
+    bool begun;                 // those of an earlier call, which they go on from
 };
 
 // The matrix must outlive it. The caller frees with linear_solver_free, also after an
@@ -25,7 +26,8 @@ void linear_solver_free(struct linear_solver *linear);
 
 // X (n) for the lacks B (n), in the units of the matrix. Conjugate gradients take the
 // residual down to REDUCTION of that of zero, or as far as they come, and add to
-// ITERATIONS. STATUS_INTERNAL: no memory.
+// ITERATIONS; after the first call B is taken to be what the sum of the X still lacks.
+// STATUS_INTERNAL: no memory.
 enum status linear_solve(struct linear_solver *linear, const double *b, double *x,
                          double reduction, int *iterations, struct reason *reason);
 

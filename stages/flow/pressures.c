@@ -12,6 +12,9 @@
 enum { CORRECTIONS = 12 };
 static const double first_reduction = 1e-8;
 
+// Below this imbalance corrections do not change the throughput any more.
+static const double settled = 1e-5;
+
 // A network of nodes: those whose pressure is sought first.
 struct balance {
     const struct grains *grains;
@@ -311,7 +314,7 @@ static enum status close_balances(const struct balance *balance,
     enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
     pressures->direct = solver.cholesky;
     find_lack(matrix, given, x, lack);
-    double best = INFINITY;
+    double best = pressures->imbalance = INFINITY;
     for (int round = 0; !status && round < CORRECTIONS; round++) {
         const double reduction = round == 0
                                      ? first_reduction
@@ -322,9 +325,11 @@ static enum status close_balances(const struct balance *balance,
         if (status) break;
         for (int i = 0; i < n; i++)
             compensated_add(&x[i], correction[i]);
-        reorder(balance, pressures, x, true);
         find_lack(matrix, given, x, lack);
-        pressures->throughput = find_throughput(balance, pressures);
+        if (!(pressures->imbalance < settled)) {
+            reorder(balance, pressures, x, true);
+            pressures->throughput = find_throughput(balance, pressures);
+        }
         const double absolute = imbalance(lack, n);
         pressures->imbalance = absolute > 0 ? absolute / pressures->throughput : 0;
         if (pressures->imbalance < 0.1 * solving->tolerance) break;
@@ -333,6 +338,7 @@ static enum status close_balances(const struct balance *balance,
             break;
         best = fmin(best, pressures->imbalance);
     }
+    reorder(balance, pressures, x, true);
     linear_solver_free(&solver);
     free(x);
     free(lack);

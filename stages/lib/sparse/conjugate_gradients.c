@@ -45,14 +45,16 @@ int conjugate_gradients(const struct linear_problem *problem, double *residual,
 {
     const int n = problem->n;
     double *z = problem->work[0], *p = problem->work[1], *image = problem->work[2];
-    double curvature = 0;
+    double curvature = problem->resumes ? dot_product(p, image, n) : 0;
     int iteration = 0;
     for (int i = 0; i < n; i++)
-        x[i] = p[i] = 0;
+        x[i] = 0;
+    for (int i = 0; i < n && !problem->resumes; i++)
+        p[i] = 0;
     while (iteration < most && sqrt(dot_product(residual, residual, n)) > aim) {
         problem->precondition(problem->context, residual, z);
-        const double overlap =
-            iteration ? dot_product(z, image, n) / curvature : 0; // along the last p
+        const double overlap = curvature > 0 ? dot_product(z, image, n) / curvature
+                                             : 0; // along the last p
 #pragma omp parallel for schedule(static) if (n > LARGE)
         for (int i = 0; i < n; i++)
             p[i] = z[i] - overlap * p[i];
