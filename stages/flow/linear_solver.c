@@ -57,13 +57,11 @@ static int iterate(struct linear_solver *linear, const double *b, double *x,
         linear,
         multiply,
         precondition,
-        {linear->work[0], linear->work[1], linear->work[2]},
-        linear->begun};
-    linear->begun = true;
+        {linear->work[0], linear->work[1], linear->work[2]}};
     for (int i = 0; i < n; i++)
         linear->residual[i] = size > 0 ? b[i] / size : 0;
-    const int iterations =
-        conjugate_gradients(&problem, linear->residual, x, reduction, MOST_ITERATIONS);
+    const int iterations = resume_conjugate_gradients(&problem, linear->residual, x,
+                                                      reduction, MOST_ITERATIONS);
     for (int i = 0; i < n; i++)
         x[i] *= size;
     return iterations;

@@ -15,7 +15,6 @@ struct linear_solver {
     struct cholesky *cholesky; // one of the two, the other NULL
     struct sampled_factor *factor;
     double *residual, *work[3]; // (n) of conjugate gradients
-    bool begun;                 // those of an earlier call, which they go on from
 };
 
 // The matrix must outlive it. The caller frees with linear_solver_free, also after an

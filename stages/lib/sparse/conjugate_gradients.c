@@ -40,17 +40,15 @@ double dot_product(const double *x, const double *y, int n)
     return sum;
 }
 
-int conjugate_gradients(const struct linear_problem *problem, double *residual,
-                        double *x, double aim, int most)
+int resume_conjugate_gradients(const struct linear_problem *problem, double *residual,
+                               double *x, double aim, int most)
 {
     const int n = problem->n;
     double *z = problem->work[0], *p = problem->work[1], *image = problem->work[2];
-    double curvature = problem->resumes ? dot_product(p, image, n) : 0;
+    double curvature = dot_product(p, image, n);
     int iteration = 0;
     for (int i = 0; i < n; i++)
         x[i] = 0;
-    for (int i = 0; i < n && !problem->resumes; i++)
-        p[i] = 0;
     while (iteration < most && sqrt(dot_product(residual, residual, n)) > aim) {
         problem->precondition(problem->context, residual, z);
         const double overlap = curvature > 0 ? dot_product(z, image, n) / curvature
@@ -70,4 +68,12 @@ int conjugate_gradients(const struct linear_problem *problem, double *residual,
         iteration++;
     }
     return iteration;
+}
+
+int conjugate_gradients(const struct linear_problem *problem, double *residual,
+                        double *x, double aim, int most)
+{
+    for (int i = 0; i < problem->n; i++)
+        problem->work[1][i] = problem->work[2][i] = 0;
+    return resume_conjugate_gradients(problem, residual, x, aim, most);
 }

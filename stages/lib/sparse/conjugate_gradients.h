@@ -3,8 +3,6 @@
 #ifndef CRAQUELURE_CONJUGATE_GRADIENTS_H
 #define CRAQUELURE_CONJUGATE_GRADIENTS_H
 
-#include <stdbool.h>
-
 // A symmetric positive definite matrix of N rows, and one whose inverse is near its.
 struct linear_problem {
     int n;
@@ -12,16 +10,19 @@ struct linear_problem {
     void (*multiply)(void *context, const double *x, double *image);
     void (*precondition)(void *context, const double *residual, double *z);
     double *work[3]; // (n) each, overwritten
-    bool resumes;    // from the direction that an earlier call left in them
 };
 
 // Solves from X = 0 until the norm of what RESIDUAL (n) lacks, first the right side, is
 // AIM or less, or after MOST iterations, or when the preconditioner proves not positive
-// definite. RESIDUAL comes back as it follows from step to step. One that resumes with
-// what a solution still lacks goes on nearly as if it had not been interrupted. Returns
-// how many iterations were done. The same digits for any number of threads.
+// definite. RESIDUAL comes back as it follows from step to step. Returns how many
+// iterations were done. The same digits for any number of threads.
 int conjugate_gradients(const struct linear_problem *problem, double *residual,
                         double *x, double aim, int most);
+
+// The same for what is still lacking after an earlier call with the same work, in any
+// unit: goes on from its last direction, nearly as if it had not been interrupted.
+int resume_conjugate_gradients(const struct linear_problem *problem, double *residual,
+                               double *x, double aim, int most);
 
 // A sum in blocks of fixed length: the same for any number of threads.
 double dot_product(const double *x, const double *y, int n);
