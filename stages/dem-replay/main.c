@@ -151,6 +151,11 @@ static const struct parameter table[] = {
      NULL,
      "saturations at which displacements and contact forces are kept, highest first",
      AT(snapshots)},
+    {"keep_state", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "explicit: the end goes into the output as well, with a snapshot, for another "
+     "replay "
+     "to go on from",
+     AT(settings.keep_state)},
     {0}};
 
 static const struct stage stage = {
@@ -159,8 +164,11 @@ static const struct stage stage = {
     .summary = "dem-replay -- replay capillary forces on the bonded grains [K 4, 5.2]",
     .reads = "forces",
     .writes = "response",
-    .most_inputs = 1,
+    .most_inputs = 2,
     .parameters = table,
+    .notes = "A second input is the response of an earlier replay with keep_state, "
+             "which this one goes on from: its grains, where they lie, what has "
+             "broken. Displacements count from where its grains began.",
     .checkpoints = true};
 
 static void check_snapshots(const struct number_list *snapshots)
@@ -212,6 +220,52 @@ static struct load read_load(const struct artifact *input)
     return load;
 }
 
+// What an earlier replay left, if one was named: the engine, and its PACKING.
+static struct artifact *open_earlier(const struct invocation *invocation,
+                                     struct packing *packing, struct array_list *engine)
+{
+    if (invocation->n_input < 2) return NULL;
+    struct artifact *earlier = artifact_open(invocation->inputs[1], "response");
+    *engine = artifact_get_arrays(earlier, "engine");
+    if (!engine->count)
+        die(STATUS_BAD_DATA, "%s: /engine: is not there: replay with keep_state=true",
+            input_name(earlier->path));
+    const int n = packing->n_particle;
+    packing_free(packing);
+    *packing = artifact_get_packing(earlier);
+    if (packing->n_particle != n)
+        die(STATUS_BAD_DATA, "%s: /particles: has %d grains, but %s has %d",
+            input_name(earlier->path), packing->n_particle,
+            input_name(invocation->inputs[0]), n);
+    return earlier;
+}
+
+static json_t *digests(const struct artifact *input, const struct artifact *earlier)
+{
+    json_t *inputs = one_input(input);
+    if (earlier) json_array_append_new(inputs, input_digest(earlier));
+    return inputs;
+}
+
+static void check_engine(const struct replay_settings *settings,
+                         const struct invocation *invocation)
+{
+    const bool goes_on = invocation->n_input > 1;
+    if (goes_on && invocation->checkpoint)
+        die(STATUS_USAGE,
+            "--checkpoint is for a replay that does not go on from another");
+    if (settings->engine == ENGINE_EXPLICIT) return;
+    if (goes_on || settings->keep_state)
+        die(STATUS_BAD_DATA, "dem-replay.engine: only an explicit replay goes on from "
+                             "another (keep_state)");
+    if (invocation->checkpoint)
+        die(STATUS_USAGE, "--checkpoint is for engine=explicit: an equilibrium has no "
+                          "state between steps that is kept");
+    if (settings->liquid.volume > 0)
+        die(STATUS_BAD_DATA, "dem-replay.bridges.volume: equilibria know no liquid "
+                             "bridges, engine=explicit does");
+}
+
 static void free_load(struct load *load)
 {
     free(load->time);
@@ -237,6 +291,7 @@ static void run(const struct packing *packing, const struct load *load,
     progress_end(&bar);
     // Only a state that was kept can be at fault for bad data here.
     if (status == STATUS_BAD_DATA && keeper->begin) path = invocation->checkpoint;
+    if (status == STATUS_BAD_DATA && settings->begin) path = invocation->inputs[1];
     if (status) die(status, "%s: %s", input_name(path), reason.text);
 }
 
@@ -244,7 +299,7 @@ static void write_response(const struct packing *packing, const struct load *loa
                            const struct replay_settings *settings,
                            const struct response *response,
                            const struct invocation *invocation,
-                           const struct artifact *input)
+                           const struct artifact *input, json_t *inputs)
 {
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "%d grains held", "a rigid wall beneath"};
@@ -265,19 +320,21 @@ static void write_response(const struct packing *packing, const struct load *loa
              "%s\n"
              "support: %s\n"
              "overlaps of the packing %s\n"
-             "%s"
+             "%s%s"
              "left out: gravity, %smoments of capillary forces\n",
              engine, support,
              settings->unstressed ? "lie at rest" : "push from the start",
+             settings->begin ? "goes on from where an earlier replay ended\n" : "",
              settings->liquid.volume > 0
                  ? "liquid bridges between grains that have touched [G 2]\n"
                  : "",
              settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, settings, response);
+    artifact_put_arrays(artifact, "engine", &response->engine);
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         artifact_get_number(input, "/summary/first_period_end_time"));
-    artifact_finish(artifact, invocation, one_input(input), model);
+    artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
 // What cracked may still hang together; what has moved by its own size does not.
@@ -318,28 +375,28 @@ int main(int argc, char **argv)
     settings->n_snapshot = parameters.snapshots.count;
     settings->snapshot = parameters.snapshots.value;
     settings->threads = invocation.threads;
-    if (settings->engine == ENGINE_QUASI_STATIC && invocation.checkpoint)
-        die(STATUS_USAGE, "--checkpoint is for engine=explicit: an equilibrium has no "
-                          "state between steps that is kept");
-    if (settings->engine == ENGINE_QUASI_STATIC && settings->liquid.volume > 0)
-        die(STATUS_BAD_DATA, "dem-replay.bridges.volume: equilibria know no liquid "
-                             "bridges, engine=explicit does");
+    check_engine(settings, &invocation);
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
     struct packing packing = artifact_get_packing(input);
     struct load load = read_load(input);
+    struct array_list engine = {NULL, 0};
+    struct artifact *earlier = open_earlier(&invocation, &packing, &engine);
+    settings->begin = earlier ? &engine : NULL;
     choose_grains(&parameters, &packing, settings);
 
-    json_t *digest = one_input(input);
+    json_t *digest = digests(input, earlier);
     struct checkpoint checkpoint;
     checkpoint_begin(&checkpoint, &invocation, digest);
     struct response response;
     run(&packing, &load, settings, &invocation, input->path, &checkpoint.keeper,
         &response);
     if (!invocation.quiet) warn_if_loose(&packing, &response);
-    write_response(&packing, &load, settings, &response, &invocation, input);
+    write_response(&packing, &load, settings, &response, &invocation, input, digest);
 
     checkpoint_end(&checkpoint);
     json_decref(digest);
+    dem_free_arrays(engine.array, engine.count);
+    if (earlier) artifact_close(earlier);
     response_free(&response);
     free(settings->relative_strength);
     free(settings->held);

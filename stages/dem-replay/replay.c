@@ -20,6 +20,7 @@ struct run {
     struct equilibrium *equilibrium;
     struct vector *force; // (n_particle) of this step
     struct net_load taken_off;
+    int n_before; // bonds that an earlier replay has broken
     struct replay_place place;
 };
 
@@ -244,6 +245,8 @@ static void note_cracks(struct run *run, int step)
     const struct dem_crack *cracks = is_explicit(run)
                                          ? dem_cracks(run->dem, &count)
                                          : equilibrium_cracks(run->equilibrium, &count);
+    cracks += run->n_before;
+    count -= run->n_before;
     response->crack =
         reallocate(response->crack, (size_t)count, sizeof *response->crack);
     response->crack_step =
@@ -284,6 +287,15 @@ static bool snapshot_due(const struct run *run, int step)
            run->load->saturation[step] <= run->settings->snapshot[next];
 }
 
+// Where another replay is to go on, how grains lie is wanted too.
+static void take_last_snapshot(struct run *run, int step)
+{
+    const struct response *response = run->response;
+    const int last = response->n_snapshot - 1;
+    if (!run->settings->keep_state || step < run->load->n_time - 1) return;
+    if (last < 0 || response->snapshot[last].step < step) take_snapshot(run, step);
+}
+
 static enum status go_on(struct run *run, struct reason *reason)
 {
     const struct kept_state *state = run->keeper->begin;
@@ -295,6 +307,17 @@ static enum status go_on(struct run *run, struct reason *reason)
                             &run->place, reason);
 }
 
+static enum status go_on_from_earlier(struct run *run, struct reason *reason)
+{
+    const struct array_list *engine = run->settings->begin;
+    const enum status status =
+        dem_restore(run->dem, engine->array, engine->count, reason);
+    if (status) return status;
+    dem_cracks(run->dem, &run->n_before);
+    run->place.began = dem_cycle(run->dem);
+    return STATUS_OK;
+}
+
 static enum status do_step(struct run *run, struct reason *reason)
 {
     const int step = run->place.step;
@@ -303,6 +326,7 @@ static enum status do_step(struct run *run, struct reason *reason)
     note_cracks(run, step);
     while (!status && snapshot_due(run, step))
         take_snapshot(run, step);
+    if (!status) take_last_snapshot(run, step);
     run->place = (struct replay_place){step + 1, cycles_done(run)};
     return status;
 }
@@ -312,12 +336,12 @@ enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_progress *progress, const struct keeper *keeper,
                    struct response *response, struct reason *reason)
 {
-    *response =
-        (struct response){.unbalanced_ratio = NEW_ARRAY(double, load->n_time),
-                          .cycles = NEW_ARRAY(int64_t, load->n_time),
-                          .cracks = NEW_ARRAY(int32_t, load->n_time),
-                          .reaction = NEW_ARRAY(struct net_load, load->n_time),
-                          .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot)};
+    *response = (struct response){
+        .unbalanced_ratio = NEW_ARRAY(double, load->n_time),
+        .cycles = NEW_ARRAY(int64_t, load->n_time),
+        .cracks = NEW_ARRAY(int32_t, load->n_time),
+        .reaction = NEW_ARRAY(struct net_load, load->n_time),
+        .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot + 1)};
     struct run run = {.packing = packing,
                       .load = load,
                       .settings = settings,
@@ -325,6 +349,7 @@ enum status replay(const struct packing *packing, const struct load *load,
                       .keeper = keeper,
                       .force = NEW_ARRAY(struct vector, packing->n_particle)};
     enum status status = begin(&run, reason);
+    if (!status && settings->begin) status = go_on_from_earlier(&run, reason);
     if (!status && keeper && keeper->begin) status = go_on(&run, reason);
     while (!status && run.place.step < load->n_time) {
         status = do_step(&run, reason);
@@ -336,6 +361,8 @@ enum status replay(const struct packing *packing, const struct load *load,
         response->n_restless =
             equilibrium_restless(run.equilibrium, &response->restless);
     }
+    if (!status && settings->keep_state)
+        response->engine.array = dem_save(run.dem, &response->engine.count);
     dem_free(run.dem);
     equilibrium_free(run.equilibrium);
     free(run.force);
@@ -358,5 +385,6 @@ void response_free(struct response *response)
     free(response->cycles);
     free(response->cracks);
     free(response->reaction);
+    dem_free_arrays(response->engine.array, response->engine.count);
     *response = (struct response){0};
 }

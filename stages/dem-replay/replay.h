@@ -47,6 +47,9 @@ struct replay_settings {
     int n_snapshot;
     const double *snapshot; // saturations, the highest first; SATURATION <= this
     int threads;
+    const struct array_list *begin; // explicit: the engine as an earlier replay of the
+                                    // same packing left it; NULL: at rest, all whole
+    bool keep_state;                // explicit: whether .engine is wanted
 };
 
 struct snapshot {
@@ -60,7 +63,7 @@ struct snapshot {
 };
 
 struct response {
-    int n_crack;
+    int n_crack; // of this replay; an earlier one's are not among them
     struct dem_crack *crack;
     int *crack_step;           // (n_crack) row of the load it broke under
     double *unbalanced_ratio;  // (n_time) at the end of each step
@@ -74,6 +77,7 @@ struct response {
     int n_gone, first_gone;            // grains that left an equilibrium
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last
+    struct array_list engine; // at the end, if it was to be kept
 };
 
 // Told how far the replay is.
@@ -85,7 +89,7 @@ struct replay_progress {
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the
 // run diverged, or a step did not settle within its cycles or iterations;
 // STATUS_BAD_DATA: KEEPER, which may be NULL, begins with a state that is not one of
-// such a replay. The caller frees *RESPONSE with response_free.
+// such a replay, or SETTINGS do. The caller frees *RESPONSE with response_free.
 enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
                    const struct replay_progress *progress, const struct keeper *keeper,

@@ -108,6 +108,10 @@ static enum status check_course(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "start_saturation: must be above 0 and at most 1, is %g",
                       conditions->start_saturation);
+    if (!(conditions->stop_saturation >= 0 && conditions->stop_saturation < 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "stop_saturation: must be at least 0 and below 1, is %g",
+                      conditions->stop_saturation);
     if (!(conditions->vapour_tolerance >= 0 && conditions->vapour_tolerance <= 0.5))
         return refuse(reason, STATUS_BAD_DATA,
                       "vapour_tolerance: must be from 0 to 0.5, is %g",

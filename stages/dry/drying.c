@@ -8,6 +8,7 @@
 #include "resume.h"
 #include "run.h"
 #include "start.h"
+#include "stop.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,10 +43,16 @@ bool snapshot_is_due(const struct run *run)
            network_saturation(run) <= run->conditions->snapshot[next];
 }
 
+static bool goes_on(const struct run *run)
+{
+    return run->phases.n_full > 0 &&
+           network_saturation(run) > run->conditions->stop_saturation;
+}
+
 bool step_is_due(struct run *run)
 {
     const double fallen = run->step_saturation - network_saturation(run);
-    if (fallen < run->conditions->step_interval && run->phases.n_full > 0 &&
+    if (fallen < run->conditions->step_interval && goes_on(run) &&
         !snapshot_is_due(run)) {
         run->n_skipped++;
         return false;
@@ -116,7 +123,7 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
                            struct reason *reason)
 {
     enum status status = STATUS_OK;
-    while (!status && run->phases.n_full > 0) {
+    while (!status && goes_on(run)) {
         status = go_on(run, reason);
         note_first_period(run);
         if (progress && progress->report)
@@ -137,6 +144,8 @@ static void summarise(const struct run *run, struct drying_history *history)
     history->liquid_residual = run->flow.residual;
     history->flow_solutions = run->flow.solutions;
     history->flow_rounds = run->flow.rounds;
+    if (run->conditions->stop_saturation > 0)
+        stop_history(history, run->phases.network, run->conditions->stop_saturation);
 }
 
 // Takes the liquid that is not there at the start.
@@ -244,8 +253,14 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
     if (status) return status;
     prepare(run);
     status = find_curved(run, reason);
-    if (!status) begin(run);
-    return status;
+    if (status) return status;
+    if (!goes_on(run))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "stop_saturation: must be below the saturation at the start, %g, "
+                      "is %g",
+                      network_saturation(run), run->conditions->stop_saturation);
+    begin(run);
+    return STATUS_OK;
 }
 
 static void free_run(struct run *run)

@@ -65,8 +65,9 @@ struct drying_conditions {
     // come in through the open walls, the widest throat it touches first. Or by
     // throats.
     double start_saturation;
-    bool start_trapping; // what gas then cuts off from the walls opposite stays
-    const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    bool start_trapping;    // what gas then cuts off from the walls opposite stays
+    const double *start;    // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    double stop_saturation; // where it ends, from 0 (dry) to below what it begins with
     // What all wet nodes give off is known to this part of the rate, its errors added
     // up; 0: exact.
     double vapour_tolerance;
@@ -91,9 +92,9 @@ enum event_kind {
 struct drying_history {
     int n_step;
     double *time;       // (n_step) s, increasing (as far as its digits reach) from 0
-    double *saturation; // (n_step) liquid over the throats' volume; to exactly 0
+    double *saturation; // (n_step) liquid over the throats' volume; to exactly the stop
     double *rate;       // (n_step) kg/s into the drying air from this step to the next;
-                        // the last is 0
+                        // the last is 0 when all is dry
     int32_t *clusters;  // (n_step) connected pieces of liquid
 
     int n_event;           // one for each throat that held liquid, and the refills

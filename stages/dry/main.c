@@ -60,10 +60,12 @@ static bool holds_liquid(const struct network *network, const double *saturation
     return false;
 }
 
-// Throat by throat, from a drying; NULL from a network.
+// Throat by throat, from a drying or a network that says how full they are; else NULL.
 static double *read_start(const struct artifact *input, const struct network *network,
                           double saturation)
 {
+    if (artifact_has_dataset(input, "/throats/saturation"))
+        return artifact_get(input, "/throats/saturation", NULL);
     if (strcmp(input->schema->name, "drying")) return NULL;
     int n_step;
     double *history = artifact_get(input, "/history/saturation", &n_step);

@@ -108,13 +108,17 @@ const struct parameter dry_table[] = {
      "liquid at the start, of the throats' volume: what is left when gas has come in "
      "through the open walls, always into the throat it enters most easily; where "
      "INPUT "
-     "is a drying, its state when it had as much",
+     "is a drying, its state when it had as much; of no effect where INPUT says how "
+     "full its throats are",
      AT(conditions.start_saturation)},
     {"start_trapping", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "as gas comes in for start_saturation, liquid leaves only through the closed "
      "walls "
      "opposite the open ones: what gas has cut off from them stays",
      AT(conditions.start_trapping)},
+    {"stop_saturation", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.999999, NULL,
+     "liquid at the end, of the throats' volume; 0: dry",
+     AT(conditions.stop_saturation)},
     {"vapour_tolerance", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.5, NULL,
      "largest error of what wet nodes evaporate, all errors added up, over the rate; "
      "0: "

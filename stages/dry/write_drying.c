@@ -106,6 +106,15 @@ static void put_history(struct artifact *artifact, const struct drying_history *
     artifact_put(artifact, "/changes/saturation", history->change_saturation, n_change);
 }
 
+// What evaporated against what the throats have lost, of the liquid at the start.
+static double balance_error(const struct drying_history *history)
+{
+    const double left =
+        history->saturation[history->n_step - 1] / history->saturation[0];
+    const double lost = history->initial_liquid * (1 - left);
+    return fabs(history->evaporated - lost) / history->initial_liquid;
+}
+
 static void put_summary(struct artifact *artifact, const struct drying_history *history,
                         unsigned open_walls)
 {
@@ -117,9 +126,7 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         first_period_end_time(history));
     artifact_put_number(artifact, "/summary/liquid_mass", history->initial_liquid);
-    artifact_put_number(artifact, "/summary/balance_error",
-                        fabs(history->evaporated - history->initial_liquid) /
-                            history->initial_liquid);
+    artifact_put_number(artifact, "/summary/balance_error", balance_error(history));
     artifact_put_number(artifact, "/summary/residual", history->vapour_residual);
     artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
 }

@@ -4,19 +4,10 @@
 #define CRAQUELURE_DIAGRAM_H
 
 #include "basics/status.h"
+#include "network/clearance.h"
 #include "network/network.h"
 
 #include <stdbool.h>
-
-enum clearance {
-    CLEARANCE_SEGMENT, // least distance from the throat itself to the grains beside it
-    CLEARANCE_LINE     // [K 3.7]: least distance from the infinite line through it
-};
-
-// How far the surface of a grain is from the throat between END [K 3.7, 3.8]; below 0
-// where they overlap.
-double clearance_of(struct vector centre, double radius, const struct vector end[2],
-                    enum clearance how);
 
 enum boundary {
     BOUNDARY_TRUNCATE, // the walls cut the cells [K 3.3.1]

@@ -20,23 +20,6 @@ struct candidates {
     struct candidate *at;
 };
 
-static inline double clearance(struct vector centre, double radius,
-                               const struct vector end[2], enum clearance how)
-{
-    const struct vector along = subtract(end[1], end[0]);
-    const struct vector to = subtract(centre, end[0]);
-    const double length2 = dot(along, along);
-    double t = length2 > 0 ? dot(to, along) / length2 : 0;
-    if (how == CLEARANCE_SEGMENT) t = t < 0 ? 0 : t > 1 ? 1 : t;
-    return norm(subtract(to, scale(t, along))) - radius;
-}
-
-double clearance_of(struct vector centre, double radius, const struct vector end[2],
-                    enum clearance how)
-{
-    return clearance(centre, radius, end, how);
-}
-
 // The least clearance to the grains of the facet opposite corner K of CELL.
 static double facet_clearance(const struct assembly *assembly, int cell, int k,
                               const struct vector end[2])
@@ -46,8 +29,8 @@ static double facet_clearance(const struct assembly *assembly, int cell, int k,
         const int32_t point = assembly->triangulation->cell[cell].vertex[m];
         if (m == k || assembly->generators->origin[point].wall >= 0) continue;
         const double here =
-            clearance(assembly->generators->point[point].at, assembly->radius[point],
-                      end, assembly->clearance);
+            clearance_of(assembly->generators->point[point].at, assembly->radius[point],
+                         end, assembly->clearance);
         if (here < least) least = here;
     }
     return least;

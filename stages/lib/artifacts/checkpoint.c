@@ -60,8 +60,8 @@ static int numbers_in_row(const json_t *entry)
                : 1;
 }
 
-static void put_list(struct artifact *artifact, const char *group,
-                     const struct array_list *list)
+void artifact_put_arrays(struct artifact *artifact, const char *group,
+                         const struct array_list *list)
 {
     for (int k = 0; k < list->count; k++) {
         const struct dem_array *array = &list->array[k];
@@ -69,13 +69,15 @@ static void put_list(struct artifact *artifact, const char *group,
         snprintf(name, sizeof name, "/%s/%s", group, array->name);
         const json_t *entry = schema_dataset(artifact->schema, name);
         if (!entry || type_of(entry) != array->type)
-            die(STATUS_INTERNAL, "%s: not of that type in schema restart", name);
+            die(STATUS_INTERNAL, "%s: not of that type in schema %s", name,
+                artifact->schema->name);
         artifact_put(artifact, name, array->data,
                      (int)(array->count / numbers_in_row(entry)));
     }
 }
 
-static struct array_list get_list(const struct artifact *artifact, const char *group)
+struct array_list artifact_get_arrays(const struct artifact *artifact,
+                                      const char *group)
 {
     struct array_list list = {NULL, 0};
     char begin[32];
@@ -140,8 +142,8 @@ static void write_state(const struct checkpoint *checkpoint,
     uint8_t sum[32];
     digest_state(state, sum);
     artifact_put(artifact, "/digest", sum, sizeof sum);
-    put_list(artifact, "engine", &state->engine);
-    put_list(artifact, "stage", &state->stage);
+    artifact_put_arrays(artifact, "engine", &state->engine);
+    artifact_put_arrays(artifact, "stage", &state->stage);
     artifact_finish(artifact, &there, json_incref(checkpoint->inputs),
                     "the state of a run on its way\n");
 }
@@ -180,8 +182,9 @@ static void read_state(struct checkpoint *checkpoint)
     const char *path = checkpoint->invocation->checkpoint;
     struct artifact *artifact = artifact_open(path, "restart");
     check_run(artifact, checkpoint);
-    checkpoint->begin = (struct kept_state){.engine = get_list(artifact, "engine"),
-                                            .stage = get_list(artifact, "stage")};
+    checkpoint->begin =
+        (struct kept_state){.engine = artifact_get_arrays(artifact, "engine"),
+                            .stage = artifact_get_arrays(artifact, "stage")};
     uint8_t sum[32], *wanted = artifact_get(artifact, "/digest", NULL);
     digest_state(&checkpoint->begin, sum);
     if (memcmp(sum, wanted, sizeof sum))

@@ -7,6 +7,14 @@
 #include "artifacts/artifact.h"
 #include "dem/keeper.h"
 
+// The arrays of an engine or stage as the datasets of GROUP, "engine". The caller frees
+// those it gets with dem_free_arrays; there are none where the artifact has no such
+// group.
+void artifact_put_arrays(struct artifact *artifact, const char *group,
+                         const struct array_list *list);
+struct array_list artifact_get_arrays(const struct artifact *artifact,
+                                      const char *group);
+
 struct checkpoint {
     const struct invocation *invocation;
     json_t *inputs;          // digests, as in the provenance of the output

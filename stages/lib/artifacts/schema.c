@@ -8,16 +8,17 @@
 #include <string.h>
 
 extern const char schema_packing[], schema_network[], schema_drying[], schema_forces[],
-    schema_response[], schema_crackstats[], schema_restart[], schema_bridge[],
-    schema_flow[], schema_invasion[];
+    schema_response[], schema_crackstats[], schema_engine[], schema_restart[],
+    schema_bridge[], schema_flow[], schema_invasion[];
 
 static const struct {
     const char *name, *text;
 } schemas[] = {{"packing", schema_packing},   {"network", schema_network},
                {"drying", schema_drying},     {"forces", schema_forces},
                {"response", schema_response}, {"crackstats", schema_crackstats},
-               {"restart", schema_restart},   {"bridge", schema_bridge},
-               {"flow", schema_flow},         {"invasion", schema_invasion}};
+               {"engine", schema_engine},     {"restart", schema_restart},
+               {"bridge", schema_bridge},     {"flow", schema_flow},
+               {"invasion", schema_invasion}};
 
 static json_t *load(const char *text)
 {

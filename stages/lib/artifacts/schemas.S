@@ -14,6 +14,7 @@
     schema schema_forces, "schemas/forces.json"
     schema schema_response, "schemas/response.json"
     schema schema_crackstats, "schemas/crackstats.json"
+    schema schema_engine, "schemas/engine.json"
     schema schema_restart, "schemas/restart.json"
     schema schema_bridge, "schemas/bridge.json"
     schema schema_flow, "schemas/flow.json"

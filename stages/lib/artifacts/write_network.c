@@ -15,15 +15,12 @@ static void put_drawing(struct artifact *artifact, const struct network *network
     free(drawn);
 }
 
-void write_network_of(const struct network *network,
-                      const struct invocation *invocation, json_t *inputs,
-                      const char *model)
+void put_network_with_summary(struct artifact *artifact, const struct network *network)
 {
     double void_volume = 0;
     for (int t = 0; t < network->n_throat; t++)
         void_volume += throat_volume(network, t);
 
-    struct artifact *artifact = artifact_create("network", invocation->output);
     artifact_put_network(artifact, network);
     artifact_put_number(artifact, "/summary/coordination",
                         network->n_node ? 2.0 * network->n_throat / network->n_node
@@ -36,6 +33,14 @@ void write_network_of(const struct network *network,
                             network->unmerged_length);
     }
     put_drawing(artifact, network);
+}
+
+void write_network_of(const struct network *network,
+                      const struct invocation *invocation, json_t *inputs,
+                      const char *model)
+{
+    struct artifact *artifact = artifact_create("network", invocation->output);
+    put_network_with_summary(artifact, network);
     artifact_finish(artifact, invocation, inputs, model);
 }
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether the diagram of moved grains is still the same. One that is regular at every
+// facet, between the two cells on its sides, is regular as a whole; the cell on the
+// other side of a facet is the node at the other end of a throat.
+#include "move.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// Of the mean diameter, squared, or of the diameter: less is rounding.
+static const double negligible = 1e-9;
+
+struct state {
+    const struct network *network;
+    const struct surroundings *around;
+    double diameter;
+};
+
+static double power(const struct packing *packing, struct grain_beside beside,
+                    struct vector from)
+{
+    const struct vector to = to_grain(packing, beside, from);
+    const double radius = packing->radius[beside.grain];
+    return dot(to, to) - radius * radius;
+}
+
+static bool is_around(const struct surroundings *around, int node,
+                      struct grain_beside beside)
+{
+    for (int64_t k = around->offset[node]; k < around->offset[node + 1]; k++)
+        if (same_grain(around->at[k], beside)) return true;
+    return false;
+}
+
+static double largest_own_power(const struct state *state, int node)
+{
+    double largest = -HUGE_VAL;
+    for (int64_t k = state->around->offset[node]; k < state->around->offset[node + 1];
+         k++)
+        largest = fmax(largest, power(&state->network->packing, state->around->at[k],
+                                      state->network->node_position[node]));
+    return largest;
+}
+
+// Seen from NODE, grains of the node OTHER, which lies IMAGE boxes away, come nearer
+// than its own.
+static bool is_overtaken(const struct state *state, int node, int other,
+                         struct image image)
+{
+    const struct surroundings *around = state->around;
+    const double own =
+        largest_own_power(state, node) - negligible * state->diameter * state->diameter;
+    for (int64_t k = around->offset[other]; k < around->offset[other + 1]; k++) {
+        const struct grain_beside beside = {around->at[k].grain,
+                                            image_sum(around->at[k].image, image)};
+        if (!is_around(around, node, beside) &&
+            power(&state->network->packing, beside,
+                  state->network->node_position[node]) < own)
+            return true;
+    }
+    return false;
+}
+
+static bool is_outside(const struct state *state, int node)
+{
+    const struct packing *packing = &state->network->packing;
+    const double slack = negligible * state->diameter;
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        const double beyond = component(state->network->node_position[node], wall / 2) -
+                              wall_position(packing, wall);
+        if (!packing->periodic[wall / 2] && (wall % 2 ? beyond : -beyond) > slack)
+            return true;
+    }
+    return false;
+}
+
+// (n_node) The caller frees it.
+static bool *find_amiss(const struct state *state)
+{
+    const struct network *network = state->network;
+    bool *amiss = NEW_ARRAY(bool, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        amiss[i] = is_outside(state, i);
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *end = network->throat_nodes[t];
+        const struct image image =
+            network->throat_image ? network->throat_image[t] : (struct image){0};
+        amiss[end[0]] = amiss[end[0]] || is_overtaken(state, end[0], end[1], image);
+        amiss[end[1]] =
+            amiss[end[1]] || is_overtaken(state, end[1], end[0], image_opposite(image));
+    }
+    return amiss;
+}
+
+int count_changed_nodes(const struct network *before, const struct surroundings *around,
+                        const struct network *after)
+{
+    double diameter = 0;
+    for (int i = 0; i < before->packing.n_particle; i++)
+        diameter += 2 * before->packing.radius[i] / before->packing.n_particle;
+    bool *was = find_amiss(&(struct state){before, around, diameter});
+    bool *is = find_amiss(&(struct state){after, around, diameter});
+    int count = 0;
+    for (int i = 0; i < before->n_node; i++)
+        count += is[i] && !was[i];
+    free(was);
+    free(is);
+    return count;
+}

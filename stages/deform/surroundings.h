@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which grains lie around each node of a network, read off the faces that meet there.
+#ifndef CRAQUELURE_SURROUNDINGS_H
+#define CRAQUELURE_SURROUNDINGS_H
+
+#include "network/network.h"
+
+// A grain, and how many boxes away from where it is listed, seen from a node in the
+// box.
+struct grain_beside {
+    int32_t grain;
+    struct image image;
+};
+
+struct surroundings {
+    int64_t *offset;         // (n_node+1)
+    struct grain_beside *at; // grains around node i from offset[i] on, each once
+    uint8_t *walls;          // (n_node) walls of the box among its faces, as bits
+};
+
+// O(n_face_node). The caller frees it with surroundings_free.
+struct surroundings find_surroundings(const struct network *network);
+void surroundings_free(struct surroundings *surroundings);
+
+// Seen from FROM, where the grain is; m.
+struct vector to_grain(const struct packing *packing, struct grain_beside beside,
+                       struct vector from);
+
+bool same_grain(struct grain_beside a, struct grain_beside b);
+
+#endif

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "throats.h"
+
+#include "basics/memory.h"
+#include "geometry/neighbours.h"
+#include "geometry/porosity.h"
+#include "network/void_volume.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---- lengths and radii --------------------------------------------------------------
+
+// To the sides of FACE, of the throat from its corner FROM to TO.
+static double face_clearance(const struct network *network, int face, int64_t from,
+                             int64_t to, enum clearance how)
+{
+    const struct packing *packing = &network->packing;
+    const int32_t *side = network->face_particles[face];
+    const struct vector end[2] = {face_corner(network, from), face_corner(network, to)};
+    const double first =
+        clearance_of(packing->position[side[0]], packing->radius[side[0]], end, how);
+    if (side[1] < 0) return first;
+    return fmin(first, clearance_of(second_grain(network, face),
+                                    packing->radius[side[1]], end, how));
+}
+
+// (n_throat) Least clearance to the grains beside each throat, 0 where they overlap;
+// infinite where none is known. The caller frees it; NULL with the reason.
+static double *find_clearances(const struct network *network, enum clearance how,
+                               struct reason *reason)
+{
+    struct incidence incidence = network_incidence(network);
+    double *least = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        least[t] = HUGE_VAL;
+    bool fits = true;
+    for (int f = 0; f < network->n_face && fits; f++) {
+        const int64_t begin = network->face_offset[f];
+        const int count = (int)(network->face_offset[f + 1] - begin);
+        for (int k = 0; k < count && fits; k++) {
+            const int t = face_throat(network, &incidence, f, k);
+            fits = t >= 0;
+            if (!fits)
+                refuse(reason, STATUS_BAD_DATA,
+                       "/faces/nodes: face %d: no throat from its corner %d", f, k);
+            else
+                least[t] = fmin(least[t],
+                                fmax(0, face_clearance(network, f, begin + k,
+                                                       begin + (k + 1) % count, how)));
+        }
+    }
+    incidence_free(&incidence);
+    if (fits) return least;
+    free(least);
+    return NULL;
+}
+
+static double moved_radius(double radius, double before, double after)
+{
+    if (isinf(before) || isinf(after)) return radius;
+    const double share = radius < before ? radius / before : 1;
+    return fmax(0, radius + share * (after - before));
+}
+
+enum status move_throats(const struct network *before, enum clearance how,
+                         struct network *after, struct reason *reason)
+{
+    double *old = find_clearances(before, how, reason);
+    if (!old) return STATUS_BAD_DATA;
+    double *now = find_clearances(after, how, reason);
+    for (int t = 0; t < before->n_throat; t++) {
+        const double length = norm(along_throat(before, t));
+        const double moved = norm(along_throat(after, t));
+        after->throat_length[t] =
+            length > 0 ? before->throat_length[t] * (moved / length) : moved;
+        after->throat_radius[t] =
+            moved_radius(before->throat_radius[t], old[t], now[t]);
+    }
+    free(old);
+    free(now);
+    return STATUS_OK;
+}
+
+// ---- volumes ------------------------------------------------------------------------
+
+static double void_of(const struct packing *packing)
+{
+    struct contacts contacts;
+    contacts.pair = (const int32_t(*)[2])neighbour_pairs(packing, 0, &contacts.count);
+    const struct window box = {packing->lower, packing->upper};
+    const struct vector edge = subtract(box.upper, box.lower);
+    double porosity;
+    slice_porosity(packing, &contacts, &box, 1, &porosity);
+    free((void *)(uintptr_t)contacts.pair);
+    return porosity * edge.x * edge.y * edge.z;
+}
+
+// Whether the volumes of NETWORK are what find_void_volumes gives.
+static bool has_shares_of_void(struct network network)
+{
+    static const double same = 1e-9; // of the largest
+    const double *volume = network.throat_volume;
+    network.throat_volume = NULL;
+    struct reason reason;
+    if (find_void_volumes(&network, &reason)) return false;
+    double largest = 0, apart = 0;
+    for (int t = 0; t < network.n_throat; t++) {
+        largest = fmax(largest, volume[t]);
+        apart = fmax(apart, fabs(volume[t] - network.throat_volume[t]));
+    }
+    free(network.throat_volume);
+    return apart <= same * largest;
+}
+
+static double cylinder(const struct network *network, int t)
+{
+    return network->throat_radius[t] * network->throat_radius[t] *
+           network->throat_length[t];
+}
+
+static void scale_volumes(const struct network *before, struct network *after)
+{
+    double old = 0, now = 0;
+    for (int t = 0; t < before->n_throat; t++) {
+        const double from = cylinder(before, t), to = cylinder(after, t);
+        after->throat_volume[t] = before->throat_volume[t] * (from > 0 ? to / from : 1);
+        old += before->throat_volume[t];
+        now += after->throat_volume[t];
+    }
+    const double wanted = old + (void_of(&after->packing) - void_of(&before->packing));
+    for (int t = 0; t < before->n_throat && now > 0; t++)
+        after->throat_volume[t] *= fmax(0, wanted) / now;
+}
+
+enum status move_volumes(const struct network *before, struct network *after,
+                         struct reason *reason)
+{
+    if (!before->throat_volume) return STATUS_OK;
+    if (!memcmp(before->packing.position, after->packing.position,
+                (size_t)before->packing.n_particle * sizeof(struct vector)))
+        return STATUS_OK;
+    if (has_shares_of_void(*before)) return find_void_volumes(after, reason);
+    scale_volumes(before, after);
+    return STATUS_OK;
+}
+
+static bool is_closed(const struct network *network, int t)
+{
+    return network->throat_kind[t] == THROAT_NETWORK &&
+           !(throat_volume(network, t) > 0 && network->throat_radius[t] > 0);
+}
+
+int count_closed_throats(const struct network *before, const struct network *after)
+{
+    int count = 0;
+    for (int t = 0; t < before->n_throat; t++)
+        count += is_closed(after, t) && !is_closed(before, t);
+    return count;
+}

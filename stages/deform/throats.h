@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Throats of a network whose grains and nodes have moved.
+#ifndef CRAQUELURE_DEFORM_THROATS_H
+#define CRAQUELURE_DEFORM_THROATS_H
+
+#include "basics/status.h"
+#include "network/clearance.h"
+#include "network/network.h"
+
+// Gives AFTER, a copy of BEFORE but for the places of grains and nodes, its lengths and
+// radii. With c the clearance to the grains beside a throat, 0 where they overlap, and
+// r its radius,
+//
+//     r' = r + (c' - c) min(1, r / c):
+//
+// a radius that is the clearance stays so, one that was drawn narrower keeps its share
+// of it, and one wider (of throats fused by merging) changes by as much. A length
+// changes as the distance of the nodes. STATUS_BAD_DATA: a face without a throat at its
+// rim.
+enum status move_throats(const struct network *before, enum clearance how,
+                         struct network *after, struct reason *reason);
+
+// Where throats have volumes: those that were their shares of the void are so again;
+// others change as the cylinder of the throat, and all by one factor, so that their sum
+// changes as much as the void of the box.
+enum status move_volumes(const struct network *before, struct network *after,
+                         struct reason *reason);
+
+// Throats of kind THROAT_NETWORK that have a radius or volume of 0 in AFTER only.
+int count_closed_throats(const struct network *before, const struct network *after);
+
+#endif

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A drying that ends before the last throat has emptied.
+#ifndef CRAQUELURE_DRY_STOP_H
+#define CRAQUELURE_DRY_STOP_H
+
+#include "drying.h"
+
+// Ends HISTORY of NETWORK at SATURATION, which its last step alone has passed: that
+// step becomes the moment at which the saturation, linear in time as that of every
+// throat, was just that.
+void stop_history(struct drying_history *history, const struct network *network,
+                  double saturation);
+
+#endif
