@@ -141,18 +141,32 @@ static struct liquid move_liquid(const struct artifact *input,
 
 // -------------------------------------------------------------------------------------
 
-static void move_network(const struct network *before, enum clearance clearance,
-                         struct network *after, int *changed, const char *path)
+static void refuse_change(int changed, int n_node, const char *path)
+{
+    die(STATUS_NO,
+        "%s: the grains have another diagram now, at %d of %d nodes: tessellate them "
+        "anew, or on_change=keep",
+        input_name(path), changed, n_node);
+}
+
+// Gives the number of nodes at which the diagram has changed.
+static int move_network(const struct network *before,
+                        const struct deform_parameters *parameters,
+                        struct network *after, const char *path)
 {
     struct surroundings around = find_surroundings(before);
     struct reason reason;
     move_box(&before->packing, &after->packing);
     move_nodes(before, &around, after);
-    *changed = count_changed_nodes(before, &around, after);
+    const int changed = count_changed_nodes(before, &around, after);
     surroundings_free(&around);
-    enum status status = move_throats(before, clearance, after, &reason);
-    if (!status) status = move_volumes(before, after, &reason);
+    if (changed && parameters->on_change == CHANGE_REFUSED)
+        refuse_change(changed, before->n_node, path);
+    enum status status =
+        move_throats(before, (enum clearance)parameters->clearance, after, &reason);
+    if (!status) status = move_volumes(before, changed > 0, after, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
+    return changed;
 }
 
 static void write_moved(const struct network *network, const struct liquid *liquid,
@@ -197,14 +211,7 @@ int main(int argc, char **argv)
     check_scene(&before, input->path);
     take_places(response, &after.packing);
 
-    int changed;
-    move_network(&before, (enum clearance)parameters.clearance, &after, &changed,
-                 input->path);
-    if (changed && parameters.on_change == CHANGE_REFUSED)
-        die(STATUS_NO,
-            "%s: the grains have another diagram now, at %d of %d nodes: tessellate "
-            "them anew, or on_change=keep",
-            input_name(input->path), changed, before.n_node);
+    const int changed = move_network(&before, &parameters, &after, input->path);
     struct liquid liquid = move_liquid(input, &before, &after);
     json_t *inputs = one_input(input);
     json_array_append_new(inputs, input_digest(response));

@@ -133,14 +133,15 @@ static void scale_volumes(const struct network *before, struct network *after)
         after->throat_volume[t] *= fmax(0, wanted) / now;
 }
 
-enum status move_volumes(const struct network *before, struct network *after,
-                         struct reason *reason)
+enum status move_volumes(const struct network *before, bool changed,
+                         struct network *after, struct reason *reason)
 {
     if (!before->throat_volume) return STATUS_OK;
     if (!memcmp(before->packing.position, after->packing.position,
                 (size_t)before->packing.n_particle * sizeof(struct vector)))
         return STATUS_OK;
-    if (has_shares_of_void(*before)) return find_void_volumes(after, reason);
+    if (!changed && has_shares_of_void(*before))
+        return find_void_volumes(after, reason);
     scale_volumes(before, after);
     return STATUS_OK;
 }
