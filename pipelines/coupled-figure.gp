@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+#     gnuplot -c pipelines/coupled-figure.gp ONE-WAY.tsv COUPLED.tsv ... OUT.svg
+# two files a sample, as pipelines/coupled-course makes them: a column of panels for each.
+set terminal svg size 900,1120 font "Helvetica,15" linewidth 1 background "#ffffff"
+set output ARGV[ARGC]
+set multiplot
+black = "#222222"; blue = "#0a4a96"; grey = "#999999"
+set border 3 linecolor "#555555"
+set xtics nomirror out scale 0.6 textcolor black
+set ytics nomirror out scale 0.6 textcolor black
+set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+set xrange [1:0]
+set xlabel "liquid left, of what the body held when full" offset 0,0.5
+set key top right samplen 2 textcolor rgb black
+samples = "'The soft aggregate, 0.3 of the load' 'The stiff aggregate'"
+panel = "set lmargin at screen 0.1 + 0.5 * c; set rmargin at screen 0.47 + 0.5 * c; \
+    set tmargin at screen 0.93 - 0.235 * r; set bmargin at screen 0.76 - 0.235 * r; \
+    set label 1 title at screen 0.1 + 0.5 * c, screen 0.942 - 0.235 * r left textcolor rgb black"
+do for [c = 0:1] {
+    one = ARGV[2 * c + 1]; two = ARGV[2 * c + 2]
+    set label 2 word(samples, c + 1) at screen 0.285 + 0.5 * c, screen 0.985 center font ",17" textcolor rgb black
+    r = 0; title = "Shrinkage of the volume, %"
+    @panel
+    set yrange [0:*]
+    plot one index 1 using 1:(100 * $2) with lines dashtype (6, 4) linewidth 2 linecolor rgb grey title "one way", \
+        two index 1 using 1:(100 * $2) with lines linewidth 2 linecolor rgb blue title "coupled"
+    unset label 2
+    r = 1; title = "Room for liquid, of the first"
+    @panel
+    set yrange [0.8:1.05]
+    plot one index 0 using 1:4 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
+        two index 0 using 1:4 with lines linewidth 2 linecolor rgb blue notitle
+    r = 2; title = "Drying rate, of the first"
+    @panel
+    set yrange [0:1.05]
+    plot one index 0 using 1:3 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
+        two index 0 using 1:3 with lines linewidth 2 linecolor rgb blue notitle
+    r = 3; title = "Cracks"
+    @panel
+    set yrange [0:*]
+    if (c == 0) { set yrange [0:1] }
+    plot one index 2 using 1:2 with steps dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
+        two index 2 using 1:2 with steps linewidth 2 linecolor rgb blue notitle
+}
+unset multiplot
