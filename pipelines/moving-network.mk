@@ -10,12 +10,15 @@ COUPLED_PORTIONS ?= 1 5 10 20 40# how often; 1 is one way; the last one is drawn
 DEFORM ?= $(BUILD)/bin/deform
 pipeline_goals += coupled
 coupled_folder := $(RUNS)/coupled
-coupled_samples := soft stiff
+coupled_samples := soft weak stiff
 coupled_scene_soft := samples/soft-10x5x5.json
+coupled_scene_weak := samples/soft-10x5x5.json
 coupled_scene_stiff := samples/stiff-5x5x10.json
 # Under its whole load the soft aggregate buckles once throats have narrowed (docs/coupling.md).
 coupled_load_soft := 0.3
+coupled_load_weak := 0.3
 coupled_load_stiff := 1
+coupled_bonds_weak := bond.contact_strength=3e-8
 coupled_moments := [1,0.95,0.9,0.85,0.8,0.75,0.7,0.65,0.6,0.55,0.5,0.45,0.4,0.35,0.3,0.25,0.2,0.15,0.1,0.05,0]
 
 # 1, 2 ... $1
@@ -29,7 +32,7 @@ steps_of = $(shell awk 'BEGIN { n = int(550 / $1); print n < 2 ? 2 : n }')
 define coupled_portion
 $(call step,$2/$4/drying.h5,dry,$(DRY),$(coupled_scene_$1),stop_saturation=$(call share,$4,$3) $(if $(filter 1,$4),,throat_radius.distribution=network),$(if $(filter 1,$4),$(coupled_folder)/$1/network.h5,$2/$(call before,$4)/network.h5))
 $(call step,$2/$4/forces.h5,force-protocol,$(FORCE_PROTOCOL),$(coupled_scene_$1),steps=$(call steps_of,$3) force_scale=$(coupled_load_$1),$2/$4/drying.h5)
-$(call step,$2/$4/response.h5,dem-replay,$(DEM_REPLAY),$(coupled_scene_$1),keep_state=true snapshots=$(coupled_moments),$2/$4/forces.h5 $(if $(filter 1,$4),,$2/$(call before,$4)/response.h5))
+$(call step,$2/$4/response.h5,dem-replay,$(DEM_REPLAY),$(coupled_scene_$1),keep_state=true snapshots=$(coupled_moments) $(call default,coupled_bonds_$1,),$2/$4/forces.h5 $(if $(filter 1,$4),,$2/$(call before,$4)/response.h5))
 $(call step,$2/$4/network.h5,deform,$(DEFORM),$(coupled_scene_$1),,$2/$4/drying.h5 $2/$4/response.h5)
 $(call step,$2/$4/crackstats.json,crackstats,$(CRACKSTATS),$(coupled_scene_$1),,$2/$4/response.h5)
 endef

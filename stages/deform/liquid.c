@@ -35,7 +35,7 @@ static struct scene make_scene(const struct network *network,
                           .rank = NEW_ARRAY(int, n),
                           .piece = NEW_ARRAY(int, n),
                           .queue = rank_queue_make(n)};
-    rank_descending(network->throat_radius, n, scene.widest);
+    rank_descending(network->throat_radius, n, scene.widest, NULL);
     for (int k = 0; k < n; k++)
         scene.rank[scene.widest[k]] = k;
     for (int t = 0; t < n; t++) {

@@ -149,10 +149,26 @@ static void refuse_change(int changed, int n_node, const char *path)
         input_name(path), changed, n_node);
 }
 
+static void check_moved(const struct network *network, const char *path)
+{
+    static const double largest = 1e150; // as the schemas have it
+    bool fits = true;
+    for (int i = 0; i < network->n_node; i++)
+        fits &= norm(network->node_position[i]) <= largest;
+    for (int t = 0; t < network->n_throat; t++)
+        fits &= network->throat_radius[t] <= largest &&
+                network->throat_length[t] <= largest &&
+                throat_volume(network, t) <= largest;
+    if (!fits)
+        die(STATUS_BAD_DATA,
+            "%s: /snapshots/displacement: no numbers hold the network of these grains",
+            input_name(path));
+}
+
 // Gives the number of nodes at which the diagram has changed.
 static int move_network(const struct network *before,
                         const struct deform_parameters *parameters,
-                        struct network *after, const char *path)
+                        struct network *after, const char *path, const char *response)
 {
     struct surroundings around = find_surroundings(before);
     struct reason reason;
@@ -166,6 +182,7 @@ static int move_network(const struct network *before,
         move_throats(before, (enum clearance)parameters->clearance, after, &reason);
     if (!status) status = move_volumes(before, changed > 0, after, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
+    check_moved(after, response);
     return changed;
 }
 
@@ -211,7 +228,8 @@ int main(int argc, char **argv)
     check_scene(&before, input->path);
     take_places(response, &after.packing);
 
-    const int changed = move_network(&before, &parameters, &after, input->path);
+    const int changed =
+        move_network(&before, &parameters, &after, input->path, response->path);
     struct liquid liquid = move_liquid(input, &before, &after);
     json_t *inputs = one_input(input);
     json_array_append_new(inputs, input_digest(response));

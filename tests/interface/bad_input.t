@@ -950,7 +950,7 @@ for place in ["out/result", "./out/result", "out/../out/result", "beside/result"
             ["dry", "network", "--checkpoint", place],
             f"--checkpoint {place}: is where the output goes: name another file")
 for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
-                "crackstats", "bridge", "flow", "invade", "inspect"]:
+                "deform", "crackstats", "bridge", "flow", "invade", "inspect"]:
     refused_in_shell(f"{program} refuses an unknown option", USAGE,
                      f"$BIN/{program} --nonsense", ".*: unrecognized option '--nonsense'")
 refused_in_shell("an option without its argument is refused", USAGE, "$BIN/pack --set",
@@ -962,6 +962,12 @@ refused("an unknown --progress is refused", USAGE, ["pack", "--progress=maybe"],
         "--progress: must be auto, always or never, got maybe")
 refused("a second input is refused", USAGE, ["tessellate", "packing", "packing"],
         "packing: too many inputs, takes at most 1")
+refused("deform wants two inputs", USAGE, ["deform", "drying"],
+        "two inputs: a drying or network, and a response")
+refused("deform refuses a packing", BAD_DATA, ["deform", "packing", "response"],
+        "packing: must be a drying or a network, is a packing")
+refused("deform refuses a drying in place of a response", BAD_DATA, ["deform", "drying", "drying"],
+        "drying: must be a response, is a drying")
 refused("a lattice takes no input", USAGE, ["pack", "packing"],
         "packing: only method=import and explosive_repulsion take an input")
 refused("inspect takes one input", USAGE, ["inspect", "packing", "packing"],

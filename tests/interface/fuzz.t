@@ -44,7 +44,8 @@ make("drying", "dry", "network", "--set", "liquid=viscous", "--set", "snapshots=
 make("invasion", "invade", "network")
 make("flow", "flow", "packing")
 make("forces", "force-protocol", "drying", "--set", "steps=5")
-make("response", "dem-replay", "forces", *REPLAY, "--set", "bond.normal_strength=1e3")
+make("response", "dem-replay", "forces", *REPLAY, "--set", "bond.normal_strength=1e3",
+     "--set", "keep_state=true")
 
 READERS = {
     "packing": [["tessellate"], ["pack", "--set", "method=import"], ["flow"],
@@ -60,11 +61,13 @@ READERS = {
                 "--set", "form=faces", "--set", "rings.left=volume"],
                ["force-protocol", "--set", "pressure=field", "--set", "form=centres",
                 "--set", "contact_angle=30", "--set", "rings.left=suction", "--set", "steps=5"],
-               ["dry", "--set", "start_saturation=0.5"], ["crackstats", "response"]],
+               ["dry", "--set", "start_saturation=0.5"], ["crackstats", "response"],
+               ["deform", "--set", "on_change=keep", "damaged", "response"]],
     "forces": [["dem-replay", *REPLAY], ["dem-replay", "-q", "--set", "engine=quasi-static"],
                ["dem-replay", *REPLAY, "--set", "bond.kind=contact",
                 "--set", "bridges.volume=1e-22", "--set", "bridges.shared=true"]],
-    "response": [["crackstats"]],
+    "response": [["crackstats"], ["deform", "--set", "on_change=keep", "drying"],
+                 ["dem-replay", "-q", *REPLAY, "forces"]],
     "invasion": [],
     "flow": [],
 }
@@ -216,7 +219,8 @@ def damaged_files(damage, name):
     found = []
     for k in range(COUNT // 15):
         how = damage(name, random.Random(f"{damage.__name__} {name} {k}"))
-        commands = [[*reader, "damaged"] for reader in READERS[name]] + [["inspect", "damaged"]]
+        commands = [reader if "damaged" in reader else [*reader, "damaged"] for reader in READERS[name]]
+        commands.append(["inspect", "damaged"])
         found += try_all(f"{damage.__name__}-{name}", commands, how, k)
     return found
 

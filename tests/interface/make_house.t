@@ -146,7 +146,7 @@ complete_words()
         _craquelure; echo "${COMPREPLY[*]}"' - \
         "$root/share/bash-completion/completions/craquelure" "$@"
 }
-is 'completion of stages' 'dem-replay dry' "$(complete_words craquelure d)"
+is 'completion of stages' 'deform dem-replay dry' "$(complete_words craquelure d)"
 is 'completion of options' '--threads' "$(complete_words craquelure dry --th)"
 is 'completion of parameters' 'liquid= liquid_density=' "$(complete_words craquelure dry --set liq)"
 
