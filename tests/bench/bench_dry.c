@@ -3,6 +3,7 @@
 // writing.
 //
 //     bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE]
+//     bench_dry kelvin NX NY NZ inviscid|immobile LOWERED
 //
 //     bench_dry invade NX NY NZ pure|trapping
 //
@@ -87,10 +88,19 @@ static struct drying_conditions conditions(const char *liquid, double tolerance)
         .first_period_rate_fraction = 0.9};
 }
 
-static int dry(const int n[3], const char *liquid, double tolerance)
+// Above a meniscus in a throat of the mean radius the vapour is lowered by this part.
+static struct drying_conditions with_kelvin(const char *liquid, double lowered)
+{
+    struct drying_conditions kelvin = conditions(liquid, 0);
+    kelvin.kelvin = true;
+    kelvin.surface_tension = -log1p(-lowered) * 0.2 / 2 * kelvin.liquid_density *
+                             GAS_CONSTANT * kelvin.temperature / kelvin.molar_mass;
+    return kelvin;
+}
+
+static int dry(const int n[3], const struct drying_conditions c)
 {
     struct network network = lattice(n);
-    const struct drying_conditions c = conditions(liquid, tolerance);
     struct drying_history history;
     struct reason reason;
     const double start = seconds();
@@ -130,11 +140,14 @@ int main(int argc, char **argv)
 {
     if (argc < 6) {
         fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE]\n"
+                        "bench_dry kelvin NX NY NZ inviscid|immobile LOWERED\n"
                         "bench_dry invade NX NY NZ pure|trapping\n");
         return STATUS_USAGE;
     }
     const int n[3] = {atoi(argv[2]), atoi(argv[3]), atoi(argv[4])};
     if (strcmp(argv[1], "invade") == 0)
         return invade_lattice(n, strcmp(argv[5], "trapping") == 0);
-    return dry(n, argv[5], argc > 6 ? strtod(argv[6], NULL) : 0);
+    const double number = argc > 6 ? strtod(argv[6], NULL) : 0;
+    if (strcmp(argv[1], "kelvin") == 0) return dry(n, with_kelvin(argv[5], number));
+    return dry(n, conditions(argv[5], number));
 }
