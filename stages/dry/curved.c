@@ -2,6 +2,7 @@
 #include "curved.h"
 
 #include "basics/memory.h"
+#include "floating.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 
 // In the first rounds all menisci that break their condition change at once; from then
 // on only the first of them, which always comes to an end (Murty 1974).
-enum { ROUNDS_AT_ONCE = 10, MOST_ROUNDS = 1000, REFINEMENTS = 4 };
+enum { ROUNDS_AT_ONCE = 10, MOST_ROUNDS = 1000 };
 
 // What flows between sites at different potentials is known to this part of conductance
 // times potential; less is nothing.
@@ -19,35 +20,49 @@ static const double NOISE = 1e-15;
 // what is on the verge would change its mind for rounding.
 static const double VERGE = 1e-10;
 
-// What is added to the diagonal of one of the menisci that float, of it.
-static const double STAY = 1e-12;
-
 // Largest part of the rate into the air that may be lost in that: late, wet nodes have
 // links that conduct a million times what leads to the air.
 static const double ENOUGH = 1e-6;
 
-// The potential -ln(1 - p_v/p_g) falls from a flat meniscus to one of RADIUS, of its
-// fall to the drying air. This form keeps its digits for wide throats.
-static double own_potential(const struct drying_conditions *conditions, double radius)
+// The potential -ln(1 - p_v/p_g) falls from a flat meniscus to one at which
+// p_c M / (rho R T) is the EXPONENT, of its fall to the drying air. This form keeps its
+// digits for wide throats.
+struct curvature_law {
+    double over_flat, saturation; // p_g - p_sat, p_sat, Pa
+    double fall;                  // of the potential to the drying air
+    double exponent;              // of a throat 1 m in radius
+    double steepness;             // rise of the exponent a metre upwards, 1/m
+};
+
+static struct curvature_law find_law(const struct drying_conditions *conditions)
 {
+    const double heat = GAS_CONSTANT * conditions->temperature / conditions->molar_mass;
     const double over_flat = conditions->gas_pressure - conditions->saturation_pressure;
     const double tension =
         2 * conditions->surface_tension * cos(conditions->contact_angle * (M_PI / 180));
-    const double exponent =
-        tension / radius * conditions->molar_mass /
-        (conditions->liquid_density * GAS_CONSTANT * conditions->temperature);
-    const double lowered = -conditions->saturation_pressure * expm1(-exponent);
-    const double fall =
-        conditions->saturation_pressure - conditions->air_vapour_pressure;
-    return log1p(lowered / over_flat) / log1p(fall / over_flat);
+    return (struct curvature_law){
+        .over_flat = over_flat,
+        .saturation = conditions->saturation_pressure,
+        .fall =
+            log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
+                  over_flat),
+        .exponent = tension / (conditions->liquid_density * heat),
+        .steepness =
+            conditions->liquid == LIQUID_IMMOBILE ? 0 : conditions->gravity / heat};
+}
+
+static double potential_above(const struct curvature_law *law, double exponent)
+{
+    return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->fall;
 }
 
 enum status check_curved(const struct drying_conditions *conditions,
                          const struct network *network, struct reason *reason)
 {
+    const struct curvature_law law = find_law(conditions);
     for (int t = 0; conditions->kelvin && t < network->n_throat; t++)
         if (network->throat_kind[t] == THROAT_NETWORK &&
-            !(own_potential(conditions, network->throat_radius[t]) < 1))
+            !(potential_above(&law, law.exponent / network->throat_radius[t]) < 1))
             return refuse(reason, STATUS_BAD_DATA,
                           "kelvin: the throat of /throats/radius row %d, %g m, never "
                           "dries: its meniscus has no more vapour than the air",
@@ -60,21 +75,29 @@ struct curved curved_make(const struct phases *phases,
 {
     const struct network *network = phases->network;
     const int n = network->n_throat;
-    struct curved curved = {.own = NEW_ARRAY(double, n),
+    struct curved curved = {.by_throat = conditions->liquid == LIQUID_IMMOBILE,
+                            .own = NEW_ARRAY(double, n),
+                            .law = NEW_ARRAY(struct curvature_law, 1),
                             .throat = NEW_ARRAY(int, n),
                             .potential = NEW_ARRAY(double, n),
                             .gain = NEW_ARRAY(double, n),
                             .floats = NEW_ARRAY(bool, n),
                             .place = NEW_ARRAY(int, n),
-                            .step = NEW_ARRAY(double, n),
-                            .change = NEW_ARRAY(double, n),
+                            .floated = NEW_ARRAY(bool, n),
+                            .floated_at = NEW_ARRAY(double, n),
+                            .body = NEW_ARRAY(int, n),
+                            .offset = NEW_ARRAY(int, network->n_node + 1),
+                            .share = NEW_ARRAY(struct share, 2 * (size_t)n),
+                            .raised = NEW_ARRAY(double, network->n_node),
                             .noise = NEW_ARRAY(double, n),
                             .level = NEW_ARRAY(double, phases->vapour.n_site),
                             .flow = NEW_ARRAY(double, phases->vapour.n_site)};
+    *curved.law = find_law(conditions);
     for (int t = 0; t < n; t++) {
         curved.place[t] = -1;
         if (network->throat_kind[t] == THROAT_NETWORK)
-            curved.own[t] = own_potential(conditions, network->throat_radius[t]);
+            curved.own[t] = potential_above(curved.law, curved.law->exponent /
+                                                            network->throat_radius[t]);
     }
     return curved;
 }
@@ -82,101 +105,155 @@ struct curved curved_make(const struct phases *phases,
 void curved_free(struct curved *curved)
 {
     free(curved->own);
+    free(curved->law);
     free(curved->throat);
     free(curved->potential);
     free(curved->gain);
     free(curved->floats);
     free(curved->place);
-    free(curved->step);
-    free(curved->change);
+    free(curved->floated);
+    free(curved->floated_at);
+    free(curved->body);
+    free(curved->offset);
+    free(curved->share);
+    free(curved->raised);
     free(curved->level);
     free(curved->flow);
     free(curved->noise);
     *curved = (struct curved){0};
 }
 
-// --- throats and nodes -------------------------------------------------------------
+// --- bodies and nodes --------------------------------------------------------------
 
-static void list_throats(struct curved *curved, struct phases *phases)
+static bool is_full(const struct curved *curved, const struct phases *phases, int place)
+{
+    return phases_saturation(phases, curved->throat[place]) == 1;
+}
+
+// Its place. What floated when last found is likely to float again.
+static int find_body(struct curved *curved, struct phases *phases, int body)
+{
+    if (curved->place[body] >= 0) return curved->place[body];
+    const int place = curved->n++;
+    curved->place[body] = place;
+    curved->body[place] = body;
+    curved->throat[place] =
+        curved->by_throat ? body : clusters_invasion_throat(&phases->clusters, body);
+    curved->floats[place] = curved->floated[body] && is_full(curved, phases, place);
+    curved->potential[place] = curved->floats[place]
+                                   ? curved->floated_at[body]
+                                   : curved->own[curved->throat[place]];
+    return place;
+}
+
+// To the shares from BEGIN on, of which END have been written.
+static int add_share(struct share *share, int begin, int end, int body, double section)
+{
+    int k = begin;
+    while (k < end && share[k].body != body)
+        k++;
+    if (k == end) share[end] = (struct share){.body = body};
+    share[k].part += section;
+    return k == end ? end + 1 : end;
+}
+
+// The shares of the K-th wet node come at curved->offset[k].
+static void list_shares(struct curved *curved, struct phases *phases, int k)
+{
+    const int node = phases->wet[k], begin = curved->offset[k];
+    int end = begin;
+    double sum = 0;
+    for (int i = phases->incidence.offset[node]; i < phases->incidence.offset[node + 1];
+         i++) {
+        const int throat = phases->incidence.throat[i];
+        const double section = liquid_section(phases, throat);
+        if (!(section > 0)) continue;
+        const int body =
+            curved->by_throat ? throat : phases->clusters.of_throat[throat];
+        end = add_share(curved->share, begin, end, find_body(curved, phases, body),
+                        section);
+        sum += section;
+    }
+    for (int i = begin; i < end; i++)
+        curved->share[i].part = end == begin + 1 ? 1 : curved->share[i].part / sum;
+    curved->offset[k + 1] = end;
+}
+
+// What the potential at NODE is above that at the middle of THROAT, in liquid at rest
+// whose meniscus there is as curved as the throat makes it.
+static double potential_over_middle(const struct curved *curved,
+                                    const struct network *network, int node, int throat)
+{
+    const struct curvature_law *law = curved->law;
+    const int32_t *end = network->throat_nodes[throat];
+    const struct vector *at = network->node_position;
+    const double height = at[node].z - (at[end[0]].z + at[end[1]].z) / 2;
+    const double exponent = law->exponent / network->throat_radius[throat];
+    return potential_above(law, exponent + law->steepness * height) -
+           curved->own[throat];
+}
+
+static void list_bodies(struct curved *curved, struct phases *phases)
 {
     curved->n = 0;
     for (int k = 0; k < phases->n_wet; k++) {
-        const int node = phases->wet[k];
-        for (int i = phases->incidence.offset[node];
-             i < phases->incidence.offset[node + 1]; i++) {
-            const int throat = phases->incidence.throat[i];
-            if (!(liquid_section(phases, throat) > 0) || curved->place[throat] >= 0)
-                continue;
-            const int place = curved->n++;
-            curved->place[throat] = place;
-            curved->throat[place] = throat;
-            curved->potential[place] = curved->own[throat];
-            curved->floats[place] = false;
-        }
+        list_shares(curved, phases, k);
+        curved->raised[k] = 0;
+        for (int i = curved->offset[k];
+             curved->law->steepness != 0 && i < curved->offset[k + 1]; i++)
+            curved->raised[k] +=
+                curved->share[i].part *
+                potential_over_middle(curved, phases->network, phases->wet[k],
+                                      curved->throat[curved->share[i].body]);
     }
 }
 
-// Of a node's throats, by their sections: the mean of FROM (n), or added to TO (n) what
-// the node has.
-static void share_node(const struct curved *curved, const struct phases *phases,
-                       int node, const double *from, double *to)
+// Adds to TO (n) what the bodies at the K-th wet node have of FLOW.
+static void share_flow(const struct curved *curved, int k, double flow, double *to)
 {
-    const int begin = phases->incidence.offset[node];
-    const int end = phases->incidence.offset[node + 1];
-    double sum = 0, mean = 0;
-    for (int i = begin; i < end; i++) {
-        const int throat = phases->incidence.throat[i];
-        const double section = liquid_section(phases, throat);
-        sum += section;
-        if (from && section > 0) mean += section * from[curved->place[throat]];
-    }
-    if (from) curved->level[node] = mean / sum;
-    for (int i = begin; to && i < end; i++) {
-        const int throat = phases->incidence.throat[i];
-        const double section = liquid_section(phases, throat);
-        if (section > 0)
-            to[curved->place[throat]] += section / sum * curved->flow[node];
+    for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
+        to[curved->share[i].body] += curved->share[i].part * flow;
+}
+
+// The mean over the menisci of each wet node.
+static void find_levels(struct curved *curved, const struct phases *phases)
+{
+    for (int k = 0; k < phases->n_wet; k++) {
+        double mean = curved->raised[k];
+        for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
+            mean += curved->share[i].part * curved->potential[curved->share[i].body];
+        curved->level[phases->wet[k]] = mean;
     }
 }
 
-// GAIN (n): what each throat evaporates at POTENTIAL (n), with the air at AIR.
-static void evaporate(struct curved *curved, struct phases *phases,
-                      const double *potential, double air, double *gain)
+void curved_find_gains(struct curved *curved, const struct phases *phases)
 {
     const struct star_mesh *mesh = &phases->vapour.mesh;
+    struct compensated rate = {0};
+    find_levels(curved, phases);
     for (int k = 0; k < phases->n_wet; k++) {
         const int node = phases->wet[k];
-        share_node(curved, phases, node, potential, NULL);
-        curved->flow[node] = mesh->air[node] * (air - curved->level[node]);
+        curved->flow[node] = mesh->air[node] * (1 - curved->level[node]);
+        compensated_add(&rate, curved->flow[node]);
     }
-    star_mesh_add_flows(&phases->vapour.mesh, curved->level, curved->flow);
-    for (int a = 0; a < curved->n; a++)
-        gain[a] = 0;
+    curved->rate = compensated_value(rate);
+    star_mesh_add_flows(mesh, curved->level, curved->flow);
+    memset(curved->gain, 0, (size_t)curved->n * sizeof *curved->gain);
     for (int k = 0; k < phases->n_wet; k++)
-        share_node(curved, phases, phases->wet[k], NULL, gain);
+        share_flow(curved, k, curved->flow[phases->wet[k]], curved->gain);
 }
 
-static double rate_into_air(const struct curved *curved, const struct phases *phases)
+// How little of what each body evaporates is nothing.
+static void find_noise(struct curved *curved, const struct phases *phases)
 {
-    struct compensated rate = {0};
-    for (int k = 0; k < phases->n_wet; k++)
-        compensated_add(&rate, phases->vapour.mesh.air[phases->wet[k]] *
-                                   (1 - curved->level[phases->wet[k]]));
-    return compensated_value(rate);
-}
-
-// At POTENTIAL: what each throat evaporates, and how little of that is nothing.
-static void find_gains(struct curved *curved, struct phases *phases)
-{
-    evaporate(curved, phases, curved->potential, 1, curved->gain);
-    curved->rate = rate_into_air(curved, phases);
     const struct star_mesh *mesh = &phases->vapour.mesh;
+    find_levels(curved, phases);
     for (int k = 0; k < phases->n_wet; k++)
         curved->flow[phases->wet[k]] = mesh->air[phases->wet[k]];
     star_mesh_add_degrees(mesh, curved->level, curved->flow);
     memset(curved->noise, 0, (size_t)curved->n * sizeof *curved->noise);
     for (int k = 0; k < phases->n_wet; k++)
-        share_node(curved, phases, phases->wet[k], NULL, curved->noise);
+        share_flow(curved, k, curved->flow[phases->wet[k]], curved->noise);
     curved->all_noise = 0;
     for (int a = 0; a < curved->n; a++) {
         curved->noise[a] *= NOISE * fabs(curved->potential[a]);
@@ -186,98 +263,17 @@ static void find_gains(struct curved *curved, struct phases *phases)
 
 // --- menisci that are flatter ------------------------------------------------------
 
-static bool is_floating_closed(const struct curved *curved)
-{
-    for (int a = 0; a < curved->n; a++)
-        if (curved->floats[a] && fabs(curved->gain[a]) > curved->noise[a]) return false;
-    return true;
-}
-
-// How the gains of the N that float fall with their potentials, over the roots of its
-// diagonal, which come back in ROOT. Where vapour cannot leave, all could float at any
-// one potential: a little more on the diagonal keeps them where they are.
-static double *floating_matrix(struct curved *curved, struct phases *phases,
-                               const int *floating, int n, double *root)
-{
-    double *matrix = NEW_ARRAY(double, (size_t)n *(size_t)n);
-    memset(curved->step, 0, (size_t)curved->n * sizeof *curved->step);
-    for (int f = 0; f < n; f++) {
-        curved->step[floating[f]] = 1;
-        evaporate(curved, phases, curved->step, 0, curved->change);
-        curved->step[floating[f]] = 0;
-        for (int g = 0; g < n; g++)
-            matrix[g * n + f] = -curved->change[floating[g]];
-        root[f] = matrix[f * n + f] > 0 ? sqrt(matrix[f * n + f]) : 1;
-    }
-    for (int f = 0; f < n; f++)
-        for (int g = 0; g < n; g++)
-            matrix[g * n + f] =
-                f == g ? 1 + STAY : matrix[g * n + f] / (root[f] * root[g]);
-    return matrix;
-}
-
-// Cholesky's factor takes the place of the lower triangle. Not by a library: those use
-// as many threads as they find, and round by their number.
-static void factorise(double *matrix, int n)
-{
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j <= i; j++) {
-            double sum = matrix[i * n + j];
-            for (int k = 0; k < j; k++)
-                sum -= matrix[i * n + k] * matrix[j * n + k];
-            matrix[i * n + j] =
-                i == j ? sqrt(fmax(sum, STAY)) : sum / matrix[j * n + j];
-        }
-}
-
-static void solve(const double *matrix, int n, double *x)
-{
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < i; k++)
-            x[i] -= matrix[i * n + k] * x[k];
-        x[i] /= matrix[i * n + i];
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        for (int k = i + 1; k < n; k++)
-            x[i] -= matrix[k * n + i] * x[k];
-        x[i] /= matrix[i * n + i];
-    }
-}
-
-// Those that float come to where they evaporate nothing.
-static void float_freely(struct curved *curved, struct phases *phases)
-{
-    int *floating = NEW_ARRAY(int, curved->n), n = 0;
-    for (int a = 0; a < curved->n; a++)
-        if (curved->floats[a]) floating[n++] = a;
-    double *root = NEW_ARRAY(double, n), *x = NEW_ARRAY(double, n);
-    double *matrix = floating_matrix(curved, phases, floating, n, root);
-    factorise(matrix, n);
-    for (int k = 0; k < REFINEMENTS && !is_floating_closed(curved); k++) {
-        for (int f = 0; f < n; f++)
-            x[f] = curved->gain[floating[f]] / root[f];
-        solve(matrix, n, x);
-        for (int f = 0; f < n; f++)
-            curved->potential[floating[f]] += x[f] / root[f];
-        find_gains(curved, phases);
-    }
-    free(matrix);
-    free(x);
-    free(root);
-    free(floating);
-}
-
 // Returns how many begin or cease to float; no more than MOST.
 static int revise(struct curved *curved, const struct phases *phases, int most)
 {
     int n = 0;
     for (int a = 0; a < curved->n && n < most; a++) {
         const int throat = curved->throat[a];
-        const bool full = phases_saturation(phases, throat) == 1;
         const bool floats =
-            full && (curved->floats[a]
-                         ? curved->potential[a] <= (1 + VERGE) * curved->own[throat]
-                         : curved->gain[a] < -10 * curved->all_noise);
+            is_full(curved, phases, a) &&
+            (curved->floats[a]
+                 ? curved->potential[a] <= (1 + VERGE) * curved->own[throat]
+                 : curved->gain[a] < -10 * curved->all_noise);
         n += floats != curved->floats[a];
         curved->floats[a] = floats;
         if (!floats) curved->potential[a] = curved->own[throat];
@@ -297,8 +293,8 @@ static void collect(struct curved *curved, const struct phases *phases,
     for (int a = 0; a < curved->n; a++) {
         const int throat = curved->throat[a];
         const double gain = curved->gain[a];
-        const bool full = phases_saturation(phases, throat) == 1;
-        if (curved->floats[a] || fabs(gain) <= curved->noise[a] || (full && gain < 0))
+        if (curved->floats[a] || fabs(gain) <= curved->noise[a] ||
+            (gain < 0 && is_full(curved, phases, a)))
             continue;
         compensated_add(&rest, -gain);
         losses->loss[losses->n] = (struct loss){throat, gain};
@@ -311,14 +307,16 @@ static void collect(struct curved *curved, const struct phases *phases,
     losses_sort(losses);
 }
 
-static enum status find_potentials(struct curved *curved, struct phases *phases,
+static enum status find_potentials(struct curved *curved, const struct phases *phases,
                                    struct reason *reason)
 {
-    find_gains(curved, phases);
+    find_noise(curved, phases);
+    curved_find_gains(curved, phases);
+    float_freely(curved, phases);
     for (int round = 0; round < MOST_ROUNDS; round++) {
         const int most = round < ROUNDS_AT_ONCE ? curved->n : 1;
         if (revise(curved, phases, most) == 0) return STATUS_OK;
-        find_gains(curved, phases);
+        curved_find_gains(curved, phases);
         float_freely(curved, phases);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
@@ -329,12 +327,15 @@ static enum status find_potentials(struct curved *curved, struct phases *phases,
 enum status curved_find(struct curved *curved, struct phases *phases,
                         struct losses *losses, struct reason *reason)
 {
-    list_throats(curved, phases);
+    list_bodies(curved, phases);
     star_mesh_bring_up_to_date(&phases->vapour.mesh);
     const enum status status = find_potentials(curved, phases, reason);
     collect(curved, phases, losses);
-    for (int a = 0; a < curved->n; a++)
-        curved->place[curved->throat[a]] = -1;
+    for (int a = 0; a < curved->n; a++) {
+        curved->place[curved->body[a]] = -1;
+        curved->floated[curved->body[a]] = curved->floats[a];
+        curved->floated_at[curved->body[a]] = curved->potential[a];
+    }
     if (status || curved->residual <= ENOUGH) return status;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: what %d menisci evaporate is %.3g off what goes into the "
@@ -342,7 +343,10 @@ enum status curved_find(struct curved *curved, struct phases *phases,
                   curved->n, curved->residual, ENOUGH);
 }
 
-void curved_state(struct curved *curved, struct state *state)
+void curved_state(struct curved *curved, int n_throat, struct state *state)
 {
+    state_numbers(state, &curved->rate, 1);
     state_numbers(state, &curved->residual, 1);
+    state_flags(state, curved->floated, n_throat);
+    state_numbers(state, curved->floated_at, n_throat);
 }

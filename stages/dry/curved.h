@@ -2,14 +2,18 @@
 // Menisci with vapour pressures of their own (Kelvin): p_v = p_sat exp(-p_c M/(rho R
 // T)) above a meniscus of capillary pressure p_c = 2 sigma cos(theta) / r.
 //
-// Each throat has a meniscus of its own, as liquid has that does not move. A node
-// between several has the mean of their potentials, by the sections of the throats, as
-// it shares out what it evaporates.
+// What has one curvature is a body of liquid: a throat, where the liquid does not move;
+// a cluster, where it has no viscosity and so one pressure, that at which gas enters
+// its widest meniscus throat. Under gravity the pressure of a cluster falls with
+// height, and so does the vapour above it. A node between several bodies has the mean
+// of their potentials, by the sections of the throats, as it shares out what it
+// evaporates.
 //
 // So vapour goes from wide menisci to narrow ones, and may condense there: a throat
-// partly empty then fills. In a full one the meniscus becomes flatter until it neither
-// takes nor gives: its pressure is unknown, and found so that nothing condenses and no
-// meniscus is more curved than its throat makes it (an obstacle problem).
+// partly empty then fills. Where that which gas enters is full the menisci of the body
+// become flatter until it neither takes nor gives: its pressure is unknown, and found
+// so that nothing condenses and no meniscus is more curved than its throat makes it (an
+// obstacle problem).
 #ifndef CRAQUELURE_CURVED_H
 #define CRAQUELURE_CURVED_H
 
@@ -17,20 +21,34 @@
 #include "losses.h"
 #include "phases.h"
 
+struct curvature_law;
+
+struct share {
+    int body;    // its place
+    double part; // of the sections at the node
+};
+
 struct curved {
+    bool by_throat;  // a throat is a body of liquid; else a cluster
     double *own;     // (n_throat) potential above its meniscus: 0 flat, 1 as in the air
     double rate;     // into the air, scaled
     double residual; // largest so far of the balances, of that rate
+    struct curvature_law *law;
+    bool *floated;      // (n_throat) by throat or cluster: did, when last found
+    double *floated_at; // (n_throat) its potential then
 
-    // Of the throats with liquid beside gas.
+    // Of the bodies beside gas.
     int n;
-    int *throat;              // (n)
+    int *body;                // (n) throat or cluster
+    int *throat;              // (n) that gas enters: what the body loses or takes up
     double *potential;        // (n)
     double *gain;             // (n) what it evaporates; below 0: takes up
     bool *floats;             // (n) flatter than its throat makes it
-    int *place;               // (n_throat) of a throat, -1 between calls
+    int *place;               // (n_throat) of a throat or cluster, -1 between calls
     double *noise, all_noise; // (n) less gain than this is none; their sum
-    double *step, *change;    // (n) room
+    int *offset;              // (n_wet+1) of the shares in each wet node
+    struct share *share;      // (offset[n_wet])
+    double *raised;           // (n_wet) potential that gravity adds there
     double *level, *flow;     // (n_site) room
 };
 
@@ -42,14 +60,17 @@ struct curved curved_make(const struct phases *phases,
 enum status check_curved(const struct drying_conditions *conditions,
                          const struct network *network, struct reason *reason);
 
-// What each throat loses, or takes up (negative), with PHASES as they are. LOSSES come
-// in ascending throats.
+// What each body loses, or takes up (negative), with PHASES as they are, by throats.
+// LOSSES come in ascending throats.
 //
 // STATUS_NOT_CONVERGED if the menisci are not found.
 enum status curved_find(struct curved *curved, struct phases *phases,
                         struct losses *losses, struct reason *reason);
 
-void curved_state(struct curved *curved, struct state *state);
+// What the bodies evaporate at their potentials.
+void curved_find_gains(struct curved *curved, const struct phases *phases);
+
+void curved_state(struct curved *curved, int n_throat, struct state *state);
 
 void curved_free(struct curved *curved);
 

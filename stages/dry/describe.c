@@ -56,13 +56,19 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
     if (conditions->kelvin)
         append(
             text, size,
-            "Kelvin effect: each throat's meniscus has its own vapour pressure; "
-            "vapour may condense in throats partly empty, full ones become flatter\n");
+            conditions->liquid == LIQUID_IMMOBILE
+                ? "Kelvin effect: each throat's meniscus has its own vapour "
+                  "pressure; vapour may condense in throats partly empty, full ones "
+                  "become flatter\n"
+                : "Kelvin effect: each cluster has the vapour pressure of its widest "
+                  "meniscus; vapour may condense there in a throat partly empty, "
+                  "full ones become flatter\n");
     if (conditions->vapour_tolerance > 0) {
         char line[160];
-        snprintf(line, sizeof line,
-                 "what wet nodes evaporate: errors add up to %.6g of the rate at most\n",
-                 conditions->vapour_tolerance);
+        snprintf(
+            line, sizeof line,
+            "what wet nodes evaporate: errors add up to %.6g of the rate at most\n",
+            conditions->vapour_tolerance);
         append(text, size, line);
     }
     append(text, size, "left out: ");

@@ -246,8 +246,7 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
 {
     if (keeper && keeper->begin) {
         prepare(run);
-        const enum status status = go_on_from(run, keeper->begin, reason);
-        return status ? status : find_curved(run, reason);
+        return go_on_from(run, keeper->begin, reason);
     }
     enum status status = start(run, reason);
     if (status) return status;

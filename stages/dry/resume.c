@@ -44,6 +44,17 @@ static void steps_state(struct run *run, struct state *state)
     state_numbers(state, run->saturation, n_throat);
 }
 
+// Of menisci with vapour pressures of their own they are found before the state is
+// kept.
+static void losses_state(struct losses *losses, int n_throat, struct state *state)
+{
+    state_integer(state, &losses->n, 0, n_throat);
+    for (int k = 0; k < losses->n; k++) {
+        state_integer(state, &losses->loss[k].throat, 0, n_throat - 1);
+        state_numbers(state, &losses->loss[k].rate, 1);
+    }
+}
+
 static void run_state(struct run *run, struct state *state)
 {
     state_sums(state, &run->time, 1);
@@ -54,12 +65,15 @@ static void run_state(struct run *run, struct state *state)
     recorder_state(&run->recorder, run->phases.network->n_throat, state);
     phases_state(&run->phases, state);
     steps_state(run, state);
-    if (run->conditions->kelvin)
-        curved_state(&run->curved, state);
-    else if (run->conditions->liquid == LIQUID_VISCOUS)
+    const int n_throat = run->phases.network->n_throat;
+    if (run->conditions->kelvin) {
+        curved_state(&run->curved, n_throat, state);
+        losses_state(&run->losses, n_throat, state);
+    } else if (run->conditions->liquid == LIQUID_VISCOUS) {
         flow_state(run, state);
-    else
+    } else {
         clocks_state(&run->clocks, state);
+    }
 }
 
 void keep_if_due(struct run *run, const struct keeper *keeper)

@@ -384,6 +384,24 @@ void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
     }
 }
 
+void star_mesh_add_links(const struct star_mesh *mesh, const int *row, int n,
+                         double *matrix)
+{
+    for (int f = 0; f < mesh->n_front; f++) {
+        const struct front *front = &mesh->front[f];
+        for (int i = 1; i < front->n; i++) {
+            const int a = row[front->site[i]];
+            const double *link = front->triangle + triangle_size(i);
+            for (int j = 0; a >= 0 && j < i; j++) {
+                const int b = row[front->site[j]];
+                if (b < 0) continue;
+                matrix[(size_t)a * (size_t)n + (size_t)b] += link[j];
+                matrix[(size_t)b * (size_t)n + (size_t)a] += link[j];
+            }
+        }
+    }
+}
+
 void star_mesh_forget_changes(struct star_mesh *mesh)
 {
     for (int k = 0; k < mesh->n_changed; k++)

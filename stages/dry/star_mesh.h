@@ -64,6 +64,11 @@ void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
 void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
                            double *degree);
 
+// Adds to MATRIX (n,n) the links between sites that have a ROW (n_site), the others
+// having -1.
+void star_mesh_add_links(const struct star_mesh *mesh, const int *row, int n,
+                         double *matrix);
+
 void star_mesh_forget_changes(struct star_mesh *mesh);
 
 // When no changes are noted.

@@ -166,9 +166,10 @@ with scratch() as folder:
         this = [*dry, "--set", f"liquid={liquid}", network]
         in_pieces(f"dry, {liquid} liquid", this)
         killed(f"dry, {liquid} liquid", this)
-    killed("dry, curved menisci",
-           ["dry", "-p", SCENE, "--set", "liquid=immobile", "--set", "kelvin=true",
-            make_network(folder, "middle", 11)])
+    for liquid, network in [("inviscid", make_network(folder, "least", 6)),
+                            ("immobile", make_network(folder, "middle", 11))]:
+        killed(f"dry, curved menisci, {liquid} liquid",
+               ["dry", "-p", SCENE, "--set", f"liquid={liquid}", "--set", "kelvin=true", network])
     in_pieces("dry, viscous liquid with snapshots",
               [*dry, "--set", "liquid=viscous", "--set", "snapshots=[0.9,0.6,0.3]", small])
 
