@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct replay_parameters {
     struct replay_settings settings;
@@ -197,7 +198,8 @@ static void choose_bonds(const struct replay_parameters *parameters,
 
 // The caller frees what it gives to SETTINGS.
 static void choose_grains(const struct replay_parameters *parameters,
-                          struct packing *packing, struct replay_settings *settings)
+                          struct packing *packing, struct replay_settings *settings,
+                          bool quiet)
 {
     struct strength_scatter scatter = parameters->scatter;
     scatter.law = (enum strength_law)parameters->strength_law;
@@ -209,6 +211,10 @@ static void choose_grains(const struct replay_parameters *parameters,
     struct reason reason;
     const enum status status = find_held(packing, &held, &settings->held, &reason);
     if (status) die(status, "dem-replay.%s", reason.text);
+    if (settings->support == SUPPORT_FIXED && !quiet &&
+        !(packing->n_particle &&
+          memchr(settings->held, 1, (size_t)packing->n_particle)))
+        report("support=fixed holds no grain: none touches held.walls");
 }
 
 static struct load read_load(const struct artifact *input)
@@ -382,7 +388,7 @@ int main(int argc, char **argv)
     struct array_list engine = {NULL, 0};
     struct artifact *earlier = open_earlier(&invocation, &packing, &engine);
     settings->begin = earlier ? &engine : NULL;
-    choose_grains(&parameters, &packing, settings);
+    choose_grains(&parameters, &packing, settings, invocation.quiet);
 
     json_t *digest = digests(input, earlier);
     struct checkpoint checkpoint;

@@ -140,10 +140,3 @@ struct net_load take_off_net_load(const struct packing *packing, const bool *is_
     }
     return about_corner(&whole, net);
 }
-
-struct net_load net_load(const struct packing *packing,
-                         const struct vector *displacement, const struct vector *force)
-{
-    const struct whole whole = whole_of(packing, NULL, displacement);
-    return about_corner(&whole, about_centre(&whole, force));
-}

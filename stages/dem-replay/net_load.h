@@ -29,8 +29,4 @@ struct net_load take_off_net_load(const struct packing *packing, const bool *is_
                                   const struct moving_grains *now,
                                   struct vector *force);
 
-// Of FORCE on the grains where they began, moved by DISPLACEMENT (NULL: not at all).
-struct net_load net_load(const struct packing *packing,
-                         const struct vector *displacement, const struct vector *force);
-
 #endif

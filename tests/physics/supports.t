@@ -56,6 +56,9 @@ with scratch() as folder:
                       "bond.shear_strength=1e9")
     net = abs(force.sum(axis=1) + response["history/reaction_force"][:]).max(axis=1)
     ok((net <= 1e-10 * abs(force).sum(axis=(1, 2)).max()).all(), "held grains give the load back", net)
+    tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(("held.walls=[]", "cycles=1")),
+                            at("forces"), "-o", at("none")], capture_output=True, text=True)
+    ok("holds no grain" in tried.stderr and tried.returncode == 0, "where none is held it is said")
     for settings, says in ((("held.grains=[64]",), "held.grains: must be whole numbers below 64"),
                            (("held.grains=[0.5]",), "held.grains: must be whole"),
                            (("held.lower=[0,0,0]",), "held.upper: must be given"),
