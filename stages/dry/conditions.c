@@ -121,7 +121,8 @@ static enum status check_course(const struct drying_conditions *conditions,
         (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS))
         return refuse(reason, STATUS_BAD_DATA,
                       "vapour_tolerance: must be 0 where liquid is viscous or menisci "
-                      "are curved (kelvin), is %g",
+                      "are curved (kelvin), is %g: with 0 the vapour is exact; a "
+                      "tolerance goes with inviscid or immobile liquid, kelvin=false",
                       conditions->vapour_tolerance);
     if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
         return refuse(reason, STATUS_BAD_DATA,

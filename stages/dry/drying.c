@@ -294,9 +294,11 @@ enum status dry_network(const struct network *network,
     const struct keeper *keeper = progress ? progress->keeper : NULL;
     if (!status && conditions->vapour_tolerance > 0 && keeper &&
         (keeper->due || keeper->begin))
-        status = refuse(reason, STATUS_BAD_DATA,
-                        "vapour_tolerance: must be 0 where a checkpoint is kept, is %g",
-                        conditions->vapour_tolerance);
+        status =
+            refuse(reason, STATUS_BAD_DATA,
+                   "vapour_tolerance: must be 0 where a checkpoint is kept, is %g: "
+                   "with 0 the vapour is exact; or run without --checkpoint",
+                   conditions->vapour_tolerance);
     if (!status) status = begin_run(&run, keeper, reason);
     if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);

@@ -97,12 +97,15 @@ static void test_impossible_networks(void **state)
 static void test_liquid_without_a_way_out(void **state)
 {
     (void)state;
-    const struct drying_conditions conditions = kharaghani_conditions(LIQUID_IMMOBILE);
     struct network network = lattice_network(3, 3, 4, spacing);
     for (int t = 0; t < network.n_throat; t++)
         if (network.throat_nodes[t][0] / 9 == 1 && network.throat_nodes[t][1] / 9 == 2)
             network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
-    check_refused(&network, &conditions, "/throats/nodes: row 0");
+    for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_VISCOUS; liquid++) {
+        const struct drying_conditions conditions =
+            kharaghani_conditions((enum liquid_limit)liquid);
+        check_refused(&network, &conditions, "/throats/nodes: row 0");
+    }
     network_free(&network);
 }
 

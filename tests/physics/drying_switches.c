@@ -165,6 +165,45 @@ static void test_off_leaves_no_trace(void **state)
     network_free(&network);
 }
 
+static int most_clusters(const struct drying_history *history)
+{
+    int most = 0;
+    for (int k = 0; k < history->n_step; k++)
+        most = history->clusters[k] > most ? history->clusters[k] : most;
+    return most;
+}
+
+// A tolerance knows of the order that gravity gives, among many clusters: times within
+// it, and the contact angle matters as it does without.
+static void test_gravity_with_a_tolerance(void **state)
+{
+    (void)state;
+    const double small = 5e-7;
+    struct network network = lattice_network(12, 11, 8, small);
+    randomise_radii(&network, small, 0.5, 4);
+    for (double angle = 0; angle < 90; angle += 60) {
+        struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+        conditions.gravity = 1e8;
+        conditions.contact_angle = angle;
+        struct drying_history exact = dry_and_check(&network, &conditions);
+        conditions.vapour_tolerance = 1e-3;
+        struct drying_history history = dry_and_check(&network, &conditions);
+        conditions.contact_angle = 60 - angle;
+        struct drying_history other = dry_and_check(&network, &conditions);
+        assert_true(most_clusters(&exact) > 20);
+        const double end = exact.time[exact.n_step - 1];
+        assert_true(fabs(history.time[history.n_step - 1] / end - 1) < 1e-3);
+        assert_true(fabs(other.time[other.n_step - 1] / end - 1) > 1e-2);
+        int n_moved = 0;
+        for (int k = 0; k < exact.n_event; k++)
+            n_moved += history.event_throat[k] != exact.event_throat[k];
+        drying_history_free(&exact);
+        drying_history_free(&history);
+        drying_history_free(&other);
+    }
+    network_free(&network);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -172,6 +211,7 @@ int main(void)
         cmocka_unit_test(test_gravity_levels_equal_tubes),
         cmocka_unit_test(test_gravity_against_capillarity),
         cmocka_unit_test(test_knudsen_resistance),
+        cmocka_unit_test(test_gravity_with_a_tolerance),
         cmocka_unit_test(test_off_leaves_no_trace)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
