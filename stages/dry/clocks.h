@@ -12,18 +12,17 @@
 #include "phases.h"
 
 struct account; // of a cluster, or of a throat: what it is charged with
+struct charge;
 
 struct clocks {
     struct phases *phases;
     bool by_throat; // an account for each throat; else for each cluster
 
-    double *charged; // (n_node) what the node evaporates, as charged
-    int *sole;       // (n_node) account charged with the whole; -1: by SHARE
-    double *share;   // (2 n_throat) of a node's throat, beside incidence.throat
-    struct account *account;
-    int n_account, account_capacity;
-    int n_touched;
-    int *touched; // accounts whose charges or throat have changed at this moment
+    int n_charge, charge_capacity;
+    struct charge *charge;   // (n_charge) of nodes that are linked to the air
+    int *charge_place;       // (2 n_throat) in charge, beside incidence.throat
+    struct account *account; // (n_throat) by cluster, or by throat
+    int *begun;              // (n_throat) accounts that are to have a clock
 
     // The clocks that run.
     int n;
@@ -32,6 +31,7 @@ struct clocks {
     double *rate;       // (n) of scaled volume
     double *left;       // (n) liquid of the throat
     double *left_lost;  // (n) what rounding takes from LEFT
+    double *nothing;    // (n) if no more is left, the throat has emptied
     int *losing;        // (n) the throats, ascending
     double *saturation; // (n_throat) of throats whose clock has stopped
 
@@ -48,9 +48,8 @@ struct clocks clocks_make(struct phases *phases, bool by_throat);
 // nothing evaporates any more.
 double clocks_advance(struct clocks *clocks);
 
-// Gas fills the ended throats. The clocks run on with the rates that follow. False if
-// these are not within the tolerance.
-bool clocks_empty_ended(struct clocks *clocks);
+// Gas fills the ended throats. The clocks run on with the rates that follow.
+void clocks_empty_ended(struct clocks *clocks);
 
 // Of a throat now: of its volume.
 double clocks_saturation(const struct clocks *clocks, int throat);

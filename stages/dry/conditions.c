@@ -113,9 +113,10 @@ static enum status check_course(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "stop_saturation: must be at least 0 and below 1, is %g",
                       conditions->stop_saturation);
-    if (!(conditions->vapour_tolerance >= 0 && conditions->vapour_tolerance <= 0.5))
+    if (!(conditions->vapour_tolerance == 0 || (conditions->vapour_tolerance >= 1e-6 &&
+                                                conditions->vapour_tolerance <= 0.5)))
         return refuse(reason, STATUS_BAD_DATA,
-                      "vapour_tolerance: must be from 0 to 0.5, is %g",
+                      "vapour_tolerance: must be 0 or from 1e-6 to 0.5, is %g",
                       conditions->vapour_tolerance);
     if (conditions->vapour_tolerance > 0 &&
         (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS))

@@ -182,7 +182,6 @@ static void prepare(struct run *run)
                              menisci_make(network, run->conditions, &run->scale));
         run->losses = losses_make(network->n_throat);
     } else {
-        vapour_settle(&run->phases.vapour); // of what the start has emptied
         run->clocks =
             clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
     }

@@ -69,7 +69,7 @@ struct drying_conditions {
     const double *start;    // (n_throat) from 0 to 1; NULL: by START_SATURATION
     double stop_saturation; // where it ends, from 0 (dry) to below what it begins with
     // What all wet nodes give off is known to this part of the rate, its errors added
-    // up; 0: exact.
+    // up: from 1e-6 on, links on large fronts are floats. 0: exact.
     double vapour_tolerance;
     // Fall of the network's saturation from one recorded step to the next; 0: each
     // event is a step.

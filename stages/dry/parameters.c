@@ -119,9 +119,9 @@ const struct parameter dry_table[] = {
      "liquid at the end, of the throats' volume; 0: dry",
      AT(conditions.stop_saturation)},
     {"vapour_tolerance", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.5, NULL,
-     "largest error of what wet nodes evaporate, all errors added up, over the rate; "
-     "0: "
-     "exact",
+     "largest error of what wet nodes evaporate, all errors added up, over the rate, "
+     "1e-6 or more: links between the nodes of large fronts are kept to seven digits; "
+     "0: exact",
      AT(conditions.vapour_tolerance)},
     {"step_interval", PARAMETER_NUMBER, "1", "null", BOUND_BETWEEN, 0, 1, NULL,
      "fall of the saturation from one recorded step to the next; 0: every event is a "

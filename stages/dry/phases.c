@@ -81,9 +81,8 @@ enum status phases_make(const struct network *network, unsigned open_walls,
     for (int i = 0; i < network->n_node; i++)
         phases->wet_place[i] = -1;
     fill_throats(phases, form->length);
-    phases->vapour =
-        vapour_make(network, __builtin_ctz(open_walls) / 2, form->length,
-                    form->knudsen_radius, &phases->layer, form->vapour_tolerance);
+    phases->vapour = vapour_make(network, form->length, form->knudsen_radius,
+                                 &phases->layer, form->vapour_tolerance);
     phases->clusters =
         clusters_make(network, &phases->incidence, form->ease, form->gas_parts);
     return expose_surface(phases, reason);

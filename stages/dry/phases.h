@@ -33,10 +33,10 @@ struct phases {
 };
 
 struct phases_form {
-    double length;         // m, the unit
-    bool gas_parts;        // as in struct clusters
-    const double *ease;    // (n_throat) as clusters_make takes it
-    double knudsen_radius; // m, as vapour_make takes it
+    double length;           // m, the unit
+    bool gas_parts;          // as in struct clusters
+    const double *ease;      // (n_throat) as clusters_make takes it
+    double knudsen_radius;   // m, as vapour_make takes it
     double vapour_tolerance; // likewise
 };
 

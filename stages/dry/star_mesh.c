@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// On a front larger than this, what eliminations add waits until there are
-// MOST_SOURCES, and then passes over the triangle once for all.
+// On a front that has been larger than this, what eliminations add waits until there
+// are many, and then passes over the triangle once for all.
 enum { LARGE_FRONT = 96 };
 
 struct membership {
@@ -19,28 +19,35 @@ struct membership {
 
 struct front {
     int n, capacity;
-    int *site;        // (n)
-    double *triangle; // link of members i > j at i(i-1)/2 + j
-    size_t triangle_capacity;
+    int *site;                // (n)
+    struct triangle triangle; // of their links
     int n_waiting;
     double *waiting; // (n_waiting) rows of CAPACITY: what eliminated sites had
     double factor[MOST_SOURCES]; // of the product of two entries of a row
     int next_unused;
 };
 
+// The more wait, the fewer passes over the triangle, and the more to add to each row
+// that is taken.
+static int most_sources(int n)
+{
+    const int most = n / 16;
+    return most < 8 ? 8 : most < MOST_SOURCES ? most : MOST_SOURCES;
+}
+
 static double *waiting_row(const struct front *front, int k)
 {
     return front->waiting + (size_t)k * (size_t)front->capacity;
 }
 
-struct star_mesh star_mesh_make(int n_site)
+struct star_mesh star_mesh_make(int n_site, bool is_rounded)
 {
     struct star_mesh mesh = {.n_site = n_site,
+                             .is_rounded = is_rounded,
                              .air = NEW_ARRAY(double, n_site),
                              .first = NEW_ARRAY(int, n_site),
                              .place = NEW_ARRAY(int, n_site),
-                             .changed = NEW_ARRAY(int, n_site),
-                             .is_changed = NEW_ARRAY(bool, n_site),
+                             .linked = NEW_ARRAY(int, n_site),
                              .unused_membership = -1,
                              .unused_front = -1};
     for (int i = 0; i < n_site; i++)
@@ -51,7 +58,7 @@ struct star_mesh star_mesh_make(int n_site)
 static void empty_front(struct front *front)
 {
     free(front->site);
-    free(front->triangle);
+    triangle_free(&front->triangle);
     free(front->waiting);
     *front = (struct front){0};
 }
@@ -64,8 +71,7 @@ void star_mesh_free(struct star_mesh *mesh)
     free(mesh->first);
     free(mesh->membership);
     free(mesh->front);
-    free(mesh->changed);
-    free(mesh->is_changed);
+    free(mesh->linked);
     free(mesh->place);
     free(mesh->row);
     *mesh = (struct star_mesh){0};
@@ -138,14 +144,7 @@ static void add_member(struct star_mesh *mesh, int front_index, int site)
     struct front *front = &mesh->front[front_index];
     join(mesh, site, front_index);
     if (front->n == front->capacity) widen(front);
-    const size_t before = triangle_size(front->n), after = triangle_size(front->n + 1);
-    if (after > front->triangle_capacity) {
-        front->triangle_capacity = after + after / 2;
-        front->triangle = reallocate(front->triangle, front->triangle_capacity,
-                                     sizeof *front->triangle);
-    }
-    for (size_t k = before; k < after; k++)
-        front->triangle[k] = 0;
+    triangle_add_row(&front->triangle, front->n);
     for (int k = 0; k < front->n_waiting; k++)
         waiting_row(front, k)[front->n] = 0;
     front->site[front->n++] = site;
@@ -156,7 +155,14 @@ void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance)
     const int front = new_front(mesh);
     add_member(mesh, front, a);
     add_member(mesh, front, b);
-    mesh->front[front].triangle[0] = conductance;
+    triangle_set(&mesh->front[front].triangle, 1, 0, conductance);
+}
+
+static void add_air(struct star_mesh *mesh, int site, double conductance)
+{
+    if (!(conductance > 0)) return;
+    if (mesh->air[site] == 0) mesh->linked[mesh->n_linked++] = site;
+    mesh->air[site] += conductance;
 }
 
 static void sum_air(struct star_mesh *mesh)
@@ -176,7 +182,7 @@ static void lower_air(struct star_mesh *mesh, double fall)
 
 void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
 {
-    mesh->air[site] += conductance;
+    add_air(mesh, site, conductance);
     compensated_add(&mesh->all_air, conductance);
     mesh->summed_air = fmax(mesh->summed_air, compensated_value(mesh->all_air));
 }
@@ -190,62 +196,66 @@ static void bring_up_to_date(struct front *front)
     const double *source[MOST_SOURCES];
     for (int k = 0; k < front->n_waiting; k++)
         source[k] = waiting_row(front, k);
-    triangle_update(front->triangle, front->n, front->n_waiting, front->factor, source);
+    triangle_update(&front->triangle, front->n, front->n_waiting, front->factor,
+                    source);
     front->n_waiting = 0;
+}
+
+// Adds WEIGHT times rows that wait, from row K on, to ROW: in fours, which read and
+// write it once.
+static void add_rows(double *restrict row, const struct front *front, int k,
+                     const double *weight)
+{
+    const double *a = waiting_row(front, k), *b = waiting_row(front, k + 1);
+    const double *c = waiting_row(front, k + 2), *d = waiting_row(front, k + 3);
+    for (int i = 0; i < front->n; i++)
+        row[i] += (weight[k] * a[i] + weight[k + 1] * b[i]) +
+                  (weight[k + 2] * c[i] + weight[k + 3] * d[i]);
 }
 
 // The links of member P, what waits included.
 static void take_row(const struct front *front, int p, double *row)
 {
-    const int n = front->n;
-    memcpy(row, front->triangle + triangle_size(p), (size_t)p * sizeof *row);
-    row[p] = 0;
-    for (int i = p + 1; i < n; i++)
-        row[i] = front->triangle[triangle_size(i) + (size_t)p];
-    for (int k = 0; k < front->n_waiting; k++) {
-        const double *restrict waiting = waiting_row(front, k);
-        const double weight = front->factor[k] * waiting[p];
-        for (int i = 0; i < n; i++)
-            row[i] += weight * waiting[i];
-    }
+    double weight[MOST_SOURCES];
+    triangle_take(&front->triangle, front->n, p, row);
+    for (int k = 0; k < front->n_waiting; k++)
+        weight[k] = front->factor[k] * waiting_row(front, k)[p];
+    int k = 0;
+    for (; k + 4 <= front->n_waiting; k += 4)
+        add_rows(row, front, k, weight);
+    for (; k < front->n_waiting; k++)
+        for (int i = 0; i < front->n; i++)
+            row[i] += weight[k] * waiting_row(front, k)[i];
     row[p] = 0;
 }
 
 // The last member takes the place of member P.
 static void remove_member(struct star_mesh *mesh, struct front *front, int p)
 {
+    triangle_remove(&front->triangle, front->n, p);
     const int last = --front->n;
-    const double *from = front->triangle + triangle_size(last);
     mesh->row[p] = mesh->row[last];
     for (int k = 0; k < front->n_waiting; k++)
         waiting_row(front, k)[p] = waiting_row(front, k)[last];
     front->site[p] = front->site[last];
-    if (p == last) return;
-    memcpy(front->triangle + triangle_size(p), from, (size_t)p * sizeof *from);
-    for (int i = p + 1; i < last; i++)
-        front->triangle[triangle_size(i) + (size_t)p] = from[i];
 }
 
 // Links all members in proportion to the products of their entries in the row.
-static void add_mesh(struct front *front, const double *row, double factor)
+static void add_mesh(struct front *front, const double *row, double factor,
+                     bool is_rounded)
 {
     const int n = front->n;
-    if (n > LARGE_FRONT) {
-        if (!front->waiting)
-            front->waiting =
-                NEW_ARRAY(double, (size_t)MOST_SOURCES *(size_t)front->capacity);
-        front->factor[front->n_waiting] = factor;
-        memcpy(waiting_row(front, front->n_waiting++), row, (size_t)n * sizeof *row);
-        if (front->n_waiting == MOST_SOURCES) bring_up_to_date(front);
+    if (!front->triangle.is_large) {
+        triangle_update(&front->triangle, n, 1, &factor, &row);
+        if (n > LARGE_FRONT) triangle_enlarge(&front->triangle, n, is_rounded);
         return;
     }
-    bring_up_to_date(front);
-    for (int i = 1; i < n; i++) {
-        double *restrict to = front->triangle + triangle_size(i);
-        const double share = factor * row[i];
-        for (int j = 0; j < i; j++)
-            to[j] += share * row[j];
-    }
+    if (!front->waiting)
+        front->waiting =
+            NEW_ARRAY(double, (size_t)MOST_SOURCES *(size_t)front->capacity);
+    front->factor[front->n_waiting] = factor;
+    memcpy(waiting_row(front, front->n_waiting++), row, (size_t)n * sizeof *row);
+    if (front->n_waiting >= most_sources(n)) bring_up_to_date(front);
 }
 
 // --- elimination -------------------------------------------------------------------
@@ -263,13 +273,14 @@ static void merge(struct star_mesh *mesh, int base_index, int other_index)
     }
     const struct front *other = &mesh->front[other_index];
     struct front *base = &mesh->front[base_index];
-    const double *from = other->triangle;
     for (int i = 1; i < other->n; i++) {
         const int p = mesh->place[other->site[i]];
         for (int j = 0; j < i; j++) {
             const int q = mesh->place[other->site[j]];
             const int high = p > q ? p : q, low = p > q ? q : p;
-            base->triangle[triangle_size(high) + (size_t)low] += *from++;
+            triangle_set(&base->triangle, high, low,
+                         triangle_entry(&base->triangle, high, low) +
+                             triangle_entry(&other->triangle, i, j));
         }
     }
     end_front(mesh, other_index);
@@ -298,13 +309,8 @@ static int merge_fronts(struct star_mesh *mesh, int site)
 // What flowed to the eliminated site flows on into the air.
 static void raise_air(struct star_mesh *mesh, const struct front *front, double share)
 {
-    for (int i = 0; i < front->n; i++) {
-        if (!(mesh->row[i] > 0)) continue;
-        const int site = front->site[i];
-        mesh->air[site] += mesh->row[i] * share;
-        if (!mesh->is_changed[site]) mesh->changed[mesh->n_changed++] = site;
-        mesh->is_changed[site] = true;
-    }
+    for (int i = 0; i < front->n; i++)
+        add_air(mesh, front->site[i], mesh->row[i] * share);
 }
 
 void star_mesh_eliminate(struct star_mesh *mesh, int site)
@@ -330,7 +336,7 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
     for (int i = 0; i < front->n; i++)
         total += mesh->row[i];
     if (total > 0) {
-        add_mesh(front, mesh->row, 1 / total);
+        add_mesh(front, mesh->row, 1 / total, mesh->is_rounded);
         if (air > 0) raise_air(mesh, front, air / total);
     }
     if (air > 0) lower_air(mesh, air * (air / total));
@@ -354,12 +360,12 @@ void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
 {
     for (int f = 0; f < mesh->n_front; f++) {
         const struct front *front = &mesh->front[f];
-        const double *link = front->triangle;
         for (int i = 1; i < front->n; i++) {
             const int site = front->site[i];
             double sum = 0;
             for (int j = 0; j < i; j++) {
-                const double through = *link++ * (level[front->site[j]] - level[site]);
+                const double through = triangle_entry(&front->triangle, i, j) *
+                                       (level[front->site[j]] - level[site]);
                 sum += through;
                 flow[front->site[j]] -= through;
             }
@@ -373,13 +379,13 @@ void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
 {
     for (int f = 0; f < mesh->n_front; f++) {
         const struct front *front = &mesh->front[f];
-        const double *link = front->triangle;
         for (int i = 1; i < front->n; i++)
-            for (int j = 0; j < i; j++, link++) {
+            for (int j = 0; j < i; j++) {
                 const int a = front->site[i], b = front->site[j];
                 if (level[a] == level[b]) continue;
-                degree[a] += *link;
-                degree[b] += *link;
+                const double link = triangle_entry(&front->triangle, i, j);
+                degree[a] += link;
+                degree[b] += link;
             }
     }
 }
@@ -391,22 +397,15 @@ void star_mesh_add_links(const struct star_mesh *mesh, const int *row, int n,
         const struct front *front = &mesh->front[f];
         for (int i = 1; i < front->n; i++) {
             const int a = row[front->site[i]];
-            const double *link = front->triangle + triangle_size(i);
             for (int j = 0; a >= 0 && j < i; j++) {
                 const int b = row[front->site[j]];
                 if (b < 0) continue;
-                matrix[(size_t)a * (size_t)n + (size_t)b] += link[j];
-                matrix[(size_t)b * (size_t)n + (size_t)a] += link[j];
+                const double link = triangle_entry(&front->triangle, i, j);
+                matrix[(size_t)a * (size_t)n + (size_t)b] += link;
+                matrix[(size_t)b * (size_t)n + (size_t)a] += link;
             }
         }
     }
-}
-
-void star_mesh_forget_changes(struct star_mesh *mesh)
-{
-    for (int k = 0; k < mesh->n_changed; k++)
-        mesh->is_changed[mesh->changed[k]] = false;
-    mesh->n_changed = 0;
 }
 
 // --- state -------------------------------------------------------------------------
@@ -418,18 +417,20 @@ static void front_state(struct front *front, int n_site, int n_front,
     state_integer(state, &front->next_unused, -1, n_front - 1);
     state_integer(state, &front->n_waiting, 0, MOST_SOURCES);
     const size_t n = (size_t)front->n;
-    int64_t n_link = (int64_t)triangle_size(front->n);
-    front->triangle = state_room(state, front->triangle, &n_link, sizeof(double));
+    state_flags(state, &front->triangle.is_large, 1);
     if (state->restoring) {
-        state->failed |= n_link != (int64_t)triangle_size(front->n);
         front->capacity = front->n;
-        front->triangle_capacity = (size_t)n_link;
         front->site = NEW_ARRAY(int, n);
         if (front->n_waiting > 0)
             front->waiting = NEW_ARRAY(double, (size_t)MOST_SOURCES *n);
     }
     state_integers(state, front->site, front->n, 0, n_site - 1);
-    state_numbers(state, front->triangle, n_link);
+    for (int i = 0; i < front->n; i++) {
+        if (state->restoring) triangle_add_row(&front->triangle, i);
+        state_numbers(
+            state, (double *)front->triangle.entry + triangle_row(&front->triangle, i),
+            i);
+    }
     state_numbers(state, front->factor, front->n_waiting);
     for (int k = 0; k < front->n_waiting; k++)
         state_numbers(state, waiting_row(front, k), front->n);

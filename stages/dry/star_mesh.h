@@ -23,6 +23,7 @@ struct membership; // a site's being on a front
 
 struct star_mesh {
     int n_site;
+    bool is_rounded;            // links on large fronts are floats
     double *air;                // (n_site) conductance to the air
     struct compensated all_air; // its sum
     double summed_air;          // the sum when all were last added up
@@ -33,19 +34,18 @@ struct star_mesh {
     struct front *front;
     int n_front, front_capacity, unused_front;
 
-    // Sites whose conductance to the air eliminations have raised since the changes
-    // were last forgotten, each once; some may have been eliminated themselves.
-    int n_changed;
-    int *changed;     // (n_changed)
-    bool *is_changed; // (n_site)
+    // Sites that have come to have a conductance to the air since N_LINKED was last set
+    // to 0; some may have been eliminated.
+    int n_linked;
+    int *linked; // (n_linked)
 
     int *place;  // (n_site) on the front at hand, -1 between calls
     double *row; // of the site that is eliminated
     int row_capacity;
 };
 
-// No links yet.
-struct star_mesh star_mesh_make(int n_site);
+// No links yet. ROUNDED: links on large fronts are kept as floats.
+struct star_mesh star_mesh_make(int n_site, bool is_rounded);
 
 // Adds to the conductance between A and B, of which none has been eliminated, or
 // between SITE and the air.
@@ -69,9 +69,6 @@ void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
 void star_mesh_add_links(const struct star_mesh *mesh, const int *row, int n,
                          double *matrix);
 
-void star_mesh_forget_changes(struct star_mesh *mesh);
-
-// When no changes are noted.
 void star_mesh_state(struct star_mesh *mesh, struct state *state);
 
 void star_mesh_free(struct star_mesh *mesh);

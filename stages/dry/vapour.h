@@ -12,8 +12,6 @@
 
 #include "basics/compensated.h"
 #include "boundary_layer.h"
-#include "loose_mesh.h"
-#include "sparse/potential.h"
 #include "star_mesh.h"
 
 struct vapour {
@@ -21,21 +19,13 @@ struct vapour {
     int n_site;
     double *conductance; // (n_throat) area over length
     struct star_mesh mesh;
-
-    // With a tolerance, instead of the mesh:
-    double tolerance; // of what wet nodes give off, errors added up, over the rate
-    struct loose_mesh loose;
-    struct potential potential; // from which the loose mesh is put right
-    int *patch;                 // (n_site) that have it in common are near each other
-    int n_solutions;            // so far
-    bool failed;                // one did not meet the tolerance
 };
 
 // For a network that is full of liquid, with an open face across AXIS (0..2). Lengths
 // are in units of LENGTH (m), conductances area over length in the same. Where
 // molecules meet the wall of a throat as often as each other, at KNUDSEN_RADIUS (m),
 // the diffusivity is halved; 0: nowhere.
-struct vapour vapour_make(const struct network *network, int axis, double length,
+struct vapour vapour_make(const struct network *network, double length,
                           double knudsen_radius, const struct boundary_layer *layer,
                           double tolerance);
 
@@ -44,21 +34,11 @@ struct vapour vapour_make(const struct network *network, int axis, double length
 void vapour_open_throat(struct vapour *vapour, int throat, int a, int b);
 void vapour_dry_node(struct vapour *vapour, int node);
 
-// Brings what follows up to date with all that has opened and dried. False if the
-// tolerance could not be met.
-bool vapour_settle(struct vapour *vapour);
-
 // Into the drying air.
 double vapour_rate(const struct vapour *vapour);
 
-// What a wet node gives off, once multiplied by the scale. Exactly 0 if no way leads
-// from it to the drying air.
+// What a wet node gives off. Exactly 0 if no way leads from it to the drying air.
 double vapour_evaporation(const struct vapour *vapour, int node);
-double vapour_scale(const struct vapour *vapour); // 1 if exact
-
-// Sites, N of them, that give off more than when this was last forgotten.
-const int *vapour_changes(const struct vapour *vapour, int *n);
-void vapour_forget_changes(struct vapour *vapour);
 
 void vapour_free(struct vapour *vapour);
 

@@ -49,6 +49,7 @@ static void test_impossible_conditions(void **state)
     REFUSE(mass_transfer, 0);
     REFUSE(layers, -1);
     REFUSE(vapour_tolerance, -1e-9);
+    REFUSE(vapour_tolerance, 1e-7);
     REFUSE(vapour_tolerance, 0.6);
     REFUSE(vapour_tolerance, NAN);
     REFUSE(first_period_rate_fraction, 0);

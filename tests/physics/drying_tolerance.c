@@ -4,7 +4,6 @@
 #include "dry/boundary_layer.h"
 #include "dry/clocks.h"
 #include "dry/conditions.h"
-#include "dry/sheet.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
@@ -22,18 +21,17 @@ static const double spacing = 5e-7;
 
 struct errors {
     double sum, rate; // largest, of the exact rate
-    int n_solutions;
 };
 
 static void compare(const struct phases *phases, const struct vapour *exact,
                     struct errors *errors)
 {
     const struct vapour *vapour = &phases->vapour;
-    const double rate = vapour_rate(exact), scale = vapour_scale(vapour);
+    const double rate = vapour_rate(exact);
     double sum = 0;
     for (int k = 0; k < phases->n_wet; k++) {
         const int node = phases->wet[k];
-        const double given_off = scale * vapour_evaporation(vapour, node);
+        const double given_off = vapour_evaporation(vapour, node);
         const double truth = vapour_evaporation(exact, node);
         assert_true(given_off >= 0 && (truth > 0 || given_off == 0));
         sum += fabs(given_off - truth);
@@ -71,7 +69,7 @@ static struct errors dry_beside_exact(const struct network *network,
     assert_int_equal(
         phases_make(network, conditions->open_walls, &form, layer, &phases, &reason),
         STATUS_OK);
-    struct vapour exact = vapour_make(network, 2, scale.length, 0, &phases.layer, 0);
+    struct vapour exact = vapour_make(network, scale.length, 0, &phases.layer, 0);
     int *liquid_beside =
         duplicate(phases.liquid_beside, (size_t)network->n_node, sizeof *liquid_beside);
     struct clocks clocks = clocks_make(&phases, conditions->liquid == LIQUID_IMMOBILE);
@@ -81,11 +79,10 @@ static struct errors dry_beside_exact(const struct network *network,
         assert_true(clocks_advance(&clocks) >= 0);
         for (int k = 0; k < clocks.n_ended; k++)
             empty_exactly(&phases, &exact, clocks.ended[k], liquid_beside);
-        assert_true(clocks_empty_ended(&clocks));
+        clocks_empty_ended(&clocks);
         if (phases.n_full > 0) compare(&phases, &exact, &errors);
         assert_true(fabs(clocks_imbalance(&clocks)) < 1e-12);
     }
-    errors.n_solutions = phases.vapour.n_solutions;
     clocks_free(&clocks);
     free(liquid_beside);
     vapour_free(&exact);
@@ -93,21 +90,15 @@ static struct errors dry_beside_exact(const struct network *network,
     return errors;
 }
 
-static int check_tolerances(const struct network *network,
+static void check_tolerance(const struct network *network,
                             struct drying_conditions conditions)
 {
-    int n_solutions = 0;
-    for (double tolerance = 0.3; tolerance > 1e-4; tolerance /= 30) {
-        conditions.vapour_tolerance = tolerance;
-        const struct errors errors = dry_beside_exact(network, &conditions);
-        print_message(
-            "# tolerance %g: errors %.2g of the rate, of it %.2g; solutions %d\n",
-            tolerance, errors.sum, errors.rate, errors.n_solutions);
-        assert_true(errors.sum <= tolerance);
-        assert_true(errors.rate <= tolerance);
-        n_solutions += errors.n_solutions;
-    }
-    return n_solutions;
+    conditions.vapour_tolerance = 1e-6;
+    const struct errors errors = dry_beside_exact(network, &conditions);
+    print_message("# errors %.2g of the rate, of it %.2g\n", errors.sum, errors.rate);
+    assert_true(errors.sum > 0); // links are indeed rounded
+    assert_true(errors.sum <= conditions.vapour_tolerance);
+    assert_true(errors.rate <= conditions.vapour_tolerance);
 }
 
 static void test_errors_are_below_the_tolerance(void **state)
@@ -118,9 +109,9 @@ static void test_errors_are_below_the_tolerance(void **state)
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_IMMOBILE; liquid++) {
         struct drying_conditions conditions =
             kharaghani_conditions((enum liquid_limit)liquid);
-        assert_true(check_tolerances(&network, conditions) > 0);
+        check_tolerance(&network, conditions);
         conditions.lumped = true;
-        check_tolerances(&network, conditions);
+        check_tolerance(&network, conditions);
     }
     network_free(&network);
 }
@@ -132,7 +123,7 @@ static void test_conductances_over_twelve_decades(void **state)
     uint64_t seed = 12;
     for (int t = 0; t < network.n_throat; t++)
         network.throat_radius[t] = spacing * pow(10, -6 * next_random(&seed));
-    assert_true(check_tolerances(&network, kharaghani_conditions(LIQUID_IMMOBILE)) > 0);
+    check_tolerance(&network, kharaghani_conditions(LIQUID_IMMOBILE));
     network_free(&network);
 }
 
@@ -145,43 +136,18 @@ static void test_whole_runs(void **state)
     randomise_radii(&network, spacing, 0.5, 4);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     struct drying_history exact = dry_and_check(&network, &conditions);
-    conditions.vapour_tolerance = 0.01;
+    conditions.vapour_tolerance = 1e-6;
     struct drying_history history = dry_and_check(&network, &conditions);
     struct drying_history again = dry_and_check(&network, &conditions);
     assert_int_equal(history.n_step, again.n_step);
     assert_memory_equal(history.time, again.time,
                         (size_t)history.n_step * sizeof *history.time);
     const double end = exact.time[exact.n_step - 1];
-    assert_true(fabs(history.time[history.n_step - 1] / end - 1) < 0.01);
+    assert_true(fabs(history.time[history.n_step - 1] / end - 1) < 1e-6);
     drying_history_free(&exact);
     drying_history_free(&history);
     drying_history_free(&again);
     network_free(&network);
-}
-
-static void test_vector_widths_agree(void **state)
-{
-    (void)state;
-#if defined __x86_64__
-    if (!__builtin_cpu_supports("avx512f")) skip();
-#endif
-    enum { SOURCES = 31, ENTRIES = PATCH * PATCH };
-    uint64_t seed = 5;
-    double *narrow = NEW_ARRAY(double, ENTRIES), *wide = NEW_ARRAY(double, ENTRIES);
-    static double row[SOURCES][2][PATCH];
-    const double *left[SOURCES], *right[SOURCES];
-    for (int k = 0; k < SOURCES; k++) {
-        for (int i = 0; i < PATCH; i++)
-            for (int side = 0; side < 2; side++)
-                row[k][side][i] = next_random(&seed);
-        left[k] = row[k][0];
-        right[k] = row[k][1];
-    }
-    block_update_narrow(narrow, PATCH, PATCH, SOURCES, left, right);
-    block_update_wide(wide, PATCH, PATCH, SOURCES, left, right);
-    assert_memory_equal(narrow, wide, ENTRIES * sizeof *wide);
-    free(narrow);
-    free(wide);
 }
 
 int main(void)
@@ -190,6 +156,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_errors_are_below_the_tolerance),
         cmocka_unit_test(test_conductances_over_twelve_decades),
-        cmocka_unit_test(test_whole_runs), cmocka_unit_test(test_vector_widths_agree)};
+        cmocka_unit_test(test_whole_runs)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,8 @@
 #if defined __x86_64__
 #pragma GCC target("avx512f,avx512dq,avx512vl,fma")
 #endif
-#define LANES 8
-#define ROWS 8
-#define UPDATE_NAME block_update_wide
-#include "block_kernel.h"
+#define NUMBER float
+#define BYTES 64
+#define TILE_ROWS 8
+#define UPDATE triangle_update_wide_float
+#include "triangle_kernel.h"

@@ -3,6 +3,8 @@
 #if defined __x86_64__
 #pragma GCC target("avx512f,avx512dq,avx512vl,fma")
 #endif
-#define LANES 8
-#define UPDATE_NAME triangle_update_wide
+#define NUMBER double
+#define BYTES 64
+#define TILE_ROWS 8
+#define UPDATE triangle_update_wide_double
 #include "triangle_kernel.h"

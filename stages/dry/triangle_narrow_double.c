@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#define NUMBER double
+#define BYTES 32
+#define TILE_ROWS 4
+#define UPDATE triangle_update_narrow_double
+#include "triangle_kernel.h"
