@@ -106,24 +106,6 @@ with scratch() as folder:
             ok(np.isfinite(error).all() and np.abs(error).max() < 1e-4,
                f"{title}: cells and their pressures", np.abs(error).max())
 
-    # Nine spheres over d/D. The spheres of the tables are off the lattice by some 1e-5: by
-    # symmetry the pressure on the wall is 1/2, theirs is up to 0.50002. Ours are exact.
-    header, rows = table("nine_spheres.csv")
-    for row in rows[8:18]:
-        entry = dict(zip(header, row))
-        spheres = [(x, y, z, .25) for x in (.25, .75) for y in (.25, .75) for z in (.25, .75)]
-        path = pack(spheres + [(.5, .5, .5, float(entry["d_over_D"]) / 4)], at("nine"))
-        result = flow(path, sides="symmetric-yade" if entry["lateral"] == "symmetry"
-                      else "no-slip")
-        ours = [permeability(result),
-                *(-result[f"particles/{kind}_force"][i, 1] for i in (0, 8)
-                  for kind in ("viscous", "pressure"))]
-        theirs = [float(entry[key]) for key in
-                  ("K_ref", "big_visc", "big_press", "center_visc", "center_press")]
-        error = np.abs(np.array(ours) / theirs - 1).max()
-        ok(error < 4e-4 and abs(result["walls/pressure_force"][0, 0] + .5) < 1e-12,
-           f"nine spheres, d/D = {entry['d_over_D']}, {entry['lateral']}", error)
-
     # Drag on spheres in lattices that repeat, over 6 pi mu a U, against Stokes flow (Zick and
     # Homsy 1982): the model is to be within a tenth at contact, and the same along each axis.
     sites = {"sc": ([(0, 0, 0)], 1, 42.1),
