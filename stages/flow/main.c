@@ -17,7 +17,7 @@ struct flow_parameters {
     int sides, conductance, pieces, solver, product;
     double factor, viscosity, density, tolerance;
     double gravity[3], strain_rate[3];
-    bool tensor;
+    bool tensor, stress;
     int64_t steps;
 };
 
@@ -77,6 +77,11 @@ static const struct parameter table[] = {
      AT(strain_rate)},
     {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "from three more flows, along x, y and z", AT(tensor)},
+    {"pore_stress", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "pressure and viscous stress, averaged over each pore and over the fluid; nothing "
+     "may "
+     "move",
+     AT(stress)},
     {"solver", PARAMETER_CHOICE, "1", "\"auto\"", BOUND_NONE, 0, 0,
      "auto|cholesky|iteration",
      "of the pressures: Cholesky's factor, or conjugate gradients with a sampled "
@@ -118,6 +123,7 @@ struct computation {
     struct forces forces;
     double *opening; // NULL: nothing moves
     struct vector columns[3];
+    struct pore_stress stress;
 };
 
 static struct vector vector_of(const double x[3])
@@ -202,6 +208,9 @@ static enum status compute(const struct artifact *input,
                              &flow->conditions, reason);
     if (status) return status;
     flow->opening = find_opening(input, parameters, flow);
+    if (flow->opening && parameters->stress)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "flow.pore_stress: must be false where grains or walls move");
     double *source = sources_of(flow, parameters->viscosity);
     status =
         solve_pressures(&flow->grains, &flow->cells, &flow->throats, &flow->conditions,
@@ -210,6 +219,9 @@ static enum status compute(const struct artifact *input,
     if (status) return status;
     flow->forces =
         find_forces(&flow->grains, &flow->cells, &flow->throats, &flow->pressures);
+    if (parameters->stress)
+        flow->stress = find_pore_stress(&flow->grains, &flow->cells, &flow->throats,
+                                        &flow->conditions, &flow->pressures);
     return parameters->tensor ? find_columns(flow, parameters, &solving, reason)
                               : STATUS_OK;
 }
@@ -242,7 +254,8 @@ static void write(const struct computation *computation,
         .viscosity = parameters->viscosity,
         .weight = scale(parameters->density, vector_of(parameters->gravity)),
         .permeability = permeability_of(computation, &parameters->imposed),
-        .columns = parameters->tensor ? computation->columns : NULL};
+        .columns = parameters->tensor ? computation->columns : NULL,
+        .stress = parameters->stress ? &computation->stress : NULL};
     char model[700];
     snprintf(
         model, sizeof model,
@@ -280,6 +293,7 @@ int main(int argc, char **argv)
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     write(&flow, &parameters, &invocation, input);
 
+    pore_stress_free(&flow.stress);
     forces_free(&flow.forces);
     pressures_free(&flow.pressures);
     throats_free(&flow.throats);

@@ -36,12 +36,13 @@ static unsigned walls_of_corners(const int32_t *corner, int n)
     return walls;
 }
 
-static void find_walls(struct balance *balance)
+uint8_t *walls_of_pores(const struct cells *cells)
 {
-    balance->walls = NEW_ARRAY(uint8_t, balance->cells->n_pore);
-    for (int c = 0; c < balance->cells->n; c++)
-        balance->walls[balance->cells->cell[c].pore] |=
-            (uint8_t)walls_of_corners(balance->cells->cell[c].corner, 4);
+    uint8_t *walls = NEW_ARRAY(uint8_t, cells->n_pore);
+    for (int c = 0; c < cells->n; c++)
+        walls[cells->cell[c].pore] |=
+            (uint8_t)walls_of_corners(cells->cell[c].corner, 4);
+    return walls;
 }
 
 // The wall that imposes the pressure on a pore; -1: none.
@@ -59,6 +60,12 @@ static int feeding(const struct conditions *conditions, unsigned walls)
     for (int wall = 0; wall < WALL_COUNT; wall++)
         if (walls >> wall & 1 && !isnan(conditions->flux[wall])) return wall;
     return -1;
+}
+
+int feeding_wall(const struct conditions *conditions, unsigned walls)
+{
+    const int wall = imposing(conditions, walls);
+    return wall >= 0 ? wall : feeding(conditions, walls);
 }
 
 // Numbers the nodes: pores, and all pores behind one flux plate as one.
@@ -439,7 +446,7 @@ enum status solve_pressures(const struct grains *grains, const struct cells *cel
     *pressures = (struct pressures){.gradient = conditions->gradient};
     struct balance balance = {.grains = grains, .cells = cells, .throats = throats};
     int32_t plate[WALL_COUNT];
-    find_walls(&balance);
+    balance.walls = walls_of_pores(cells);
     number_nodes(&balance, conditions, pressures, plate);
     impose(&balance, conditions, source, plate, pressures);
     int32_t *pocket = NEW_ARRAY(int32_t, pressures->n_node);

@@ -48,6 +48,13 @@ enum status solve_pressures(const struct grains *grains, const struct cells *cel
                             struct reason *reason);
 void pressures_free(struct pressures *pressures);
 
+// The walls that each pore is at, (n_pore) bits. The caller frees it.
+uint8_t *walls_of_pores(const struct cells *cells);
+
+// Of the WALLS that a pore is at, the one through which fluid enters or leaves it; -1:
+// none.
+int feeding_wall(const struct conditions *conditions, unsigned walls);
+
 // p_i - p_j over a throat, Pa, to full precision however small.
 double pressure_drop(const struct pressures *pressures, const struct grains *grains,
                      const struct cells *cells, const struct throat *throat);

@@ -56,6 +56,37 @@ static void put_pores(struct artifact *artifact, const struct flow *flow)
     free(value);
 }
 
+// Less the pressure.
+static void put_together(double stress[3][3], const double viscous[6], double pressure)
+{
+    static const int row[6] = {0, 1, 2, 1, 2, 0}, column[6] = {0, 1, 2, 2, 0, 1};
+    for (int k = 0; k < 6; k++)
+        stress[row[k]][column[k]] = stress[column[k]][row[k]] =
+            viscous[k] - (k < 3 ? pressure : 0);
+}
+
+static void put_stress(struct artifact *artifact, const struct flow *flow)
+{
+    const struct cells *cells = flow->cells;
+    double *volume = NEW_ARRAY(double, cells->n), mean[3][3];
+    double(*stress)[3][3] = allocate((size_t)cells->n, sizeof *stress);
+    // Of cells that are one pore, the first shows its volume.
+    for (int c = 0, next = 0; c < cells->n; c++) {
+        const int pore = cells->cell[c].pore;
+        volume[c] =
+            pore == next ? flow->stress->volume[pore] * cube(flow->grains->unit) : 0;
+        next += pore == next;
+        put_together(stress[c], flow->stress->viscous[pore],
+                     pore_pressure(flow->pressures, cells, c));
+    }
+    put_together(mean, flow->stress->mean_viscous, flow->forces->mean_pressure);
+    artifact_put(artifact, "/pores/volume", volume, cells->n);
+    artifact_put(artifact, "/pores/stress", stress, cells->n);
+    artifact_put(artifact, "/stress", mean, 3);
+    free(volume);
+    free(stress);
+}
+
 static void put_throat_numbers(struct artifact *artifact, const struct flow *flow)
 {
     const struct throats *throats = flow->throats;
@@ -161,6 +192,7 @@ void put_flow(struct artifact *artifact, const struct flow *flow)
     put_grains(artifact, flow);
     const double flux = put_walls(artifact, flow);
     put_permeability(artifact, flow);
+    if (flow->stress) put_stress(artifact, flow);
     artifact_put_number(artifact, "/summary/flux", flux);
     artifact_put_number(artifact, "/summary/imbalance", flow->pressures->imbalance);
     artifact_put_number(artifact, "/summary/mean_pressure",

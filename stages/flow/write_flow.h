@@ -4,6 +4,7 @@
 
 #include "artifacts/artifact.h"
 #include "forces.h"
+#include "pore_stress.h"
 
 // All that there is to write, in the units of the computation.
 struct flow {
@@ -18,6 +19,7 @@ struct flow {
     struct vector weight;         // density of the fluid times gravity, N m-3
     double permeability;          // m2; NAN: none
     const struct vector *columns; // (3) of the permeability tensor; NULL: not asked for
+    const struct pore_stress *stress; // NULL: not asked for
 };
 
 // Force of the weight of the fluid on grain I [C 12]: what a sphere of fluid weighs, N.

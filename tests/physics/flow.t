@@ -123,6 +123,26 @@ with scratch() as folder:
         force = total(result)
         ok(np.abs(force - [1, 0, 0]).max() < 1e-12, f"{name}: drag is drop times section", force)
 
+    # The stress of the fluid: pores sum to the mean, and the mean of the viscous part is what
+    # enters through the walls, by Gauss.
+    for imposed in ({"flux.x_lower": 1, "pressure.y_upper": 0}, {"along": "z"}):
+        result = flow(at("packing_200_r0.9"), pore_stress="true", **{
+            "along": "none", "pressure.y_lower": "null", "pressure.y_upper": "null", **imposed})
+        volume, stress = result["pores/volume"][:], result["pores/stress"][:]
+        mean, inflow = result["stress"][:], result["walls/inflow"][:]
+        void = 1 - 4 / 3 * np.pi * (numbers("packing_200_r0.9.csv")[:, 3] ** 3).sum()
+        ok(abs(volume.sum() / void - 1) < 1e-12, "pores fill the void", (volume.sum(), void))
+        difference = np.einsum("i,ijk->jk", volume, stress) / volume.sum() - mean
+        ok(np.abs(difference).max() < 1e-12 * np.abs(mean).max(), "stresses of pores: their mean",
+           difference)
+        viscous = stress + result["pores/pressure"][:][:, None, None] * np.eye(3)
+        trace = np.einsum("ijj->i", viscous) * volume
+        ok(np.abs(trace).max() < 1e-10 * np.abs(viscous * volume[:, None, None]).max(),
+           "stresses of pores: the viscous part has no trace", np.abs(trace).max())
+        through = -2 * np.diag(inflow.reshape(3, 2).sum(axis=1)) / volume.sum()
+        error = mean + result["summary"].attrs["mean_pressure"] * np.eye(3) - through
+        ok(np.abs(error).max() < 1e-12 * np.abs(mean).max(), "stress of the fluid, by Gauss", error)
+
     # Both solvers, any number of threads, any scale.
     path = at("packing_200_r0.9")
     both = [permeability(flow(path, solver=solver)) for solver in ("cholesky", "iteration")]
