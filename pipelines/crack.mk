@@ -34,6 +34,9 @@ $(call step,$1/response.h5,dem-replay,$(DEM_REPLAY),$2,,$1/forces.h5)
 $(call step,$1/crackstats.json,crackstats,$(CRACKSTATS),$2,,$1/response.h5 $1/drying.h5)
 endef
 
+crack_words := "\(.cracks.total) of \(.bonds) bonds broke," + \
+	" \(.cracks.normal) in tension, \(.cracks.shear) in shear"
+
 # --- one scene ------------------------------------------------------------------------
 
 .PHONY: run
@@ -42,6 +45,10 @@ run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
 run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
+ifdef really
+	@jq -r '$(crack_words)' $(run_folder)/crackstats.json 2>/dev/null || true
+	@echo 'artifacts: $(run_folder)'
+endif
 else
 run:
 	@echo 'Which scene? make run SCENE=samples/x.json' >&2; exit 64
@@ -62,8 +69,6 @@ $(call crack_network,$(demo_folder),$(demo_scene))
 $(foreach limit,$(demo_limits),$(call \
 	crack_history,$(demo_folder)/$(limit),$(demo_scene),$(demo_folder)/network.h5,liquid=$(limit)))
 
-demo_words := "\($$limit): \(.cracks.total) of \(.bonds) bonds broke," + \
-	" \(.cracks.normal) in tension, \(.cracks.shear) in shear"
 demo_counts := $(demo_limits:%=$(demo_folder)/%/crackstats.json)
 demo_drawn := $(foreach limit,$(demo_limits),$(addprefix \
 	$(demo_folder)/$(limit)/,drying.h5 forces.h5 response.h5 crackstats.json))
@@ -75,7 +80,7 @@ endif
 demo: $(demo_counts) $(demo_picture)
 ifdef really
 	@for limit in $(demo_limits); do \
-		jq -r --arg limit $$limit '$(demo_words)' $(demo_folder)/$$limit/crackstats.json; done
+		jq -r --arg limit $$limit '"\($$limit): " + $(crack_words)' $(demo_folder)/$$limit/crackstats.json; done
 	@echo 'artifacts: $(demo_folder)'
 	$(if $(demo_picture),@echo 'picture:   $(demo_picture)')
 endif
