@@ -2,7 +2,7 @@
 #include "cells.h"
 
 #include "basics/memory.h"
-#include "geometry/walled_triangulation.h"
+#include "geometry/triangulation_in_walls.h"
 
 #include <stdlib.h>
 #include <string.h>

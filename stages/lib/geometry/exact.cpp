@@ -11,6 +11,7 @@
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Number = CGAL::Exact_rational;
 
 Kernel::Point_3 point(const struct vector &p)
 {
@@ -22,7 +23,58 @@ Kernel::Weighted_point_3 weighted(const struct weighted_point *p)
     return {point(p->at), p->weight};
 }
 
+// A row of a predicate's determinant, from E. That of a wall is divided by the radius
+// that goes to infinity: (x, y, z, x^2 - w) / R becomes the normal and twice its
+// distance.
+struct Row {
+    Number x[3], power;
+};
+
+Row row(const struct corner_between &corner, const struct weighted_point *e)
+{
+    const double from[3] = {e->at.x, e->at.y, e->at.z};
+    Row row = {{0, 0, 0}, 0};
+    if (!corner.point) {
+        row.x[corner.axis] = corner.sign;
+        row.power = 2 * corner.sign * (Number(corner.plane) - from[corner.axis]);
+        return row;
+    }
+    const struct vector &at = corner.point->at;
+    const double to[3] = {at.x, at.y, at.z};
+    for (int axis = 0; axis < 3; axis++) {
+        row.x[axis] = Number(to[axis]) - from[axis];
+        row.power += row.x[axis] * row.x[axis];
+    }
+    row.power += Number(e->weight) - corner.point->weight;
+    return row;
+}
+
+Number determinant(const Row &a, const Row &b, const Row &c)
+{
+    return CGAL::determinant(a.x[0], a.x[1], a.x[2], b.x[0], b.x[1], b.x[2], c.x[0],
+                             c.x[1], c.x[2]);
+}
+
 } // namespace
+
+extern "C" int exact_turn_between(const struct corner_between corner[3],
+                                  const struct weighted_point *e)
+{
+    return CGAL::sign(
+        determinant(row(corner[0], e), row(corner[1], e), row(corner[2], e)));
+}
+
+extern "C" int exact_side_between(const struct corner_between corner[4],
+                                  const struct weighted_point *e)
+{
+    const Row r[4] = {row(corner[0], e), row(corner[1], e), row(corner[2], e),
+                      row(corner[3], e)};
+    const Number sum = r[0].power * determinant(r[1], r[2], r[3]) -
+                       r[1].power * determinant(r[0], r[2], r[3]) +
+                       r[2].power * determinant(r[0], r[1], r[3]) -
+                       r[3].power * determinant(r[0], r[1], r[2]);
+    return CGAL::sign(sum);
+}
 
 extern "C" bool exact_collinear(const struct vector *a, const struct vector *b,
                                 const struct vector *c)

@@ -17,6 +17,20 @@ struct weighted_point {
     double weight; // radius squared
 };
 
+// Walls of a box that all points are in.
+struct wall_box {
+    struct vector lower, upper;
+};
+
+// A corner of a cell: a grain or, where POINT is NULL, a wall, the limit of a sphere
+// whose centre goes to infinity along an axis, to the side of SIGN, and whose surface
+// is at PLANE.
+struct corner_between {
+    const struct weighted_point *point;
+    int axis;
+    double sign, plane;
+};
+
 bool exact_collinear(const struct vector *a, const struct vector *b,
                      const struct vector *c);
 
@@ -27,6 +41,15 @@ int exact_orientation(const struct weighted_point *const p[4]);
 // 1 when P[4] has less power to the point of equal power to the others, a positively
 // oriented tetrahedron, than they have; -1 when more, 0 when the same.
 int exact_power_side(const struct weighted_point *const p[5]);
+
+// The sign of the determinant of the directions from E to three corners, that of a wall
+// being its normal.
+int exact_turn_between(const struct corner_between corner[3],
+                       const struct weighted_point *e);
+
+// As exact_power_side for E and four corners of a cell, a grain at least among them.
+int exact_side_between(const struct corner_between corner[4],
+                       const struct weighted_point *e);
 
 // The point of equal power to four points, in rational arithmetic: for flat tetrahedra,
 // where rounding could put it anywhere.

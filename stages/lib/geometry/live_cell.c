@@ -101,15 +101,68 @@ static bool is_infinite(const struct live_cell *cell)
     return (cell->vertex[0] | cell->vertex[1] | cell->vertex[2] | cell->vertex[3]) < 0;
 }
 
-void find_centres(const struct weighted_point *point, struct live_cell *cells,
-                  const int32_t *which, int count)
+// The same for one cell with walls: the row of a wall is its normal, and what is right
+// of it the distance, for the centre is on the wall.
+static void find_walled_centre(const struct weighted_point *point,
+                               const struct wall_box *box, struct live_cell *cell)
+{
+    const struct weighted_point *last = &point[cell->vertex[3]];
+    struct vector row[3];
+    double right[3], terms[3], size[3], error = 0;
+    for (int k = 0; k < 3; k++) {
+        if (cell->vertex[k] < 0) {
+            const struct corner_between wall = wall_corner(box, cell->vertex[k]);
+            row[k] = (struct vector){0};
+            set_component(&row[k], wall.axis, wall.sign);
+            right[k] = wall.sign * (wall.plane - component(last->at, wall.axis));
+            terms[k] = 2 * right[k];
+        } else {
+            const struct weighted_point *p = &point[cell->vertex[k]];
+            row[k] = subtract(p->at, last->at);
+            const double square = dot(row[k], row[k]),
+                         lighter = last->weight - p->weight;
+            right[k] = 0.5 * (square + lighter);
+            terms[k] = square + fabs(lighter);
+        }
+        size[k] = fmax(fabs(row[k].x), fmax(fabs(row[k].y), fabs(row[k].z)));
+    }
+    const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
+                                     cross(row[0], row[1])};
+    struct vector centre = {0};
+    for (int k = 0; k < 3; k++) {
+        centre = add(centre, scale(right[k], across[k]));
+        error += terms[k] * size[(k + 1) % 3] * size[(k + 2) % 3];
+    }
+    const double determinant = dot(row[0], across[0]);
+    const double slack = 16 * DBL_EPSILON * size[0] * size[1] * size[2];
+    centre = scale(1 / determinant, centre);
+    const double far = fmax(fabs(centre.x), fmax(fabs(centre.y), fabs(centre.z)));
+    const bool flat = fabs(determinant) <= 2 * slack;
+    error =
+        1.01 * (8 * DBL_EPSILON * error + far * slack) / (fabs(determinant) - slack) +
+        8 * DBL_EPSILON * far;
+    cell->at = flat ? (struct vector){0} : centre;
+    cell->error = flat ? INFINITY : (float)error;
+}
+
+static bool has_walls(const struct live_cell *cell)
+{
+    return cell->vertex[0] <= FIRST_WALL || cell->vertex[1] <= FIRST_WALL ||
+           cell->vertex[2] <= FIRST_WALL;
+}
+
+void find_centres(const struct weighted_point *point, const struct wall_box *box,
+                  struct live_cell *cells, const int32_t *which, int count)
 {
     struct live_cell *cell[4];
     int n = 0;
     for (int k = 0; k < count; k++) {
         cell[n] = &cells[which[k]];
         cell[n]->error = -1;
-        n += !is_infinite(cell[n]);
+        if (box && has_walls(cell[n]))
+            find_walled_centre(point, box, cell[n]);
+        else
+            n += !is_infinite(cell[n]);
         if (n == 4) find_four_centres(point, cell);
         n %= 4;
     }

@@ -7,7 +7,17 @@
 
 #include <assert.h>
 
-enum { INFINITE = -1 }; // in place of a vertex
+enum { INFINITE = -1, FIRST_WALL = -2 }; // in place of a vertex; walls 0..5 go down
+
+static inline struct corner_between wall_corner(const struct wall_box *box,
+                                                int32_t vertex)
+{
+    const int wall = FIRST_WALL - vertex, axis = wall / 2;
+    return (struct corner_between){
+        .axis = axis,
+        .sign = wall % 2 ? 1 : -1,
+        .plane = component(wall % 2 ? box->upper : box->lower, axis)};
+}
 
 struct live_cell {
     int32_t vertex[4], neighbour[4];
@@ -19,8 +29,9 @@ struct live_cell {
 static_assert(sizeof(struct live_cell) == 64, "one cache line");
 
 // Finds the centres of COUNT cells, WHICH among CELLS, and how far off they may be by
-// rounding. They have their vertices, of which one may be infinite.
-void find_centres(const struct weighted_point *point, struct live_cell *cells,
-                  const int32_t *which, int count);
+// rounding. They have their vertices, of which one may be infinite or, in a BOX, the
+// first three walls. BOX is NULL where there are none.
+void find_centres(const struct weighted_point *point, const struct wall_box *box,
+                  struct live_cell *cells, const int32_t *which, int count);
 
 #endif

@@ -31,6 +31,7 @@ struct edge {
 
 struct insertion {
     const struct weighted_point *point;
+    const struct wall_box *box; // NULL: no walls
     struct live_cell *cell;
     int32_t *cavity; // cells
     struct facet *rim;
@@ -66,10 +67,50 @@ static int orientation(const struct weighted_point *const p[4])
     return exact_orientation(p);
 }
 
+static bool has_wall(const int32_t vertex[4])
+{
+    return vertex[0] <= FIRST_WALL || vertex[1] <= FIRST_WALL ||
+           vertex[2] <= FIRST_WALL || vertex[3] <= FIRST_WALL;
+}
+
+static struct corner_between corner_of(const struct insertion *insertion,
+                                       int32_t vertex)
+{
+    if (vertex <= FIRST_WALL) return wall_corner(insertion->box, vertex);
+    return (struct corner_between){.point = &insertion->point[vertex]};
+}
+
+// Seen from E, a wall lies along its normal.
+static int orientation_between(const struct insertion *insertion,
+                               const int32_t vertex[4], int k, int32_t e)
+{
+    const struct weighted_point *from = &insertion->point[e];
+    struct corner_between corner[3];
+    struct vector to[3] = {{0}};
+    for (int m = 0, n = 0; m < 4; m++) {
+        if (m == k) continue;
+        corner[n] = corner_of(insertion, vertex[m]);
+        if (corner[n].point)
+            to[n] = subtract(corner[n].point->at, from->at);
+        else
+            set_component(&to[n], corner[n].axis, corner[n].sign);
+        n++;
+    }
+    const double determinant = dot(to[0], cross(to[1], to[2]));
+    const double bound =
+        32 * DBL_EPSILON * largest(to[0]) * largest(to[1]) * largest(to[2]);
+    const int turn = determinant > bound    ? 1
+                     : determinant < -bound ? -1
+                                            : exact_turn_between(corner, from);
+    return k % 2 ? -turn : turn;
+}
+
 // With point E in place of corner K.
 static int orientation_with(const struct insertion *insertion, const int32_t vertex[4],
                             int k, int32_t e)
 {
+    if (insertion->box && has_wall(vertex))
+        return orientation_between(insertion, vertex, k, e);
     const struct weighted_point *p[4];
     for (int m = 0; m < 4; m++)
         p[m] = &insertion->point[m == k ? e : vertex[m]];
@@ -89,17 +130,18 @@ static bool comes_before(struct vector a, struct vector b)
 static bool takes_perturbed(const struct insertion *insertion, const int32_t vertex[4],
                             int32_t e)
 {
-    int order[5];
+    const struct weighted_point *point = insertion->point;
+    int order[5], n = 0;
     for (int k = 0; k < 5; k++) {
-        const struct weighted_point *point = insertion->point;
-        int to = k;
+        if (k < 4 && vertex[k] < 0) continue; // walls stay as they are
+        int to = n++;
         for (; to > 0 && comes_before(point[k < 4 ? vertex[k] : e].at,
                                       point[vertex[order[to - 1]]].at);
              to--)
             order[to] = order[to - 1];
         order[to] = k;
     }
-    for (int k = 4; k > 1 && order[k] < 4; k--) {
+    for (int k = n - 1; k >= 0 && order[k] < 4; k--) {
         const int turn = orientation_with(insertion, vertex, order[k], e);
         if (turn) return turn > 0;
     }
@@ -137,6 +179,17 @@ static bool is_mirrored(const struct weighted_point *const p[5])
 
 static bool takes(struct insertion *insertion, const struct live_cell *cell, int32_t e);
 
+static bool takes_between(struct insertion *insertion, const int32_t vertex[4],
+                          int32_t e)
+{
+    struct corner_between corner[4];
+    for (int k = 0; k < 4; k++)
+        corner[k] = corner_of(insertion, vertex[k]);
+    insertion->n_exact++;
+    const int side = exact_side_between(corner, &insertion->point[e]);
+    return side ? side > 0 : takes_perturbed(insertion, vertex, e);
+}
+
 // When rounding could decide, and for infinite cells: they take what lies beyond their
 // finite facet and, in its plane, what the cell this side of it takes.
 static __attribute__((noinline)) bool
@@ -144,6 +197,10 @@ takes_exactly(struct insertion *insertion, const struct live_cell *cell, int32_t
 {
     if (cell->seen) return true;
     const int32_t *vertex = cell->vertex;
+    if (insertion->box) {
+        if (vertex[0] == INFINITE) return false;
+        if (has_wall(vertex)) return takes_between(insertion, vertex, e);
+    }
     for (int k = 0; k < 4; k++) {
         if (vertex[k] != INFINITE) continue;
         const int turn = orientation_with(insertion, vertex, k, e);
@@ -330,7 +387,8 @@ static void fill_cavity(struct insertion *insertion, int32_t e)
             insertion->cell[insertion->cavity[f]].neighbour[k] =
                 find_edge(insertion, v[(k + 2) % 3], v[(k + 1) % 3], e)->cell;
     }
-    find_centres(insertion->point, insertion->cell, insertion->cavity, n_rim);
+    find_centres(insertion->point, insertion->box, insertion->cell, insertion->cavity,
+                 n_rim);
     insertion->last = insertion->cavity[0];
 }
 
@@ -347,7 +405,7 @@ static void insert(struct insertion *insertion, int32_t e)
     const struct live_cell *cell = &insertion->cell[start];
     const struct weighted_point *point = insertion->point;
     for (int k = 0; k < 4; k++)
-        if (cell->vertex[k] != INFINITE &&
+        if (cell->vertex[k] >= 0 &&
             same_place(point[cell->vertex[k]].at, point[e].at) &&
             point[e].weight <= point[cell->vertex[k]].weight)
             return;
@@ -402,7 +460,31 @@ static void surround(struct insertion *insertion, const int32_t corner[4])
         }
         memcpy(cell->neighbour, beside, sizeof cell->neighbour);
     }
-    find_centres(insertion->point, insertion->cell, (int32_t[]){0, 1, 2, 3, 4}, 5);
+    find_centres(insertion->point, insertion->box, insertion->cell,
+                 (int32_t[]){0, 1, 2, 3, 4}, 5);
+}
+
+// The first point and three walls each: one cell in every corner of the box. What lies
+// beyond is cell 0, which nothing takes.
+static void surround_by_walls(struct insertion *insertion)
+{
+    for (int c = 0; c < 9; c++)
+        insertion->cell[add_cell(insertion)] = (struct live_cell){
+            .vertex = {INFINITE, INFINITE, INFINITE, INFINITE}, .error = -1};
+    for (int corner = 0; corner < 8; corner++) {
+        struct live_cell *cell = &insertion->cell[1 + corner];
+        const bool turned =
+            __builtin_parity((unsigned)corner); // else negatively oriented
+        for (int axis = 0; axis < 3; axis++) {
+            const int k = turned && axis < 2 ? 1 - axis : axis;
+            cell->vertex[k] = FIRST_WALL - 2 * axis - (corner >> axis & 1);
+            cell->neighbour[k] = 1 + (corner ^ 1 << axis);
+        }
+        cell->vertex[3] = 0;
+    }
+    find_centres(insertion->point, insertion->box, insertion->cell,
+                 (int32_t[]){1, 2, 3, 4, 5, 6, 7, 8}, 8);
+    insertion->last = 1;
 }
 
 // The bits of X, two zeros between each.
@@ -491,15 +573,28 @@ static int32_t last_point(const struct live_cell *cell)
     return last;
 }
 
-// Puts the finite cells in the order in which their last points came. Frees the cells
-// that were.
-static struct triangulation pack_cells(struct insertion *insertion, int n)
+// Whether all walls of a cell are among WALLS.
+static bool is_wanted(const struct live_cell *cell, unsigned walls)
+{
+    for (int k = 0; k < 4; k++)
+        if (cell->vertex[k] <= FIRST_WALL &&
+            !(walls >> (FIRST_WALL - cell->vertex[k]) & 1))
+            return false;
+    return true;
+}
+
+// Puts the finite cells at no walls but WALLS in the order in which their last points
+// came. Frees the cells that were.
+static struct triangulation pack_cells(struct insertion *insertion, int n,
+                                       unsigned walls)
 {
     int32_t *number = NEW_ARRAY(int32_t, insertion->n_cell);
     int32_t *next = NEW_ARRAY(int32_t, n + 1);
     for (int c = 0; c < insertion->n_cell; c++) {
         const struct live_cell *cell = &insertion->cell[c];
-        number[c] = cell->seen || cell->error < 0 ? -1 : last_point(cell);
+        number[c] = cell->seen || cell->error < 0 || !is_wanted(cell, walls)
+                        ? -1
+                        : last_point(cell);
         if (number[c] >= 0) next[number[c] + 1]++;
     }
     for (int i = 0; i < n; i++)
@@ -512,9 +607,11 @@ static struct triangulation pack_cells(struct insertion *insertion, int n)
         if (number[c] < 0) continue;
         const struct live_cell *from = &insertion->cell[c];
         struct cell *cell = &packed[number[c]];
-        memcpy(cell->vertex, from->vertex, sizeof cell->vertex);
-        for (int k = 0; k < 4; k++)
+        for (int k = 0; k < 4; k++) {
+            const int32_t vertex = from->vertex[k];
+            cell->vertex[k] = vertex <= FIRST_WALL ? vertex - FIRST_WALL - 1 : vertex;
             cell->neighbour[k] = number[from->neighbour[k]];
+        }
     }
     free(number);
     free(next);
@@ -526,12 +623,13 @@ static struct triangulation pack_cells(struct insertion *insertion, int n)
 }
 
 static struct insertion insertion_begin(const struct weighted_point *point, int n,
-                                        const int32_t corner[4])
+                                        const struct wall_box *box)
 {
     enum { USUAL = 1 << 10 };
     const int room = 7 * n + n / 4 + 64; // points that fill space have 6.77 a point
     struct insertion insertion = {
         .point = point,
+        .box = box,
         .cell = allocate_uncleared((size_t)room, sizeof *insertion.cell),
         .cavity = NEW_ARRAY(int32_t, USUAL),
         .rim = NEW_ARRAY(struct facet, USUAL),
@@ -539,7 +637,6 @@ static struct insertion insertion_begin(const struct weighted_point *point, int 
         .cavity_capacity = USUAL,
         .rim_capacity = USUAL};
     widen_edge_table(&insertion, USUAL);
-    surround(&insertion, corner);
     return insertion;
 }
 
@@ -556,13 +653,26 @@ int triangulate(const struct weighted_point *points, int n,
 {
     int32_t corner[4];
     if (!find_corners(points, n, corner)) return -1;
-    struct insertion insertion = insertion_begin(points, n, corner);
+    struct insertion insertion = insertion_begin(points, n, NULL);
+    surround(&insertion, corner);
     for (int32_t e = 1; e < n; e++)
         if (e != corner[0] && e != corner[1] && e != corner[2] && e != corner[3])
             insert(&insertion, e);
-    *triangulation = pack_cells(&insertion, n);
+    *triangulation = pack_cells(&insertion, n, 0);
     insertion_free(&insertion);
     return 0;
+}
+
+struct triangulation triangulate_between(const struct weighted_point *points, int n,
+                                         const struct wall_box *box, unsigned walls)
+{
+    struct insertion insertion = insertion_begin(points, n, box);
+    surround_by_walls(&insertion);
+    for (int32_t e = 1; e < n; e++)
+        insert(&insertion, e);
+    const struct triangulation triangulation = pack_cells(&insertion, n, walls);
+    insertion_free(&insertion);
+    return triangulation;
 }
 
 void triangulation_free(struct triangulation *triangulation)

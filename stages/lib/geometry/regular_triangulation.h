@@ -69,6 +69,12 @@ int32_t *insertion_order(const struct vector *points, int n);
 // do not span three dimensions. The caller frees with triangulation_free.
 int triangulate(const struct weighted_point *points, int n,
                 struct triangulation *triangulation);
+
+// The same between the six walls of a box that all points are in: planes, in the limit
+// of spheres that touch the box from outside. WALLS (bits) are vertices: wall 0..5 is
+// -1..-6; cells at the others, which serve to end the triangulation, are left out.
+struct triangulation triangulate_between(const struct weighted_point *points, int n,
+                                         const struct wall_box *box, unsigned walls);
 void triangulation_free(struct triangulation *triangulation);
 
 #endif
