@@ -42,12 +42,13 @@ irregular_tables := $(irregular_arms:%=$(irregular_folder)/%.json)
 # The aggregates in arm $1, each with its drying.
 irregular_runs = $(foreach seed,$(irregular_seeds),$(irregular_folder)/$(seed)/$1.h5 $(irregular_folder)/$(seed)/$(call irregular_liquid,$1).h5)
 $(foreach arm,$(irregular_arms),$(call step,$(irregular_folder)/$(arm).json,crackstats,$(CRACKSTATS),$(irregular_scene),,$(call irregular_runs,$(arm))))
-# Whether slow and fast drying differ, and whether the gradient does anything.
-irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(irregular_scene),first_group=$(AGGREGATES),$(foreach arm,$2,$(call irregular_runs,$(arm))))
+# Whether slow and fast drying differ, and whether the gradient does anything: aggregate by
+# aggregate.
+irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(irregular_scene),first_group=$(AGGREGATES) paired=true,$(foreach arm,$2,$(call irregular_runs,$(arm))))
 $(call irregular_test,limits.json,inviscid-uniform immobile-uniform)
 $(call irregular_test,gradient.json,viscous-uniform viscous-field)
 irregular_tests := $(irregular_folder)/limits.json $(irregular_folder)/gradient.json
-$(call artifact,$(irregular_folder)/irregular.md,stage=irregular version=1,pipelines/irregular pipelines/counts pipelines/monte-carlo $(irregular_tables) $(irregular_tests),pipelines/irregular $(irregular_folder) $(irregular_folder)/irregular.md,)
+$(call artifact,$(irregular_folder)/irregular.md,stage=irregular version=2,pipelines/irregular pipelines/counts pipelines/monte-carlo $(irregular_tables) $(irregular_tests),pipelines/irregular $(irregular_folder) $(irregular_folder)/irregular.md,)
 $(call artifact,$(irregular_folder)/irregular.svg,stage=cracks-figure version=1,$(wildcard pipelines/cracks-figure*) $(irregular_tables),pipelines/cracks-figure \
 	$(foreach arm,$(irregular_arms),$(arm)=$(irregular_folder)/$(arm).json) $(irregular_folder)/irregular.svg,)
 
