@@ -83,48 +83,81 @@ static bool factor(struct equilibrium *e)
     return stiffness_factor(e->matrix, e->tangent, e->soft);
 }
 
-// Joints that do not resist as the factor says, here or where the step leads.
-static bool include_joints(struct equilibrium *e)
+// How many of a joint's strains do not resist as the factor says when it is, bonded or
+// not, in TOUCH.
+static int strains_unlike(const struct equilibrium *e, int j, enum touch touch)
 {
-    for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        const struct factored *factored = &e->factored[j];
-        double strain[STRAINS];
-        for (int k = 0; k < STRAINS; k++)
-            strain[k] = e->strain[j][k] + e->more[j][k];
-        const enum touch here = e->resistance[j].contact.touch;
-        const enum touch there = joint_resistance(joint, strain).contact.touch;
-        const bool broke = factored->is_bonded && (!joint->is_bonded || joint->is_gone);
-        const bool same =
-            here == there && here == factored->touch && here <= TOUCH_STICKS;
-        const int shears = joint->contact_across > 0 ? 3 : 1;
-        const int strains = broke ? STRAINS : same ? 0 : shears;
-        if (strains > 0 && !corrections_add(e->corrections, j, strains)) return false;
-    }
-    return true;
+    const struct joint *joint = &e->joint[j];
+    const struct factored *factored = &e->factored[j];
+    if (factored->is_bonded && (!joint->is_bonded || joint->is_gone)) return STRAINS;
+    if (touch == factored->touch && touch <= TOUCH_STICKS) return 0;
+    return joint->contact_across > 0 ? 3 : 1;
 }
 
 enum outcome { FOUND, TOO_MANY, STUCK };
 
-// The step that balances all.
+// Corrects joints that are unlike the factor, here or where the strains MORE lead.
+// Whether there are new ones.
+static enum outcome include_joints(struct equilibrium *e, const double (*more)[STRAINS],
+                                   bool *is_new)
+{
+    const int before = corrections_count(e->corrections);
+    for (int j = 0; j < e->n_joint; j++) {
+        enum touch touch = e->resistance[j].contact.touch;
+        int strains = strains_unlike(e, j, touch);
+        if (strains == 0 && more) {
+            double strain[STRAINS];
+            for (int k = 0; k < STRAINS; k++)
+                strain[k] = e->strain[j][k] + more[j][k];
+            touch = joint_resistance(&e->joint[j], strain).contact.touch;
+            strains = strains_unlike(e, j, touch);
+        }
+        if (strains > 0 && !corrections_add(e->corrections, j, strains))
+            return TOO_MANY;
+    }
+    *is_new = corrections_count(e->corrections) > before;
+    return FOUND;
+}
+
+// With those joints corrected that are known to need it.
+static enum outcome correct_step(struct equilibrium *e, double share, double enough,
+                                 const double (*guess)[STRAINS])
+{
+    if (!corrections_find(e->corrections, e->strain, e->linear, guess, share, enough))
+        return STUCK;
+    memcpy(e->rest, e->left, (size_t)e->n * sizeof *e->rest);
+    corrections_take_off(e->corrections, share, e->rest);
+    stiffness_solve(e->matrix, e->rest, e->step);
+    strain_joints(e, e->step, e->more);
+    return FOUND;
+}
+
+// The step that balances all: joints that it would change are corrected too, until
+// there are no more. In REST is what of it the factor alone has to balance.
 static enum outcome find_step(struct equilibrium *e)
 {
+    enum { ROUNDS = 10 };
     const double share = 1 / (1 + e->damping);
+    double most = 0;
+    bool is_new = false;
     for (int i = 0; i < e->n; i++)
         e->left[i] = scaled(share, e->left[i]);
     stiffness_solve(e->matrix, e->left, e->step);
-    strain_joints(e, e->step, e->more);
-    if (!include_joints(e)) return TOO_MANY;
-    if (corrections_count(e->corrections) == 0) return FOUND;
-    double most = 0;
+    strain_joints(e, e->step, e->linear);
+    memcpy(e->rest, e->left, (size_t)e->n * sizeof *e->rest);
     for (int j = 0; j < e->n_joint; j++)
         for (int k = 0; k < STRAINS; k++)
-            most = fmax(most, fabs(e->more[j][k]));
+            most = fmax(most, fabs(e->linear[j][k]));
     const double enough = fmax(1e-3 * e->enough, 1e-14 * most);
-    if (!corrections_find(e->corrections, e->strain, e->more, share, enough))
+    if (include_joints(e, NULL, &is_new) != FOUND) return TOO_MANY;
+    memcpy(e->more, e->linear, (size_t)e->n_joint * sizeof *e->more);
+    if (corrections_count(e->corrections) > 0 && correct_step(e, share, enough, NULL))
         return STUCK;
-    corrections_take_off(e->corrections, share, e->left);
-    stiffness_solve(e->matrix, e->left, e->step);
+    for (int round = 0; round < ROUNDS; round++) {
+        if (include_joints(e, e->more, &is_new) != FOUND) return TOO_MANY;
+        if (!is_new) break;
+        if (correct_step(e, share, enough, e->more)) return STUCK;
+    }
     return FOUND;
 }
 
@@ -179,7 +212,7 @@ static bool improve(struct equilibrium *e, bool *is_fresh)
     }
     for (int i = 0; i < e->n; i++) {
         pull(&e->trial[i], scaled(-1, e->step[i]));
-        pull(&e->dashpots[i], scaled(-1, e->left[i]));
+        pull(&e->dashpots[i], scaled(-1, e->rest[i]));
     }
     resist(e);
     e->iterations++;

@@ -131,6 +131,7 @@ static void make_room(struct corrections *c)
 static void fill_compliance(struct corrections *c, const struct addition *new)
 {
     const int columns = new->halves.columns;
+    c->work += (double)columns * new->halves.size *(c->count + new->halves.size);
     for (int k = 0; k < c->n_addition; k++) {
         const struct addition *other = &c->addition[k];
         double product[MOST_HALVES * MOST_HALVES];
@@ -210,6 +211,7 @@ static double find_left(struct corrections *c)
     double most = 0;
     for (int k = 0; k < c->count; k++)
         c->left[k] = c->strain[k] - c->linear[k];
+    c->work += (double)c->count * c->n_acting;
     for (int k = 0; k < c->count; k++)
         add_answer(c, k, c->more[k], c->left);
     for (int k = 0; k < c->count; k++)
@@ -325,23 +327,49 @@ static bool find_step(struct corrections *c)
     return true;
 }
 
+// Goes the step, or the half, the quarter ... of it that leaves least. How much is
+// left.
+static double go(struct corrections *c, const double (*from)[STRAINS], double before)
+{
+    enum { HALVES = 6 };
+    double gone = 0, share = 1, best = INFINITY, best_share = 1, left = INFINITY;
+    for (int k = 0; k < HALVES; k++, share /= 2) {
+        for (int row = 0; row < c->count; row++)
+            c->strain[row] += (share - gone) * c->step[row];
+        gone = share;
+        left = resist_all(c, from);
+        if (left < best) {
+            best = left;
+            best_share = share;
+        }
+        if (left < 0.9 * before) return left;
+    }
+    if (best_share == gone) return left;
+    for (int row = 0; row < c->count; row++)
+        c->strain[row] += (best_share - gone) * c->step[row];
+    return resist_all(c, from);
+}
+
 // Whether it is found; given up where nothing gets better.
 static bool newton(struct corrections *c, const double (*from)[STRAINS], double enough)
 {
     enum { PATIENCE = 4 };
-    double best = INFINITY;
+
+    double best = INFINITY, left = INFINITY;
     for (int waited = 0; waited < PATIENCE; waited++) {
         if (!find_step(c)) return false;
-        for (int row = 0; row < c->count; row++)
-            c->strain[row] += c->step[row];
-        const double left = resist_all(c, from);
+        left = go(c, from, left);
         if (left <= enough) return true;
         if (left < 0.5 * best) {
             best = left;
             waited = 0;
         }
     }
-    return false;
+    double most = 0;
+    for (int row = 0; row < c->count; row++)
+        most = fmax(most, fabs(c->linear[row]));
+    return left <=
+           fmax(enough, 1e-6 * most); // as far as numbers go: there is another round
 }
 
 // ---- joint by joint -----------------------------------------------------------------
@@ -436,17 +464,25 @@ static void begin(struct corrections *c, const double (*from)[STRAINS],
     }
 }
 
+static void guess_strains(struct corrections *c, const double (*guess)[STRAINS])
+{
+    for (int row = 0; row < c->count; row++)
+        c->strain[row] =
+            guess ? guess[c->entry[c->entry_of[row]].joint][c->strain_of[row]] : 0;
+}
+
 bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
-                      const double (*linear)[STRAINS], double share, double enough)
+                      const double (*linear)[STRAINS], const double (*guess)[STRAINS],
+                      double share, double enough)
 {
     enum { PATIENCE = 2 };
     if (c->share != share) c->n_factored = 0;
     c->share = share;
     begin(c, strain, linear);
-    memset(c->strain, 0, (size_t)c->count * sizeof *c->strain);
+    guess_strains(c, guess);
     if (resist_all(c, strain) <= enough) return true;
     if (newton(c, strain, enough)) return true;
-    memset(c->strain, 0, (size_t)c->count * sizeof *c->strain);
+    guess_strains(c, guess);
     double best = resist_all(c, strain);
     for (int waited = 0; waited < PATIENCE; waited++) {
         const double left = settle_in_turn(c, strain, enough);

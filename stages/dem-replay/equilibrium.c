@@ -38,7 +38,7 @@ static double softness(const struct equilibrium *e)
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
-    return 1e-8 * least;
+    return fmax(1e-10 * least, 1e-14);
 }
 
 enum status equilibrium_new(struct equilibrium **result,
@@ -67,11 +67,12 @@ enum status equilibrium_new(struct equilibrium **result,
     e->joint = make_joints(&joints, &e->n_joint);
     e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
     e->more = allocate((size_t)e->n_joint, sizeof *e->more);
+    e->linear = allocate((size_t)e->n_joint, sizeof *e->linear);
     e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
     e->factored = NEW_ARRAY(struct factored, e->n_joint);
     e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
-    struct displacement **const of_grains[] = {&e->trial, &e->load, &e->dashpots,
-                                               &e->left,  &e->step, &e->before};
+    struct displacement **const of_grains[] = {
+        &e->trial, &e->load, &e->dashpots, &e->left, &e->step, &e->before, &e->rest};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
     e->is_gone = NEW_ARRAY(bool, n);
@@ -92,7 +93,7 @@ void equilibrium_free(struct equilibrium *e)
     void *const owned[] = {e->joint,   e->strain, e->more,     e->resistance,
                            e->trial,   e->load,   e->dashpots, e->left,
                            e->step,    e->before, e->tangent,  e->factored,
-                           e->is_gone, e->crack};
+                           e->is_gone, e->crack,  e->linear,   e->rest};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);

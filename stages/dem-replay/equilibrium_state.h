@@ -34,6 +34,7 @@ struct equilibrium {
     struct joint *joint;
     double (*strain)[STRAINS];     // (n_joint) of the trial
     double (*more)[STRAINS];       // (n_joint) that a step would add
+    double (*linear)[STRAINS];     // (n_joint) that it would were all as in the factor
     struct resistance *resistance; // (n_joint) of the trial
     struct displacement *trial;    // (n) and once found, the equilibrium
     const struct vector *force;    // (n) N, from outside, while one is looked for
@@ -42,6 +43,7 @@ struct equilibrium {
     double damping;                // of dashpots, over the stiffness and a time step
     struct displacement *dashpots; // (n) what they pull at that damping of 1
     struct displacement *left;     // (n) what is not balanced at the trial
+    struct displacement *rest;     // (n) of that, what the factor has to balance
     struct displacement *step;     // (n)
     struct displacement *before;   // (n) the last equilibrium
     struct fragments fragments;
