@@ -327,8 +327,8 @@ static bool find_step(struct corrections *c)
     return true;
 }
 
-// Goes the step, or the half, the quarter ... of it that leaves least. How much is
-// left.
+// Goes the step, or the half, the quarter ... of it: the first that leaves less than
+// BEFORE, else that which leaves least. How much that is.
 static double go(struct corrections *c, const double (*from)[STRAINS], double before)
 {
     enum { HALVES = 6 };
@@ -350,11 +350,11 @@ static double go(struct corrections *c, const double (*from)[STRAINS], double be
     return resist_all(c, from);
 }
 
-// Whether it is found; given up where nothing gets better.
+// Whether it is found, or nearly, as where joints hold hardly anything and numbers end;
+// given up where nothing gets better.
 static bool newton(struct corrections *c, const double (*from)[STRAINS], double enough)
 {
     enum { PATIENCE = 4 };
-
     double best = INFINITY, left = INFINITY;
     for (int waited = 0; waited < PATIENCE; waited++) {
         if (!find_step(c)) return false;
@@ -368,8 +368,7 @@ static bool newton(struct corrections *c, const double (*from)[STRAINS], double 
     double most = 0;
     for (int row = 0; row < c->count; row++)
         most = fmax(most, fabs(c->linear[row]));
-    return left <=
-           fmax(enough, 1e-6 * most); // as far as numbers go: there is another round
+    return left <= fmax(enough, 1e-6 * most);
 }
 
 // ---- joint by joint -----------------------------------------------------------------
