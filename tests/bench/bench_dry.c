@@ -2,13 +2,14 @@
 // Times drying on cubic lattices of nodes with random radii, without reading or
 // writing.
 //
-//     bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE]
+//     bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE [STEPS]]
 //     bench_dry kelvin NX NY NZ inviscid|immobile LOWERED
 //
 //     bench_dry invade NX NY NZ pure|trapping
 //
-// print throats, seconds, throats a second and what rounding leaves of the balances; or
-// throats, seconds, throats invaded, and those when gas first reaches the far side.
+// print throats, seconds, throats a second and what rounding leaves of the balances
+// (and write saturation, time and rate of each step to the file STEPS); or throats,
+// seconds, throats invaded, and those when gas first reaches the far side.
 #include "dry/drying.h"
 #include "network/invasion.h"
 
@@ -98,7 +99,20 @@ static struct drying_conditions with_kelvin(const char *liquid, double lowered)
     return kelvin;
 }
 
-static int dry(const int n[3], const struct drying_conditions c)
+static void write_steps(const struct drying_history *history, const char *path)
+{
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        perror(path);
+        return;
+    }
+    for (int k = 0; k < history->n_step; k++)
+        fprintf(file, "%.17g %.17g %.17g\n", history->saturation[k], history->time[k],
+                history->rate[k]);
+    fclose(file);
+}
+
+static int dry(const int n[3], const struct drying_conditions c, const char *steps)
 {
     struct network network = lattice(n);
     struct drying_history history;
@@ -113,6 +127,7 @@ static int dry(const int n[3], const struct drying_conditions c)
     printf("%d %.4f %.0f %.1e %.1e\n", network.n_throat, time, network.n_throat / time,
            fabs(history.evaporated / history.initial_liquid - 1),
            history.vapour_residual);
+    if (steps) write_steps(&history, steps);
     drying_history_free(&history);
     network_free(&network);
     return STATUS_OK;
@@ -139,7 +154,7 @@ static int invade_lattice(const int n[3], bool trapping)
 int main(int argc, char **argv)
 {
     if (argc < 6) {
-        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE]\n"
+        fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE [STEPS]]\n"
                         "bench_dry kelvin NX NY NZ inviscid|immobile LOWERED\n"
                         "bench_dry invade NX NY NZ pure|trapping\n");
         return STATUS_USAGE;
@@ -148,6 +163,7 @@ int main(int argc, char **argv)
     if (strcmp(argv[1], "invade") == 0)
         return invade_lattice(n, strcmp(argv[5], "trapping") == 0);
     const double number = argc > 6 ? strtod(argv[6], NULL) : 0;
-    if (strcmp(argv[1], "kelvin") == 0) return dry(n, with_kelvin(argv[5], number));
-    return dry(n, conditions(argv[5], number));
+    if (strcmp(argv[1], "kelvin") == 0)
+        return dry(n, with_kelvin(argv[5], number), NULL);
+    return dry(n, conditions(argv[5], number), argc > 7 ? argv[7] : NULL);
 }
