@@ -11,13 +11,6 @@
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
 
-struct account {
-    double rate; // at which it loses, scaled volume
-    int clock;   // below 0: none runs
-};
-
-enum { STOPPED = -1, BEGUN = -2 };
-
 // What a node that is linked to the air charges an account with, of what it evaporates.
 struct charge {
     double share;
@@ -42,7 +35,7 @@ static int losing_place(const struct clocks *clocks, int n, int throat)
 }
 
 // Of the throat that the account is to lose from.
-static void start_clock(struct clocks *clocks, int owner)
+static int start_clock(struct clocks *clocks, int owner)
 {
     const int throat = clocks->by_throat
                            ? owner
@@ -51,13 +44,13 @@ static void start_clock(struct clocks *clocks, int owner)
     memmove(clocks->losing + place + 1, clocks->losing + place,
             (size_t)(n - place) * sizeof *clocks->losing);
     clocks->losing[place] = throat;
-    clocks->account[owner].clock = n;
     clocks->owner[n] = owner;
     clocks->throat[n] = throat;
-    clocks->rate[n] = clocks->account[owner].rate;
+    clocks->rate[n] = 0;
     clocks->left[n] = clocks->saturation[throat] * clocks->phases->volume[throat];
     clocks->left_lost[n] = 0;
     clocks->nothing[n] = TIE * clocks->phases->volume[throat];
+    return n;
 }
 
 static void stop_clock(struct clocks *clocks, int clock)
@@ -68,7 +61,7 @@ static void stop_clock(struct clocks *clocks, int clock)
             (size_t)(last - place) * sizeof *clocks->losing);
     clocks->saturation[throat] = (clocks->left[clock] + clocks->left_lost[clock]) /
                                  clocks->phases->volume[throat];
-    clocks->account[clocks->owner[clock]].clock = STOPPED;
+    clocks->clock[clocks->owner[clock]] = -1;
     if (clock == last) return;
     clocks->owner[clock] = clocks->owner[last];
     clocks->throat[clock] = clocks->throat[last];
@@ -76,7 +69,7 @@ static void stop_clock(struct clocks *clocks, int clock)
     clocks->left[clock] = clocks->left[last];
     clocks->left_lost[clock] = clocks->left_lost[last];
     clocks->nothing[clock] = clocks->nothing[last];
-    clocks->account[clocks->owner[clock]].clock = clock;
+    clocks->clock[clocks->owner[clock]] = clock;
 }
 
 // --- charges -----------------------------------------------------------------------
@@ -137,32 +130,22 @@ static void charge_ends(struct clocks *clocks, int throat)
 
 // --- the clocks --------------------------------------------------------------------
 
-// All accounts anew: sums of positive numbers, so that nothing is lost. Those that lose
-// and have no clock begin one.
-static void set_clocks(struct clocks *clocks)
+// All rates anew: sums of positive numbers, so that nothing is lost.
+static void set_rates(struct clocks *clocks)
 {
-    struct vapour *vapour = &clocks->phases->vapour;
-    for (int k = 0; k < vapour->mesh.n_linked; k++)
-        charge_node(clocks, vapour->mesh.linked[k]);
-    vapour->mesh.n_linked = 0;
-    for (int k = 0; k < clocks->n; k++)
-        clocks->account[clocks->owner[k]].rate = 0;
-    int n_begun = 0;
+    struct star_mesh *mesh = &clocks->phases->vapour.mesh;
+    for (int k = 0; k < mesh->n_linked; k++)
+        charge_node(clocks, mesh->linked[k]);
+    mesh->n_linked = 0;
+    memset(clocks->rate, 0, (size_t)clocks->n * sizeof *clocks->rate);
     for (int k = 0; k < clocks->n_charge; k++) {
         const struct charge *charge = &clocks->charge[k];
-        struct account *account = &clocks->account[charge->owner];
-        const double amount = charge->share * vapour->mesh.air[charge->node];
-        if (account->clock == STOPPED && amount > 0) {
-            account->clock = BEGUN;
-            account->rate = 0;
-            clocks->begun[n_begun++] = charge->owner;
-        }
-        account->rate += amount;
+        const double amount = charge->share * mesh->air[charge->node];
+        if (!(amount > 0)) continue;
+        int *clock = &clocks->clock[charge->owner];
+        if (*clock < 0) *clock = start_clock(clocks, charge->owner);
+        clocks->rate[*clock] += amount;
     }
-    for (int k = 0; k < clocks->n; k++)
-        clocks->rate[k] = clocks->account[clocks->owner[k]].rate;
-    for (int k = 0; k < n_begun; k++)
-        start_clock(clocks, clocks->begun[k]);
 }
 
 struct clocks clocks_make(struct phases *phases, bool by_throat)
@@ -171,8 +154,7 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
     struct clocks clocks = {.phases = phases,
                             .by_throat = by_throat,
                             .charge_place = NEW_ARRAY(int, 2 * (size_t)n),
-                            .account = NEW_ARRAY(struct account, n),
-                            .begun = NEW_ARRAY(int, n),
+                            .clock = NEW_ARRAY(int, n),
                             .owner = NEW_ARRAY(int, n),
                             .throat = NEW_ARRAY(int, n),
                             .rate = NEW_ARRAY(double, n),
@@ -183,13 +165,13 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
                             .saturation = NEW_ARRAY(double, n)};
     for (int t = 0; t < n; t++) {
         clocks.saturation[t] = phases_saturation(phases, t);
-        clocks.account[t].clock = STOPPED;
+        clocks.clock[t] = -1;
         clocks.charge_place[2 * t] = clocks.charge_place[2 * t + 1] = -1;
     }
     for (int k = 0; k < phases->n_wet; k++)
         charge_node(&clocks, phases->wet[k]);
     phases->vapour.mesh.n_linked = 0;
-    set_clocks(&clocks);
+    set_rates(&clocks);
     return clocks;
 }
 
@@ -197,8 +179,7 @@ void clocks_free(struct clocks *clocks)
 {
     free(clocks->charge);
     free(clocks->charge_place);
-    free(clocks->account);
-    free(clocks->begun);
+    free(clocks->clock);
     free(clocks->owner);
     free(clocks->throat);
     free(clocks->rate);
@@ -215,7 +196,7 @@ double clocks_saturation(const struct clocks *clocks, int throat)
 {
     const int owner = owner_of(clocks, throat);
     if (owner < 0) return 0;
-    const int clock = clocks->account[owner].clock;
+    const int clock = clocks->clock[owner];
     if (clock < 0 || clocks->throat[clock] != throat) return clocks->saturation[throat];
     return (clocks->left[clock] + clocks->left_lost[clock]) /
            clocks->phases->volume[throat];
@@ -233,7 +214,7 @@ double clocks_imbalance(const struct clocks *clocks)
 
 // --- events ------------------------------------------------------------------------
 
-// Four at a time: they share a division.
+// INFINITY if none loses. Four at a time: they share a division.
 static double time_to_first(const struct clocks *clocks)
 {
     enum { LANES = 4 };
@@ -289,8 +270,8 @@ static void end_throats(struct clocks *clocks)
 double clocks_advance(struct clocks *clocks)
 {
     struct phases *phases = clocks->phases;
-    if (clocks->n == 0) return -1;
     const double span = time_to_first(clocks);
+    if (span == INFINITY) return -1;
     compensated_add(&phases->total_liquid, -vapour_rate(&phases->vapour) * span);
     pass(clocks, span);
     end_throats(clocks);
@@ -300,7 +281,7 @@ double clocks_advance(struct clocks *clocks)
 static void empty_throat(struct clocks *clocks, int throat)
 {
     const struct clusters *clusters = &clocks->phases->clusters;
-    stop_clock(clocks, clocks->account[owner_of(clocks, throat)].clock);
+    stop_clock(clocks, clocks->clock[owner_of(clocks, throat)]);
     phases_empty_throat(clocks->phases, throat);
     charge_ends(clocks, throat);
     for (int k = 0; k < clusters->n_moved; k++)
@@ -311,7 +292,7 @@ void clocks_empty_ended(struct clocks *clocks)
 {
     for (int k = 0; k < clocks->n_ended; k++)
         empty_throat(clocks, clocks->ended[k]);
-    set_clocks(clocks);
+    set_rates(clocks);
 }
 
 // --- state -------------------------------------------------------------------------
@@ -339,7 +320,7 @@ void clocks_state(struct clocks *clocks, struct state *state)
     const int n_throat = network->n_throat;
     if (state->restoring)
         for (int k = 0; k < clocks->n; k++)
-            clocks->account[clocks->owner[k]].clock = STOPPED;
+            clocks->clock[clocks->owner[k]] = -1;
     state_integer(state, &clocks->n, 0, n_throat);
     charges_state(clocks, state);
     state_integers(state, clocks->owner, clocks->n, 0, n_throat - 1);
@@ -351,7 +332,7 @@ void clocks_state(struct clocks *clocks, struct state *state)
     state_numbers(state, clocks->saturation, n_throat);
     if (!state->restoring) return;
     for (int k = 0; k < clocks->n; k++) {
-        clocks->account[clocks->owner[k]].clock = k;
+        clocks->clock[clocks->owner[k]] = k;
         clocks->nothing[k] = TIE * clocks->phases->volume[clocks->throat[k]];
     }
 }

@@ -11,20 +11,18 @@
 
 #include "phases.h"
 
-struct account; // of a cluster, or of a throat: what it is charged with
-struct charge;
+struct charge; // to an account, of a cluster or of a throat, for what a node evaporates
 
 struct clocks {
     struct phases *phases;
     bool by_throat; // an account for each throat; else for each cluster
 
     int n_charge, charge_capacity;
-    struct charge *charge;   // (n_charge) of nodes that are linked to the air
-    int *charge_place;       // (2 n_throat) in charge, beside incidence.throat
-    struct account *account; // (n_throat) by cluster, or by throat
-    int *begun;              // (n_throat) accounts that are to have a clock
+    struct charge *charge; // (n_charge) of nodes that are linked to the air
+    int *charge_place;     // (2 n_throat) in charge, beside incidence.throat
 
     // The clocks that run.
+    int *clock; // (n_throat) of the account, by cluster or by throat; -1: none
     int n;
     int *owner;         // (n) account
     int *throat;        // (n)
