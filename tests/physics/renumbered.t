@@ -1,0 +1,64 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A network between settled grains, nodes and throats renumbered at random: in every liquid the
+# same throats empty at the same times, and gas is pressed in in the same order. Throats that are
+# narrowest at a node they share are equally wide.
+import os
+import shutil
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import done, ok, run, scratch
+
+
+def renumber(source, target, random):
+    """Returns where each throat of TARGET was in SOURCE."""
+    shutil.copy(source, target)
+    with h5py.File(target, "r+") as file:
+        to = random.permutation(len(file["nodes/position"]))
+        was = random.permutation(len(file["throats/nodes"]))
+        ends = to[file["throats/nodes"][:]]
+        faces = to[file["faces/nodes"][:]]
+        for name in "nodes/position", "nodes/kind":
+            file[name][...] = file[name][:][np.argsort(to)]
+        for name in file["throats"]:
+            file[f"throats/{name}"][...] = file[f"throats/{name}"][:][was]
+        file["throats/nodes"][...] = np.sort(ends[was], axis=1)
+        file["faces/nodes"][...] = faces
+    return was
+
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    run("pack", "--quiet", "--set", "method=deposition", "--set", "count=120", "--set",
+        "radius=250e-9", "-o", at("packing.h5"))
+    run("tessellate", at("packing.h5"), "-o", at("tessellation.h5"))
+    run("merge-nodes", "--set", "measure=fraction", "--set", "threshold=0.06",
+        at("tessellation.h5"), "-o", at("one.h5"))
+    was = renumber(at("one.h5"), at("two.h5"), np.random.default_rng(6))
+    with h5py.File(at("one.h5")) as file:
+        radius = file["throats/radius"][:]
+    different = {f"{r:.11e}" for r in radius}
+    ok(len(radius) - len(different) > 20, "some throats are as wide as others",
+       f"{len(different)} of {len(radius)}")
+
+    def events(stage, name, *settings):
+        run(stage, "--quiet", *[w for s in settings for w in ("--set", s)], at(name),
+            "-o", at("out.h5"))
+        with h5py.File(at("out.h5")) as file:
+            value = file["events/time" if stage == "dry" else "events/pressure"]
+            return file["events/throat"][:], value[:]
+
+    for stage, settings in [("dry", ["liquid=inviscid"]), ("dry", ["liquid=immobile"]),
+                            ("dry", ["liquid=viscous"]),
+                            ("dry", ["start_saturation=0.9", "start_trapping=true"]),
+                            ("invade", ["trapping=true"]), ("invade", ["trapping=false"])]:
+        throat, value = events(stage, "one.h5", *settings)
+        other, again = events(stage, "two.h5", *settings)
+        ok(np.array_equal(throat, was[other]) and np.allclose(again, value, rtol=1e-12, atol=0),
+           f"{stage}, {' '.join(settings)}: whatever the numbers")
+
+done()
