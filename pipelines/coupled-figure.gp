@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #     gnuplot -c pipelines/coupled-figure.gp ONE-WAY.tsv COUPLED.tsv ... OUT.svg
 # two files a sample, as pipelines/coupled-course makes them: a column of panels for each.
-set terminal svg size 1300,980 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal svg size 1600,980 font "Helvetica,15" linewidth 1 background "#ffffff"
 set output ARGV[ARGC]
 set multiplot
 black = "#222222"; blue = "#0a4a96"; grey = "#999999"
@@ -11,13 +11,13 @@ set ytics nomirror out scale 0.6 textcolor black
 set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
 set xrange [1:0]
 set key top right samplen 2 textcolor rgb black
-heading(c) = word("'The soft aggregate, 0.3 of its load' 'The same, weak bonds' 'The stiff aggregate'", c + 1)
-panel = "set lmargin at screen 0.05 + 0.33 * c; set rmargin at screen 0.31 + 0.33 * c; \
+heading(c) = word("'The soft aggregate, 0.3 of its load' 'The same, weak bonds' 'Irregular and soft' 'The stiff aggregate'", c + 1)
+panel = "set lmargin at screen 0.045 + 0.245 * c; set rmargin at screen 0.245 + 0.245 * c; \
     set tmargin at screen 0.92 - 0.235 * r; set bmargin at screen 0.745 - 0.235 * r; \
-    set label 1 title at screen 0.05 + 0.33 * c, screen 0.935 - 0.235 * r left textcolor rgb black"
-do for [c = 0:2] {
+    set label 1 title at screen 0.045 + 0.245 * c, screen 0.935 - 0.235 * r left textcolor rgb black"
+do for [c = 0:3] {
     one = ARGV[2 * c + 1]; two = ARGV[2 * c + 2]
-    set label 2 heading(c) at screen 0.18 + 0.33 * c, screen 0.98 center font ",17" textcolor rgb black
+    set label 2 heading(c) at screen 0.145 + 0.245 * c, screen 0.98 center font ",17" textcolor rgb black
     r = 0; title = "Shrinkage of the volume, %"
     @panel
     set yrange [0:*]
@@ -26,7 +26,7 @@ do for [c = 0:2] {
     unset label 2
     r = 1; title = "Room for liquid, of the first"
     @panel
-    set yrange [0.8:1.05]
+    set yrange [0.75:1.05]
     plot one index 0 using 1:4 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
         two index 0 using 1:4 with lines linewidth 2 linecolor rgb blue notitle
     r = 2; title = "Drying rate, of the first"
@@ -37,7 +37,7 @@ do for [c = 0:2] {
     r = 3; title = "Cracks"
     @panel
     set xlabel "liquid left, of what the body held when full" offset 0,0.3
-    set yrange [0:(c == 0 ? 10 : c == 1 ? 80 : 120)]
+    set yrange [0:(c == 1 ? 80 : c == 3 ? 120 : 10)]
     plot one index 2 using 1:2 with steps dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
         two index 2 using 1:2 with steps linewidth 2 linecolor rgb blue notitle
     unset xlabel

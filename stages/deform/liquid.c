@@ -185,8 +185,8 @@ static double settle_piece(struct scene *scene, int piece, const int *member, in
     struct compensated surplus = {0};
     for (int k = 0; k < count; k++) {
         const int t = member[k];
-        compensated_add(&surplus, scene->held->saturation[t] *
-                                      (scene->held->volume[t] - scene->capacity[t]));
+        compensated_add(&surplus, scene->held->liquid[t] -
+                                      scene->held->saturation[t] * scene->capacity[t]);
     }
     if (compensated_value(surplus) > 0) {
         for (int k = 0; k < count; k++)
@@ -195,8 +195,11 @@ static double settle_piece(struct scene *scene, int piece, const int *member, in
         return fmax(0, compensated_value(surplus));
     }
     struct compensated shortage = {-surplus.value, -surplus.lost};
+    bool meets_gas = false;
     for (int k = 0; k < count; k++)
-        if (has_meniscus(scene, member[k]))
+        meets_gas |= has_meniscus(scene, member[k]);
+    for (int k = 0; k < count; k++)
+        if (!meets_gas || has_meniscus(scene, member[k]))
             rank_queue_add(&scene->queue, scene->rank[member[k]]);
     drain(scene, piece, &shortage);
     return 0;

@@ -5,20 +5,21 @@
 
 #include "network/network.h"
 
-// Where liquid is and how much of it, before.
+// Where liquid is and how much of it.
 struct held_liquid {
-    const double *volume;     // (n_throat) of the throats then, m3
-    const double *saturation; // (n_throat) of each, 0 to 1
-    unsigned open_walls;      // bits of enum wall: their nodes touch the air
+    const double *liquid; // (n_throat) m3
+    const double
+        *saturation;     // (n_throat) 0 to 1: what throats keep of their room first
+    unsigned open_walls; // bits of enum wall: their nodes touch the air
 };
 
 // SATURATION (n_throat, to be filled) of NETWORK, whose throats of kind THROAT_NETWORK
-// now have other volumes. Each piece of connected liquid first keeps its saturations.
-// What that leaves over fills throats at its menisci, the narrowest first, as the
-// suction there is largest; what it is short of leaves them, the widest first. Of
-// equals that with the lowest index comes first. Returns what finds no room: m3 that
-// leave the network. Where volumes are as they were so are saturations, bit for bit;
-// otherwise the sum of the liquid is kept to rounding.
+// have other volumes than those that held the liquid. Each piece of connected liquid
+// first keeps its saturations. What that leaves over fills throats at its menisci, the
+// narrowest first, as the suction there is largest; what it is short of leaves them,
+// the widest first. Of equals that with the lowest index comes first. Returns what
+// finds no room: m3 that leave the network. Where liquid is saturation times volume,
+// saturations stay, bit for bit; otherwise the sum of the liquid is kept to rounding.
 double settle_liquid(const struct network *network, const struct held_liquid *held,
                      double *saturation);
 

@@ -5,6 +5,8 @@
 #include "basics/compensated.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "carry.h"
+#include "geometry/neighbours.h"
 #include "liquid.h"
 #include "move.h"
 #include "throats.h"
@@ -14,8 +16,10 @@
 
 enum on_change { CHANGE_REFUSED, CHANGE_KEPT };
 
+enum what_to_write { WRITE_NETWORK, WRITE_PACKING };
+
 struct deform_parameters {
-    int clearance, on_change;
+    int clearance, on_change, write;
 };
 
 static const struct parameter table[] = {
@@ -26,6 +30,9 @@ static const struct parameter table[] = {
      "where moved grains have another diagram: nothing is written (exit status 1), or "
      "the network stays as it is connected",
      offsetof(struct deform_parameters, on_change)},
+    {"write", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0, 0, "network|packing",
+     "packing: the moved grains in their box, for tessellate",
+     offsetof(struct deform_parameters, write)},
     {0}};
 
 static const struct stage stage = {
@@ -34,11 +41,13 @@ static const struct stage stage = {
     .summary = "deform -- the pore network of grains that have moved",
     .reads = "drying",
     .writes = "network",
-    .most_inputs = 2,
+    .most_inputs = 3,
     .parameters = table,
-    .notes = "Inputs: a drying, whose liquid at its end goes along, or a network; and "
-             "the response of the same grains, whose last snapshot says where they are "
-             "now."};
+    .notes =
+        "Inputs: a drying, whose liquid at its end goes along, or a network; the "
+        "response of the same grains, whose last snapshot says where they are now; "
+        "and, where they have another diagram by then, their network as it was "
+        "tessellated anew, onto which the liquid is carried."};
 
 // ---- input --------------------------------------------------------------------------
 
@@ -113,41 +122,40 @@ struct liquid {
     double volume, expelled; // m3
 };
 
-static struct liquid move_liquid(const struct artifact *input,
-                                 const struct network *before,
-                                 const struct network *after)
+// What carry_liquid gives where throats stay as they are.
+static struct carried keep_liquid(const struct network *before,
+                                  const double *saturation)
 {
-    struct liquid liquid = {0};
-    if (strcmp(input->schema->name, "drying")) return liquid;
-    double *volume = NEW_ARRAY(double, before->n_throat);
-    for (int t = 0; t < before->n_throat; t++)
-        volume[t] = throat_volume(before, t);
-    double *saturation = last_saturations(input, before);
-    liquid.saturation = NEW_ARRAY(double, before->n_throat);
-    liquid.expelled =
-        settle_liquid(after,
-                      &(struct held_liquid){
-                          volume, saturation,
-                          (unsigned)artifact_get_number(input, "/summary/open_walls")},
-                      liquid.saturation);
+    const int n = before->n_throat;
+    struct carried kept = {NEW_ARRAY(double, n),
+                           duplicate(saturation, (size_t)n, sizeof *saturation)};
+    for (int t = 0; t < n; t++)
+        kept.liquid[t] = saturation[t] * throat_volume(before, t);
+    return kept;
+}
+
+static unsigned open_walls(const struct artifact *drying)
+{
+    return (unsigned)artifact_get_number(drying, "/summary/open_walls");
+}
+
+static struct liquid settle(const struct artifact *drying,
+                            const struct network *network, struct carried *carried)
+{
+    struct liquid liquid = {.saturation = NEW_ARRAY(double, network->n_throat)};
+    const struct held_liquid held = {carried->liquid, carried->saturation,
+                                     open_walls(drying)};
+    liquid.expelled = settle_liquid(network, &held, liquid.saturation);
     struct compensated sum = {0};
-    for (int t = 0; t < before->n_throat; t++)
-        compensated_add(&sum, liquid.saturation[t] * throat_volume(after, t));
+    for (int t = 0; t < network->n_throat; t++)
+        compensated_add(&sum, liquid.saturation[t] * throat_volume(network, t));
     liquid.volume = compensated_value(sum);
-    free(volume);
-    free(saturation);
+    free(carried->liquid);
+    free(carried->saturation);
     return liquid;
 }
 
 // -------------------------------------------------------------------------------------
-
-static void refuse_change(int changed, int n_node, const char *path)
-{
-    die(STATUS_NO,
-        "%s: the grains have another diagram now, at %d of %d nodes: tessellate them "
-        "anew, or on_change=keep",
-        input_name(path), changed, n_node);
-}
 
 static void check_moved(const struct network *network, const char *path)
 {
@@ -165,25 +173,12 @@ static void check_moved(const struct network *network, const char *path)
             input_name(path));
 }
 
-// Gives the number of nodes at which the diagram has changed.
-static int move_network(const struct network *before,
-                        const struct deform_parameters *parameters,
-                        struct network *after, const char *path, const char *response)
+static void refuse_change(int changed, int n_node, const char *path)
 {
-    struct surroundings around = find_surroundings(before);
-    struct reason reason;
-    move_box(&before->packing, &after->packing);
-    move_nodes(before, &around, after);
-    const int changed = count_changed_nodes(before, &around, after);
-    surroundings_free(&around);
-    if (changed && parameters->on_change == CHANGE_REFUSED)
-        refuse_change(changed, before->n_node, path);
-    enum status status =
-        move_throats(before, (enum clearance)parameters->clearance, after, &reason);
-    if (!status) status = move_volumes(before, changed > 0, after, &reason);
-    if (status) die(status, "%s: %s", input_name(path), reason.text);
-    check_moved(after, response);
-    return changed;
+    die(STATUS_NO,
+        "%s: the grains have another diagram now, at %d of %d nodes: tessellate them "
+        "anew (write=packing), or on_change=keep",
+        input_name(path), changed, n_node);
 }
 
 static void write_moved(const struct network *network, const struct liquid *liquid,
@@ -192,11 +187,14 @@ static void write_moved(const struct network *network, const struct liquid *liqu
 {
     char model[700];
     snprintf(model, sizeof model,
-             "nodes where the grains around them are now, walls with the grains beside "
-             "them\n"
-             "radii as the clearance to the grains beside the throats\n"
+             "%s\n"
              "%s\n"
              "%d nodes at which the grains would have another diagram by now\n",
+             invocation->n_input > 2
+                 ? "the network of the moved grains, as it was tessellated anew"
+                 : "nodes where the grains around them are now, walls with the grains "
+                   "beside them; radii as the clearance to the grains beside the "
+                   "throats",
              liquid->saturation
                  ? "liquid kept: what volumes leave over fills the narrowest menisci, "
                    "what they are short of leaves the widest"
@@ -215,32 +213,159 @@ static void write_moved(const struct network *network, const struct liquid *liqu
     artifact_finish(artifact, invocation, inputs, model);
 }
 
+// ---- what is asked for --------------------------------------------------------------
+
+// The inputs, and the network whose grains have their new places.
+struct scene {
+    const struct deform_parameters *parameters;
+    const struct invocation *invocation;
+    struct artifact *input, *response;
+    struct network before, after;
+};
+
+static json_t *digests(const struct scene *scene)
+{
+    json_t *inputs = one_input(scene->input);
+    json_array_append_new(inputs, input_digest(scene->response));
+    return inputs;
+}
+
+static double *find_saturations(const struct scene *scene)
+{
+    if (strcmp(scene->input->schema->name, "drying")) return NULL;
+    return last_saturations(scene->input, &scene->before);
+}
+
+// The network as it is connected.
+static void move(struct scene *scene)
+{
+    const struct deform_parameters *parameters = scene->parameters;
+    const struct network *before = &scene->before;
+    struct network *after = &scene->after;
+    const char *path = scene->input->path;
+    struct surroundings around = find_surroundings(before);
+    struct reason reason;
+    move_nodes(before, &around, after);
+    const int changed = count_changed_nodes(before, &around, after);
+    surroundings_free(&around);
+    if (changed && parameters->on_change == CHANGE_REFUSED)
+        refuse_change(changed, before->n_node, path);
+    enum status status =
+        move_throats(before, (enum clearance)parameters->clearance, after, &reason);
+    if (!status) status = move_volumes(before, changed > 0, after, &reason);
+    if (status) die(status, "%s: %s", input_name(path), reason.text);
+    check_moved(after, scene->response->path);
+
+    struct liquid liquid = {0};
+    double *saturation = find_saturations(scene);
+    if (saturation) {
+        struct carried kept = keep_liquid(before, saturation);
+        liquid = settle(scene->input, after, &kept);
+    }
+    write_moved(after, &liquid, changed, count_closed_throats(before, after),
+                scene->invocation, digests(scene));
+    free(saturation);
+    free(liquid.saturation);
+}
+
+static void check_same_grains(const struct scene *scene, const struct network *anew,
+                              const char *path)
+{
+    static const double same = 1e-9; // of a radius: tessellate rounds no more
+    const struct packing *packing = &scene->after.packing;
+    bool fits = anew->packing.n_particle == packing->n_particle;
+    for (int i = 0; i < packing->n_particle && fits; i++)
+        fits = distance(anew->packing.position[i], packing->position[i]) <=
+               same * packing->radius[i];
+    if (!fits)
+        die(STATUS_BAD_DATA,
+            "%s: /particles/position: is not where the response has the grains now",
+            input_name(path));
+}
+
+// Another network of the moved grains takes its place.
+static void replace(struct scene *scene)
+{
+    struct artifact *third = open_network(scene->invocation->inputs[2]);
+    struct network anew = artifact_get_periodic_network(third);
+    check_same_grains(scene, &anew, third->path);
+    struct liquid liquid = {0};
+    double *saturation = find_saturations(scene);
+    if (saturation) {
+        struct surroundings around = find_surroundings(&scene->before);
+        struct carried carried =
+            carry_liquid(&scene->before, &around, &scene->after.packing, saturation,
+                         open_walls(scene->input), &anew);
+        liquid = settle(scene->input, &anew, &carried);
+        surroundings_free(&around);
+    }
+    json_t *inputs = digests(scene);
+    json_array_append_new(inputs, input_digest(third));
+    write_moved(&anew, &liquid, 0, 0, scene->invocation, inputs);
+    free(saturation);
+    free(liquid.saturation);
+    network_free(&anew);
+    artifact_close(third);
+}
+
+// The moved grains alone.
+static void write_packing(const struct scene *scene)
+{
+    const struct packing *packing = &scene->after.packing;
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    double solid = 0, overlap = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        solid += 4 * M_PI / 3 * pow(packing->radius[i], 3);
+    int n;
+    int32_t(*pair)[2] = neighbour_pairs(packing, 0, &n);
+    for (int k = 0; k < n; k++) {
+        const double a = packing->radius[pair[k][0]], b = packing->radius[pair[k][1]];
+        const double apart = norm(nearest_image(packing, pair[k][0], pair[k][1]));
+        overlap = fmax(overlap, (a + b - apart) / fmin(a, b));
+    }
+    free(pair);
+    struct artifact *artifact = artifact_create("packing", scene->invocation->output);
+    artifact_put_packing(artifact, packing);
+    artifact_put_number(artifact, "/summary/porosity",
+                        1 - solid / (edge.x * edge.y * edge.z));
+    artifact_put_number(artifact, "/summary/max_overlap", overlap);
+    artifact_put_number(artifact, "/summary/coordination",
+                        packing->n_particle ? 2.0 * n / packing->n_particle : 0);
+    artifact_put_number(artifact, "/summary/unbalanced_ratio", 0);
+    artifact_put_vtk(artifact, "/particles/position", packing->n_particle,
+                     (const char *const[]){"/particles/radius", NULL}, NULL, 0, NULL);
+    artifact_finish(artifact, scene->invocation, digests(scene),
+                    "grains where a replay has moved them, walls with those beside "
+                    "them\n");
+}
+
 int main(int argc, char **argv)
 {
     struct deform_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    if (invocation.n_input != 2)
+    if (invocation.n_input < 2)
         die(STATUS_USAGE, "two inputs: a drying or network, and a response");
-    struct artifact *input = open_network(invocation.inputs[0]);
-    struct artifact *response = artifact_open(invocation.inputs[1], "response");
-    struct network before = artifact_get_periodic_network(input);
-    struct network after = artifact_get_periodic_network(input);
-    check_scene(&before, input->path);
-    take_places(response, &after.packing);
+    struct scene scene = {.parameters = &parameters,
+                          .invocation = &invocation,
+                          .input = open_network(invocation.inputs[0]),
+                          .response = artifact_open(invocation.inputs[1], "response")};
+    scene.before = artifact_get_periodic_network(scene.input);
+    scene.after = artifact_get_periodic_network(scene.input);
+    check_scene(&scene.before, scene.input->path);
+    take_places(scene.response, &scene.after.packing);
+    move_box(&scene.before.packing, &scene.after.packing);
 
-    const int changed =
-        move_network(&before, &parameters, &after, input->path, response->path);
-    struct liquid liquid = move_liquid(input, &before, &after);
-    json_t *inputs = one_input(input);
-    json_array_append_new(inputs, input_digest(response));
-    write_moved(&after, &liquid, changed, count_closed_throats(&before, &after),
-                &invocation, inputs);
+    if (parameters.write == WRITE_PACKING)
+        write_packing(&scene);
+    else if (invocation.n_input > 2)
+        replace(&scene);
+    else
+        move(&scene);
 
-    free(liquid.saturation);
-    network_free(&before);
-    network_free(&after);
-    artifact_close(response);
-    artifact_close(input);
+    network_free(&scene.before);
+    network_free(&scene.after);
+    artifact_close(scene.response);
+    artifact_close(scene.input);
     invocation_free(&invocation);
     return STATUS_OK;
 }

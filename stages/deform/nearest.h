@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The nearest of many places in a box that may repeat.
+#ifndef CRAQUELURE_NEAREST_H
+#define CRAQUELURE_NEAREST_H
+
+#include "geometry/packing.h"
+
+struct places {
+    const struct packing *packing; // its box
+    int n;
+    const struct vector *at; // (n) m
+    int count[3];            // cells
+    double width[3];         // of a cell, m
+    int *offset, *member;    // those of cell c are member[offset[c]] ..
+};
+
+// O(n). PACKING and AT must last as long. The caller frees it with places_free.
+struct places places_make(const struct packing *packing, int n,
+                          const struct vector *at);
+void places_free(struct places *places);
+
+// The index of the place nearest to FROM, of equals the lowest; -1 if there is none.
+int nearest_place(const struct places *places, struct vector from);
+
+#endif
