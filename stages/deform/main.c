@@ -11,6 +11,7 @@
 #include "move.h"
 #include "throats.h"
 
+#include <gsl/gsl_errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -343,6 +344,7 @@ int main(int argc, char **argv)
 {
     struct deform_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    gsl_set_error_handler_off(); // what fails is said by status
     if (invocation.n_input < 2)
         die(STATUS_USAGE, "two inputs: a drying or network, and a response");
     struct scene scene = {.parameters = &parameters,

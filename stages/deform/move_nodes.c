@@ -2,6 +2,7 @@
 #include "basics/memory.h"
 #include "move.h"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <stdlib.h>
 
@@ -84,7 +85,7 @@ static void look(const struct packing *packing, const struct grain_beside *besid
 
 // The shortest step along the AXES (n_axis) for which every
 //     -2 (to - mean) . step = wanted
-// holds, or nearly so.
+// holds, or nearly so; not a number where there is none.
 static struct vector solve(const struct view *view, const double *wanted,
                            const int *axes, int n_axis)
 {
@@ -101,13 +102,13 @@ static struct vector solve(const struct view *view, const double *wanted,
             gsl_matrix_set(a, (size_t)k, (size_t)c, -2 * component(off, axes[c]));
         gsl_vector_set(b, (size_t)k, wanted[k]);
     }
-    gsl_linalg_SV_decomp_jacobi(a, v, s);
+    const bool fails = gsl_linalg_SV_decomp_jacobi(a, v, s) != GSL_SUCCESS;
     for (size_t c = 0; c < columns; c++) // gsl_linalg_SV_solve leaves those of 0 out
         if (gsl_vector_get(s, c) <= negligible * gsl_vector_get(s, 0))
             gsl_vector_set(s, c, 0);
     gsl_linalg_SV_solve(a, v, s, b, x);
-    struct vector step = {0};
-    for (int c = 0; c < n_axis; c++)
+    struct vector step = {fails ? NAN : 0, 0, 0};
+    for (int c = 0; c < n_axis && !fails; c++)
         set_component(&step, axes[c], gsl_vector_get(x, (size_t)c));
     gsl_matrix_free(a);
     gsl_matrix_free(v);
@@ -169,7 +170,9 @@ static void move_node(const struct network *before, const struct surroundings *a
                     (view[1].power[k] - view[1].mean_power);
         moves |= wanted[k] != 0;
     }
-    if (moves)
+    if (!isfinite(scaling))
+        after->node_position[node].x = NAN; // no numbers hold it
+    else if (moves)
         after->node_position[node] = add(guess, solve(&view[1], wanted, axes, n_axis));
 }
 

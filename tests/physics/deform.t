@@ -131,4 +131,36 @@ with scratch() as folder:
             wrong.append((seed, "differs"))
     ok(held > 3 and lost > 3 and not wrong, "moved at random: as anew, or said to be another diagram",
        (held, lost, wrong))
+
+    # Onto another network of the same moved grains: the liquid comes whole, and to where it was.
+    scene = ["-p", "samples/soft-300.json"]
+    run("pack", "-q", *scene, "--set", "count=120", "-o", at("packing"))
+    run("merge-nodes", *scene, "-o", at("network"), input=run("tessellate", *scene, at("packing")))
+    drying = run("dry", *scene, "--set", "stop_saturation=0.6", at("network"), "-o", at("drying"))
+    forces = run("force-protocol", *scene, "--set", "steps=2", at("drying"))
+    run("dem-replay", "-q", *scene, "--set", "cycles=1", "-o", at("response"), input=forces)
+    drying = h5py.File(at("drying"))
+    volume = np.where(drying["throats/kind"][:] == 0, drying["throats/volume"][:], 0)
+    saturation = (drying["throats/kind"][:] == 0).astype(float)
+    for t, s in zip(drying["changes/throat"][:], drying["changes/saturation"][:]):
+        saturation[t] = s
+    liquid = np.dot(saturation, volume)
+    place = drying["particles/position"][:]
+    for title, size in ("a little", 1e-4), ("much", 0.05):
+        lay(size * 2.5e-7 * np.random.default_rng(1).normal(size=place.shape))
+        packing = run("deform", "--set", "write=packing", at("drying"), at("response"))
+        run("merge-nodes", *scene, "-o", at("anew"), input=run("tessellate", *scene, input=packing))
+        run("deform", at("drying"), at("response"), at("anew"), "-o", at("carried"))
+        carried = h5py.File(at("carried"))
+        said = carried["summary"].attrs
+        on = lambda n: n["nodes/position"][:][n["throats/nodes"][:]].mean(axis=1)
+        centre = lambda n, w: (w[:, None] * on(n)).sum(axis=0) / w.sum()
+        moved = np.where(carried["throats/kind"][:] == 0, carried["throats/volume"][:], 0) \
+            * carried["throats/saturation"][:]
+        off = np.linalg.norm(centre(carried, moved) - centre(drying, saturation * volume))
+        ok(abs((moved.sum() + said["expelled_volume"]) / liquid - 1) < 1e-14 and off < 0.2 * drying["throats/length"][:].mean(),
+           f"carried to a network tessellated anew, {title} moved", (off, said["expelled_volume"] / liquid))
+    end = subprocess.run([f"{BIN}/deform", at("drying"), at("response"), at("network")], capture_output=True)
+    ok(end.returncode == 65 and b"is not where the response has the grains now" in end.stderr,
+       "a network of other places is refused", end.stderr)
 done()
