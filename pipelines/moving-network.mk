@@ -17,7 +17,7 @@ coupled_scene_weak := $(coupled_scene_soft) dem-replay.bond.contact_strength=3e-
 coupled_scene_irregular := samples/soft-300.json
 coupled_scene_stiff := samples/stiff-5x5x10.json
 coupled_stages := pack tessellate merge-nodes dry force-protocol dem-replay deform crackstats
-coupled_version := $(subst $() ,.,$(foreach s,$(coupled_stages),$(call version_of,$s)))
+coupled_version := $(shell echo $(foreach s,$(coupled_stages),$(call version_of,$s)) | tr ' ' .)
 
 # Sample $1 in $2 portions.
 define coupled_run
