@@ -86,6 +86,22 @@ with scratch() as folder:
                and same(moved, network, "throats/length", unit, 1e-10)
                and same(moved, network, "throats/radius", unit, 1e-10), "turned: only places change")
 
+    # Drawn radii on a lattice of touching grains drawn together, in closed form.
+    make("network", ["method=cubic", "counts=[5,4,4]", "radius=250e-9"])
+    run("dry", "--quiet", "--set", "throat_radius.distribution=normal", "--set",
+        "throat_radius.standard_deviation=2e-8", "-o", at("drawn"), input=run("merge-nodes", at("network")))
+    drawn, share = h5py.File(at("drawn")), 0.97
+    lay((share - 1) * drawn["particles/position"][:])
+    status, moved = deform("drawn")
+    before, after = (250e-9 * (np.sqrt(2) * s - 1) for s in (1, share))
+    inner = (drawn["nodes/kind"][:] == 0)[drawn["throats/nodes"][:]].all(axis=1)
+    radius = drawn["throats/radius"][:][inner]
+    expected = radius + (after - before) * np.minimum(1, radius / before)
+    ok(status == 0 and inner.sum() == 75 and (radius < before).any() and (radius > before).any()
+       and np.allclose(moved["throats/radius"][:][inner], expected, rtol=1e-12, atol=0)
+       and np.allclose(moved["throats/length"][:], share * drawn["throats/length"][:], rtol=1e-12, atol=0),
+       "drawn radii go with the clearance", (status, inner.sum()))
+
     # Carried off; drawn together: beside a fresh tessellation.
     packing = make("network", random, void)
     network = h5py.File(at("network"))
@@ -131,6 +147,23 @@ with scratch() as folder:
             wrong.append((seed, "differs"))
     ok(held > 3 and lost > 3 and not wrong, "moved at random: as anew, or said to be another diagram",
        (held, lost, wrong))
+
+    # A scene 2^40 times as large: the same digits.
+    lay(1e-3 * unit * np.random.default_rng(0).normal(size=place.shape))
+    _, small = deform("network", "--set", "on_change=keep")
+    small = {entry: small[entry][:] for entry in DATASETS if entry in small}
+    power = {"throats/volume": 3}
+    lengths = ["nodes/position", "throats/radius", "throats/length", "throats/volume", "domain/lower",
+               "domain/upper", "particles/position", "particles/radius", "snapshots/displacement"]
+    network.close()
+    for name in "network", "response":
+        with h5py.File(at(name), "r+") as file:
+            for entry in lengths:
+                if entry in file:
+                    file[entry][...] = file[entry][:] * 2.0**(40 * power.get(entry, 1))
+    _, large = deform("network", "--set", "on_change=keep")
+    ok(all((large[e][:] == small[e] * (2.0**(40 * power.get(e, 1)) if e in lengths else 1)).all()
+           for e in small), "as large as you like: the same digits")
 
     # Onto another network of the same moved grains: the liquid comes whole, and to where it was.
     scene = ["-p", "samples/soft-300.json"]
