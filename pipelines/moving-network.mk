@@ -5,7 +5,7 @@
 #     make coupled                              ->  build/runs/coupled/coupled.svg, coupled.md
 #     make coupled COUPLED_PORTIONS="1 10"
 
-COUPLED_PORTIONS ?= 1 5 10 20 40# how often; 1 is one way; the last one is drawn
+COUPLED_PORTIONS ?= 1 5 10 20# how often; 1 is one way; the last one is drawn
 
 pipeline_goals += coupled
 coupled_folder := $(RUNS)/coupled
