@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Drying and shrinking in turns: parts that join to the whole, and no liquid lost between them.
+import json
 import os
 import subprocess
 import sys
@@ -113,4 +114,25 @@ with scratch() as folder:
         network, earlier, radii = f"network-{k}", [f"response-{k}"], ["throat_radius.distribution=network"]
     ok(worst < 1e-14 and expelled > 0, "no liquid lost or made between portions", worst)
     ok(not errors, "what changes is filled or emptied, menisci first", errors)
+
+    # The whole loop, also where the grains are tessellated anew.
+    def loop(title, scene, changes, anew):
+        with open(scene, encoding="utf-8") as file:
+            tiny = json.load(file)
+        for name, section in changes.items():
+            tiny[name].update(section)
+        with open(at("tiny.json"), "w", encoding="utf-8") as file:
+            json.dump(tiny, file)
+        end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), "3", at(f"{title}/course.tsv")],
+                             env=os.environ | {"BIN": BIN}, capture_output=True)
+        with open(at(f"{title}/course.tsv"), encoding="utf-8") as file:
+            blocks = file.read().split("\n\n\n")
+        left = float(blocks[0].splitlines()[-1].split()[0]) if blocks[0] else 1
+        ok(end.returncode == 0 and len(blocks) == 3 and left == 0
+           and any(os.path.exists(at(f"{title}/{k}/anew.h5")) for k in (1, 2, 3)) == anew,
+           f"from a scene to its cracks in three portions, {title}", end.stderr.decode())
+
+    quick = {"force-protocol": {"force_scale": 0.2, "steps": 30}, "dem-replay": {"cycles": 100}}
+    loop("lattice", SOFT, quick | {"pack": {"counts": [4, 3, 3]}}, False)
+    loop("irregular", "samples/soft-300.json", quick | {"pack": {"count": 120}}, True)
 done()
