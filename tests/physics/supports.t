@@ -56,6 +56,24 @@ with scratch() as folder:
                       "bond.shear_strength=1e9")
     net = abs(force.sum(axis=1) + response["history/reaction_force"][:]).max(axis=1)
     ok((net <= 1e-10 * abs(force).sum(axis=(1, 2)).max()).all(), "held grains give the load back", net)
+    arm = response["particles/position"][:] - response["domain/lower"][:]
+    turn = abs(np.cross(arm, force).sum(axis=1) + response["history/reaction_moment"][:]).max()
+    size = (np.linalg.norm(arm, axis=1) * np.linalg.norm(force, axis=2)).sum(axis=1).max()
+    ok(turn <= 1e-10 * size, "and its moment", turn / size)
+    # Forces that are net in force and moment, on a body that nothing holds.
+    with h5py.File(at("forces"), "r+") as file:
+        file["force"][:, :20] += 1e-8 * np.array([1, -2, 3])
+        force = file["force"][:]
+    for engine in "explicit", "quasi-static":
+        response = replay(f"engine={engine}", "support=free", "bond.normal_strength=1e9",
+                          "bond.shear_strength=1e9", "snapshots=[1]")
+        off, left = response["history/reaction_force"][:], response["snapshots/force"][0]
+        moved = arm + response["snapshots/displacement"][0] * (engine == "explicit")
+        turn = abs(np.cross(moved, left).sum(axis=0)).max()
+        ok(np.allclose(-off, force.sum(axis=1), rtol=1e-9, atol=1e-20)
+           and abs(left.sum(axis=0)).max() < 1e-6 * abs(off).max()
+           and turn < 1e-6 * size, f"{engine}: a net load is taken off, and what it was is said",
+           (off[0], left.sum(axis=0), turn / size))
     tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(("held.walls=[]", "cycles=1")),
                             at("forces"), "-o", at("none")], capture_output=True, text=True)
     ok("holds no grain" in tried.stderr and tried.returncode == 0, "where none is held it is said")
