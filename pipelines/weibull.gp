@@ -2,7 +2,7 @@
 # Cracks against the scatter of strengths. Variable: tables, the folder of the curves that
 # pipelines/weibull makes.
 set terminal svg size 1000,420 font "Helvetica,15" linewidth 1 background "#ffffff"
-set multiplot layout 1,2 margins 0.07,0.985,0.15,0.92 spacing 0.08
+set multiplot layout 1,2 margins 0.07,0.985,0.18,0.91 spacing 0.08
 set border 3 linecolor "#555555"
 set tics nomirror out scale 0.6 textcolor "#222222"
 set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
