@@ -7,18 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REFINEMENTS = 4, MOST_STEPS = 100, LANES = 8 };
-
-// Each refinement takes this part off the gains that are left.
-static const double REFINED = 1e-6;
+enum { REFINEMENTS = 4, LANES = 8 };
 
 // What is added to the diagonal of one of the menisci that float, of it: where vapour
 // cannot leave, all could float at any one potential.
 static const double STAY = 1e-12;
 
-// Parts of the rate that floating bodies may evaporate: where refinement ends, and what
-// conjugate gradients may leave before a factor is tried.
-static const double CLOSED = 1e-13, ENOUGH = 1e-11;
+// A diagonal of which no more is left, when links inside the body have gone off it, is
+// rounding: the body stays where it is.
+static const double LOST = 1e-13;
+
+// Part of the rate that floating bodies may evaporate.
+static const double CLOSED = 1e-13;
 
 struct floating {
     int n;      // bodies
@@ -27,8 +27,7 @@ struct floating {
     double
         *matrix; // (n,n) how gains fall with potentials, over the roots of the diagonal
     double *root; // (n)
-    bool factored;
-    double *x, *rest, *way, *product; // (n) room
+    double *x;    // (n) room
 };
 
 // --- the matrix --------------------------------------------------------------------
@@ -110,56 +109,13 @@ static void scale_matrix(struct floating *floating)
     const int n = floating->n;
     double *matrix = floating->matrix, *root = floating->root;
     for (int f = 0; f < n; f++)
-        root[f] = matrix[f * n + f] > 0 ? sqrt(matrix[f * n + f]) : 1;
+        root[f] =
+            sqrt(matrix[f * n + f] > LOST * root[f] ? matrix[f * n + f] : root[f]);
     for (int f = 0; f < n; f++)
         for (int g = 0; g < n; g++)
             matrix[f * n + g] =
                 f == g ? 1 + STAY : matrix[f * n + g] / (root[f] * root[g]);
 }
-
-static void make_matrix(struct floating *floating, struct curved *curved,
-                        const struct phases *phases)
-{
-    const size_t n = (size_t)floating->n;
-    memset(floating->matrix, 0, n * n * sizeof *floating->matrix);
-    add_degrees(floating, curved, phases);
-    add_links(floating, curved, phases);
-    scale_matrix(floating);
-    floating->factored = false;
-}
-
-static struct floating find_floating(struct curved *curved, const struct phases *phases)
-{
-    struct floating floating = {.body = NEW_ARRAY(int, curved->n),
-                                .place = NEW_ARRAY(int, curved->n)};
-    for (int a = 0; a < curved->n; a++) {
-        floating.place[a] = curved->floats[a] ? floating.n : -1;
-        if (curved->floats[a]) floating.body[floating.n++] = a;
-    }
-    const size_t n = (size_t)floating.n;
-    floating.matrix = NEW_ARRAY(double, n *n);
-    floating.root = NEW_ARRAY(double, n);
-    floating.x = NEW_ARRAY(double, n);
-    floating.rest = NEW_ARRAY(double, n);
-    floating.way = NEW_ARRAY(double, n);
-    floating.product = NEW_ARRAY(double, n);
-    if (n > 0) make_matrix(&floating, curved, phases);
-    return floating;
-}
-
-static void floating_free(struct floating *floating)
-{
-    free(floating->body);
-    free(floating->place);
-    free(floating->matrix);
-    free(floating->root);
-    free(floating->x);
-    free(floating->rest);
-    free(floating->way);
-    free(floating->product);
-}
-
-// --- its solution ------------------------------------------------------------------
 
 // In lanes of their own, so that the compiler may keep them in one register.
 static double product(const double *a, const double *b, int n)
@@ -176,31 +132,6 @@ static double product(const double *a, const double *b, int n)
     return sum;
 }
 
-// From the right side in REST to X, by conjugate gradients.
-static void solve_by_steps(struct floating *floating)
-{
-    const int n = floating->n;
-    double *x = floating->x, *rest = floating->rest, *way = floating->way;
-    memset(x, 0, (size_t)n * sizeof *x);
-    memcpy(way, rest, (size_t)n * sizeof *way);
-    double left = product(rest, rest, n);
-    const double enough = REFINED * REFINED * left;
-    for (int k = 0; k < MOST_STEPS && left > enough; k++) {
-        for (int f = 0; f < n; f++)
-            floating->product[f] =
-                product(floating->matrix + (size_t)f * (size_t)n, way, n);
-        const double length = left / product(way, floating->product, n);
-        for (int f = 0; f < n; f++) {
-            x[f] += length * way[f];
-            rest[f] -= length * floating->product[f];
-        }
-        const double before = left;
-        left = product(rest, rest, n);
-        for (int f = 0; f < n; f++)
-            way[f] = rest[f] + left / before * way[f];
-    }
-}
-
 // Cholesky's factor takes the place of the lower triangle. Not by a library: those use
 // as many threads as they find, and round by their number.
 static void factorise(double *matrix, int n)
@@ -214,16 +145,55 @@ static void factorise(double *matrix, int n)
         }
 }
 
-static void solve_by_factor(struct floating *floating)
+static void make_matrix(struct floating *floating, struct curved *curved,
+                        const struct phases *phases)
+{
+    const size_t n = (size_t)floating->n;
+    memset(floating->matrix, 0, n * n * sizeof *floating->matrix);
+    add_degrees(floating, curved, phases);
+    for (size_t f = 0; f < n; f++)
+        floating->root[f] = floating->matrix[f * n + f];
+    add_links(floating, curved, phases);
+    scale_matrix(floating);
+    factorise(floating->matrix, floating->n);
+}
+
+static struct floating find_floating(struct curved *curved, const struct phases *phases)
+{
+    struct floating floating = {.body = NEW_ARRAY(int, curved->n),
+                                .place = NEW_ARRAY(int, curved->n)};
+    for (int a = 0; a < curved->n; a++) {
+        floating.place[a] = curved->floats[a] ? floating.n : -1;
+        if (curved->floats[a]) floating.body[floating.n++] = a;
+    }
+    const size_t n = (size_t)floating.n;
+    floating.matrix = NEW_ARRAY(double, n *n);
+    floating.root = NEW_ARRAY(double, n);
+    floating.x = NEW_ARRAY(double, n);
+    if (n > 0) make_matrix(&floating, curved, phases);
+    return floating;
+}
+
+static void floating_free(struct floating *floating)
+{
+    free(floating->body);
+    free(floating->place);
+    free(floating->matrix);
+    free(floating->root);
+    free(floating->x);
+}
+
+// --- its solution ------------------------------------------------------------------
+
+// The right side in X becomes the solution.
+static void solve(struct floating *floating)
 {
     const int n = floating->n;
     const double *matrix = floating->matrix;
     double *x = floating->x;
-    if (!floating->factored) factorise(floating->matrix, n);
-    floating->factored = true;
     for (int i = 0; i < n; i++)
-        x[i] = (floating->rest[i] - product(matrix + (size_t)i * (size_t)n, x, i)) /
-               matrix[i * n + i];
+        x[i] =
+            (x[i] - product(matrix + (size_t)i * (size_t)n, x, i)) / matrix[i * n + i];
     for (int i = n - 1; i >= 0; i--) {
         x[i] /= matrix[i * n + i];
         for (int k = 0; k < i; k++)
@@ -233,36 +203,27 @@ static void solve_by_factor(struct floating *floating)
 
 // --- all ---------------------------------------------------------------------------
 
-// Whether they evaporate no more than PART of the rate, or rounding.
-static bool is_closed(const struct floating *floating, const struct curved *curved,
-                      double part)
+// Whether they evaporate nothing but rounding.
+static bool is_closed(const struct floating *floating, const struct curved *curved)
 {
     double gain = 0, noise = 0;
     for (int f = 0; f < floating->n; f++) {
         gain += fabs(curved->gain[floating->body[f]]);
         noise += curved->noise[floating->body[f]];
     }
-    return gain <= fmax(part * curved->rate, noise);
-}
-
-static void refine(struct floating *floating, struct curved *curved,
-                   const struct phases *phases, void (*solve)(struct floating *))
-{
-    for (int k = 0; k < REFINEMENTS && !is_closed(floating, curved, CLOSED); k++) {
-        for (int f = 0; f < floating->n; f++)
-            floating->rest[f] = curved->gain[floating->body[f]] / floating->root[f];
-        solve(floating);
-        for (int f = 0; f < floating->n; f++)
-            curved->potential[floating->body[f]] += floating->x[f] / floating->root[f];
-        curved_find_gains(curved, phases);
-    }
+    return gain <= fmax(CLOSED * curved->rate, noise);
 }
 
 void float_freely(struct curved *curved, const struct phases *phases)
 {
     struct floating floating = find_floating(curved, phases);
-    refine(&floating, curved, phases, solve_by_steps);
-    if (!is_closed(&floating, curved, ENOUGH))
-        refine(&floating, curved, phases, solve_by_factor);
+    for (int k = 0; k < REFINEMENTS && !is_closed(&floating, curved); k++) {
+        for (int f = 0; f < floating.n; f++)
+            floating.x[f] = curved->gain[floating.body[f]] / floating.root[f];
+        solve(&floating);
+        for (int f = 0; f < floating.n; f++)
+            curved->potential[floating.body[f]] += floating.x[f] / floating.root[f];
+        curved_find_gains(curved, phases);
+    }
     floating_free(&floating);
 }
