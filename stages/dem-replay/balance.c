@@ -119,44 +119,38 @@ static enum outcome include_joints(struct equilibrium *e, const double (*more)[S
     return FOUND;
 }
 
-// With those joints corrected that are known to need it.
-static enum outcome correct_step(struct equilibrium *e, double share, double enough,
-                                 const double (*guess)[STRAINS])
+// The step with those joints corrected that are known to need it, beginning with GUESS
+// of their strains. In REST is what the factor alone has to balance.
+static enum outcome correct_step(struct equilibrium *e, const double (*guess)[STRAINS])
 {
-    if (!corrections_find(e->corrections, e->strain, e->linear, guess, share, enough))
-        return STUCK;
+    const double share = 1 / (1 + e->damping);
     memcpy(e->rest, e->left, (size_t)e->n * sizeof *e->rest);
-    corrections_take_off(e->corrections, share, e->rest);
-    stiffness_solve(e->matrix, e->rest, e->step);
+    if (corrections_count(e->corrections) > 0) {
+        if (!corrections_find(e->corrections, e->strain, guess, share,
+                              1e-3 * e->enough))
+            return STUCK;
+        corrections_take_off(e->corrections, share, e->rest);
+    }
+    stiffness_finish(e->matrix, e->step);
     strain_joints(e, e->step, e->more);
     return FOUND;
 }
 
 // The step that balances all: joints that it would change are corrected too, until
-// there are no more. In REST is what of it the factor alone has to balance.
+// there are no more.
 static enum outcome find_step(struct equilibrium *e)
 {
     enum { ROUNDS = 10 };
-    const double share = 1 / (1 + e->damping);
-    double most = 0;
-    bool is_new = false;
+    bool is_new;
     for (int i = 0; i < e->n; i++)
-        e->left[i] = scaled(share, e->left[i]);
-    stiffness_solve(e->matrix, e->left, e->step);
-    strain_joints(e, e->step, e->linear);
-    memcpy(e->rest, e->left, (size_t)e->n * sizeof *e->rest);
-    for (int j = 0; j < e->n_joint; j++)
-        for (int k = 0; k < STRAINS; k++)
-            most = fmax(most, fabs(e->linear[j][k]));
-    const double enough = fmax(1e-3 * e->enough, 1e-14 * most);
-    if (include_joints(e, NULL, &is_new) != FOUND) return TOO_MANY;
-    memcpy(e->more, e->linear, (size_t)e->n_joint * sizeof *e->more);
-    if (corrections_count(e->corrections) > 0 && correct_step(e, share, enough, NULL))
-        return STUCK;
+        e->left[i] = scaled(1 / (1 + e->damping), e->left[i]);
+    stiffness_begin(e->matrix, e->left);
+    if (include_joints(e, NULL, &is_new)) return TOO_MANY;
+    if (correct_step(e, NULL)) return STUCK;
     for (int round = 0; round < ROUNDS; round++) {
-        if (include_joints(e, e->more, &is_new) != FOUND) return TOO_MANY;
+        if (include_joints(e, e->more, &is_new)) return TOO_MANY;
         if (!is_new) break;
-        if (correct_step(e, share, enough, e->more)) return STUCK;
+        if (correct_step(e, e->more)) return STUCK;
     }
     return FOUND;
 }

@@ -450,17 +450,17 @@ static double settle_in_turn(struct corrections *c, const double (*from)[STRAINS
     return left;
 }
 
-static void begin(struct corrections *c, const double (*from)[STRAINS],
-                  const double (*linear)[STRAINS])
+static void begin(struct corrections *c, const double (*from)[STRAINS])
 {
     for (int e = 0; e < c->n_entry; e++) {
         struct entry *entry = &c->entry[e];
         const struct resistance resistance =
             joint_resistance(&c->joint[entry->joint], from[entry->joint]);
         memcpy(entry->load, resistance.load, sizeof entry->load);
-        for (int k = 0; k < entry->count; k++)
-            c->linear[entry->row[k]] = linear[entry->joint][k];
     }
+    for (int k = 0; k < c->n_addition; k++)
+        stiffness_strain(c->stiffness, &c->addition[k].halves,
+                         c->linear + c->addition[k].first);
 }
 
 static void guess_strains(struct corrections *c, const double (*guess)[STRAINS])
@@ -471,13 +471,14 @@ static void guess_strains(struct corrections *c, const double (*guess)[STRAINS])
 }
 
 bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
-                      const double (*linear)[STRAINS], const double (*guess)[STRAINS],
-                      double share, double enough)
+                      const double (*guess)[STRAINS], double share, double enough)
 {
     enum { PATIENCE = 2 };
     if (c->share != share) c->n_factored = 0;
     c->share = share;
-    begin(c, strain, linear);
+    begin(c, strain);
+    for (int row = 0; row < c->count; row++)
+        enough = fmax(enough, 1e-14 * fabs(c->linear[row]));
     guess_strains(c, guess);
     if (resist_all(c, strain) <= enough) return true;
     if (newton(c, strain, enough)) return true;
@@ -497,6 +498,13 @@ bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
 void corrections_take_off(const struct corrections *c, double share,
                           struct displacement *left)
 {
+    for (int k = 0; k < c->n_addition; k++) {
+        const struct addition *addition = &c->addition[k];
+        double load[MOST_HALVES];
+        for (int l = 0; l < addition->halves.columns; l++)
+            load[l] = share * c->more[addition->first + l];
+        stiffness_take_off(c->stiffness, &addition->halves, load);
+    }
     for (int e = 0; e < c->n_entry; e++) {
         const struct entry *entry = &c->entry[e];
         const struct joint *joint = &c->joint[entry->joint];

@@ -31,14 +31,13 @@ int corrections_count(const struct corrections *corrections); // of strains
 // Multiplications spent on dense systems since there were no corrections.
 double corrections_work(const struct corrections *corrections);
 
-// Finds q for grains that move on from STRAIN (n_joint) so that all joints, were they
-// as the factor says, would be strained by LINEAR (n_joint) more; strains to ENOUGH,
+// Finds q for grains that move on from STRAIN (n_joint) under the load that the
+// stiffness has begun with, where SHARE of their answers counts; strains to ENOUGH,
 // beginning with GUESS (n_joint), or NULL: none. False: not found.
 bool corrections_find(struct corrections *corrections, const double (*strain)[STRAINS],
-                      const double (*linear)[STRAINS], const double (*guess)[STRAINS],
-                      double share, double enough);
+                      const double (*guess)[STRAINS], double share, double enough);
 
-// Takes B^T q off LEFT (n).
+// Takes B^T q off LEFT (n) and off what the stiffness has begun.
 void corrections_take_off(const struct corrections *corrections, double share,
                           struct displacement *left);
 

@@ -67,7 +67,6 @@ enum status equilibrium_new(struct equilibrium **result,
     e->joint = make_joints(&joints, &e->n_joint);
     e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
     e->more = allocate((size_t)e->n_joint, sizeof *e->more);
-    e->linear = allocate((size_t)e->n_joint, sizeof *e->linear);
     e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
     e->factored = NEW_ARRAY(struct factored, e->n_joint);
     e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
@@ -93,7 +92,7 @@ void equilibrium_free(struct equilibrium *e)
     void *const owned[] = {e->joint,   e->strain, e->more,     e->resistance,
                            e->trial,   e->load,   e->dashpots, e->left,
                            e->step,    e->before, e->tangent,  e->factored,
-                           e->is_gone, e->crack,  e->linear,   e->rest};
+                           e->is_gone, e->crack,  e->rest};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);

@@ -34,7 +34,6 @@ struct equilibrium {
     struct joint *joint;
     double (*strain)[STRAINS];     // (n_joint) of the trial
     double (*more)[STRAINS];       // (n_joint) that a step would add
-    double (*linear)[STRAINS];     // (n_joint) that it would were all as in the factor
     struct resistance *resistance; // (n_joint) of the trial
     struct displacement *trial;    // (n) and once found, the equilibrium
     const struct vector *force;    // (n) N, from outside, while one is looked for

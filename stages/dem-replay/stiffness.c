@@ -27,7 +27,8 @@ struct stiffness {
     int *start, *row; // lower triangle by columns, upper halves of diagonal blocks too
     double *value;
     struct supernodal *factor;
-    double *load; // (n_moving * DEGREES)
+    double *load;         // (n_moving * DEGREES)
+    double *begun, *left; // the same, halves of answers
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -108,7 +109,9 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
         s->block_of[j] = find_block(s, block_between(s, &joint[j]));
     lay_out(s);
     s->factor = supernodal_new(s->n_moving * DEGREES, s->start, s->row);
-    s->load = NEW_ARRAY(double, s->n_moving *DEGREES);
+    double **const of_degrees[] = {&s->load, &s->begun, &s->left};
+    for (size_t k = 0; k < sizeof of_degrees / sizeof *of_degrees; k++)
+        *of_degrees[k] = NEW_ARRAY(double, (size_t)s->n_moving *DEGREES);
     return s;
 }
 
@@ -116,8 +119,8 @@ void stiffness_free(struct stiffness *s)
 {
     if (!s) return;
     supernodal_free(s->factor);
-    void *const owned[] = {s->number, s->block, s->block_of, s->diagonal,
-                           s->start,  s->row,   s->value,    s->load};
+    void *const owned[] = {s->number, s->block, s->block_of, s->diagonal, s->start,
+                           s->row,    s->value, s->load,     s->begun,    s->left};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -190,17 +193,37 @@ bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
 
 // ---- answers ------------------------------------------------------------------------
 
-void stiffness_solve(struct stiffness *s, const struct displacement *load,
-                     struct displacement *answer)
+void stiffness_begin(struct stiffness *s, const struct displacement *load)
 {
     for (int i = 0; i < s->n; i++)
         if (s->number[i] >= 0)
             memcpy(s->load + s->number[i] * DEGREES, &load[i], sizeof load[i]);
-    if (s->n_moving > 0) supernodal_solve(s->factor, s->load);
+    if (s->n_moving == 0) return;
+    supernodal_forward(s->factor, s->load, s->begun);
+    memcpy(s->left, s->begun, (size_t)s->n_moving * DEGREES * sizeof *s->left);
+}
+
+void stiffness_finish(struct stiffness *s, struct displacement *answer)
+{
     memset(answer, 0, (size_t)s->n * sizeof *answer);
+    if (s->n_moving == 0) return;
+    supernodal_backward(s->factor, s->left, s->load);
+    memcpy(s->left, s->begun, (size_t)s->n_moving * DEGREES * sizeof *s->left);
     for (int i = 0; i < s->n; i++)
         if (s->number[i] >= 0)
             memcpy(&answer[i], s->load + s->number[i] * DEGREES, sizeof answer[i]);
+}
+
+void stiffness_strain(const struct stiffness *s, const struct halves *halves,
+                      double *strain)
+{
+    halves_apply(s->factor, halves, s->begun, strain);
+}
+
+void stiffness_take_off(struct stiffness *s, const struct halves *halves,
+                        const double *load)
+{
+    halves_take_off(s->factor, halves, load, s->left);
 }
 
 struct halves stiffness_halves(struct stiffness *s, int j, int first, int count)

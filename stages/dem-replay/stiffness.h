@@ -20,10 +20,11 @@ void stiffness_free(struct stiffness *stiffness);
 bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[STRAINS],
                       double soft);
 
-// Into ANSWER (n) the displacements under LOAD (n), forces and moments, by the last
-// factor; 0 for fixed grains.
-void stiffness_solve(struct stiffness *stiffness, const struct displacement *load,
-                     struct displacement *answer);
+// Begins the answer to LOAD (n), forces and moments, by the last factor. Finishing it,
+// as often as wanted, is into ANSWER (n) the displacements under that load less what
+// was taken off since the last time; 0 for fixed grains.
+void stiffness_begin(struct stiffness *stiffness, const struct displacement *load);
+void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
 // Halves of the answers to COUNT unit loads of JOINT from strain FIRST on. The product
 // of halves of two joints is how the strains of the one answer loads of the other. The
@@ -32,6 +33,13 @@ struct halves stiffness_halves(struct stiffness *stiffness, int joint, int first
                                int count);
 void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
                        const struct halves *b, double *product);
+
+// How the load that was begun with, whole, strains the joint of HALVES: STRAIN for each
+// of them. And takes those unit loads times LOAD off it.
+void stiffness_strain(const struct stiffness *stiffness, const struct halves *halves,
+                      double *strain);
+void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves,
+                        const double *load);
 
 // Multiplications that a factor takes.
 double stiffness_work(const struct stiffness *stiffness);

@@ -103,6 +103,21 @@ static void halves_make_the_same_products(void **state)
             expected += value[a][3 * i + m] * x[index[a][m]];
         assert_true(fabs(product[2 * i + j] - expected) < 1e-13);
     }
+    double half[N], other[N], x[N] = {0}, product[2];
+    for (int m = 0; m < 3; m++)
+        x[index[1][m]] = value[1][m];
+    supernodal_forward(factor, x, half);
+    halves_apply(factor, &halves[1], half, product);
+    supernodal_backward(factor, half, other);
+    for (int k = 0; k < 2; k++) {
+        double expected = 0;
+        for (int m = 0; m < 3; m++)
+            expected += value[1][3 * k + m] * other[index[1][m]];
+        assert_true(fabs(product[k] - expected) < 1e-13);
+    }
+    halves_take_off(factor, &halves[1], (double[]){1, 0}, half);
+    for (int i = 0; i < N; i++)
+        assert_true(fabs(half[i]) < 1e-13); // all of it
     halves_free(&halves[0]);
     halves_free(&halves[1]);
     supernodal_free(factor);

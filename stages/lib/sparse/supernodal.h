@@ -25,6 +25,11 @@ double supernodal_work(const struct supernodal *factor);
 // X (n), the right-hand side, becomes the answer.
 void supernodal_solve(struct supernodal *factor, double *x);
 
+// The two halves of that: HALF (n), in the order of the factor, of the right-hand side
+// X (n), and the answer X from it.
+void supernodal_forward(struct supernodal *factor, const double *x, double *half);
+void supernodal_backward(struct supernodal *factor, const double *half, double *x);
+
 // L^-1 of sparse right-hand sides: not 0 only on the way from their rows to the root of
 // the elimination tree. Products of such halves are entries of B^T A^-1 B.
 enum { MOST_HALVES = 6 };
@@ -45,5 +50,12 @@ void halves_free(struct halves *halves);
 // PRODUCT[k * b->columns + l] of column k of A and l of B, which may be the same.
 void halves_product(const struct supernodal *factor, const struct halves *a,
                     const struct halves *b, double *product);
+
+// PRODUCT[k] of column k with HALF (n), and HALF less the columns times SHARE
+// (columns).
+void halves_apply(const struct supernodal *factor, const struct halves *halves,
+                  const double *half, double *product);
+void halves_take_off(const struct supernodal *factor, const struct halves *halves,
+                     const double *share, double *half);
 
 #endif

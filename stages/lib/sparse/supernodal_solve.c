@@ -93,18 +93,29 @@ static void backward_through(struct supernodal *f, const struct supernode *super
     memcpy(x + super->first, rows, (size_t)super->columns * sizeof *rows);
 }
 
-void supernodal_solve(struct supernodal *f, double *x)
+void supernodal_forward(struct supernodal *f, const double *x, double *half)
+{
+    for (int k = 0; k < f->n; k++)
+        half[f->place[k]] = x[k];
+    for (int s = 0; s < f->n_super; s++)
+        forward_through(f, &f->super[s], half);
+}
+
+void supernodal_backward(struct supernodal *f, const double *half, double *x)
 {
     double *ordered = f->column[0];
-    for (int k = 0; k < f->n; k++)
-        ordered[f->place[k]] = x[k];
-    for (int s = 0; s < f->n_super; s++)
-        forward_through(f, &f->super[s], ordered);
+    memcpy(ordered, half, (size_t)f->n * sizeof *ordered);
     for (int s = f->n_super - 1; s >= 0; s--)
         backward_through(f, &f->super[s], ordered);
     for (int k = 0; k < f->n; k++)
         x[k] = ordered[f->place[k]];
     memset(ordered, 0, (size_t)f->n * sizeof *ordered);
+}
+
+void supernodal_solve(struct supernodal *f, double *x)
+{
+    supernodal_forward(f, x, f->half);
+    supernodal_backward(f, f->half, x);
 }
 
 // ---- halves -------------------------------------------------------------------------
@@ -181,5 +192,35 @@ void halves_product(const struct supernodal *f, const struct halves *a,
         }
         if (s <= t) from_a += f->super[s].columns, k++;
         if (t <= s) from_b += f->super[t].columns, l++;
+    }
+}
+
+void halves_apply(const struct supernodal *f, const struct halves *halves,
+                  const double *half, double *product)
+{
+    memset(product, 0, (size_t)halves->columns * sizeof *product);
+    const double *from = halves->value;
+    for (int k = 0; k < halves->n_super; k++) {
+        const struct supernode *super = &f->super[halves->super[k]];
+        for (int c = 0; c < halves->columns; c++)
+            product[c] += dot_product(super->columns, from + (long)c * halves->size,
+                                      half + super->first);
+        from += super->columns;
+    }
+}
+
+void halves_take_off(const struct supernodal *f, const struct halves *halves,
+                     const double *share, double *half)
+{
+    const double *from = halves->value;
+    for (int k = 0; k < halves->n_super; k++) {
+        const struct supernode *super = &f->super[halves->super[k]];
+        for (int c = 0; c < halves->columns; c++) {
+            const double *column = from + (long)c * halves->size;
+            if (share[c] == 0) continue;
+            for (int i = 0; i < super->columns; i++)
+                half[super->first + i] -= share[c] * column[i];
+        }
+        from += super->columns;
     }
 }

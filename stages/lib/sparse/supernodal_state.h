@@ -29,7 +29,8 @@ struct supernodal {
     int widest;                  // most columns of a supernode
     int tallest;                 // most rows
     double *work;                // (tallest * widest) and (4 widest)
-    double *column[MOST_HALVES]; // (n), of zeros between calls but for the first
+    double *column[MOST_HALVES]; // (n), of zeros between calls
+    double *half;                // (n)
     int *local;                  // (tallest)
     bool *is_on_way;             // (n_super), false between calls
 };
