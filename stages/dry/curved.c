@@ -70,7 +70,19 @@ enum status check_curved(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
-struct curved curved_make(const struct phases *phases,
+// All sites at levels of their own.
+static void find_outside(struct curved *curved, struct phases *phases)
+{
+    struct star_mesh *mesh = &phases->vapour.mesh;
+    star_mesh_bring_up_to_date(mesh);
+    for (int i = 0; i < phases->vapour.n_site; i++) {
+        curved->level[i] = i;
+        curved->outside[i] = mesh->air[i];
+    }
+    star_mesh_add_degrees(mesh, curved->level, curved->outside);
+}
+
+struct curved curved_make(struct phases *phases,
                           const struct drying_conditions *conditions)
 {
     const struct network *network = phases->network;
@@ -89,10 +101,12 @@ struct curved curved_make(const struct phases *phases,
                             .offset = NEW_ARRAY(int, network->n_node + 1),
                             .share = NEW_ARRAY(struct share, 2 * (size_t)n),
                             .raised = NEW_ARRAY(double, network->n_node),
+                            .outside = NEW_ARRAY(double, phases->vapour.n_site),
                             .noise = NEW_ARRAY(double, n),
                             .level = NEW_ARRAY(double, phases->vapour.n_site),
                             .flow = NEW_ARRAY(double, phases->vapour.n_site)};
     *curved.law = find_law(conditions);
+    find_outside(&curved, phases);
     for (int t = 0; t < n; t++) {
         curved.place[t] = -1;
         if (network->throat_kind[t] == THROAT_NETWORK)
@@ -117,6 +131,7 @@ void curved_free(struct curved *curved)
     free(curved->offset);
     free(curved->share);
     free(curved->raised);
+    free(curved->outside);
     free(curved->level);
     free(curved->flow);
     free(curved->noise);
@@ -243,17 +258,27 @@ void curved_find_gains(struct curved *curved, const struct phases *phases)
         share_flow(curved, k, curved->flow[phases->wet[k]], curved->gain);
 }
 
+// No less than what conducts vapour from NODE: eliminations only put more in series.
+static double most_conductance(const struct curved *curved, const struct phases *phases,
+                               int node)
+{
+    double sum = curved->outside[node];
+    for (int i = phases->incidence.offset[node]; i < phases->incidence.offset[node + 1];
+         i++) {
+        const int throat = phases->incidence.throat[i];
+        if (phases->clusters.of_throat[throat] < 0)
+            sum += phases->vapour.conductance[throat];
+    }
+    return sum;
+}
+
 // How little of what each body evaporates is nothing.
 static void find_noise(struct curved *curved, const struct phases *phases)
 {
-    const struct star_mesh *mesh = &phases->vapour.mesh;
-    find_levels(curved, phases);
-    for (int k = 0; k < phases->n_wet; k++)
-        curved->flow[phases->wet[k]] = mesh->air[phases->wet[k]];
-    star_mesh_add_degrees(mesh, curved->level, curved->flow);
     memset(curved->noise, 0, (size_t)curved->n * sizeof *curved->noise);
     for (int k = 0; k < phases->n_wet; k++)
-        share_flow(curved, k, curved->flow[phases->wet[k]], curved->noise);
+        share_flow(curved, k, most_conductance(curved, phases, phases->wet[k]),
+                   curved->noise);
     curved->all_noise = 0;
     for (int a = 0; a < curved->n; a++) {
         curved->noise[a] *= NOISE * fabs(curved->potential[a]);
@@ -343,8 +368,11 @@ enum status curved_find(struct curved *curved, struct phases *phases,
                   curved->n, curved->residual, ENOUGH);
 }
 
-void curved_state(struct curved *curved, int n_throat, struct state *state)
+void curved_state(struct curved *curved, const struct network *network,
+                  struct state *state)
 {
+    const int n_throat = network->n_throat;
+    state_numbers(state, curved->outside, network->n_node);
     state_numbers(state, &curved->rate, 1);
     state_numbers(state, &curved->residual, 1);
     state_flags(state, curved->floated, n_throat);

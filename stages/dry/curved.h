@@ -49,10 +49,11 @@ struct curved {
     int *offset;              // (n_wet+1) of the shares in each wet node
     struct share *share;      // (offset[n_wet])
     double *raised;           // (n_wet) potential that gravity adds there
+    double *outside;          // (n_site) conductance of the boundary layer, at first
     double *level, *flow;     // (n_site) room
 };
 
-struct curved curved_make(const struct phases *phases,
+struct curved curved_make(struct phases *phases,
                           const struct drying_conditions *conditions);
 
 // STATUS_BAD_DATA with the throat whose meniscus has no more vapour than the air: it
@@ -70,7 +71,8 @@ enum status curved_find(struct curved *curved, struct phases *phases,
 // What the bodies evaporate at their potentials.
 void curved_find_gains(struct curved *curved, const struct phases *phases);
 
-void curved_state(struct curved *curved, int n_throat, struct state *state);
+void curved_state(struct curved *curved, const struct network *network,
+                  struct state *state);
 
 void curved_free(struct curved *curved);
 

@@ -67,7 +67,7 @@ static void run_state(struct run *run, struct state *state)
     steps_state(run, state);
     const int n_throat = run->phases.network->n_throat;
     if (run->conditions->kelvin) {
-        curved_state(&run->curved, n_throat, state);
+        curved_state(&run->curved, run->phases.network, state);
         losses_state(&run->losses, n_throat, state);
     } else if (run->conditions->liquid == LIQUID_VISCOUS) {
         flow_state(run, state);
