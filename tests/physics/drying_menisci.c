@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Menisci with vapour pressures of their own in networks that dry at random: what they
+// evaporate, and which of them wait, against relaxation in long double of all throats
+// that are gas and all bodies of liquid, without elimination.
+#include "dry/conditions.h"
+#include "dry/curved.h"
+#include "support_lattice.h"
+
+#include "basics/memory.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+static const double spacing = 1e-7;
+enum { MOST_SWEEPS = 1000000 };
+
+// All bodies change at once: by less, or neighbours would swing.
+static const long double DAMPED = 0.7L;
+
+// By nodes and bodies: a throat or a cluster.
+struct field {
+    const struct phases *phases;
+    bool by_throat;
+    long double *level;     // (n_node)
+    long double *air;       // (n_node) conductance to the air
+    long double *potential; // (n_throat) of a body
+    long double *own;       // (n_throat) of the widest meniscus of a body; 0: none
+};
+
+static int body_of(const struct field *field, int throat)
+{
+    return field->by_throat ? throat : field->phases->clusters.of_throat[throat];
+}
+
+// ln((p_g - p_v) / (p_g - p_sat)), over that of the air.
+static long double potential_of(const struct drying_conditions *c, double radius)
+{
+    const long double exponent =
+        2 * (long double)c->surface_tension * c->molar_mass /
+        (radius * (long double)c->liquid_density * GAS_CONSTANT * c->temperature);
+    const long double vapour = c->saturation_pressure * expl(-exponent);
+    const long double flat = c->gas_pressure - (long double)c->saturation_pressure;
+    return logl((c->gas_pressure - vapour) / flat) /
+           logl((c->gas_pressure - (long double)c->air_vapour_pressure) / flat);
+}
+
+static struct field make_field(const struct phases *phases,
+                               const struct drying_conditions *conditions)
+{
+    const struct network *network = phases->network;
+    struct field field = {.phases = phases,
+                          .by_throat = conditions->liquid == LIQUID_IMMOBILE,
+                          .level = NEW_ARRAY(long double, network->n_node),
+                          .air = NEW_ARRAY(long double, network->n_node),
+                          .potential = NEW_ARRAY(long double, network->n_throat),
+                          .own = NEW_ARRAY(long double, network->n_throat)};
+    for (int i = 0; i < phases->layer.n_exposed; i++)
+        field.air[phases->layer.exposed[i]] +=
+            (long double)phases->layer.area[i] / phases->layer.spacing;
+    for (int t = 0; t < network->n_throat; t++)
+        for (int end = 0; end < 2; end++) {
+            const int node = network->throat_nodes[t][end];
+            if (phases->clusters.of_throat[t] < 0 || phases->wet_place[node] < 0)
+                continue;
+            const int body = body_of(&field, t);
+            const long double own = potential_of(conditions, network->throat_radius[t]);
+            if (field.own[body] == 0 || own < field.own[body]) field.own[body] = own;
+            field.potential[body] = field.own[body];
+        }
+    return field;
+}
+
+static void free_field(struct field *field)
+{
+    free(field->level);
+    free(field->air);
+    free(field->potential);
+    free(field->own);
+}
+
+static double section(const struct phases *phases, int throat)
+{
+    const double r = phases->network->throat_radius[throat];
+    return phases->clusters.of_throat[throat] < 0 ? 0 : r * r;
+}
+
+// What flows to NODE, and the conductances from it.
+static long double inflow(const struct field *field, int node, long double *degree)
+{
+    const struct phases *phases = field->phases;
+    long double flow = field->air[node] * (1 - field->level[node]);
+    *degree = field->air[node];
+    for (int k = phases->incidence.offset[node]; k < phases->incidence.offset[node + 1];
+         k++) {
+        const int throat = phases->incidence.throat[k];
+        const int32_t *ends = phases->network->throat_nodes[throat];
+        if (phases->clusters.of_throat[throat] >= 0) continue;
+        const long double conductance = phases->vapour.conductance[throat];
+        flow += conductance * (field->level[ends[0] == node ? ends[1] : ends[0]] -
+                               field->level[node]);
+        *degree += conductance;
+    }
+    return flow;
+}
+
+static void set_level(struct field *field, int node)
+{
+    const struct phases *phases = field->phases;
+    long double sum = 0, mean = 0;
+    for (int k = phases->incidence.offset[node]; k < phases->incidence.offset[node + 1];
+         k++) {
+        const int throat = phases->incidence.throat[k];
+        const double part = section(phases, throat);
+        if (!(part > 0)) continue;
+        sum += part;
+        mean += part * field->potential[body_of(field, throat)];
+    }
+    field->level[node] = mean / sum;
+}
+
+// GAIN and SLOPE (n_throat), by bodies.
+static void find_gains(const struct field *field, long double *gain, long double *slope)
+{
+    const struct phases *phases = field->phases;
+    for (int t = 0; t < phases->network->n_throat; t++)
+        gain[t] = slope[t] = 0;
+    for (int k = 0; k < phases->n_wet; k++) {
+        const int node = phases->wet[k];
+        const int begin = phases->incidence.offset[node];
+        const int end = phases->incidence.offset[node + 1];
+        long double degree, sum = 0;
+        const long double flow = inflow(field, node, &degree);
+        for (int i = begin; i < end; i++)
+            sum += section(phases, phases->incidence.throat[i]);
+        for (int i = begin; i < end; i++) {
+            const int throat = phases->incidence.throat[i];
+            const long double part = section(phases, throat) / sum;
+            if (!(part > 0)) continue;
+            gain[body_of(field, throat)] += part * flow;
+            slope[body_of(field, throat)] += part * degree;
+        }
+    }
+}
+
+// No meniscus more curved than its throat makes it; those that are less evaporate
+// nothing. Until nothing changes any more.
+static void relax(struct field *field, long double *gain, long double *slope)
+{
+    const struct phases *phases = field->phases;
+    for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+        long double change = 0;
+        for (int k = 0; k < phases->n_wet; k++)
+            set_level(field, phases->wet[k]);
+        for (int i = 0; i < phases->network->n_node; i++) {
+            long double degree;
+            if (!phases->gas[i] || phases->wet_place[i] >= 0) continue;
+            const long double flow = inflow(field, i, &degree);
+            change = fmaxl(change, fabsl(flow / degree));
+            field->level[i] += flow / degree;
+        }
+        find_gains(field, gain, slope);
+        for (int b = 0; b < phases->network->n_throat; b++) {
+            if (!(slope[b] > 0)) continue;
+            const long double next =
+                fminl(field->own[b], field->potential[b] + DAMPED * gain[b] / slope[b]);
+            change = fmaxl(change, fabsl(next - field->potential[b]));
+            field->potential[b] = next;
+        }
+        if (change < 1e-16L) return;
+    }
+    fail_msg("relaxation does not end");
+}
+
+// Returns how many wait.
+static int compare(const struct phases *phases,
+                   const struct drying_conditions *conditions,
+                   const struct curved *curved, const struct losses *losses)
+{
+    const int n = phases->network->n_throat;
+    struct field field = make_field(phases, conditions);
+    long double *gain = NEW_ARRAY(long double, n), *slope = NEW_ARRAY(long double, n);
+    relax(&field, gain, slope);
+    long double rate = 0;
+    for (int i = 0; i < phases->network->n_node; i++)
+        if (field.air[i] > 0) rate += field.air[i] * (1 - field.level[i]);
+    assert_true(fabsl(curved->rate / rate - 1) < 1e-11L);
+    int n_wait = 0;
+    for (int b = 0; b < n; b++)
+        n_wait += slope[b] > 0 && field.potential[b] < field.own[b] * (1 - 1e-9L);
+    for (int k = 0; k < losses->n; k++) {
+        const int body = body_of(&field, losses->loss[k].throat);
+        assert_true(fabsl(losses->loss[k].rate - gain[body]) < 1e-10L * rate);
+        gain[body] = 0;
+    }
+    for (int b = 0; b < n; b++)
+        assert_true(fabsl(gain[b]) < 1e-10L * rate);
+    free(gain);
+    free(slope);
+    free_field(&field);
+    return n_wait;
+}
+
+static int some_meniscus(struct phases *phases, bool by_throat, uint64_t *seed)
+{
+    const int node = phases->wet[(int)(next_random(seed) * phases->n_wet)];
+    int k = phases->incidence.offset[node];
+    while (phases->clusters.of_throat[phases->incidence.throat[k]] < 0)
+        k++;
+    const int throat = phases->incidence.throat[k];
+    return by_throat ? throat
+                     : clusters_invasion_throat(&phases->clusters,
+                                                phases->clusters.of_throat[throat]);
+}
+
+static void check(enum liquid_limit liquid)
+{
+    struct network network = lattice_network(4, 4, 4, spacing);
+    randomise_radii(&network, spacing, 0.8, 12);
+    struct drying_conditions conditions = kharaghani_conditions(liquid);
+    conditions.kelvin = conditions.lumped = true;
+    conditions.mass_transfer *= 100; // relaxation is slow where air is hard to reach
+    const struct drying_scale scale = drying_scale(&network, &conditions);
+    struct boundary_layer layer;
+    struct phases phases;
+    struct reason reason;
+    assert_int_equal(boundary_layers_make(
+                         &network, conditions.open_walls, scale.length,
+                         scale.boundary_layer,
+                         &(struct boundary_form){.feet = FEET_SURFACE, .lumped = true},
+                         &layer, &reason),
+                     STATUS_OK);
+    const struct phases_form form = {.length = scale.length,
+                                     .gas_parts = liquid != LIQUID_IMMOBILE};
+    assert_int_equal(
+        phases_make(&network, conditions.open_walls, &form, layer, &phases, &reason),
+        STATUS_OK);
+    struct curved curved = curved_make(&phases, &conditions);
+    struct losses losses = losses_make(network.n_throat);
+    uint64_t seed = 3;
+    int n_wait = 0;
+    for (int k = 0; phases.n_full > 3; k++) {
+        if (curved_find(&curved, &phases, &losses, &reason))
+            fail_msg("%s", reason.text);
+        if (k % 8 == 0) n_wait += compare(&phases, &conditions, &curved, &losses);
+        phases_empty_throat(&phases,
+                            some_meniscus(&phases, liquid == LIQUID_IMMOBILE, &seed));
+    }
+    assert_true(n_wait > 10);
+    losses_free(&losses);
+    curved_free(&curved);
+    phases_free(&phases);
+    network_free(&network);
+}
+
+static void test_throats(void **state)
+{
+    (void)state;
+    check(LIQUID_IMMOBILE);
+}
+
+static void test_clusters(void **state)
+{
+    (void)state;
+    check(LIQUID_INVISCID);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_throats),
+                                       cmocka_unit_test(test_clusters)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
