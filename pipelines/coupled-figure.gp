@@ -27,13 +27,13 @@ do for [c = 0:3] {
     r = 1; title = "Room for liquid, of the first"
     @panel
     set yrange [0.75:1.05]
-    plot one index 0 every 3 using 1:4 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
-        two index 0 every 3 using 1:4 with lines linewidth 2 linecolor rgb blue notitle
+    plot one index 0 using 1:4 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
+        two index 0 using 1:4 with lines linewidth 2 linecolor rgb blue notitle
     r = 2; title = "Drying rate, of the first"
     @panel
     set yrange [0:1.05]
-    plot one index 0 every 3 using 1:3 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
-        two index 0 every 3 using 1:3 with lines linewidth 2 linecolor rgb blue notitle
+    plot one index 0 using 1:3 with lines dashtype (6, 4) linewidth 2 linecolor rgb grey notitle, \
+        two index 0 using 1:3 with lines linewidth 2 linecolor rgb blue notitle
     r = 3; title = "Cracks"
     @panel
     set xlabel "liquid left, of what the body held when full" offset 0,0.3
