@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "conditions.h"
+#include "small_grains.h"
 #include "swept.h"
 #include "write_flow.h"
 
@@ -17,7 +18,7 @@ struct flow_parameters {
     int sides, conductance, pieces, solver, product;
     double factor, viscosity, density, tolerance;
     double gravity[3], strain_rate[3];
-    bool tensor, stress;
+    bool tensor, stress, stokes;
     int64_t steps;
 };
 
@@ -77,6 +78,11 @@ static const struct parameter table[] = {
      AT(strain_rate)},
     {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "from three more flows, along x, y and z", AT(tensor)},
+    {"stokes_drag", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
+     "small grains that float in a pore get Stokes' drag too; the grains around them "
+     "lose "
+     "what they get",
+     AT(stokes)},
     {"pore_stress", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "pressure and viscous stress, averaged over each pore and over the fluid; nothing "
      "may "
@@ -219,6 +225,9 @@ static enum status compute(const struct artifact *input,
     if (status) return status;
     flow->forces =
         find_forces(&flow->grains, &flow->cells, &flow->throats, &flow->pressures);
+    if (parameters->stokes)
+        add_stokes_drag(&flow->grains, &flow->cells, &flow->throats, &flow->pressures,
+                        &flow->forces);
     if (parameters->stress)
         flow->stress = find_pore_stress(&flow->grains, &flow->cells, &flow->throats,
                                         &flow->conditions, &flow->pressures);

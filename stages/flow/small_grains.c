@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "small_grains.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// What surrounds a grain: sums over the throats that it is a corner of.
+struct surroundings {
+    struct vector moment; // flux times step, for a viscosity of 1
+    double volume;        // of fluid
+    double surface;       // of the other corners
+    struct vector more;   // force that the grain gets, and they lose
+};
+
+static struct surroundings *find_surroundings(const struct grains *grains,
+                                              const struct cells *cells,
+                                              const struct throats *throats,
+                                              const struct pressures *pressures)
+{
+    struct surroundings *around = NEW_ARRAY(struct surroundings, grains->n_base);
+    for (int t = 0; t < throats->n; t++) {
+        const struct throat *throat = &throats->throat[t];
+        const double drop = pressure_drop(pressures, grains, cells, throat);
+        const struct vector moment =
+            scale(throat->conductance * drop, throat_step(grains, cells, throat));
+        const double surface =
+            throat->surface[0] + throat->surface[1] + throat->surface[2];
+        for (int k = 0; k < 3; k++) {
+            if (throat->corner[k] < 0) continue;
+            struct surroundings *here = &around[throat->corner[k]];
+            here->moment = add(here->moment, moment);
+            here->volume += throat->volume;
+            here->surface += surface - throat->surface[k];
+        }
+    }
+    return around;
+}
+
+// The root of the sum of the squares, less the force there is.
+static struct vector missing_drag(const struct surroundings *around, double radius,
+                                  struct vector force)
+{
+    const double moment = norm(around->moment), there = norm(force);
+    if (!(moment > 0 && around->volume > 0 && around->surface > 0))
+        return (struct vector){0};
+    const double stokes = 6 * M_PI * radius * 2 * moment / around->volume;
+    return scale((hypot(there, stokes) - there) / moment, around->moment);
+}
+
+void add_stokes_drag(const struct grains *grains, const struct cells *cells,
+                     const struct throats *throats, const struct pressures *pressures,
+                     struct forces *forces)
+{
+    struct surroundings *around = find_surroundings(grains, cells, throats, pressures);
+    for (int i = 0; i < grains->n_base; i++)
+        around[i].more = missing_drag(&around[i], grains->radius[i],
+                                      add(forces->viscous[i], forces->pressure[i]));
+    for (int i = 0; i < grains->n_base; i++)
+        forces->viscous[i] = add(forces->viscous[i], around[i].more);
+    for (int t = 0; t < throats->n; t++) {
+        const struct throat *throat = &throats->throat[t];
+        for (int k = 0; k < 3; k++) {
+            if (throat->corner[k] < 0) continue;
+            const struct surroundings *here = &around[throat->corner[k]];
+            for (int m = 0; m < 3 && here->surface > 0; m++) {
+                const int32_t host = throat->corner[m];
+                if (m == k) continue;
+                struct vector *viscous = host < 0 ? &forces->wall_viscous[-1 - host]
+                                                  : &forces->viscous[host];
+                *viscous = add(*viscous,
+                               scale(-throat->surface[m] / here->surface, here->more));
+            }
+        }
+    }
+    free(around);
+}
