@@ -269,7 +269,7 @@ bench-viscous: all ## time to dryness with viscous liquid, next to none
 	@tests/bench/viscous
 bench-replay: all $(BENCHES) ## error of both engines of the replay against time, and time against time
 	@tests/bench/replay
-bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (minutes)
+bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (ten minutes)
 	@tests/bench/dry
 bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
