@@ -38,7 +38,7 @@ static double softness(const struct equilibrium *e)
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
-    return fmax(1e-10 * least, 1e-14);
+    return 1e-8 * least;
 }
 
 enum status equilibrium_new(struct equilibrium **result,
