@@ -46,7 +46,7 @@ void triangle_add_row(struct triangle *triangle, int n)
     make_room(triangle, n, n + 1);
     const int end = triangle->is_large && n % PANEL == 0 ? n + PANEL : n + 1;
     const size_t length = triangle_row(triangle, end) - triangle_row(triangle, n);
-    memset(row_of(triangle, n), 0, length * entry_size(triangle));
+    if (length > 0) memset(row_of(triangle, n), 0, length * entry_size(triangle));
 }
 
 void triangle_take(const struct triangle *triangle, int n, int p, double *row)
