@@ -91,6 +91,7 @@ struct wilcoxon wilcoxon_test(struct sample a, struct sample b)
         known &= !isnan(value[k]);
         if (value[k] != 0) value[n++] = value[k];
     }
+    if (!known) n = 0; // what is not a number has no rank
     qsort(value, (size_t)n, sizeof *value, by_size);
     double ties;
     const double v = positive_ranks(value, n, &ties);
