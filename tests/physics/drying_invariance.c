@@ -194,15 +194,7 @@ static void check_scaled(enum liquid_limit liquid)
     struct drying_history small = dry_and_check(&network, &conditions);
 
     const double factor = 0x1p30;
-    for (int i = 0; i < network.n_node; i++)
-        network.node_position[i] = scale(factor, network.node_position[i]);
-    for (int g = 0; g < network.packing.n_particle; g++)
-        network.packing.position[g] = scale(factor, network.packing.position[g]);
-    network.packing.upper = scale(factor, network.packing.upper);
-    for (int t = 0; t < network.n_throat; t++) {
-        network.throat_radius[t] *= factor;
-        network.throat_length[t] *= factor;
-    }
+    enlarge(&network, factor);
     conditions.mass_transfer /= factor;
     struct drying_history large = dry_and_check(&network, &conditions);
 

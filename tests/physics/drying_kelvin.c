@@ -385,15 +385,7 @@ static void test_unit_of_length_does_not_matter(void **state)
         randomise_radii(&network, spacing, 0.9, 17);
         struct drying_conditions conditions = kelvin_conditions(limits[l]);
         struct drying_history small = dry(&network, &conditions);
-        for (int i = 0; i < network.n_node; i++)
-            network.node_position[i] = scale(factor, network.node_position[i]);
-        for (int g = 0; g < network.packing.n_particle; g++)
-            network.packing.position[g] = scale(factor, network.packing.position[g]);
-        network.packing.upper = scale(factor, network.packing.upper);
-        for (int t = 0; t < network.n_throat; t++) {
-            network.throat_radius[t] *= factor;
-            network.throat_length[t] *= factor;
-        }
+        enlarge(&network, factor);
         conditions.mass_transfer /= factor;
         conditions.surface_tension *= factor;
         struct drying_history large = dry(&network, &conditions);

@@ -143,6 +143,19 @@ void randomise_radii(struct network *network, double spacing, double spread,
             0.2 * spacing * (1 + spread * (2 * next_random(&seed) - 1));
 }
 
+void enlarge(struct network *network, double factor)
+{
+    for (int i = 0; i < network->n_node; i++)
+        network->node_position[i] = scale(factor, network->node_position[i]);
+    for (int g = 0; g < network->packing.n_particle; g++)
+        network->packing.position[g] = scale(factor, network->packing.position[g]);
+    network->packing.upper = scale(factor, network->packing.upper);
+    for (int t = 0; t < network->n_throat; t++) {
+        network->throat_radius[t] *= factor;
+        network->throat_length[t] *= factor;
+    }
+}
+
 struct drying_conditions kharaghani_conditions(enum liquid_limit liquid)
 {
     return (struct drying_conditions){.temperature = 293.15,

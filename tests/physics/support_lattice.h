@@ -16,6 +16,9 @@ struct network lattice_column(int n, double spacing);
 void randomise_radii(struct network *network, double spacing, double spread,
                      uint64_t seed);
 
+// All lengths times FACTOR; the lower corner is the origin.
+void enlarge(struct network *network, double factor);
+
 // Node, and throat from it in the direction of AXIS, of a lattice of NX by NY by NZ
 // nodes.
 int lattice_node(int nx, int ny, int i, int j, int k);
