@@ -167,7 +167,7 @@ with scratch() as folder:
         in_pieces(f"dry, {liquid} liquid", this)
         killed(f"dry, {liquid} liquid", this)
     for liquid, network in [("inviscid", make_network(folder, "least", 8)),
-                            ("immobile", make_network(folder, "middle", 11))]:
+                            ("immobile", make_network(folder, "middle", 14))]:
         killed(f"dry, curved menisci, {liquid} liquid",
                ["dry", "-p", SCENE, "--set", f"liquid={liquid}", "--set", "kelvin=true", network])
     in_pieces("dry, viscous liquid with snapshots",
