@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "carry.h"
 
-#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "nearest.h"
+#include "network/enclosed.h"
 
 #include <stdlib.h>
 
@@ -14,12 +14,6 @@ struct middles {
     int *throat;
 };
 
-static struct vector middle_of(const struct network *network, int throat)
-{
-    return add(network->node_position[network->throat_nodes[throat][0]],
-               scale(0.5, along_throat(network, throat)));
-}
-
 static struct middles find_middles(const struct network *network, const double *wet)
 {
     struct middles middles = {0, NEW_ARRAY(struct vector, network->n_throat),
@@ -27,7 +21,7 @@ static struct middles find_middles(const struct network *network, const double *
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK || (wet && !(wet[t] > 0)))
             continue;
-        middles.at[middles.n] = middle_of(network, t);
+        middles.at[middles.n] = throat_middle(network, t);
         middles.throat[middles.n++] = t;
     }
     return middles;
@@ -79,20 +73,10 @@ static unsigned empty_walls(const struct network *network)
 // What these shut in from the open walls is empty as well, as dry has it.
 static void empty_enclosed(struct network *network, unsigned open_walls)
 {
-    int *piece = NEW_ARRAY(int, network->n_node);
     bool *open = NEW_ARRAY(bool, network->n_node);
     for (int i = 0; i < network->n_node; i++)
-        piece[i] = i;
-    for (int t = 0; t < network->n_throat; t++)
-        if (network->throat_kind[t] == THROAT_NETWORK)
-            unite_sets(piece, network->throat_nodes[t][0], network->throat_nodes[t][1]);
-    for (int i = 0; i < network->n_node; i++)
-        if (network->node_walls[i] & open_walls) open[set_root(piece, i)] = true;
-    for (int t = 0; t < network->n_throat; t++)
-        if (network->throat_kind[t] == THROAT_NETWORK &&
-            !open[set_root(piece, network->throat_nodes[t][0])])
-            network->throat_kind[t] = THROAT_IMPOSED_EMPTY;
-    free(piece);
+        open[i] = network->node_walls[i] & open_walls;
+    empty_enclosed_throats(network, open);
     free(open);
 }
 
@@ -102,7 +86,7 @@ static void carry_saturations(const struct middles *old, const struct network *a
     struct places places = places_make(&anew->packing, old->n, old->at);
     for (int t = 0; t < anew->n_throat; t++) {
         if (anew->throat_kind[t] != THROAT_NETWORK) continue;
-        const int k = nearest_place(&places, middle_of(anew, t));
+        const int k = nearest_place(&places, throat_middle(anew, t));
         if (k >= 0) to[t] = saturation[old->throat[k]];
     }
     places_free(&places);

@@ -2,10 +2,11 @@
 // dry: which throat empties when.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
+#include "basics/memory.h"
 #include "basics/status.h"
 #include "drying.h"
-#include "enclosed.h"
 #include "mass_transfer.h"
+#include "network/enclosed.h"
 #include "parameters.h"
 #include "start.h"
 #include "write_drying.h"
@@ -142,6 +143,24 @@ static struct mass_transfer give_mass_transfer(const struct network *network,
     return transfer;
 }
 
+// All from which no way through liquid leads to a column; returns how many throats.
+static int empty_enclosed(struct network *network, unsigned open_walls,
+                          enum boundary_feet feet)
+{
+    bool *foot = NEW_ARRAY(bool, network->n_node);
+    bool *open = NEW_ARRAY(bool, network->n_node);
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        if (!(open_walls >> wall & 1)) continue;
+        boundary_feet_mark(network, wall, feet, foot);
+        for (int i = 0; i < network->n_node; i++)
+            open[i] = open[i] || foot[i];
+    }
+    const int enclosed = empty_enclosed_throats(network, open);
+    free(foot);
+    free(open);
+    return enclosed;
+}
+
 int main(int argc, char **argv)
 {
     struct dry_parameters parameters = {0};
@@ -158,8 +177,8 @@ int main(int argc, char **argv)
         die(STATUS_BAD_DATA, "dry.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);
     if (parameters.imposed_empty)
-        parameters.enclosed = empty_enclosed_throats(&network, parameters.open_walls,
-                                                     parameters.conditions.feet);
+        parameters.enclosed =
+            empty_enclosed(&network, parameters.open_walls, parameters.conditions.feet);
     double *start = read_start(input, &network, parameters.conditions.start_saturation);
     parameters.conditions.start = start;
     json_t *digest = one_input(input);

@@ -21,10 +21,10 @@ struct vapour {
     struct star_mesh mesh;
 };
 
-// For a network that is full of liquid, with an open face across AXIS (0..2). Lengths
-// are in units of LENGTH (m), conductances area over length in the same. Where
-// molecules meet the wall of a throat as often as each other, at KNUDSEN_RADIUS (m),
-// the diffusivity is halved; 0: nowhere.
+// For a network that is full of liquid, under LAYER; with a TOLERANCE above 0 links on
+// large fronts are floats. Lengths are in units of LENGTH (m), conductances area over
+// length in the same. Where molecules meet the wall of a throat as often as each other,
+// at KNUDSEN_RADIUS (m), the diffusivity is halved; 0: nowhere.
 struct vapour vapour_make(const struct network *network, double length,
                           double knudsen_radius, const struct boundary_layer *layer,
                           double tolerance);

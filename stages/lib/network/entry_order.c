@@ -70,8 +70,7 @@ static struct tied measure(const struct ruler *ruler, int index)
         if (network->throat_kind[index] != THROAT_NETWORK) return tied;
         tied.key[0] = ticks(network->throat_length[index], ruler->extent);
         tied.key[1] = ticks(throat_volume(network, index), ruler->volume);
-        place = add(network->node_position[network->throat_nodes[index][0]],
-                    scale(0.5, along_throat(network, index)));
+        place = throat_middle(network, index);
     } else {
         place = network->node_position[index];
     }

@@ -44,6 +44,12 @@ struct vector along_throat(const struct network *network, int throat)
                        image_at(network->throat_image, throat));
 }
 
+struct vector throat_middle(const struct network *network, int throat)
+{
+    return add(network->node_position[network->throat_nodes[throat][0]],
+               scale(0.5, along_throat(network, throat)));
+}
+
 int32_t (*drawn_throats(const struct network *network))[2]
 {
     int32_t(*ends)[2] =

@@ -55,6 +55,8 @@ bool is_layer(const struct network *network);
 // Where the second node of a throat is, seen from the first: in another repetition of
 // the box, if the throat leads there.
 struct vector along_throat(const struct network *network, int throat);
+// Half of the way from its first node.
+struct vector throat_middle(const struct network *network, int throat);
 
 // (n_throat,2) Ends of the throats as lines to draw: one that leads into another
 // repetition of the box is a point, not a line across the box. The caller frees it.

@@ -113,8 +113,7 @@ static void correlate(struct network *network, double correlation_length,
     struct ranked *order = NEW_ARRAY(struct ranked, n);
 #pragma omp parallel for
     for (int t = 0; t < network->n_throat; t++) {
-        const struct vector from = network->node_position[network->throat_nodes[t][0]];
-        const struct vector middle = add(from, scale(0.5, along_throat(network, t)));
+        const struct vector middle = throat_middle(network, t);
         order[t] =
             (struct ranked){height(wave, subtract(middle, network->packing.lower)), t};
     }

@@ -41,16 +41,6 @@ void potential_free_site(struct potential *potential, int site)
     potential->grid.level[0].diagonal[place] = potential->all[place];
 }
 
-bool potential_is_free(const struct potential *potential, int site)
-{
-    return potential->grid.level[0].diagonal[potential->grid.place[site]] > 0;
-}
-
-double potential_inflow(const struct potential *potential, int site)
-{
-    return potential->inflow[potential->grid.place[site]];
-}
-
 // Returns the sum of sizes where sites are free.
 static double find_inflow(struct potential *potential)
 {

@@ -28,12 +28,8 @@ struct potential potential_make(int n_site, int n_link, const struct link *link,
 void potential_free(struct potential *potential);
 
 void potential_free_site(struct potential *potential, int site);
-bool potential_is_free(const struct potential *potential, int site);
 
 // Until what is left of the balances is LEAST in all, or less; false if it cannot be.
 bool potential_solve(struct potential *potential, double least);
-
-// What SITE, which is held, gives off.
-double potential_inflow(const struct potential *potential, int site);
 
 #endif

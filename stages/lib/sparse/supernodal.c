@@ -102,7 +102,6 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     f->work = NEW_ARRAY(double, ((size_t)f->tallest + 4) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->is_on_way = NEW_ARRAY(bool, f->n_super);
-    f->half = NEW_ARRAY(double, n);
     for (int k = 0; k < MOST_HALVES; k++)
         f->column[k] = NEW_ARRAY(double, n);
     return f;
@@ -111,8 +110,8 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
 void supernodal_free(struct supernodal *f)
 {
     if (!f) return;
-    void *const owned[] = {f->super,  f->super_of, f->place, f->row,       f->panels,
-                           f->target, f->work,     f->local, f->is_on_way, f->half};
+    void *const owned[] = {f->super,  f->super_of, f->place, f->row,      f->panels,
+                           f->target, f->work,     f->local, f->is_on_way};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     for (int k = 0; k < MOST_HALVES; k++)

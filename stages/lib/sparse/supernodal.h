@@ -22,11 +22,8 @@ bool supernodal_factor(struct supernodal *factor, const double *value);
 // Multiplications that a factor takes.
 double supernodal_work(const struct supernodal *factor);
 
-// X (n), the right-hand side, becomes the answer.
-void supernodal_solve(struct supernodal *factor, double *x);
-
-// The two halves of that: HALF (n), in the order of the factor, of the right-hand side
-// X (n), and the answer X from it.
+// The two halves of a solution: HALF (n), in the order of the factor, of the right-hand
+// side X (n), and the answer X from it.
 void supernodal_forward(struct supernodal *factor, const double *x, double *half);
 void supernodal_backward(struct supernodal *factor, const double *half, double *x);
 

@@ -112,12 +112,6 @@ void supernodal_backward(struct supernodal *f, const double *half, double *x)
     memset(ordered, 0, (size_t)f->n * sizeof *ordered);
 }
 
-void supernodal_solve(struct supernodal *f, double *x)
-{
-    supernodal_forward(f, x, f->half);
-    supernodal_backward(f, f->half, x);
-}
-
 // ---- halves -------------------------------------------------------------------------
 
 static int compare_ints(const void *a, const void *b)

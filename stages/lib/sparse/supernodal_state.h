@@ -30,7 +30,6 @@ struct supernodal {
     int tallest;                 // most rows
     double *work;                // (tallest * widest) and (4 widest)
     double *column[MOST_HALVES]; // (n), of zeros between calls
-    double *half;                // (n)
     int *local;                  // (tallest)
     bool *is_on_way;             // (n_super), false between calls
 };

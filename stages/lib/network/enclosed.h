@@ -3,11 +3,10 @@
 #ifndef CRAQUELURE_ENCLOSED_H
 #define CRAQUELURE_ENCLOSED_H
 
-#include "boundary_layer.h"
+#include "network/network.h"
 
 // Imposes empty as well the throats of NETWORK from which no way through liquid leads
-// to a node with a column; none where there is no such node. Returns how many.
-int empty_enclosed_throats(struct network *network, unsigned walls,
-                           enum boundary_feet feet);
+// to a node of OPEN (n_node); none where there is no such node. Returns how many.
+int empty_enclosed_throats(struct network *network, const bool *open);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "enclosed.h"
+#include "network/enclosed.h"
 
 #include "basics/memory.h"
 
@@ -21,19 +21,13 @@ static void spread(const struct network *network, const struct incidence *incide
         }
 }
 
-int empty_enclosed_throats(struct network *network, unsigned walls,
-                           enum boundary_feet feet)
+int empty_enclosed_throats(struct network *network, const bool *open)
 {
     bool *reached = NEW_ARRAY(bool, network->n_node);
-    bool *foot = NEW_ARRAY(bool, network->n_node);
     int *queue = NEW_ARRAY(int, network->n_node);
     int n = 0;
-    for (int wall = 0; wall < WALL_COUNT; wall++) {
-        if (!(walls >> wall & 1)) continue;
-        boundary_feet_mark(network, wall, feet, foot);
-        for (int i = 0; i < network->n_node; i++)
-            if (foot[i] && !reached[i]) reached[queue[n++] = i] = true;
-    }
+    for (int i = 0; i < network->n_node; i++)
+        if (open[i]) reached[queue[n++] = i] = true;
     struct incidence incidence = network_incidence(network);
     spread(network, &incidence, reached, queue, n);
     incidence_free(&incidence);
@@ -48,6 +42,5 @@ int empty_enclosed_throats(struct network *network, unsigned walls,
     }
     free(queue);
     free(reached);
-    free(foot);
     return enclosed;
 }
