@@ -2,6 +2,7 @@
 #include "generators.h"
 
 #include "basics/memory.h"
+#include "geometry/insertion_order.h"
 #include "geometry/regular_triangulation.h"
 
 #include <stdlib.h>

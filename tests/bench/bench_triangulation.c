@@ -3,6 +3,7 @@
 //
 //     bench_triangulation POINTS
 #include "basics/memory.h"
+#include "geometry/insertion_order.h"
 #include "geometry/regular_triangulation.h"
 
 #include <gsl/gsl_rng.h>

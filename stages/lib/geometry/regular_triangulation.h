@@ -56,10 +56,6 @@ PREFETCHING expect_neighbours(const struct triangulation *triangulation, int cel
     }
 }
 
-// An order in which to insert N points fast, each close to one before: where each of
-// them stands. The caller frees it.
-int32_t *insertion_order(const struct vector *points, int n);
-
 // Triangulates N points (weight: radius squared) in the order given; O(n log n) for
 // points that fill space in insertion_order. Which cells there are depends on the
 // points alone: tests are exact, also where many points are cospherical (then

@@ -2,6 +2,7 @@
 #include "geometry/triangulation_in_walls.h"
 
 #include "basics/memory.h"
+#include "geometry/insertion_order.h"
 
 #include <float.h>
 #include <stdlib.h>

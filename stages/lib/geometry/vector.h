@@ -60,4 +60,12 @@ static inline void set_component(struct vector *a, int axis, double value)
     *(axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z) = value;
 }
 
+// Of the absolute values.
+static inline double largest_component(struct vector a)
+{
+    const double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z);
+    const double more = x > y ? x : y;
+    return more > z ? more : z;
+}
+
 #endif
