@@ -96,6 +96,17 @@ static void take_places(const struct artifact *response, struct packing *packing
     packing_free(&began);
 }
 
+// Grains that flew apart may have taken the walls past each other.
+static void check_box(const struct packing *after, const char *path)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (!(component(after->lower, axis) < component(after->upper, axis)))
+            die(STATUS_BAD_DATA,
+                "%s: /snapshots/displacement: grains have moved so far that the walls "
+                "%c beside them have changed sides",
+                input_name(path), "xyz"[axis]);
+}
+
 // ---- liquid -------------------------------------------------------------------------
 
 // (n_throat) Of each throat at the end of a drying.
@@ -356,6 +367,7 @@ int main(int argc, char **argv)
     check_scene(&scene.before, scene.input->path);
     take_places(scene.response, &scene.after.packing);
     move_box(&scene.before.packing, &scene.after.packing);
+    check_box(&scene.after.packing, scene.response->path);
 
     if (parameters.write == WRITE_PACKING)
         write_packing(&scene);

@@ -211,10 +211,13 @@ static void choose_grains(const struct replay_parameters *parameters,
     struct reason reason;
     const enum status status = find_held(packing, &held, &settings->held, &reason);
     if (status) die(status, "dem-replay.%s", reason.text);
-    if (settings->support == SUPPORT_FIXED && !quiet &&
-        !(packing->n_particle &&
-          memchr(settings->held, 1, (size_t)packing->n_particle)))
-        report("support=fixed holds no grain: none touches held.walls");
+    if (settings->support != SUPPORT_FIXED || packing->n_particle == 0 ||
+        memchr(settings->held, 1, (size_t)packing->n_particle))
+        return;
+    if (settings->engine == ENGINE_QUASI_STATIC)
+        die(STATUS_BAD_DATA, "dem-replay.held: none of the grains is held, without which "
+                             "there is no equilibrium (or support=free)");
+    if (!quiet) report("support=fixed holds no grain: none touches held.walls");
 }
 
 static struct load read_load(const struct artifact *input)

@@ -129,6 +129,13 @@ with scratch() as folder:
     ok(abs(moved["throats/volume"][:].sum() / (box - solid) - 1) < 1e-12, "and volumes sum to the void",
        moved["throats/volume"][:].sum() / (box - solid) - 1)
 
+    # The top below the bottom.
+    at_start = h5py.File(at("packing"))["particles/position"][:]
+    lay(at_start * [0, 0, -2])
+    for words in [], ["--set", "write=packing"]:
+        status, says = deform("network", *words)
+        ok(status == 65 and "walls z" in says, "a body turned inside out is refused", says)
+
     # Each grain moved its own way: as tessellated anew, unless it is found that the grains
     # have another diagram by now.
     held, lost, wrong = 0, 0, []

@@ -77,6 +77,8 @@ with scratch() as folder:
     tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(("held.walls=[]", "cycles=1")),
                             at("forces"), "-o", at("none")], capture_output=True, text=True)
     ok("holds no grain" in tried.stderr and tried.returncode == 0, "where none is held it is said")
+    status, message = refused("held.walls=[]", "engine=quasi-static")
+    ok(status == 65 and "none of the grains is held" in message, "and refused for equilibria", message)
     for settings, says in ((("held.grains=[64]",), "held.grains: must be whole numbers below 64"),
                            (("held.grains=[0.5]",), "held.grains: must be whole"),
                            (("held.lower=[0,0,0]",), "held.upper: must be given"),
