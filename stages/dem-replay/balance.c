@@ -31,26 +31,33 @@ static void strain_joints(const struct equilibrium *e, const struct displacement
 }
 
 // What is left of the load at the trial.
-static void resist(struct equilibrium *e)
+void resist(struct equilibrium *e)
 {
     for (int i = 0; i < e->n; i++) {
         e->left[i] = e->load[i];
         pull(&e->left[i], scaled(e->damping, e->dashpots[i]));
     }
-    strain_joints(e, e->trial, e->strain);
+    if (e->large)
+        large_strain_joints(e);
+    else
+        strain_joints(e, e->trial, e->strain);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         e->resistance[j] = joint_resistance(joint, e->strain[j]);
         for (int end = 0; end < 2; end++)
             if (joint->grain[end] >= 0)
                 pull(&e->left[joint->grain[end]],
-                     joint_loads(joint, end, e->resistance[j].load));
+                     e->large ? large_loads(e, j, end)
+                              : joint_loads(joint, end, e->resistance[j].load));
     }
+    if (e->large)
+        for (int i = 0; i < e->n; i++)
+            pull(&e->left[i], scaled(1 - e->large->share, e->large->withheld[i]));
     for (int i = 0; i < e->n; i++)
         if (e->setup.fixed[i] || e->is_gone[i]) e->left[i] = nothing;
 }
 
-static double largest_left(const struct equilibrium *e)
+double largest_left(const struct equilibrium *e)
 {
     double most = 0;
     for (int i = 0; i < e->n; i++)
@@ -63,7 +70,7 @@ static double largest_left(const struct equilibrium *e)
 // As everything is now; what slips, and begins to touch, is left to corrections. Then
 // the bond alone is in the factor across the contact, or else the contact as if it
 // stuck: so that a grain that slips wherever it touches is not free there.
-static bool factor(struct equilibrium *e)
+bool factor(struct equilibrium *e)
 {
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
@@ -80,7 +87,12 @@ static bool factor(struct equilibrium *e)
     }
     corrections_clear(e->corrections);
     e->factors++;
-    return stiffness_factor(e->matrix, e->tangent, e->soft);
+    if (!e->large) return stiffness_factor(e->matrix, e->tangent, NULL, e->soft);
+    large_linearise(e);
+    e->large->is_unstable =
+        !stiffness_factor(e->matrix, e->tangent, e->large->more, e->soft) ||
+        !stiffness_is_positive(e->matrix);
+    return !e->large->is_unstable;
 }
 
 // How many of a joint's strains do not resist as the factor says when it is, bonded or
@@ -193,10 +205,12 @@ static bool let_go_beyond(struct equilibrium *e, const struct displacement *move
 
 // One round: a step, or a new factor where the old one does not do. Whether it did
 // anything.
-static bool improve(struct equilibrium *e, bool *is_fresh)
+bool improve(struct equilibrium *e, bool *is_fresh)
 {
     const enum outcome outcome = find_step(e);
-    if ((outcome == FOUND || *is_fresh) && let_go_beyond(e, e->step, furthest))
+    const bool may_leave = !e->large || e->large->is_least;
+    if (may_leave && (outcome == FOUND || *is_fresh) &&
+        let_go_beyond(e, e->step, furthest))
         return true;
     if (outcome != FOUND) {
         if (*is_fresh) return false;
@@ -218,6 +232,7 @@ static bool improve(struct equilibrium *e, bool *is_fresh)
 static bool approach(struct equilibrium *e)
 {
     enum { ROUNDS = 20 };
+    if (e->large) return large_approach(e);
     resist(e);
     e->enough = e->setup.tolerance * e->largest_load;
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
@@ -236,7 +251,7 @@ static bool approach(struct equilibrium *e)
     return largest_left(e) <= e->enough;
 }
 
-static void keep_history(struct equilibrium *e)
+void keep_history(struct equilibrium *e)
 {
     memcpy(e->before, e->trial, (size_t)e->n * sizeof *e->before);
     for (int j = 0; j < e->n_joint; j++) {
@@ -245,9 +260,10 @@ static void keep_history(struct equilibrium *e)
         if (e->joint[j].contact.touch == TOUCH_BEGINS)
             e->joint[j].contact.touch = TOUCH_STICKS;
     }
+    if (e->large) large_keep_history(e);
 }
 
-static void go_back(struct equilibrium *e)
+void go_back(struct equilibrium *e)
 {
     memcpy(e->trial, e->before, (size_t)e->n * sizeof *e->trial);
     memset(e->dashpots, 0, (size_t)e->n * sizeof *e->dashpots);
@@ -301,7 +317,7 @@ void balance(struct equilibrium *e)
             keep_history(e);
         else
             rests = creep(e);
-    } while (let_go_beyond(e, e->trial, furthest) ||
+    } while ((!e->large && let_go_beyond(e, e->trial, furthest)) ||
              (!rests && let_go_beyond(e, e->left, enough)));
     if (!rests) {
         e->n_restless++;

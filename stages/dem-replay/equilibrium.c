@@ -28,7 +28,7 @@ static void find_units(struct equilibrium *e)
 }
 
 // Much softer than anything that resists: it moves what nothing holds, and nothing
-// else.
+// else. Still softer where long rows may buckle, which is as much too late.
 static double softness(const struct equilibrium *e)
 {
     double least = 1;
@@ -38,7 +38,7 @@ static double softness(const struct equilibrium *e)
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
-    return 1e-8 * least;
+    return (e->setup.large_displacements ? 1e-11 : 1e-8) * least;
 }
 
 enum status equilibrium_new(struct equilibrium **result,
@@ -79,6 +79,7 @@ enum status equilibrium_new(struct equilibrium **result,
     e->soft = softness(e);
     e->matrix = stiffness_new(n, setup->fixed, e->n_joint, e->joint);
     e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
+    if (setup->large_displacements) e->large = large_new(e);
     *result = e;
     return STATUS_OK;
 }
@@ -89,6 +90,7 @@ void equilibrium_free(struct equilibrium *e)
     fragments_free(&e->fragments);
     corrections_free(e->corrections);
     stiffness_free(e->matrix);
+    large_free(e->large);
     void *const owned[] = {e->joint,   e->strain, e->more,     e->resistance,
                            e->trial,   e->load,   e->dashpots, e->left,
                            e->step,    e->before, e->tangent,  e->factored,
@@ -152,6 +154,7 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
     for (int i = 0; i < e->n; i++) {
         if (e->is_gone[i] || size_of(e->trial[i]) <= furthest) continue;
         if (isnan(size_of(e->trial[i]))) return refuse_numbers(i, reason);
+        if (e->large) continue;
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "grain %d moves %.3g mean radii: displacements are not small, "
                       "and equilibrium is a matter of dynamics "
@@ -172,8 +175,10 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
     load_grains(e);
     for (int i = 0; i < e->n; i++)
         e->largest_load = fmax(e->largest_load, norm(e->load[i].shift));
-    do
-        balance(e);
-    while (break_one(e));
+    do {
+        const enum status status = e->large ? large_balance(e, reason) : STATUS_OK;
+        if (status) return status;
+        if (!e->large) balance(e);
+    } while (break_one(e));
     return check_small(e, reason);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibrium of bonded grains itself, without cycles that lead there: for small
-// displacements about where they began, with bonds [K 4.31-4.44], contacts that open,
-// close and slip [K 4.11-4.26].
+// displacements about where they began, or for large ones as an option [large.h], with
+// bonds [K 4.31-4.44], contacts that open, close and slip [K 4.11-4.26].
 //
 // The stiffness is factored once; what breaks, opens, closes or slips later is a small
 // dense correction to it (corrections.h), until there is so much of that that a new
@@ -30,7 +30,11 @@ struct equilibrium_setup {
     const double *relative_strength; // (n_bond) of that of the material; NULL: 1
     bool is_free;     // nothing holds the grains: their net load is taken off
     double tolerance; // largest force or moment left on a grain, of the largest load
-    int64_t most_iterations; // steps in time to one equilibrium
+    int64_t most_iterations;  // steps in time to one equilibrium
+    bool large_displacements; // found on the geometry as it is; something holds the
+                              // grains
+    double increment; // then: turn of a grain or joint at a time, rad, or grains come
+                      // closer, mean radii
 };
 
 struct equilibrium;
@@ -42,7 +46,8 @@ enum status equilibrium_new(struct equilibrium **result,
 void equilibrium_free(struct equilibrium *equilibrium);
 
 // The next one, under FORCE (n_particle) N, with the history of those before.
-// STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small.
+// STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small;
+// or if they may be large, equilibrium ends on the way, at equilibrium_share.
 enum status equilibrium_find(struct equilibrium *equilibrium,
                              const struct vector *force, struct reason *reason);
 
@@ -65,6 +70,9 @@ struct net_load equilibrium_load(const struct equilibrium *equilibrium,
 double equilibrium_unbalanced_ratio(const struct equilibrium *equilibrium);
 
 int equilibrium_iterations(const struct equilibrium *equilibrium); // so far
+// How much of the last load could be balanced, of what that was more than the one
+// before: 1 but where large displacements failed.
+double equilibrium_share(const struct equilibrium *equilibrium);
 // (n_particle) of those that have left.
 const bool *equilibrium_is_gone(const struct equilibrium *equilibrium);
 // Grains that have left, and the FIRST of them.

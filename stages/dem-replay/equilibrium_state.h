@@ -7,6 +7,7 @@
 #include "corrections.h"
 #include "equilibrium.h"
 #include "fragments.h"
+#include "large.h"
 #include "net_load.h"
 #include "stiffness.h"
 
@@ -60,6 +61,7 @@ struct equilibrium {
     int restless;   // grain that had most left to balance under the last of them
     int n_crack, crack_capacity;
     struct dem_crack *crack;
+    struct large *large; // NULL: displacements are small
 };
 
 // The force from outside becomes the load, as far as grains are there and free.
@@ -69,5 +71,15 @@ void load_grains(struct equilibrium *equilibrium);
 // not even then come to rest leaves if nothing supports it; else it goes on moving
 // under the next load.
 void balance(struct equilibrium *equilibrium);
+
+// Steps on the way [balance.c]: what is left at the trial; a factor as all is there, if
+// there is one; a better trial; the trial becomes the last equilibrium, and the
+// reverse.
+void resist(struct equilibrium *equilibrium);
+double largest_left(const struct equilibrium *equilibrium);
+bool factor(struct equilibrium *equilibrium);
+bool improve(struct equilibrium *equilibrium, bool *is_fresh);
+void keep_history(struct equilibrium *equilibrium);
+void go_back(struct equilibrium *equilibrium);
 
 #endif

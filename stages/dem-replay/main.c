@@ -105,8 +105,7 @@ static const struct parameter table[] = {
     {"engine", PARAMETER_CHOICE, "1", "\"explicit\"", BOUND_NONE, 0, 0,
      "explicit|quasi-static",
      "explicit: cycles of discrete elements [K 4]; quasi-static: equilibrium itself, "
-     "for "
-     "small displacements, bonds breaking one by one",
+     "bonds breaking one by one",
      AT(engine)},
     {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8", BOUND_ABOVE, 0, 0, NULL,
      "largest force or moment left on a grain, of the largest load",
@@ -116,6 +115,16 @@ static const struct parameter table[] = {
      "steps in time, slowed by dashpots, where equilibrium is not found at once; what "
      "still moves then goes on under the next load",
      AT(settings.most_iterations)},
+    {"quasi_static.large_displacements", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0,
+     0, NULL,
+     "grains may move and turn far: equilibrium on the geometry as it is; false: "
+     "directions are those of the packing, displacements small",
+     AT(settings.large_displacements)},
+    {"quasi_static.increment", PARAMETER_NUMBER, "1", "0.02", BOUND_BETWEEN, 1e-6, 0.1,
+     NULL,
+     "with large displacements: how far a grain or a contact turns at a time, in rad, "
+     "or grains come closer, in mean radii; the error falls with its square",
+     AT(settings.increment)},
     {"bridges.volume", PARAMETER_NUMBER, "m3", "0", BOUND_MINIMUM, 0, 0, NULL,
      "of a liquid bridge between each two grains that touch [G 2], or with shared on "
      "each grain; 0: none",
@@ -264,6 +273,9 @@ static void check_engine(const struct replay_settings *settings,
         die(STATUS_USAGE,
             "--checkpoint is for a replay that does not go on from another");
     if (settings->engine == ENGINE_EXPLICIT) return;
+    if (settings->large_displacements && settings->support == SUPPORT_FREE)
+        die(STATUS_BAD_DATA, "dem-replay.quasi_static.large_displacements: is for "
+                             "support=fixed and wall: something must hold the grains");
     if (goes_on || settings->keep_state)
         die(STATUS_BAD_DATA, "dem-replay.engine: only an explicit replay goes on from "
                              "another (keep_state)");
@@ -315,11 +327,12 @@ static void write_response(const struct packing *packing, const struct load *loa
     static const char *const engines[] = {
         "discrete elements: leapfrog, linear contacts, slip, dashpots, %s bonds [K 4]",
         "equilibria: linear contacts, slip, %s bonds that break one by one [K 4], "
-        "small displacements; what nothing holds leaves"};
+        "%s displacements; what nothing holds leaves"};
     static const char *const bonds[] = {"parallel", "contact"};
     char engine[200];
     snprintf(engine, sizeof engine, engines[settings->engine],
-             bonds[settings->bond.kind]);
+             bonds[settings->bond.kind],
+             settings->large_displacements ? "large" : "small");
     char support[60], model[900];
     int n_held = 0;
     for (int i = 0; i < packing->n_particle; i++)

@@ -18,6 +18,11 @@ int equilibrium_iterations(const struct equilibrium *e)
     return e->iterations;
 }
 
+double equilibrium_share(const struct equilibrium *e)
+{
+    return e->large ? e->large->share : 1;
+}
+
 const bool *equilibrium_is_gone(const struct equilibrium *e)
 {
     return e->is_gone;

@@ -37,7 +37,9 @@ static enum status begin_equilibrium(struct run *run, struct reason *reason)
         .unstressed = settings->unstressed,
         .relative_strength = settings->relative_strength,
         .tolerance = settings->equilibrium_tolerance,
-        .most_iterations = settings->most_iterations};
+        .most_iterations = settings->most_iterations,
+        .large_displacements = settings->large_displacements,
+        .increment = settings->increment};
     return equilibrium_new(&run->equilibrium, &setup, reason);
 }
 

@@ -39,6 +39,8 @@ struct replay_settings {
     enum engine engine;
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load
     int64_t most_iterations;      // quasi-static: steps in time to one equilibrium
+    bool large_displacements;     // quasi-static: on the geometry as it is
+    double increment;             // then: of turns, rad, and of strains
     double time_step_safety;
     bool force_time_step;
     int64_t cycles;      // at every step of the load

@@ -175,13 +175,38 @@ static void add_joint(struct stiffness *s, int j, const double tangent[STRAINS])
     add_block(s, s->block_of[j], arm[1 - lower], arm[lower], tangent);
 }
 
+static void add_rows(struct stiffness *s, int block, int row, int column,
+                     const struct pair_stiffness *more)
+{
+    int stride;
+    double *numbers = numbers_of(s, block, &stride);
+    for (int c = 0; c < DEGREES; c++)
+        for (int r = 0; r < DEGREES; r++)
+            numbers[c * stride + r] +=
+                more->block[row * DEGREES + r][column * DEGREES + c];
+}
+
+static void add_more(struct stiffness *s, int j, const struct pair_stiffness *more)
+{
+    int32_t number[2];
+    for (int end = 0; end < 2; end++) {
+        const int32_t grain = s->joint[j].grain[end];
+        number[end] = grain < 0 ? -1 : s->number[grain];
+        if (number[end] >= 0) add_rows(s, s->diagonal[number[end]], end, end, more);
+    }
+    const int lower = number[0] < number[1] ? 0 : 1;
+    if (s->block_of[j] >= 0) add_rows(s, s->block_of[j], 1 - lower, lower, more);
+}
+
 bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
-                      double soft)
+                      const struct pair_stiffness *more, double soft)
 {
     if (s->n_moving == 0) return true;
     memset(s->value, 0, (size_t)s->start[s->n_moving * DEGREES] * sizeof *s->value);
     for (int j = 0; j < s->n_joint; j++)
         add_joint(s, j, tangent[j]);
+    for (int j = 0; j < s->n_joint && more; j++)
+        add_more(s, j, &more[j]);
     for (int k = 0; k < s->n_moving; k++) {
         int stride;
         double *numbers = numbers_of(s, s->diagonal[k], &stride);
@@ -189,6 +214,21 @@ bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
             numbers[r * stride + r] += soft;
     }
     return supernodal_factor(s->factor, s->value);
+}
+
+bool stiffness_is_positive(const struct stiffness *s)
+{
+    if (s->n_moving == 0) return true;
+    double *diagonal = NEW_ARRAY(double, s->n_moving *DEGREES);
+    for (int k = 0; k < s->n_moving; k++) {
+        int stride;
+        const double *numbers = numbers_of(s, s->diagonal[k], &stride);
+        for (int r = 0; r < DEGREES; r++)
+            diagonal[k * DEGREES + r] = numbers[r * stride + r];
+    }
+    const bool is_positive = supernodal_is_positive(s->factor, diagonal);
+    free(diagonal);
+    return is_positive;
 }
 
 // ---- answers ------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #define CRAQUELURE_STIFFNESS_H
 
 #include "joint.h"
+#include "large_joint.h"
 #include "sparse/supernodal.h"
 
 struct stiffness;
@@ -15,10 +16,13 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
                                 const struct joint *joint);
 void stiffness_free(struct stiffness *stiffness);
 
-// With TANGENT (n_joint) of each joint, >= 0 for each strain, and SOFT of every grain
-// besides. False: it is singular.
+// With TANGENT (n_joint) of each joint, >= 0 for each strain, MORE (n_joint) of it,
+// which may be NULL, and SOFT of every grain besides. False: it is singular.
 bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[STRAINS],
-                      double soft);
+                      const struct pair_stiffness *more, double soft);
+
+// Whether that is positive: whether any load grows with the displacement it makes.
+bool stiffness_is_positive(const struct stiffness *stiffness);
 
 // Begins the answer to LOAD (n), forces and moments, by the last factor. Finishing it,
 // as often as wanted, is into ANSWER (n) the displacements under that load less what

@@ -218,3 +218,15 @@ bool supernodal_factor(struct supernodal *f, const double *value)
     }
     return true;
 }
+
+// One that was not is left negative, or made the least there is of its size.
+bool supernodal_is_positive(const struct supernodal *f, const double *diagonal)
+{
+    for (int r = 0; r < f->n; r++) {
+        const struct supernode *super = &f->super[f->super_of[f->place[r]]];
+        const int own = f->place[r] - super->first;
+        const double pivot = super->panel[(long)own * super->rows + own];
+        if (!(pivot > 0 && pivot * pivot > 4 * DBL_EPSILON * diagonal[r])) return false;
+    }
+    return true;
+}

@@ -19,6 +19,10 @@ void supernodal_free(struct supernodal *factor);
 // is one that no number holds.
 bool supernodal_factor(struct supernodal *factor, const double *value);
 
+// Whether the matrix last factored, with that DIAGONAL (n), was positive: whether no
+// pivot was negative or what rounding leaves.
+bool supernodal_is_positive(const struct supernodal *factor, const double *diagonal);
+
 // Multiplications that a factor takes.
 double supernodal_work(const struct supernodal *factor);
 

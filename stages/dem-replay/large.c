@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "large.h"
+
+#include "basics/memory.h"
+#include "equilibrium_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Increments get no smaller than this share of what is to be let in: so exactly is
+// known where equilibrium ends.
+static const double least_increment = 1e-6;
+
+struct large *large_new(const struct equilibrium *e)
+{
+    struct large *large = NEW_ARRAY(struct large, 1);
+    struct lie **const of_joints[] = {&large->start, &large->before, &large->now};
+    for (size_t k = 0; k < sizeof of_joints / sizeof *of_joints; k++) {
+        *of_joints[k] = NEW_ARRAY(struct lie, e->n_joint);
+        for (int j = 0; j < e->n_joint; j++)
+            (*of_joints[k])[j] = joint_lie(&e->joint[j]);
+    }
+    large->more = NEW_ARRAY(struct pair_stiffness, e->n_joint);
+    large->withheld = NEW_ARRAY(struct displacement, e->n);
+    large->share = 1;
+    large->is_stale = true;
+    return large;
+}
+
+void large_free(struct large *large)
+{
+    if (!large) return;
+    free(large->start);
+    free(large->before);
+    free(large->now);
+    free(large->more);
+    free(large->withheld);
+    free(large);
+}
+
+// ---- geometry -----------------------------------------------------------------------
+
+static struct displacement since_before(const struct equilibrium *e, int i)
+{
+    return (struct displacement){subtract(e->trial[i].shift, e->before[i].shift),
+                                 subtract(e->trial[i].turn, e->before[i].turn)};
+}
+
+void large_strain_joints(struct equilibrium *e)
+{
+    struct large *large = e->large;
+    for (int j = 0; j < e->n_joint; j++) {
+        const int32_t *grain = e->joint[j].grain;
+        const struct vector still = {0, 0, 0};
+        struct displacement by[2];
+        for (int end = 0; end < 2; end++)
+            if (grain[end] >= 0) by[end] = since_before(e, grain[end]);
+        const struct vector second = grain[1] < 0 ? still : e->trial[grain[1]].shift;
+        const struct passage passage = {.start = &large->start[j],
+                                        .before = &large->before[j],
+                                        .shift =
+                                            subtract(second, e->trial[grain[0]].shift),
+                                        .by = {&by[0], grain[1] < 0 ? NULL : &by[1]}};
+        large_strains(&e->joint[j], &passage, e->strain[j], &large->now[j]);
+    }
+}
+
+struct displacement large_loads(const struct equilibrium *e, int j, int end)
+{
+    struct joint joint = e->joint[j];
+    lay_joint(&joint, &e->large->now[j]);
+    return joint_loads(&joint, end, e->resistance[j].load);
+}
+
+// With dashpots, (1 + damping) times the stiffness resists, but for this part of it.
+void large_linearise(struct equilibrium *e)
+{
+    struct large *large = e->large;
+    for (int j = 0; j < e->n_joint; j++) {
+        double load[STRAINS];
+        for (int k = 0; k < STRAINS; k++)
+            load[k] = e->resistance[j].load[k] / (1 + e->damping);
+        lay_joint(&e->joint[j], &large->now[j]);
+        geometric_stiffness(&e->joint[j], &large->now[j], load, &large->more[j]);
+    }
+}
+
+void large_keep_history(struct equilibrium *e)
+{
+    memcpy(e->large->before, e->large->now,
+           (size_t)e->n_joint * sizeof *e->large->before);
+}
+
+// ---- one increment ------------------------------------------------------------------
+
+// The furthest that a grain or a joint has turned, or grains came closer, since the
+// last equilibrium.
+static double furthest_since(const struct equilibrium *e)
+{
+    double most = 0;
+    for (int i = 0; i < e->n; i++) {
+        const double size = norm(since_before(e, i).turn);
+        if (!e->is_gone[i] && !(size <= most)) most = size;
+    }
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        const struct vector *before = e->large->before[j].axis;
+        const double turned = distance(e->large->now[j].axis[0], before[0]);
+        const double closer =
+            fabs(e->strain[j][STRAIN_ALONG] - joint->strain[STRAIN_ALONG]);
+        const double size = fmax(turned, closer);
+        if (!joint->is_gone && !(size <= most)) most = size;
+    }
+    return most;
+}
+
+// Newton's method goes astray before it goes so far.
+static bool is_astray(const struct equilibrium *e)
+{
+    return !(furthest_since(e) <= 4 * e->setup.increment);
+}
+
+bool large_approach(struct equilibrium *e)
+{
+    enum { ROUNDS = 60 };
+    const double slow = 0.1;
+    resist(e);
+    e->enough = e->setup.tolerance * e->largest_load;
+    if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
+    const double well = (e->damping > 0 ? 1 : 1e-3) * e->enough;
+    bool is_fresh = e->large->is_stale || e->damping > 0;
+    if (is_fresh && !factor(e)) return false;
+    e->large->is_stale = false;
+    double before = INFINITY;
+    for (int round = 0; round < ROUNDS; round++) {
+        const double left = largest_left(e);
+        if (left <= well || (left <= e->enough && left >= slow * before)) return true;
+        if (left > slow * before && !is_fresh) {
+            is_fresh = true;
+            if (!factor(e)) return false;
+        }
+        before = left;
+        if (!improve(e, &is_fresh) || is_astray(e)) return false;
+        is_fresh = false;
+    }
+    resist(e);
+    return largest_left(e) <= e->enough;
+}
+
+// The equilibrium at the share that is let in, if there is a stable one near: how far
+// it is from the last, as a share of what an increment may be.
+static bool advance(struct equilibrium *e, double *moved)
+{
+    go_back(e);
+    e->damping = 0;
+    *moved = 4; // if it is not known
+    if (!large_approach(e)) return false;
+    *moved = furthest_since(e) / e->setup.increment;
+    return *moved <= 1 && factor(e);
+}
+
+// ---- the way ------------------------------------------------------------------------
+
+static void withhold(struct equilibrium *e)
+{
+    e->large->share = 1;
+    go_back(e);
+    resist(e);
+    memcpy(e->large->withheld, e->left, (size_t)e->n * sizeof *e->left);
+}
+
+// The grain that moves or turns most in the softest mode, found by inverse iteration.
+static int softest_grain(struct equilibrium *e)
+{
+    enum { ROUNDS = 8 };
+    int softest = 0;
+    for (int i = 0; i < e->n; i++)
+        e->step[i] = (struct displacement){{1, 0.7, 0.4 + i % 3}, {0.3, 0.6, 1}};
+    for (int round = 0; round < ROUNDS; round++) {
+        stiffness_begin(e->matrix, e->step);
+        stiffness_finish(e->matrix, e->step);
+        for (int i = softest = 0; i < e->n; i++)
+            if (size_of(e->step[i]) > size_of(e->step[softest])) softest = i;
+        const double size = size_of(e->step[softest]);
+        for (int i = 0; i < e->n; i++)
+            e->step[i] = (struct displacement){scale(1 / size, e->step[i].shift),
+                                               scale(1 / size, e->step[i].turn)};
+    }
+    return softest;
+}
+
+// Back at the last equilibrium, whose stiffness says what gave way.
+static enum status refuse_end(struct equilibrium *e, double reached,
+                              struct reason *reason)
+{
+    const bool is_unstable = e->large->is_unstable;
+    e->large->share = reached;
+    go_back(e);
+    resist(e);
+    factor(e);
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "equilibrium ends with %.6f of what this load changes: %s, grain %d "
+                  "moves most (engine=explicit follows what comes then)",
+                  reached,
+                  is_unstable ? "the stiffness is no longer positive (buckling, or a "
+                                "snap through)"
+                              : "none is found near the last",
+                  softest_grain(e));
+}
+
+enum status large_balance(struct equilibrium *e, struct reason *reason)
+{
+    struct large *large = e->large;
+    double reached = 0, increment = 1;
+    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    withhold(e);
+    while (reached < 1) {
+        large->is_least = increment <= least_increment;
+        large->share = fmin(1, reached + increment);
+        double moved;
+        if (advance(e, &moved)) {
+            keep_history(e);
+            reached = large->share;
+            increment = fmin(2, 0.8 / fmax(moved, 0.01)) * increment;
+            continue;
+        }
+        large->is_stale = true;
+        if (large->is_least) return refuse_end(e, reached, reason);
+        increment = fmin(increment, 1 - reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibrium where grains move and turn far (dem-replay, engine=quasi-static,
+// quasi_static.large_displacements) against chains integrated here, the Euler load of a
+// chain in closed form, turned scenes, energy, and discrete elements brought to rest.
+#include "dem-replay/equilibrium_state.h"
+#include "dem_scene.h"
+
+static const double bond_stiffness = 8e14; // N/m3
+static const double radius_fraction = 0.5858;
+
+static double bond_area(void)
+{
+    return M_PI * pow(radius_fraction * RADIUS, 2);
+}
+
+static double bending_stiffness(void) // k^n I
+{
+    return bond_stiffness * M_PI / 4 * pow(radius_fraction * RADIUS, 4);
+}
+
+// Without contacts, so that rows resist alike pushed and pulled.
+static struct equilibrium_setup setup_of(const struct packing *packing,
+                                         const uint8_t *fixed)
+{
+    return (struct equilibrium_setup){.packing = packing,
+                                      .fixed = fixed,
+                                      .bond = {.normal_stiffness = bond_stiffness,
+                                               .shear_stiffness = bond_stiffness,
+                                               .normal_strength = INFINITY,
+                                               .shear_strength = INFINITY,
+                                               .radius_fraction = radius_fraction},
+                                      .tolerance = 1e-10,
+                                      .most_iterations = 40,
+                                      .large_displacements = true,
+                                      .increment = 0.02};
+}
+
+static struct equilibrium *make(const struct equilibrium_setup *setup)
+{
+    struct equilibrium *equilibrium;
+    struct reason reason = {""};
+    if (equilibrium_new(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
+    return equilibrium;
+}
+
+static void find(struct equilibrium *equilibrium, const struct vector *force)
+{
+    struct reason reason = {""};
+    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+}
+
+// ---- a row bent far -----------------------------------------------------------------
+
+enum { HINGES = 10, ROW = HINGES + 1 };
+
+// A row in a plane held at its first grain, pulled at its last with FORCE at ANGLE to
+// it. Every bond carries that force. With the directions of bonds, gamma, known, so are
+// its stretch and, by the sum of moments from the end on, the turns of grains; its
+// shear is the sum of d (d gamma - mean turn) on the way.
+struct row {
+    double force, angle;
+    double direction[HINGES];
+};
+
+static void solve_dense(int n, double matrix[n][n], double *x)
+{
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k; i < n; i++)
+            if (fabs(matrix[i][k]) > fabs(matrix[best][k])) best = i;
+        for (int c = 0; c < n; c++) {
+            const double kept = matrix[k][c];
+            matrix[k][c] = matrix[best][c];
+            matrix[best][c] = kept;
+        }
+        const double kept = x[k];
+        x[k] = x[best];
+        x[best] = kept;
+        for (int i = k + 1; i < n; i++) {
+            const double factor = matrix[i][k] / matrix[k][k];
+            for (int c = k; c < n; c++)
+                matrix[i][c] -= factor * matrix[k][c];
+            x[i] -= factor * x[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int c = k + 1; c < n; c++)
+            x[k] -= matrix[k][c] * x[c];
+        x[k] /= matrix[k][k];
+    }
+}
+
+// d gamma / d force. Everything is linear in the rates: column c of the system is what
+// a rate of direction c alone makes of  k d (gamma' - mean turn') - q',  and the last
+// what the force's own growth makes of it.
+static void row_rates(const struct row *row, double rate[HINGES])
+{
+    const double glue = bond_stiffness * bond_area(), bend = bending_stiffness();
+    double system[HINGES][HINGES];
+    for (int c = 0; c <= HINGES; c++) {
+        double q_rate[HINGES], turn_rate[HINGES + 1] = {0}, bend_rate[HINGES], sum = 0;
+        double length[HINGES];
+        for (int b = HINGES - 1; b >= 0; b--) {
+            const double along = cos(row->angle - row->direction[b]);
+            const double across = sin(row->angle - row->direction[b]);
+            const double grows = c == HINGES, turns = b == c;
+            length[b] = 2 * RADIUS + row->force * along / glue;
+            const double longer = (grows * along + turns * row->force * across) / glue;
+            q_rate[b] = grows * across - turns * row->force * along;
+            const double moment_rate =
+                0.5 * (longer * row->force * across + length[b] * q_rate[b]);
+            bend_rate[b] = (sum + moment_rate) / bend;
+            sum += 2 * moment_rate;
+        }
+        for (int b = 0; b < HINGES; b++) {
+            turn_rate[b + 1] = turn_rate[b] + bend_rate[b];
+            const double mean = 0.5 * (turn_rate[b] + turn_rate[b + 1]);
+            const double value = glue * length[b] * ((b == c) - mean) - q_rate[b];
+            if (c < HINGES)
+                system[b][c] = value;
+            else
+                rate[b] = -value;
+        }
+    }
+    solve_dense(HINGES, system, rate);
+}
+
+// Runge and Kutta's way to the full FORCE.
+static struct row bent_row(double force, double angle, int steps)
+{
+    struct row row = {.angle = angle};
+    for (int k = 0; k < steps; k++) {
+        const double h = force / steps, at[4] = {0, 0.5, 0.5, 1};
+        const double weight[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+        double rate[HINGES] = {0}, sum[HINGES] = {0};
+        for (int stage = 0; stage < 4; stage++) {
+            struct row trial = row;
+            trial.force += at[stage] * h;
+            for (int b = 0; b < HINGES; b++)
+                trial.direction[b] += at[stage] * h * rate[b];
+            row_rates(&trial, rate);
+            for (int b = 0; b < HINGES; b++)
+                sum[b] += weight[stage] * h * rate[b];
+        }
+        for (int b = 0; b < HINGES; b++)
+            row.direction[b] += sum[b];
+        row.force += h;
+    }
+    return row;
+}
+
+static struct vector end_of(const struct row *row)
+{
+    const double glue = bond_stiffness * bond_area();
+    struct vector end = {0, 0, 0};
+    for (int b = 0; b < HINGES; b++) {
+        const double gamma = row->direction[b];
+        const double length = 2 * RADIUS + row->force * cos(row->angle - gamma) / glue;
+        end = add(end, (struct vector){length * cos(gamma), length * sin(gamma), 0});
+    }
+    end.x -= HINGES * 2 * RADIUS;
+    return end;
+}
+
+// Where the end of the row is by equilibria, over its radius off where it should be.
+static double row_error(double force, double angle, double increment)
+{
+    const struct row row = bent_row(force, angle, 400);
+    struct packing packing = cubic_lattice(ROW, 1, 1, false);
+    const uint8_t fixed[ROW] = {1};
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.increment = increment;
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector pull[ROW] = {{0, 0, 0}}, moved[ROW];
+    pull[ROW - 1] = (struct vector){force * cos(angle), force * sin(angle), 0};
+    find(equilibrium, pull);
+    equilibrium_displacements(equilibrium, moved);
+    const double error = distance(moved[ROW - 1], end_of(&row)) / RADIUS;
+    print_message(
+        "# row: end at (%g, %g) radii, turned %g rad; error %g, %d iterations\n",
+        moved[ROW - 1].x / RADIUS, moved[ROW - 1].y / RADIUS,
+        equilibrium->trial[ROW - 1].turn.z, error, equilibrium_iterations(equilibrium));
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+    return error;
+}
+
+// Its end turns by more than a right angle; the error falls with the square of the
+// increments.
+static void a_row_bent_far(void **state)
+{
+    (void)state;
+    const double unit = 2 * bending_stiffness() / (HINGES * HINGES * 2 * RADIUS);
+    const double angle = 0.6 * M_PI;
+    const double coarse = row_error(2.5 * unit, angle, 0.04);
+    const double fine = row_error(2.5 * unit, angle, 0.01);
+    assert_true(fine < 1e-9);
+    assert_true(fine < coarse / 8);
+}
+
+// ---- buckling -----------------------------------------------------------------------
+
+// A row held at its first grain and pushed at its end buckles where
+//     P c d = 4 B tan^2(pi / 4 N),  c = k A d / (k A d - P),  d = 2 r - P / k A
+// for N hinges: q_b = P gamma_b = k A d (gamma_b - mean turn) and the sum of moments
+// are solved by turns sin(b pi / 2 N).
+static double buckling_load(void)
+{
+    const double glue = bond_stiffness * bond_area();
+    const double wanted = 4 * bending_stiffness() * pow(tan(M_PI / 4 / HINGES), 2);
+    double low = 0, high = 0.25 * glue * 2 * RADIUS;
+    for (int k = 0; k < 200; k++) {
+        const double load = 0.5 * (low + high), d = 2 * RADIUS - load / glue;
+        const double bends = load * d * glue * d / (glue * d - load);
+        *(bends < wanted ? &low : &high) = load;
+    }
+    return low;
+}
+
+static void a_row_buckles(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(ROW, 1, 1, false);
+    const uint8_t fixed[ROW] = {1};
+    const struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct equilibrium *equilibrium = make(&setup);
+    const double load = buckling_load();
+    struct vector push[ROW] = {{0, 0, 0}};
+    struct reason reason = {""};
+    push[ROW - 1].x = -2 * load;
+    assert_int_equal(equilibrium_find(equilibrium, push, &reason),
+                     STATUS_NOT_CONVERGED);
+    print_message("# %s\n", reason.text);
+    print_message("# %.9f of the Euler load\n", 2 * equilibrium_share(equilibrium));
+    assert_true(fabs(2 * equilibrium_share(equilibrium) - 1) < 4e-6);
+    assert_non_null(strstr(reason.text, "grain 10 moves most"));
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+// ---- beside discrete elements -------------------------------------------------------
+
+enum { SIDE = 3, HIGH = 4, BLOCK = SIDE * SIDE * HIGH };
+
+// Squeezed from the sides, pulled up unevenly and twisted, SIZE N at most.
+static void load_block(struct vector force[BLOCK], double size)
+{
+    for (int i = 0; i < BLOCK; i++) {
+        const int x = i % SIDE - 1, y = i / SIDE % SIDE - 1;
+        force[i] = (struct vector){size * (-x - 0.5 * y), size * (0.3 * x - 0.7 * y),
+                                   0.1 * size * (1 + (i * 7) % 5)};
+    }
+}
+
+static double apart(const struct vector *a, const struct vector *b)
+{
+    double most = 0, size = 0;
+    for (int i = 0; i < BLOCK; i++) {
+        most = fmax(most, distance(a[i], b[i]));
+        size = fmax(size, norm(a[i]));
+    }
+    return most / size;
+}
+
+static double largest_turn(const struct equilibrium *equilibrium)
+{
+    double most = 0;
+    for (int i = 0; i < equilibrium->n; i++)
+        most = fmax(most, norm(equilibrium->trial[i].turn));
+    return most;
+}
+
+static void hold_bottom(uint8_t fixed[BLOCK])
+{
+    for (int i = 0; i < BLOCK; i++)
+        fixed[i] = i < SIDE * SIDE;
+}
+
+static struct equilibrium_setup block_setup(const struct packing *packing,
+                                            const uint8_t *fixed)
+{
+    struct equilibrium_setup setup = setup_of(packing, fixed);
+    setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
+    return setup;
+}
+
+// Where cycles come to rest under a load that grows so slowly that they follow the way
+// of equilibria: shear depends on the way.
+static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
+                           int steps, struct vector still[BLOCK])
+{
+    struct dem_setup slow = {.packing = setup->packing,
+                             .material = setup->material,
+                             .bond = setup->bond,
+                             .fixed = setup->fixed,
+                             .time_step_safety = 0.05,
+                             .threads = 1};
+    slow.material.density = 3230;
+    slow.material.damping_ratio = 0.7;
+    struct dem *dem;
+    struct reason reason = {""};
+    struct vector force[BLOCK];
+    if (dem_create(&dem, &slow, &reason)) fail_msg("%s", reason.text);
+    for (int step = 1; step <= steps; step++) {
+        load_block(force, size * step / steps);
+        dem_set_force(dem, force);
+        if (dem_run(dem, 50, &reason)) fail_msg("%s", reason.text);
+    }
+    if (dem_run_until(dem, 1e-10, 2000000, &reason)) fail_msg("%s", reason.text);
+    dem_displacements(dem, still);
+    dem_free(dem);
+}
+
+// Contacts push and open, grains turn by 0.009 to 0.33 rad.
+static void a_block_as_the_discrete_elements(void **state)
+{
+    (void)state;
+    const struct {
+        double size, turn;
+        int steps;
+    } run[] = {{5e-8, 0.0089, 1000}, {2.5e-7, 0.047, 1000}, {1.25e-6, 0.33, 8000}};
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium_setup setup = block_setup(&packing, fixed);
+    setup.increment = 0.002;
+    for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
+        struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
+        struct equilibrium *equilibrium = make(&setup);
+        load_block(force, run[k].size);
+        find(equilibrium, force);
+        equilibrium_displacements(equilibrium, moved);
+        assert_true(fabs(largest_turn(equilibrium) / run[k].turn - 1) < 0.01);
+        cycles_to_rest(&setup, run[k].size, run[k].steps, still);
+        const double error = apart(still, moved);
+        print_message("# block turned by %g rad: engines %g apart\n",
+                      largest_turn(equilibrium), error);
+        assert_true(error < 1e-6);
+        equilibrium_free(equilibrium);
+    }
+    packing_free(&packing);
+}
+
+// ---- symmetry and conservation ------------------------------------------------------
+
+static struct vector turned(struct vector a)
+{
+    const struct vector axis = {2. / 7, 3. / 7, 6. / 7};
+    const double angle = 1;
+    return add(scale(cos(angle), a), add(scale(sin(angle), cross(axis, a)),
+                                         scale((1 - cos(angle)) * dot(axis, a), axis)));
+}
+
+static void find_block(const struct packing *packing, bool is_turned, double friction,
+                       struct vector moved[BLOCK])
+{
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium_setup setup = block_setup(packing, fixed);
+    setup.material.friction = friction;
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector force[BLOCK];
+    for (int step = 1; step <= 4; step++) {
+        load_block(force, step * 3e-7);
+        for (int i = 0; i < BLOCK && is_turned; i++)
+            force[i] = turned(force[i]);
+        find(equilibrium, force);
+    }
+    assert_true(largest_turn(equilibrium) > 0.2);
+    int count, last;
+    assert_int_equal(equilibrium_restless(equilibrium, &last), 0);
+    free(equilibrium_contacts(equilibrium, &count));
+    equilibrium_displacements(equilibrium, moved);
+    equilibrium_free(equilibrium);
+}
+
+static void a_turned_scene_gives_the_same(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const double friction = 0.3 * k;
+        struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+        struct vector moved[BLOCK], expected[BLOCK];
+        find_block(&packing, false, friction, expected);
+        for (int i = 0; i < BLOCK; i++) {
+            expected[i] = turned(expected[i]);
+            packing.position[i] = turned(packing.position[i]);
+        }
+        find_block(&packing, true, friction, moved);
+        print_message("# turned by 1 rad, friction %g: %g apart\n", friction,
+                      apart(moved, expected));
+        assert_true(apart(moved, expected) < 1e-9);
+        packing_free(&packing);
+    }
+}
+
+static double stored(const struct equilibrium *equilibrium)
+{
+    double energy = 0;
+    for (int j = 0; j < equilibrium->n_joint; j++)
+        for (int k = 0; k < STRAINS; k++)
+            energy +=
+                0.5 * equilibrium->resistance[j].load[k] * equilibrium->strain[j][k];
+    return energy * equilibrium->stiffness * pow(equilibrium->length, 2);
+}
+
+// By how much the work of a load that grows in STEPS differs from what is stored, which
+// is given: F u(1) less the integral of F u, by Simpson's rule.
+static double work_not_stored(int steps, double *energy)
+{
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium_setup setup =
+        setup_of(&packing, fixed); // bonds alone are smooth
+    setup.increment = 0.1;
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector full[BLOCK], force[BLOCK], moved[BLOCK];
+    load_block(full, 1.2e-6);
+    double work = 0;
+    for (int step = 1; step <= steps; step++) {
+        for (int i = 0; i < BLOCK; i++)
+            force[i] = scale((double)step / steps, full[i]);
+        find(equilibrium, force);
+        equilibrium_displacements(equilibrium, moved);
+        const double weight = step == steps ? 1 - 1. / 3 / steps
+                              : step % 2    ? -4. / 3 / steps
+                                            : -2. / 3 / steps;
+        for (int i = 0; i < BLOCK; i++)
+            work += weight * dot(full[i], moved[i]);
+    }
+    *energy = stored(equilibrium);
+    print_message("# %d steps, turned by %g: stored %.9g J, work %g of it more\n",
+                  steps, largest_turn(equilibrium), *energy, work / *energy - 1);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+    return work - *energy;
+}
+
+// The midpoint rule's error falls with the square of the increments, to nothing.
+static void work_is_stored(void **state)
+{
+    (void)state;
+    double energy;
+    const double coarse = work_not_stored(32, &energy);
+    const double fine = work_not_stored(64, &energy);
+    print_message("# extrapolated: %g\n", (4 * fine - coarse) / 3 / energy);
+    assert_true(fabs(4 * fine - coarse) / 3 < 1e-8 * energy);
+    assert_true(fabs(fine) < fabs(coarse) / 3.5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_row_bent_far),
+        cmocka_unit_test(a_row_buckles),
+        cmocka_unit_test(a_block_as_the_discrete_elements),
+        cmocka_unit_test(a_turned_scene_gives_the_same),
+        cmocka_unit_test(work_is_stored),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("large displacements", tests, NULL, NULL);
+}
