@@ -13,8 +13,8 @@ static void multiply_tile(int k, const double *a, int a_stride, const double *pa
         for (int j = 0; j < WIDE; j++) {
             const double b = packed[WIDE * p + j];
             const four all = {b, b, b, b};
-            sum[j][0] += low * all;
-            sum[j][1] += high * all;
+            sum[j][0] = fused(low, all, sum[j][0]);
+            sum[j][1] = fused(high, all, sum[j][1]);
         }
         a += a_stride;
     }
@@ -23,18 +23,6 @@ static void multiply_tile(int k, const double *a, int a_stride, const double *pa
             c[j][i] = sum[j][0][i];
             c[j][4 + i] = sum[j][1][i];
         }
-}
-
-static void multiply_rest(int rows, int k, const double *a, int a_stride,
-                          const double *packed, double c[WIDE][HIGH])
-{
-    for (int j = 0; j < WIDE; j++)
-        for (int i = 0; i < rows; i++)
-            c[j][i] = 0;
-    for (int p = 0; p < k; p++)
-        for (int j = 0; j < WIDE; j++)
-            for (int i = 0; i < rows; i++)
-                c[j][i] += a[(long)p * a_stride + i] * packed[WIDE * p + j];
 }
 
 void multiply_transposed(int m, int n, int k, const double *a, int a_stride,
@@ -49,10 +37,7 @@ void multiply_transposed(int m, int n, int k, const double *a, int a_stride,
         for (int i = lower ? j : 0; i < m; i += HIGH) {
             const int rows = m - i < HIGH ? m - i : HIGH;
             double tile[WIDE][HIGH];
-            if (rows == HIGH)
-                multiply_tile(k, a + i, a_stride, work, tile);
-            else
-                multiply_rest(rows, k, a + i, a_stride, work, tile);
+            multiply_tile(k, a + i, a_stride, work, tile);
             for (int l = 0; l < columns; l++)
                 for (int r = 0; r < rows; r++)
                     c[(long)(j + l) * c_stride + i + r] = tile[l][r];

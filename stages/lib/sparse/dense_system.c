@@ -31,7 +31,7 @@ static bool factor_panel(int n, double *matrix, int stride, int *row, int first,
             double *other = row_of(matrix, stride, row, r);
             other[k] /= above[k];
             for (int l = k + 1; l < end; l++)
-                other[l] -= other[k] * above[l];
+                other[l] = fma(-other[k], above[l], other[l]);
         }
     }
     return true;
@@ -43,8 +43,9 @@ static void take_off(int first, int n, double *restrict row, const double factor
 {
     const double *const a[WIDE] = {above[0], above[1], above[2], above[3]};
     for (int l = first; l < n; l++)
-        row[l] -= (factor[0] * a[0][l] + factor[1] * a[1][l]) +
-                  (factor[2] * a[2][l] + factor[3] * a[3][l]);
+        row[l] = fma(-factor[3], a[3][l],
+                     fma(-factor[2], a[2][l],
+                         fma(-factor[1], a[1][l], fma(-factor[0], a[0][l], row[l]))));
 }
 
 bool dense_factor(int n, double *matrix, int stride, int *row)
@@ -60,7 +61,7 @@ bool dense_factor(int n, double *matrix, int stride, int *row)
             above[k] = row_of(matrix, stride, row, first + k);
             for (int i = 0; i < k; i++)
                 for (int l = end; l < n; l++)
-                    above[k][l] -= above[k][first + i] * above[i][l];
+                    above[k][l] = fma(-above[k][first + i], above[i][l], above[k][l]);
         }
         for (int r = end; r < n; r++) {
             double *other = row_of(matrix, stride, row, r);

@@ -34,7 +34,7 @@ static void copy_supernodes(struct supernodal *f, const cholmod_factor *analysed
         if (super->columns > f->widest) f->widest = super->columns;
         if (super->rows > f->tallest) f->tallest = super->rows;
     }
-    f->panels = NEW_ARRAY(double, f->size + 4);
+    f->panels = NEW_ARRAY(double, f->size + 8);
     double *panel = f->panels;
     for (int s = 0; s < f->n_super; s++) {
         struct supernode *super = &f->super[s];
@@ -145,7 +145,7 @@ static bool factor_columns(const struct supernode *super, int first, int end,
         for (int l = j + 1; l < end; l++) {
             double *other = super->panel + (long)l * super->rows;
             for (int i = l; i < super->rows; i++)
-                other[i] -= column[i] * column[l];
+                other[i] = fma(-column[l], column[i], other[i]);
         }
     }
     return true;

@@ -24,10 +24,10 @@ forward_columns(const struct supernode *super, int first, int wide, double *rest
         x[first + j] = own[j];
     }
     for (int i = first + wide; i < rows; i++) {
-        double sum = 0;
+        double left = x[i];
         for (int j = 0; j < wide; j++)
-            sum += panel[(long)j * rows + i] * own[j];
-        x[i] -= sum;
+            left = fma(-panel[(long)j * rows + i], own[j], left);
+        x[i] = left;
     }
 }
 
@@ -41,12 +41,13 @@ backward_columns(const struct supernode *super, int first, int wide, double *res
     int i = begin;
     for (; i + 4 <= rows; i += 4)
         for (int j = 0; j < wide; j++)
-            sum[j] += load_four(panel + (long)j * rows + i) * load_four(x + i);
+            sum[j] =
+                fused(load_four(panel + (long)j * rows + i), load_four(x + i), sum[j]);
     for (int j = 0; j < wide; j++)
         own[j] = (sum[j][0] + sum[j][1]) + (sum[j][2] + sum[j][3]);
     for (; i < rows; i++)
         for (int j = 0; j < wide; j++)
-            own[j] += panel[(long)j * rows + i] * x[i];
+            own[j] = fma(panel[(long)j * rows + i], x[i], own[j]);
     for (int j = wide - 1; j >= 0; j--) {
         double left = x[first + j] - own[j];
         for (int l = j + 1; l < wide; l++)
