@@ -114,6 +114,7 @@ static enum outcome include_joints(struct equilibrium *e, const double (*more)[S
                                    bool *is_new)
 {
     const int before = corrections_count(e->corrections);
+    int count = 0;
     for (int j = 0; j < e->n_joint; j++) {
         enum touch touch = e->resistance[j].contact.touch;
         int strains = strains_unlike(e, j, touch);
@@ -124,9 +125,9 @@ static enum outcome include_joints(struct equilibrium *e, const double (*more)[S
             touch = joint_resistance(&e->joint[j], strain).contact.touch;
             strains = strains_unlike(e, j, touch);
         }
-        if (strains > 0 && !corrections_add(e->corrections, j, strains))
-            return TOO_MANY;
+        if (strains > 0) e->unlike[count++] = (struct correction){j, strains};
     }
+    if (!corrections_add(e->corrections, count, e->unlike)) return TOO_MANY;
     *is_new = corrections_count(e->corrections) > before;
     return FOUND;
 }

@@ -134,7 +134,7 @@ static void fill_compliance(struct corrections *c, const struct addition *new)
     c->work += (double)columns * new->halves.size *(c->count + new->halves.size);
     for (int k = 0; k < c->n_addition; k++) {
         const struct addition *other = &c->addition[k];
-        double product[MOST_HALVES * MOST_HALVES];
+        double product[LANES * LANES];
         stiffness_product(c->stiffness, &other->halves, &new->halves, product);
         for (int i = 0; i < other->halves.columns; i++)
             for (int j = 0; j < columns; j++) {
@@ -146,27 +146,50 @@ static void fill_compliance(struct corrections *c, const struct addition *new)
     }
 }
 
-bool corrections_add(struct corrections *c, int joint, int strains)
+// Rows for strains of one joint; how many.
+static int add_rows(struct corrections *c, const struct correction *new,
+                    struct unit_load *load)
 {
-    if (c->of[joint] < 0) {
-        GROW_ARRAY(c->entry, c->n_entry, c->entry_capacity);
-        c->entry[c->n_entry] = (struct entry){.joint = joint};
-        c->of[joint] = c->n_entry++;
-    }
-    struct entry *entry = &c->entry[c->of[joint]];
-    const int first = entry->count, new = strains - first;
-    if (new <= 0) return true;
-    if (c->count + new > MOST) return false;
-    if (c->count + new > c->capacity) make_room(c);
-    GROW_ARRAY(c->addition, c->n_addition, c->addition_capacity);
-    c->addition[c->n_addition++] =
-        (struct addition){c->count, stiffness_halves(c->stiffness, joint, first, new)};
-    for (; entry->count < strains; entry->count++, c->count++) {
+    struct entry *entry = &c->entry[c->of[new->joint]];
+    int count = 0;
+    for (; entry->count < new->strains; entry->count++, c->count++) {
+        load[count++] = (struct unit_load){new->joint, entry->count};
         entry->row[entry->count] = c->count;
-        c->entry_of[c->count] = c->of[joint];
+        c->entry_of[c->count] = c->of[new->joint];
         c->strain_of[c->count] = entry->count;
     }
-    fill_compliance(c, &c->addition[c->n_addition - 1]);
+    return count;
+}
+
+static int rows_of(struct corrections *c, const struct correction *new)
+{
+    if (c->of[new->joint] < 0) {
+        GROW_ARRAY(c->entry, c->n_entry, c->entry_capacity);
+        c->entry[c->n_entry] = (struct entry){.joint = new->joint};
+        c->of[new->joint] = c->n_entry++;
+    }
+    const int more = new->strains - c->entry[c->of[new->joint]].count;
+    return more > 0 ? more : 0;
+}
+
+// As many at once as there are lanes.
+bool corrections_add(struct corrections *c, int count, const struct correction *new)
+{
+    for (int k = 0; k < count;) {
+        struct unit_load load[LANES];
+        const int first = c->count;
+        int loads = 0;
+        for (; k < count && loads + rows_of(c, &new[k]) <= LANES; k++) {
+            if (c->count + LANES > MOST) return false;
+            if (c->count + LANES > c->capacity) make_room(c);
+            loads += add_rows(c, &new[k], load + loads);
+        }
+        if (loads == 0) continue;
+        GROW_ARRAY(c->addition, c->n_addition, c->addition_capacity);
+        c->addition[c->n_addition++] =
+            (struct addition){first, stiffness_halves(c->stiffness, loads, load)};
+        fill_compliance(c, &c->addition[c->n_addition - 1]);
+    }
     return true;
 }
 
@@ -500,7 +523,7 @@ void corrections_take_off(const struct corrections *c, double share,
 {
     for (int k = 0; k < c->n_addition; k++) {
         const struct addition *addition = &c->addition[k];
-        double load[MOST_HALVES];
+        double load[LANES];
         for (int l = 0; l < addition->halves.columns; l++)
             load[l] = share * c->more[addition->first + l];
         stiffness_take_off(c->stiffness, &addition->halves, load);

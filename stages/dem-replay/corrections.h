@@ -23,9 +23,13 @@ void corrections_free(struct corrections *corrections);
 // None, after a new factor.
 void corrections_clear(struct corrections *corrections);
 
-// The first STRAINS of JOINT, unless they are in already. False: there are too many,
-// and a new factor is due.
-bool corrections_add(struct corrections *corrections, int joint, int strains);
+// Of COUNT joints the first STRAINS, unless they are in already. False: there are too
+// many, and a new factor is due.
+struct correction {
+    int32_t joint, strains;
+};
+bool corrections_add(struct corrections *corrections, int count,
+                     const struct correction *new);
 int corrections_count(const struct corrections *corrections); // of strains
 
 // Multiplications spent on dense systems since there were no corrections.

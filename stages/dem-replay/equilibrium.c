@@ -70,6 +70,7 @@ enum status equilibrium_new(struct equilibrium **result,
     e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
     e->factored = NEW_ARRAY(struct factored, e->n_joint);
     e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
+    e->unlike = NEW_ARRAY(struct correction, e->n_joint);
     struct displacement **const of_grains[] = {
         &e->trial, &e->load, &e->dashpots, &e->left, &e->step, &e->before, &e->rest};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
@@ -94,7 +95,7 @@ void equilibrium_free(struct equilibrium *e)
     void *const owned[] = {e->joint,   e->strain, e->more,     e->resistance,
                            e->trial,   e->load,   e->dashpots, e->left,
                            e->step,    e->before, e->tangent,  e->factored,
-                           e->is_gone, e->crack,  e->rest};
+                           e->is_gone, e->crack,  e->rest,     e->unlike};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);

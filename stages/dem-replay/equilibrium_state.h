@@ -53,6 +53,7 @@ struct equilibrium {
     double (*tangent)[STRAINS]; // (n_joint) in the factor
     struct factored *factored;  // (n_joint)
     struct corrections *corrections;
+    struct correction *unlike; // (n_joint) that have to be
     double soft;
     double largest_load; // so far: what is left is measured by it
     double enough;       // what may be left

@@ -266,23 +266,24 @@ void stiffness_take_off(struct stiffness *s, const struct halves *halves,
     halves_take_off(s->factor, halves, load, s->left);
 }
 
-struct halves stiffness_halves(struct stiffness *s, int j, int first, int count)
+struct halves stiffness_halves(struct stiffness *s, int count,
+                               const struct unit_load *load)
 {
-    const struct joint *joint = &s->joint[j];
-    double value[STRAINS * 2 * DEGREES];
-    int index[2 * DEGREES], rows = 0, grain[2], ends = 0;
-    for (int end = 0; end < 2; end++) {
-        if (joint->grain[end] < 0 || s->number[joint->grain[end]] < 0) continue;
-        grain[ends++] = end;
-        for (int r = 0; r < DEGREES; r++)
-            index[rows++] = s->number[joint->grain[end]] * DEGREES + r;
-    }
+    enum { ENDS = 2 * DEGREES };
+    double value[LANES * ENDS];
+    int index[LANES * ENDS];
     for (int k = 0; k < count; k++)
-        for (int m = 0; m < ends; m++) {
-            const struct displacement arm = joint_arm(joint, grain[m], first + k);
-            memcpy(value + k * rows + m * DEGREES, &arm, sizeof arm);
+        for (int end = 0; end < 2; end++) {
+            const struct joint *joint = &s->joint[load[k].joint];
+            const int32_t grain = joint->grain[end];
+            const int number = grain < 0 ? -1 : s->number[grain];
+            const struct displacement arm = joint_arm(joint, end, load[k].strain);
+            const int first = k * ENDS + end * DEGREES;
+            memcpy(value + first, &arm, sizeof arm);
+            for (int r = 0; r < DEGREES; r++)
+                index[first + r] = number < 0 ? -1 : number * DEGREES + r;
         }
-    return s->n_moving > 0 ? supernodal_halves(s->factor, count, rows, index, value)
+    return s->n_moving > 0 ? supernodal_halves(s->factor, count, ENDS, index, value)
                            : (struct halves){.columns = count};
 }
 

@@ -30,16 +30,19 @@ bool stiffness_is_positive(const struct stiffness *stiffness);
 void stiffness_begin(struct stiffness *stiffness, const struct displacement *load);
 void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
-// Halves of the answers to COUNT unit loads of JOINT from strain FIRST on. The product
-// of halves of two joints is how the strains of the one answer loads of the other. The
-// caller frees them with halves_free.
-struct halves stiffness_halves(struct stiffness *stiffness, int joint, int first,
-                               int count);
+// Halves of the answers to COUNT unit loads, LANES at most. The product of halves is
+// how the strains of the ones answer loads of the others. The caller frees them with
+// halves_free.
+struct unit_load {
+    int32_t joint, strain;
+};
+struct halves stiffness_halves(struct stiffness *stiffness, int count,
+                               const struct unit_load *load);
 void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
                        const struct halves *b, double *product);
 
-// How the load that was begun with, whole, strains the joint of HALVES: STRAIN for each
-// of them. And takes those unit loads times LOAD off it.
+// How the load that was begun with, whole, strains the joints of HALVES: STRAIN for
+// each of them. And takes those unit loads times LOAD off it.
 void stiffness_strain(const struct stiffness *stiffness, const struct halves *halves,
                       double *strain);
 void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves,

@@ -95,7 +95,7 @@ static void halves_make_the_same_products(void **state)
     struct springs *s = make_springs(0.1);
     struct supernodal *factor = supernodal_new(N, s->start, s->row);
     assert_true(supernodal_factor(factor, s->value));
-    const int index[2][3] = {{3, 77, 500}, {78, 3, 700}};
+    const int index[2][6] = {{3, 77, 500, 3, 77, 500}, {78, 3, 700, 78, 3, 700}};
     const double value[2][6] = {{1, 2, -1, 0.5, 0, 3}, {-1, 1, 2, 4, 0.1, 0}};
     struct halves halves[2];
     for (int k = 0; k < 2; k++)

@@ -17,6 +17,11 @@ static inline four load_four(const double *from)
     return *(const four *)from;
 }
 
+static inline void store_four(double *to, four a)
+{
+    *(four *)to = a;
+}
+
 // A B + C, written out, as compilers do not contract alike.
 static inline four fused(four a, four b, four c)
 {

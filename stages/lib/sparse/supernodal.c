@@ -102,20 +102,17 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     f->work = NEW_ARRAY(double, ((size_t)f->tallest + 4) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->is_on_way = NEW_ARRAY(bool, f->n_super);
-    for (int k = 0; k < MOST_HALVES; k++)
-        f->column[k] = NEW_ARRAY(double, n);
+    f->lanes = NEW_ARRAY(double, (size_t)n *LANES);
     return f;
 }
 
 void supernodal_free(struct supernodal *f)
 {
     if (!f) return;
-    void *const owned[] = {f->super,  f->super_of, f->place, f->row,      f->panels,
-                           f->target, f->work,     f->local, f->is_on_way};
+    void *const owned[] = {f->super,  f->super_of, f->place, f->row,       f->panels,
+                           f->target, f->work,     f->local, f->is_on_way, f->lanes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
-    for (int k = 0; k < MOST_HALVES; k++)
-        free(f->column[k]);
     free(f);
 }
 

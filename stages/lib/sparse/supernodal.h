@@ -31,19 +31,26 @@ double supernodal_work(const struct supernodal *factor);
 void supernodal_forward(struct supernodal *factor, const double *x, double *half);
 void supernodal_backward(struct supernodal *factor, const double *half, double *x);
 
+// The same of LANES right-hand sides side by side: X, HALF (n * LANES). What HALF was
+// is gone after the second.
+enum { LANES = 8 };
+void supernodal_forward_lanes(const struct supernodal *factor, const double *x,
+                              double *half);
+void supernodal_backward_lanes(const struct supernodal *factor, double *half,
+                               double *x);
+
 // L^-1 of sparse right-hand sides: not 0 only on the way from their rows to the root of
 // the elimination tree. Products of such halves are entries of B^T A^-1 B.
-enum { MOST_HALVES = 6 };
-
 struct halves {
-    int columns;
+    int columns;         // LANES at most
+    int lanes;           // that they take
     int n_super, *super; // the way, in ascending order
     int size;            // of a column
-    double *value;       // (columns * size)
+    double *value;       // (size * lanes)
 };
 
-// Of COLUMNS right-hand sides with VALUE[column * COUNT + k] in row INDEX[k]. The
-// caller frees it with halves_free.
+// Of COLUMNS right-hand sides with VALUE[k] in row INDEX[k], COUNT of each; of a row -1
+// nothing. The caller frees it with halves_free.
 struct halves supernodal_halves(struct supernodal *factor, int columns, int count,
                                 const int *index, const double *value);
 void halves_free(struct halves *halves);
@@ -58,5 +65,10 @@ void halves_apply(const struct supernodal *factor, const struct halves *halves,
                   const double *half, double *product);
 void halves_take_off(const struct supernodal *factor, const struct halves *halves,
                      const double *share, double *half);
+// The same for HALF (n * LANES), PRODUCT and SHARE (columns * LANES).
+void halves_apply_lanes(const struct supernodal *factor, const struct halves *halves,
+                        const double *half, double *product);
+void halves_take_off_lanes(const struct supernodal *factor, const struct halves *halves,
+                           const double *share, double *half);
 
 #endif

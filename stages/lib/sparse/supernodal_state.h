@@ -23,19 +23,22 @@ struct supernodal {
     int *place;    // (n) in the factor, of the caller's rows
     int *row;      // of all supernodes
     double *panels;
-    size_t size;                 // of all panels
-    int n_entry;                 // of the matrix
-    long *target;                // (n_entry) in the panels, or -1
-    int widest;                  // most columns of a supernode
-    int tallest;                 // most rows
-    double *work;                // (tallest * widest) and (4 widest)
-    double *column[MOST_HALVES]; // (n), of zeros between calls
-    int *local;                  // (tallest)
-    bool *is_on_way;             // (n_super), false between calls
+    size_t size;     // of all panels
+    int n_entry;     // of the matrix
+    long *target;    // (n_entry) in the panels, or -1
+    int widest;      // most columns of a supernode
+    int tallest;     // most rows
+    double *work;    // (tallest * widest) and (4 widest)
+    double *lanes;   // (n * LANES), of zeros between calls
+    int *local;      // (tallest)
+    bool *is_on_way; // (n_super), false between calls
 };
 
 // X (n), in the order of the factor, becomes L^-1 X as far as SUPER is concerned.
 void forward_through(struct supernodal *factor, const struct supernode *super,
                      double *x);
+// The same with four or eight lanes a row.
+void forward_four(const struct supernode *super, double *x);
+void forward_eight(const struct supernode *super, double *x);
 
 #endif
