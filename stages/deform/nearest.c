@@ -1,57 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "nearest.h"
 
-#include "basics/memory.h"
-
 #include <stdlib.h>
-
-static int cell_along(const struct places *places, int axis, struct vector x)
-{
-    const int count = places->count[axis];
-    double at = (component(x, axis) - component(places->packing->lower, axis)) /
-                places->width[axis];
-    if (places->packing->periodic[axis]) at -= count * floor(at / count);
-    return (int)fmin(fmax(at, 0), count - 1);
-}
-
-static int cell_number(const struct places *places, const int cell[3])
-{
-    return (cell[0] * places->count[1] + cell[1]) * places->count[2] + cell[2];
-}
-
-static int cell_of(const struct places *places, struct vector x)
-{
-    int cell[3];
-    for (int axis = 0; axis < 3; axis++)
-        cell[axis] = cell_along(places, axis, x);
-    return cell_number(places, cell);
-}
 
 struct places places_make(const struct packing *packing, int n, const struct vector *at)
 {
-    struct places places = {.packing = packing, .n = n, .at = at};
-    const int along = (int)fmin(512, fmax(1, floor(cbrt(n / 2.0))));
     const struct vector edge = subtract(packing->upper, packing->lower);
+    struct box_of_places box = {{0}, {0}};
     for (int axis = 0; axis < 3; axis++) {
-        places.count[axis] = along;
-        places.width[axis] = component(edge, axis) / along;
+        box.lower[axis] = component(packing->lower, axis);
+        if (packing->periodic[axis]) box.period[axis] = component(edge, axis);
     }
-    const int n_cell = along * along * along;
-    places.offset = NEW_ARRAY(int, n_cell + 2);
-    places.member = NEW_ARRAY(int, n);
-    for (int i = 0; i < n; i++)
-        places.offset[cell_of(&places, at[i]) + 2]++;
-    for (int c = 0; c < n_cell; c++)
-        places.offset[c + 2] += places.offset[c + 1];
-    for (int i = 0; i < n; i++)
-        places.member[places.offset[cell_of(&places, at[i]) + 1]++] = i;
-    return places;
+    const double two = 2 * (edge.x * edge.y * edge.z) / fmax(n, 1); // places a cell
+    return (struct places){packing, at,
+                           linked_cells_make(&box, n, at, 0, NULL, cbrt(two))};
 }
 
 void places_free(struct places *places)
 {
-    free(places->offset);
-    free(places->member);
+    linked_cells_free(&places->cells);
     *places = (struct places){0};
 }
 
@@ -80,18 +47,19 @@ struct search {
 static void look_in(struct search *search, const int cell[3])
 {
     const struct places *places = search->places;
+    const struct linked_cells *cells = &places->cells;
     int in[3];
     for (int axis = 0; axis < 3; axis++) {
-        const int count = places->count[axis];
+        const int count = cells->count[axis];
         in[axis] = cell[axis];
-        if (places->packing->periodic[axis])
+        if (cells->repeats[axis])
             in[axis] = (cell[axis] % count + count) % count;
         else if (cell[axis] < 0 || cell[axis] >= count)
             return;
     }
-    const int c = cell_number(places, in);
-    for (int k = places->offset[c]; k < places->offset[c + 1]; k++) {
-        const int i = places->member[k];
+    const int c = cell_number(cells, in);
+    for (int k = cells->offset[c]; k < cells->offset[c + 1]; k++) {
+        const int i = cells->member[k];
         const double here = apart(places->packing, search->from, places->at[i]);
         if (here < search->least || (here == search->least && i < search->nearest)) {
             search->least = here;
@@ -114,12 +82,13 @@ static void look_around(struct search *search, const int centre[3], int ring)
 int nearest_place(const struct places *places, struct vector from)
 {
     struct search search = {places, from, -1, HUGE_VAL};
+    const struct linked_cells *cells = &places->cells;
     int centre[3], most = 0;
     double width = HUGE_VAL;
     for (int axis = 0; axis < 3; axis++) {
-        centre[axis] = cell_along(places, axis, from);
-        most = places->count[axis] > most ? places->count[axis] : most;
-        width = fmin(width, places->width[axis]);
+        centre[axis] = cell_along(cells, axis, component(from, axis));
+        most = cells->count[axis] > most ? cells->count[axis] : most;
+        width = fmin(width, 1 / cells->per_length[axis]);
     }
     // What lies in the next ring is at least RING cells away.
     for (int ring = 0; ring <= most; ring++) {

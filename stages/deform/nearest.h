@@ -3,15 +3,13 @@
 #ifndef CRAQUELURE_NEAREST_H
 #define CRAQUELURE_NEAREST_H
 
+#include "geometry/linked_cells.h"
 #include "geometry/packing.h"
 
 struct places {
     const struct packing *packing; // its box
-    int n;
-    const struct vector *at; // (n) m
-    int count[3];            // cells
-    double width[3];         // of a cell, m
-    int *offset, *member;    // those of cell c are member[offset[c]] ..
+    const struct vector *at;       // m
+    struct linked_cells cells;
 };
 
 // O(n). PACKING and AT must last as long. The caller frees it with places_free.

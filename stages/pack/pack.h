@@ -110,9 +110,4 @@ void bond_touching(struct packing *packing, double gap);
 // Void share of the box, counting overlaps twice as solid.
 double packing_porosity(const struct packing *packing);
 
-// Largest overlap, of the smaller radius, and the mean number of touching neighbours
-// (within GAP radius sums).
-void packing_contacts(const struct packing *packing, double gap, double *max_overlap,
-                      double *coordination);
-
 #endif

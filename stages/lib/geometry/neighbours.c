@@ -2,6 +2,7 @@
 #include "geometry/neighbours.h"
 
 #include "basics/memory.h"
+#include "geometry/linked_cells.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -18,11 +19,8 @@ struct member {
 // The spheres of one level of sizes, in cells at least as wide as two of the largest
 // reaches among them, so that whoever is no larger meets them in neighbouring cells.
 struct grid {
-    int count[3];
-    double lower[3], cells_per_length[3];
-    bool repeats[3];
-    int *offset;           // (cells+1) into member
-    struct member *member; // by cell
+    struct linked_cells cells;
+    struct member *member; // in the order of the cells, side by side in memory
 };
 
 struct pairs {
@@ -30,91 +28,43 @@ struct pairs {
     int count, capacity;
 };
 
-static int cell_along(const struct grid *grid, int axis, double x)
-{
-    double at = (x - grid->lower[axis]) * grid->cells_per_length[axis];
-    if (grid->repeats[axis]) at -= grid->count[axis] * floor(at / grid->count[axis]);
-    return (int)fmin(fmax(at, 0), grid->count[axis] - 1);
-}
-
-static int cell_of(const struct grid *grid, struct vector position)
-{
-    int cell = 0;
-    for (int axis = 0; axis < 3; axis++)
-        cell = cell * grid->count[axis] +
-               cell_along(grid, axis, component(position, axis));
-    return cell;
-}
-
-// The box of the spheres, or of the period, in cells of WIDTH or more; about as many
-// cells as MEMBERS at most.
-static void size_grid(struct grid *grid, const struct spheres *all, double width,
-                      int members)
-{
-    double length[3];
-    for (int axis = 0; axis < 3; axis++) {
-        double lower = INFINITY, upper = -INFINITY;
-        for (int i = 0; i < all->count; i++) {
-            lower = fmin(lower, component(all->position[i], axis));
-            upper = fmax(upper, component(all->position[i], axis));
-        }
-        grid->repeats[axis] = all->period[axis] > 0;
-        if (grid->repeats[axis]) {
-            lower = all->lower[axis];
-            upper = lower + all->period[axis];
-        }
-        grid->lower[axis] = lower;
-        length[axis] = fmax(upper - lower, width);
-        grid->count[axis] = (int)fmin(floor(length[axis] / width), 1 << 20);
-    }
-    while ((double)grid->count[0] * grid->count[1] * grid->count[2] >
-           2.0 * members + 64) {
-        int longest = 0;
-        for (int axis = 1; axis < 3; axis++)
-            if (grid->count[axis] > grid->count[longest]) longest = axis;
-        grid->count[longest] = (grid->count[longest] + 1) / 2;
-    }
-    for (int axis = 0; axis < 3; axis++)
-        grid->cells_per_length[axis] = grid->count[axis] / length[axis];
-}
-
 static struct grid fill_grid(const struct spheres *all, const uint8_t *level, int which,
                              double width)
 {
-    struct grid grid = {0};
     int members = 0;
+    int *chosen = NEW_ARRAY(int, all->count);
     for (int i = 0; i < all->count; i++)
-        members += level[i] == which;
-    size_grid(&grid, all, width, members);
-    const int cells = grid.count[0] * grid.count[1] * grid.count[2];
-    grid.offset = NEW_ARRAY(int, cells + 2);
-    grid.member = NEW_ARRAY(struct member, members);
-    int *cell = NEW_ARRAY(int, all->count);
-    for (int i = 0; i < all->count; i++) {
-        if (level[i] != which) continue;
-        cell[i] = cell_of(&grid, all->position[i]);
-        grid.offset[cell[i] + 2]++;
+        if (level[i] == which) chosen[members++] = i;
+    struct box_of_places box;
+    memcpy(box.lower, all->lower, sizeof box.lower);
+    memcpy(box.period, all->period, sizeof box.period);
+    struct grid grid = {
+        linked_cells_make(&box, all->count, all->position, members, chosen, width),
+        NEW_ARRAY(struct member, members)};
+    for (int k = 0; k < members; k++) {
+        const int i = grid.cells.member[k];
+        grid.member[k] = (struct member){all->position[i], all->reach[i], i};
     }
-    for (int c = 0; c < cells; c++)
-        grid.offset[c + 2] += grid.offset[c + 1];
-    // Filling moves each offset one on, so that cell c ends where c + 1 begins.
-    for (int i = 0; i < all->count; i++)
-        if (level[i] == which)
-            grid.member[grid.offset[cell[i] + 1]++] =
-                (struct member){all->position[i], all->reach[i], i};
-    free(cell);
+    free(chosen);
     return grid;
 }
 
-// The cells around X along an axis, each once; how many.
-static int cells_around(const struct grid *grid, int axis, double x, int around[3])
+static void free_grid(struct grid *grid)
 {
-    const int count = grid->count[axis], cell = cell_along(grid, axis, x);
+    linked_cells_free(&grid->cells);
+    free(grid->member);
+}
+
+// The cells around X along an axis, each once; how many.
+static int cells_around(const struct linked_cells *cells, int axis, double x,
+                        int around[3])
+{
+    const int count = cells->count[axis], cell = cell_along(cells, axis, x);
     int n = 0;
     for (int step = -1; step <= 1; step++) {
-        if (grid->repeats[axis] && n < count)
+        if (cells->repeats[axis] && n < count)
             around[n++] = (cell + step + count) % count;
-        else if (!grid->repeats[axis] && cell + step >= 0 && cell + step < count)
+        else if (!cells->repeats[axis] && cell + step >= 0 && cell + step < count)
             around[n++] = cell + step;
     }
     return n;
@@ -140,12 +90,12 @@ static void meet_grid(const struct spheres *all, const struct grid *grid, int i,
     const struct vector from = all->position[i];
     int around[3][3], n[3];
     for (int axis = 0; axis < 3; axis++)
-        n[axis] = cells_around(grid, axis, component(from, axis), around[axis]);
+        n[axis] = cells_around(&grid->cells, axis, component(from, axis), around[axis]);
     for (int k = 0; k < n[0] * n[1] * n[2]; k++) {
-        const int x = around[0][k / (n[1] * n[2])], y = around[1][k / n[2] % n[1]];
-        const int cell =
-            (x * grid->count[1] + y) * grid->count[2] + around[2][k % n[2]];
-        for (int m = grid->offset[cell]; m < grid->offset[cell + 1]; m++) {
+        const int cell = cell_number(&grid->cells, (int[]){around[0][k / (n[1] * n[2])],
+                                                           around[1][k / n[2] % n[1]],
+                                                           around[2][k % n[2]]});
+        for (int m = grid->cells.offset[cell]; m < grid->cells.offset[cell + 1]; m++) {
             const int j = grid->member[m].index;
             if (own_level && j <= i) continue;
             if (!is_near(all, &grid->member[m], from, all->reach[i])) continue;
@@ -237,10 +187,8 @@ int32_t (*near_pairs(const struct spheres *all, int *count))[2]
             for (int l = level[i]; l >= 0; l--)
                 meet_grid(all, &grid[l], i, l == level[i], &part[t]);
 
-    for (int l = 0; l < levels; l++) {
-        free(grid[l].offset);
-        free(grid[l].member);
-    }
+    for (int l = 0; l < levels; l++)
+        free_grid(&grid[l]);
     free(level);
     int32_t(*pair)[2] = merge(part, parts, all->count, count);
     free(part);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Places sorted into cubic cells of a box that may repeat.
+#ifndef CRAQUELURE_LINKED_CELLS_H
+#define CRAQUELURE_LINKED_CELLS_H
+
+#include "geometry/vector.h"
+
+#include <stdbool.h>
+
+// The box along each axis: PERIOD 0 where it does not repeat, and then as wide as the
+// places in it.
+struct box_of_places {
+    double lower[3], period[3]; // m
+};
+
+struct linked_cells {
+    int count[3];
+    double lower[3], per_length[3];
+    bool repeats[3];
+    int *offset, *member; // places of cell c are member[offset[c]] ..., rising
+};
+
+// Those of N places that CHOSEN (NULL: all) lists, N_CHOSEN of them, rising, in cells
+// of WIDTH > 0 or more, about as many as places at most. O(n). The caller frees it with
+// linked_cells_free.
+struct linked_cells linked_cells_make(const struct box_of_places *box, int n,
+                                      const struct vector *place, int n_chosen,
+                                      const int *chosen, double width);
+void linked_cells_free(struct linked_cells *cells);
+
+// Which cell X lies in along AXIS; beyond the cells the last one, unless they repeat.
+int cell_along(const struct linked_cells *cells, int axis, double x);
+
+int cell_number(const struct linked_cells *cells, const int cell[3]);
+
+#endif
