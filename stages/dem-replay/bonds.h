@@ -28,9 +28,17 @@ struct strength_scatter {
     int64_t seed;
 };
 
-// The strength of each bond over the mean, (N_BOND), that the caller frees; NULL where
-// all have the mean. One random number a bond (GSL's mt19937), in the order of the
-// bonds: the same seed gives the same strengths, which larger means only scale.
-double *draw_strengths(const struct strength_scatter *scatter, int n_bond);
+// N strengths over the mean, that the caller frees; NULL where all are the mean. One
+// random number each (GSL's mt19937): the same seed gives the same, which a larger mean
+// only scales, and the first of more.
+double *draw_strengths(const struct strength_scatter *scatter, int n);
+
+// (n_bond) Of the bonds of PACKING: drawn in the order of the places of their middles,
+// from above, then along x, then y, and so whatever the grains are numbered like.
+// Places count as equal that differ by less than about 1e-9 of the extent of the
+// grains; of bonds that cross in the middle the steeper ones come first. As
+// draw_strengths.
+double *bond_strengths(const struct strength_scatter *scatter,
+                       const struct packing *packing);
 
 #endif

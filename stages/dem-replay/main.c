@@ -74,7 +74,7 @@ static const struct parameter table[] = {
     {"bond.strength.modulus", PARAMETER_NUMBER, "1", "5", BOUND_BETWEEN, 0.5, 1e6, NULL,
      "Weibull: m; the strengths above stay the means", AT(scatter.modulus)},
     {"bond.strength.seed", PARAMETER_INTEGER, "1", "1", BOUND_BETWEEN, 1, 4294967295,
-     NULL, "of the strengths (mt19937), drawn in the order of the bonds",
+     NULL, "of the strengths (mt19937), drawn in the order of the places of bonds",
      AT(scatter.seed)},
     {"bond.kind", PARAMETER_CHOICE, "1", "\"parallel\"", BOUND_NONE, 0, 0,
      "parallel|contact",
@@ -213,7 +213,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     struct strength_scatter scatter = parameters->scatter;
     scatter.law = (enum strength_law)parameters->strength_law;
     bond_grains(packing, (enum bonds_by)parameters->bonds_by, parameters->bond_gap);
-    settings->relative_strength = draw_strengths(&scatter, packing->n_bond);
+    settings->relative_strength = bond_strengths(&scatter, packing);
     struct held held = parameters->held;
     if (settings->support != SUPPORT_FIXED)
         held = (struct held){.lower = {NAN, NAN, NAN}, .upper = {NAN, NAN, NAN}};

@@ -4,6 +4,7 @@
 #include "dem-replay/bonds.h"
 #include "dem-replay/replay.h"
 #include "dem_scene.h"
+#include "support_irregular.h"
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
@@ -234,6 +235,60 @@ static void bonded_by_touch_or_distance(void **state)
     packing_free(&packing);
 }
 
+// ---- which bond is how strong -------------------------------------------------------
+
+static void check_renumbered(const struct packing *packing, const int *order)
+{
+    const struct strength_scatter scatter = {
+        .law = STRENGTH_WEIBULL, .modulus = 3, .seed = 4};
+    struct packing other = turned_packing(packing, (struct vector){0, 0, 1}, 0, order);
+    other.lower = packing->lower; // turning grows the box
+    other.upper = packing->upper;
+    int *number = NEW_ARRAY(int, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++) {
+        number[order[i]] = i;
+        other.position[i].x += 0.3 * RADIUS; // and it may lie elsewhere
+    }
+    double *here = bond_strengths(&scatter, packing),
+           *there = bond_strengths(&scatter, &other);
+    int moved = 0;
+    for (int b = 0; b < packing->n_bond; b++) {
+        const int i = number[packing->bond[b][0]], j = number[packing->bond[b][1]];
+        int c = 0;
+        while (c < other.n_bond && !((other.bond[c][0] == i && other.bond[c][1] == j) ||
+                                     (other.bond[c][0] == j && other.bond[c][1] == i)))
+            c++;
+        assert_in_range(c, 0, other.n_bond - 1);
+        assert_true(here[b] == there[c]);
+        moved += b != c;
+    }
+    assert_true(moved > packing->n_bond / 2);
+    free(number);
+    free(here);
+    free(there);
+    packing_free(&other);
+}
+
+// A bond is as strong however the grains are numbered: irregular ones, also where the
+// box repeats; and a lattice with the diagonals of its faces, which cross.
+static void as_strong_whatever_the_numbers(void **state)
+{
+    (void)state;
+    for (int repeats = 0; repeats < 2; repeats++) {
+        struct packing packing = irregular_packing(4, RADIUS, repeats);
+        int *order = shuffled(packing.n_particle, 5);
+        check_renumbered(&packing, order);
+        free(order);
+        packing_free(&packing);
+    }
+    struct packing packing = cubic_lattice(4, 3, 3, false);
+    bond_grains(&packing, BONDS_BY_DISTANCE, 0.45);
+    int *order = shuffled(packing.n_particle, 6);
+    check_renumbered(&packing, order);
+    free(order);
+    packing_free(&packing);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -243,6 +298,7 @@ int main(void)
         cmocka_unit_test(a_chain_is_as_strong_as_its_weakest_link),
         cmocka_unit_test(the_same_link_in_cycles),
         cmocka_unit_test(bonded_by_touch_or_distance),
+        cmocka_unit_test(as_strong_whatever_the_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bonds.h"
+
+#include "basics/memory.h"
+#include "geometry/neighbours.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdlib.h>
+
+// Where the distribution, of mean 1 but for the cut, has the share U in (0,1) below it.
+static double strength_at(const struct strength_scatter *scatter, double u)
+{
+    if (scatter->law == STRENGTH_WEIBULL) {
+        const double size = 1 / tgamma(1 + 1 / scatter->modulus);
+        return gsl_cdf_weibull_Pinv(u, size, scatter->modulus);
+    }
+    // From above, where nothing is cut off and no digit of a small share is lost.
+    const double kept = gsl_cdf_ugaussian_P(1 / scatter->variation);
+    return 1 + scatter->variation * gsl_cdf_ugaussian_Qinv((1 - u) * kept);
+}
+
+double *draw_strengths(const struct strength_scatter *scatter, int n)
+{
+    const bool same = scatter->law == STRENGTH_NORMAL && !(scatter->variation > 0);
+    if (scatter->law == STRENGTH_ONE || same) return NULL;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng_set(random, (unsigned long)scatter->seed);
+    double *strength = NEW_ARRAY(double, n);
+    for (int k = 0; k < n; k++)
+        strength[k] = fmax(0, strength_at(scatter, gsl_rng_uniform_pos(random)));
+    gsl_rng_free(random);
+    return strength;
+}
+
+// ---- in order of place --------------------------------------------------------------
+
+// In whole ticks, so that rounding, of another unit of length say, parts no equals.
+static const double TICKS = 0x1p30;
+
+struct ruler {
+    const struct packing *packing;
+    struct vector zero; // lowest coordinates of the grains, m
+    double extent;      // of the grains, m
+};
+
+enum { KEYS = 6 };
+
+struct placed_bond {
+    int64_t key[KEYS]; // what has the lowest first key is the first, and so on
+    int bond;
+};
+
+static struct ruler ruler_make(const struct packing *packing)
+{
+    struct ruler ruler = {.packing = packing};
+    for (int axis = 0; axis < 3; axis++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (int i = 0; i < packing->n_particle; i++) {
+            lower = fmin(lower, component(packing->position[i], axis));
+            upper = fmax(upper, component(packing->position[i], axis));
+        }
+        set_component(&ruler.zero, axis, lower);
+        ruler.extent = fmax(ruler.extent, upper - lower);
+    }
+    return ruler;
+}
+
+static int64_t ticks(const struct ruler *ruler, double length)
+{
+    return ruler->extent > 0 ? llround(length / ruler->extent * TICKS) : 0;
+}
+
+// Along AXIS, within one box where it repeats.
+static int64_t place_along(const struct ruler *ruler, struct vector place, int axis)
+{
+    const struct packing *packing = ruler->packing;
+    const double at = component(place, axis) - component(ruler->zero, axis);
+    if (!packing->periodic[axis]) return ticks(ruler, at);
+    const double box =
+        component(packing->upper, axis) - component(packing->lower, axis);
+    const int64_t within = ticks(ruler, at - box * floor(at / box));
+    return within < ticks(ruler, box) ? within : 0;
+}
+
+static struct placed_bond measure(const struct ruler *ruler, int bond)
+{
+    const struct packing *packing = ruler->packing;
+    const int32_t *end = packing->bond[bond];
+    const struct vector along = nearest_image(packing, end[0], end[1]);
+    const struct vector middle = add(packing->position[end[0]], scale(0.5, along));
+    const int64_t z = ticks(ruler, along.z), x = ticks(ruler, along.x),
+                  y = ticks(ruler, along.y);
+    const int up = (z ? z : x ? x : y) < 0 ? -1 : 1; // whichever grain comes first
+    return (struct placed_bond){
+        {-place_along(ruler, middle, 2), place_along(ruler, middle, 0),
+         place_along(ruler, middle, 1), -up * z, -up * x, -up * y},
+        bond};
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct placed_bond *p = a, *q = b;
+    for (int k = 0; k < KEYS; k++)
+        if (p->key[k] != q->key[k]) return p->key[k] < q->key[k] ? -1 : 1;
+    return (p->bond > q->bond) - (p->bond < q->bond);
+}
+
+double *bond_strengths(const struct strength_scatter *scatter,
+                       const struct packing *packing)
+{
+    const int n = packing->n_bond;
+    double *drawn = draw_strengths(scatter, n);
+    if (!drawn) return NULL;
+    const struct ruler ruler = ruler_make(packing);
+    struct placed_bond *placed = NEW_ARRAY(struct placed_bond, n);
+    for (int b = 0; b < n; b++)
+        placed[b] = measure(&ruler, b);
+    qsort(placed, (size_t)n, sizeof *placed, compare_places);
+    double *strength = NEW_ARRAY(double, n);
+    for (int k = 0; k < n; k++)
+        strength[placed[k].bond] = drawn[k];
+    free(placed);
+    free(drawn);
+    return strength;
+}
