@@ -162,9 +162,8 @@ static const struct parameter table[] = {
      "saturations at which displacements and contact forces are kept, highest first",
      AT(snapshots)},
     {"keep_state", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "explicit: the end goes into the output as well, with a snapshot, for another "
-     "replay "
-     "to go on from",
+     "the end goes into the output as well, with a snapshot, for another replay to go "
+     "on from; of equilibria all loads so far, from which that finds them once more",
      AT(settings.keep_state)},
     {0}};
 
@@ -224,8 +223,9 @@ static void choose_grains(const struct replay_parameters *parameters,
         memchr(settings->held, 1, (size_t)packing->n_particle))
         return;
     if (settings->engine == ENGINE_QUASI_STATIC)
-        die(STATUS_BAD_DATA, "dem-replay.held: none of the grains is held, without which "
-                             "there is no equilibrium (or support=free)");
+        die(STATUS_BAD_DATA,
+            "dem-replay.held: none of the grains is held, without which "
+            "there is no equilibrium (or support=free)");
     if (!quiet) report("support=fixed holds no grain: none touches held.walls");
 }
 
@@ -268,17 +268,10 @@ static json_t *digests(const struct artifact *input, const struct artifact *earl
 static void check_engine(const struct replay_settings *settings,
                          const struct invocation *invocation)
 {
-    const bool goes_on = invocation->n_input > 1;
-    if (goes_on && invocation->checkpoint)
-        die(STATUS_USAGE,
-            "--checkpoint is for a replay that does not go on from another");
     if (settings->engine == ENGINE_EXPLICIT) return;
     if (settings->large_displacements && settings->support == SUPPORT_FREE)
         die(STATUS_BAD_DATA, "dem-replay.quasi_static.large_displacements: is for "
                              "support=fixed and wall: something must hold the grains");
-    if (goes_on || settings->keep_state)
-        die(STATUS_BAD_DATA, "dem-replay.engine: only an explicit replay goes on from "
-                             "another (keep_state)");
     if (invocation->checkpoint)
         die(STATUS_USAGE, "--checkpoint is for engine=explicit: an equilibrium has no "
                           "state between steps that is kept");

@@ -20,7 +20,8 @@ struct run {
     struct equilibrium *equilibrium;
     struct vector *force; // (n_particle) of this step
     struct net_load taken_off;
-    int n_before; // bonds that an earlier replay has broken
+    int n_before;        // bonds that an earlier replay has broken
+    int restless_before; // loads of an earlier replay that did not come to rest
     struct replay_place place;
 };
 
@@ -305,12 +306,33 @@ static enum status go_on(struct run *run, struct reason *reason)
         dem_restore(run->dem, state->engine.array, state->engine.count, reason);
     if (status) return status;
     return restore_response(run->response, run->packing, run->load,
-                            run->settings->n_snapshot, run->dem, &state->stage,
-                            &run->place, reason);
+                            run->settings->n_snapshot, run->dem, run->n_before,
+                            &state->stage, &run->place, reason);
+}
+
+// The loads of an earlier replay once more: each takes its equilibrium from the last.
+static enum status repeat_earlier(struct run *run, struct reason *reason)
+{
+    const size_t n = (size_t)run->packing->n_particle;
+    int n_load;
+    const struct vector *force =
+        saved_loads(run->settings->begin, run->packing, &n_load, reason);
+    if (!force) return STATUS_BAD_DATA;
+    for (int k = 0; k < n_load; k++) {
+        memcpy(run->force, force + (size_t)k * n, n * sizeof *run->force);
+        const enum status status = settle_equilibrium(run, reason);
+        if (status) return status;
+    }
+    equilibrium_cracks(run->equilibrium, &run->n_before);
+    int grain;
+    run->restless_before = equilibrium_restless(run->equilibrium, &grain);
+    run->place.began = cycles_done(run);
+    return STATUS_OK;
 }
 
 static enum status go_on_from_earlier(struct run *run, struct reason *reason)
 {
+    if (!is_explicit(run)) return repeat_earlier(run, reason);
     const struct array_list *engine = run->settings->begin;
     const enum status status =
         dem_restore(run->dem, engine->array, engine->count, reason);
@@ -318,6 +340,15 @@ static enum status go_on_from_earlier(struct run *run, struct reason *reason)
     dem_cracks(run->dem, &run->n_before);
     run->place.began = dem_cycle(run->dem);
     return STATUS_OK;
+}
+
+static struct array_list save_engine(const struct run *run)
+{
+    if (!is_explicit(run))
+        return save_loads(run->settings->begin, run->load, run->packing);
+    struct array_list list;
+    list.array = dem_save(run->dem, &list.count);
+    return list;
 }
 
 static enum status do_step(struct run *run, struct reason *reason)
@@ -361,10 +392,10 @@ enum status replay(const struct packing *packing, const struct load *load,
     if (run.equilibrium) {
         response->n_gone = equilibrium_gone(run.equilibrium, &response->first_gone);
         response->n_restless =
-            equilibrium_restless(run.equilibrium, &response->restless);
+            equilibrium_restless(run.equilibrium, &response->restless) -
+            run.restless_before;
     }
-    if (!status && settings->keep_state)
-        response->engine.array = dem_save(run.dem, &response->engine.count);
+    if (!status && settings->keep_state) response->engine = save_engine(&run);
     dem_free(run.dem);
     equilibrium_free(run.equilibrium);
     free(run.force);

@@ -49,9 +49,9 @@ struct replay_settings {
     int n_snapshot;
     const double *snapshot; // saturations, the highest first; SATURATION <= this
     int threads;
-    const struct array_list *begin; // explicit: the engine as an earlier replay of the
-                                    // same packing left it; NULL: at rest, all whole
-    bool keep_state;                // explicit: whether .engine is wanted
+    const struct array_list *begin; // .engine of an earlier replay of the same packing;
+                                    // NULL: at rest, all whole
+    bool keep_state;                // whether .engine is wanted
 };
 
 struct snapshot {
@@ -79,7 +79,8 @@ struct response {
     int n_gone, first_gone;            // grains that left an equilibrium
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last
-    struct array_list engine; // at the end, if it was to be kept
+    struct array_list engine; // at the end, if it was to be kept; quasi-static: all
+                              // loads up to there
 };
 
 // Told how far the replay is.

@@ -7,6 +7,7 @@
 #include <string.h>
 
 static const double largest = 1e150, most_cycles = 0x1p53;
+static const char loads_name[] = "load_force";
 
 // ---- out ----------------------------------------------------------------------------
 
@@ -103,7 +104,37 @@ struct array_list save_response(const struct response *response,
     return list;
 }
 
+struct array_list save_loads(const struct array_list *earlier, const struct load *load,
+                             const struct packing *packing)
+{
+    const int64_t before = earlier ? array_count(earlier, loads_name) : 0;
+    const int64_t now = 3 * (int64_t)load->n_time * packing->n_particle;
+    double *all = NEW_ARRAY(double, before + now);
+    if (before) {
+        const struct dem_array *saved =
+            dem_find_array(earlier->array, earlier->count, loads_name);
+        memcpy(all, saved->data, (size_t)before * sizeof *all);
+    }
+    memcpy(all + before, load->force, (size_t)now * sizeof *all);
+    struct array_list list = {NULL, 0};
+    add_array(&list, loads_name, DEM_FLOAT64, before + now, all);
+    free(all);
+    return list;
+}
+
 // ---- in -----------------------------------------------------------------------------
+
+const struct vector *saved_loads(const struct array_list *list,
+                                 const struct packing *packing, int *n_load,
+                                 struct reason *reason)
+{
+    struct array_reader reader = {.list = list, .reason = reason};
+    const int64_t each = 3 * (int64_t)packing->n_particle;
+    const int64_t most = each > 0 ? array_count(list, loads_name) / each : 0;
+    *n_load = (int)(most > 1 ? most : 1);
+    return read_array(&reader, loads_name, DEM_FLOAT64, *n_load * each, -largest,
+                      largest);
+}
 
 static enum status restore_history(struct response *response, int n_time,
                                    const struct dem *dem, struct array_reader *reader,
@@ -132,14 +163,15 @@ static enum status restore_history(struct response *response, int n_time,
 
 // The engine knows the cracks; of those of whole steps the step is known too.
 static enum status restore_cracks(struct response *response, int n_time,
-                                  const struct dem *dem, struct array_reader *reader)
+                                  const struct dem *dem, int n_before,
+                                  struct array_reader *reader)
 {
     int in_engine;
-    const struct dem_crack *crack = dem_cracks(dem, &in_engine);
+    const struct dem_crack *crack = dem_cracks(dem, &in_engine) + n_before;
     const int64_t n = array_count(reader->list, "crack_step");
     const int32_t *step = read_array(reader, "crack_step", DEM_INT32, n, 0, n_time - 1);
     if (reader->failed) return STATUS_BAD_DATA;
-    if (n > in_engine)
+    if (n > in_engine - n_before)
         return refuse(reader->reason, STATUS_BAD_DATA,
                       "crack_step: is longer than the cracks");
     response->n_crack = (int)n;
@@ -231,13 +263,14 @@ static enum status restore_contacts(struct response *response,
 
 enum status restore_response(struct response *response, const struct packing *packing,
                              const struct load *load, int most_snapshots,
-                             const struct dem *dem, const struct array_list *list,
-                             struct replay_place *place, struct reason *reason)
+                             const struct dem *dem, int n_before,
+                             const struct array_list *list, struct replay_place *place,
+                             struct reason *reason)
 {
     struct array_reader reader = {.list = list, .reason = reason};
     enum status status = restore_history(response, load->n_time, dem, &reader, place);
     if (status == STATUS_OK)
-        status = restore_cracks(response, load->n_time, dem, &reader);
+        status = restore_cracks(response, load->n_time, dem, n_before, &reader);
     if (status == STATUS_OK)
         status = restore_snapshots(response, packing, load, most_snapshots, &reader);
     if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);

@@ -17,11 +17,23 @@ struct array_list save_response(const struct response *response,
                                 const struct packing *packing, int n_time,
                                 struct replay_place place);
 
-// Fills RESPONSE, as empty as replay begins with, from LIST and the cracks of DEM.
+// An equilibrium follows from all loads that led to it, so these are its state: those
+// of EARLIER (NULL: none), and then LOAD. A new list.
+struct array_list save_loads(const struct array_list *earlier, const struct load *load,
+                             const struct packing *packing);
+
+// (*n_load * n_particle) N, of such a LIST, which owns them; NULL with the reason.
+const struct vector *saved_loads(const struct array_list *list,
+                                 const struct packing *packing, int *n_load,
+                                 struct reason *reason);
+
+// Fills RESPONSE, as empty as replay begins with, from LIST and the cracks of DEM, of
+// which the first N_BEFORE are an earlier replay's.
 // STATUS_BAD_DATA: not the list of such a replay.
 enum status restore_response(struct response *response, const struct packing *packing,
                              const struct load *load, int most_snapshots,
-                             const struct dem *dem, const struct array_list *list,
-                             struct replay_place *place, struct reason *reason);
+                             const struct dem *dem, int n_before,
+                             const struct array_list *list, struct replay_place *place,
+                             struct reason *reason);
 
 #endif

@@ -3,8 +3,10 @@
 # Drying and shrinking in turns: parts that join to the whole, and no liquid lost between them.
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import h5py
 import numpy as np
@@ -82,12 +84,47 @@ with scratch() as folder:
        and (late["snapshots/displacement"][-1] == whole["snapshots/displacement"][-1]).all()
        and (late["snapshots/bond_intact"][-1] == whole["snapshots/bond_intact"][-1]).all(),
        "a replay in two parts: the same bits", (len(early["cracks/bond"]), len(whole["cracks/bond"])))
+    # Equilibria go on too: parallel bonds, some of which break in either part.
+    uneven = ["bond.strength.distribution=weibull", "bond.strength.modulus=2"]
+    glue = ["engine=quasi-static", "bond.kind=parallel", "bond.normal_strength=1e6", "bond.shear_strength=1e6", *uneven]
+    whole = stage("dem-replay", ["forces"], "response-still", *glue)
+    early = stage("dem-replay", ["early"], "early-still", *glue, "keep_state=true")
+    late = stage("dem-replay", ["late", "early-still"], "late-still", *glue, "keep_state=true")
+    ok(all((np.concatenate([early[e][:], late[e][:]]) == whole[e][:]).all() for e in cracks)
+       and len(early["cracks/bond"]) and len(late["cracks/bond"])
+       and all((np.concatenate([early[e][:], late[e][:]]) == whole[e][:]).all()
+               for e in ("history/unbalanced_ratio", "history/cycles", "history/reaction_force"))
+       and (late["snapshots/displacement"][-1] == whole["snapshots/displacement"][-1]).all(),
+       "equilibria in two parts: the same bits",
+       (len(early["cracks/bond"]), len(late["cracks/bond"]), len(whole["cracks/bond"])))
+
+    # One that goes on, stopped and gone on with.
+    uneven = ["keep_state=true", "bond.contact_strength=3e-8", *uneven]
+    early = stage("dem-replay", ["early"], "early-uneven", "cycles=100", *uneven)
+    command = [f"{BIN}/dem-replay", "-p", SOFT, "--quiet", *(w for s in [*uneven, "cycles=10000"] for w in ("--set", s)),
+               at("late"), at("early-uneven")]
+    subprocess.run([*command, "-o", at("unstopped")], check=True)
+    stopped = kept = 0
+    for _ in range(100):
+        part = subprocess.Popen([*command, "--checkpoint", at("kept"), "-o", at("stopped")], stderr=subprocess.DEVNULL)
+        try:
+            if part.wait(0.15) == 0:
+                break
+        except subprocess.TimeoutExpired:
+            part.terminate()
+            stopped += part.wait() != 0
+            kept += os.path.exists(at("kept"))
+    same_bytes = open(at("stopped"), "rb").read() == open(at("unstopped"), "rb").read()
+    ok(0 < kept and stopped < 99 and same_bytes and h5py.File(at("stopped"))["history/cracks"][-1] > 0
+       and early["history/cracks"][-1] > 0,
+       "one that goes on, stopped and gone on with: the same bytes", (stopped, kept, same_bytes))
+
     for title, words, says in [
             ("without a state", [at("late"), at("response")], b"/engine: is not there"),
             ("of other grains", ["--set", "friction=0.1", "--set", "support=wall", at("late"),
                                  at("response-early")], b"this scene has"),
-            ("by equilibria", ["--set", "bond.kind=parallel", "--set", "engine=quasi-static",
-                               at("late"), at("response-early")], b"only an explicit replay")]:
+            ("by the other engine", ["--set", "bond.kind=parallel", "--set", "engine=quasi-static",
+                                     at("late"), at("response-early")], b"load_force: must be")]:
         refused = subprocess.run([f"{BIN}/dem-replay", "-p", SOFT, *words], capture_output=True)
         ok(refused.returncode == 65 and says in refused.stderr, f"refused: {title}", refused.stderr.decode())
 
@@ -115,24 +152,56 @@ with scratch() as folder:
     ok(worst < 1e-14 and expelled > 0, "no liquid lost or made between portions", worst)
     ok(not errors, "what changes is filled or emptied, menisci first", errors)
 
-    # The whole loop, also where the grains are tessellated anew.
-    def loop(title, scene, changes, anew):
+    # The whole loop, also where the grains are tessellated anew, and by equilibria.
+    def loop(title, scene, changes, anew, portions="3"):
         with open(scene, encoding="utf-8") as file:
             tiny = json.load(file)
         for name, section in changes.items():
             tiny[name].update(section)
         with open(at("tiny.json"), "w", encoding="utf-8") as file:
             json.dump(tiny, file)
-        end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), "3", at(f"{title}/course.tsv")],
-                             env=os.environ | {"BIN": BIN}, capture_output=True)
+        command = ["pipelines/coupled-run", at("tiny.json"), portions, at(f"{title}/course.tsv")]
+        end = subprocess.run(command, env=os.environ | {"BIN": BIN}, capture_output=True)
         with open(at(f"{title}/course.tsv"), encoding="utf-8") as file:
             blocks = file.read().split("\n\n\n")
         left = float(blocks[0].splitlines()[-1].split()[0]) if blocks[0] else 1
         ok(end.returncode == 0 and len(blocks) == 3 and left == 0
            and any(os.path.exists(at(f"{title}/{k}/anew.h5")) for k in (1, 2, 3)) == anew,
-           f"from a scene to its cracks in three portions, {title}", end.stderr.decode())
+           f"from a scene to its cracks in portions, {title}", end.stderr.decode())
+        return command
 
     quick = {"force-protocol": {"force_scale": 0.2, "steps": 30}, "dem-replay": {"cycles": 100}}
-    loop("lattice", SOFT, quick | {"pack": {"counts": [4, 3, 3]}}, False)
+    command = loop("lattice", SOFT, quick | {"pack": {"counts": [4, 3, 3]}}, False, "2+3")
+
+    # Killed in any portion it goes on there; what another run left is not taken.
+    def killed(k):
+        part = subprocess.Popen(command, env=os.environ | {"BIN": BIN}, stderr=subprocess.DEVNULL,
+                                start_new_session=True)
+        while part.poll() is None and not os.path.exists(at(f"lattice/{k}/drying.h5")):
+            time.sleep(0.001)
+        os.killpg(part.pid, signal.SIGKILL)
+        return part.wait() != 0
+
+    names = [os.path.join(place, name) for place, _, files in os.walk(at("lattice")) for name in files]
+    whole = {name: open(name, "rb").read() for name in names}
+    for name in names:
+        if name.endswith(".h5"):
+            os.remove(name)
+    stopped = [killed(1), killed(3)]
+    made = os.stat(at("lattice/1/response.h5")).st_mtime_ns
+    end = subprocess.run(command, env=os.environ | {"BIN": BIN}, capture_output=True)
+    ok(stopped == [True, True] and end.returncode == 0 and made == os.stat(at("lattice/1/response.h5")).st_mtime_ns
+       and all(open(name, "rb").read() == whole[name] for name in names),
+       "killed and gone on with: the same bytes, and nothing is made twice", (stopped, end.stderr.decode()))
+    end = subprocess.run([*command[:-1], "force-protocol.force_scale=0.1", command[-1]],
+                         env=os.environ | {"BIN": BIN}, capture_output=True)
+    ok(end.returncode == 0 and all((open(name, "rb").read() != whole[name]) == ("/0/" not in name)
+                                   for name in names if name.endswith(("drying.h5", "response.h5", "0/network.h5"))
+                                   and "1/drying" not in name),
+       "another run is made anew", end.stderr.decode())
+
+    still = {"engine": "quasi-static"}
+    loop("equilibria", "samples/stiff-5x5x10.json",
+         {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 30}, "dem-replay": still}, False)
     loop("irregular", "samples/soft-300.json", quick | {"pack": {"count": 120}}, True)
 done()
