@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "nearest.h"
 #include "network/enclosed.h"
+#include "throats.h"
 
 #include <stdlib.h>
 
@@ -134,4 +135,36 @@ struct carried carry_liquid(const struct network *before,
     carry_volumes(&old, before, saturation, anew, &carried);
     free_middles(&old);
     return carried;
+}
+
+enum status carry_radii(const struct network *before, const struct surroundings *around,
+                        const struct packing *moved, enum clearance how,
+                        struct network *anew, struct reason *reason)
+{
+    double *was = find_clearances(before, how, reason);
+    double *is = was ? find_clearances(anew, how, reason) : NULL;
+    if (!is) {
+        free(was);
+        return STATUS_BAD_DATA;
+    }
+    struct middles old = find_middles(before, NULL);
+    follow_grains(before, around, moved, &old);
+    struct places places = places_make(&anew->packing, old.n, old.at);
+    for (int t = 0; t < anew->n_throat; t++) {
+        if (anew->throat_kind[t] != THROAT_NETWORK) continue;
+        const int k = nearest_place(&places, throat_middle(anew, t));
+        if (k < 0) continue;
+        const int from = old.throat[k];
+        anew->throat_radius[t] =
+            moved_radius(before->throat_radius[from], was[from], is[t]);
+    }
+    if (!before->throat_volume) {
+        free(anew->throat_volume);
+        anew->throat_volume = NULL;
+    }
+    places_free(&places);
+    free_middles(&old);
+    free(was);
+    free(is);
+    return STATUS_OK;
 }

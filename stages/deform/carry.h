@@ -3,6 +3,8 @@
 #ifndef CRAQUELURE_CARRY_H
 #define CRAQUELURE_CARRY_H
 
+#include "basics/status.h"
+#include "network/clearance.h"
 #include "surroundings.h"
 
 struct carried {
@@ -21,5 +23,13 @@ struct carried carry_liquid(const struct network *before,
                             const struct surroundings *around,
                             const struct packing *moved, const double *saturation,
                             unsigned open_walls, struct network *anew);
+
+// Each throat of ANEW that holds liquid gets the radius of the old one that is nearest,
+// as above, changed as their clearances differ (moved_radius): drawn radii keep their
+// share of the clearance. Without volumes of throats before there are none after: they
+// are cylinders. STATUS_BAD_DATA: a face without a throat at its rim.
+enum status carry_radii(const struct network *before, const struct surroundings *around,
+                        const struct packing *moved, enum clearance how,
+                        struct network *anew, struct reason *reason);
 
 #endif

@@ -17,10 +17,12 @@
 
 enum on_change { CHANGE_REFUSED, CHANGE_KEPT };
 
+enum radii { RADII_ANEW, RADII_CARRIED };
+
 enum what_to_write { WRITE_NETWORK, WRITE_PACKING };
 
 struct deform_parameters {
-    int clearance, on_change, write;
+    int clearance, on_change, write, radii;
 };
 
 static const struct parameter table[] = {
@@ -31,6 +33,10 @@ static const struct parameter table[] = {
      "where moved grains have another diagram: nothing is written (exit status 1), or "
      "the network stays as it is connected",
      offsetof(struct deform_parameters, on_change)},
+    {"radii", PARAMETER_CHOICE, "1", "\"anew\"", BOUND_NONE, 0, 0, "anew|carried",
+     "of the third input: as they are there, or drawn ones: each that of the nearest "
+     "throat before, changed like its clearance",
+     offsetof(struct deform_parameters, radii)},
     {"write", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0, 0, "network|packing",
      "packing: the moved grains in their box, for tessellate",
      offsetof(struct deform_parameters, write)},
@@ -301,16 +307,21 @@ static void replace(struct scene *scene)
     struct artifact *third = open_network(scene->invocation->inputs[2]);
     struct network anew = artifact_get_periodic_network(third);
     check_same_grains(scene, &anew, third->path);
+    struct surroundings around = find_surroundings(&scene->before);
     struct liquid liquid = {0};
     double *saturation = find_saturations(scene);
+    struct reason reason;
+    if (scene->parameters->radii == RADII_CARRIED &&
+        carry_radii(&scene->before, &around, &scene->after.packing,
+                    (enum clearance)scene->parameters->clearance, &anew, &reason))
+        die(STATUS_BAD_DATA, "%s: %s", input_name(third->path), reason.text);
     if (saturation) {
-        struct surroundings around = find_surroundings(&scene->before);
         struct carried carried =
             carry_liquid(&scene->before, &around, &scene->after.packing, saturation,
                          open_walls(scene->input), &anew);
         liquid = settle(scene->input, &anew, &carried);
-        surroundings_free(&around);
     }
+    surroundings_free(&around);
     json_t *inputs = digests(scene);
     json_array_append_new(inputs, input_digest(third));
     write_moved(&anew, &liquid, 0, 0, scene->invocation, inputs);

@@ -25,10 +25,8 @@ static double face_clearance(const struct network *network, int face, int64_t fr
                                     packing->radius[side[1]], end, how));
 }
 
-// (n_throat) Least clearance to the grains beside each throat, 0 where they overlap;
-// infinite where none is known. The caller frees it; NULL with the reason.
-static double *find_clearances(const struct network *network, enum clearance how,
-                               struct reason *reason)
+double *find_clearances(const struct network *network, enum clearance how,
+                        struct reason *reason)
 {
     struct incidence incidence = network_incidence(network);
     double *least = NEW_ARRAY(double, network->n_throat);
@@ -56,7 +54,7 @@ static double *find_clearances(const struct network *network, enum clearance how
     return NULL;
 }
 
-static double moved_radius(double radius, double before, double after)
+double moved_radius(double radius, double before, double after)
 {
     if (isinf(before) || isinf(after)) return radius;
     const double share = radius < before ? radius / before : 1;

@@ -7,6 +7,15 @@
 #include "network/clearance.h"
 #include "network/network.h"
 
+// (n_throat) Least clearance to the grains beside each throat, 0 where they overlap;
+// infinite where none is known. The caller frees it; NULL with the reason: a face
+// without a throat at its rim.
+double *find_clearances(const struct network *network, enum clearance how,
+                        struct reason *reason);
+
+// What a throat of RADIUS has when its clearance goes from BEFORE to AFTER, r' below.
+double moved_radius(double radius, double before, double after);
+
 // Gives AFTER, a copy of BEFORE but for the places of grains and nodes, its lengths and
 // radii. With c the clearance to the grains beside a throat, 0 where they overlap, and
 // r its radius,

@@ -204,4 +204,6 @@ with scratch() as folder:
     loop("equilibria", "samples/stiff-5x5x10.json",
          {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 30}, "dem-replay": still}, False)
     loop("irregular", "samples/soft-300.json", quick | {"pack": {"count": 120}}, True)
+    drawn = {"throat_radius": {"distribution": "normal", "mean": 1e-7, "standard_deviation": 2e-8}}
+    loop("irregular, radii drawn", "samples/soft-300.json", quick | {"pack": {"count": 120}, "dry": drawn}, True)
 done()

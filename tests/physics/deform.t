@@ -203,4 +203,28 @@ with scratch() as folder:
     end = subprocess.run([f"{BIN}/deform", at("drying"), at("response"), at("network")], capture_output=True)
     ok(end.returncode == 65 and b"is not where the response has the grains now" in end.stderr,
        "a network of other places is refused", end.stderr)
+
+    # Drawn radii go along, liquid too: as they were where nothing moves, and spread as they were.
+    run("dry", *scene, *"--set throat_radius.distribution=lognormal --set throat_radius.mean=1e-7 --set".split(),
+        "throat_radius.standard_deviation=3e-8", "--set", "stop_saturation=0.6", at("network"), "-o", at("drying"))
+    drying = h5py.File(at("drying"))
+    drawn = drying["throats/radius"][:]
+    on = lambda n: n["throats/kind"][:] == 0
+    cylinders = lambda n: np.where(on(n), np.pi * n["throats/radius"][:]**2 * n["throats/length"][:], 0)
+    saturation = on(drying).astype(float)
+    for t, s in zip(drying["changes/throat"][:], drying["changes/saturation"][:]):
+        saturation[t] = s
+    for title, size in ("nothing moved", 0), ("much", 0.05):
+        lay(size * 2.5e-7 * np.random.default_rng(1).normal(size=place.shape))
+        packing = run("deform", "--set", "write=packing", at("drying"), at("response"))
+        run("merge-nodes", *scene, "-o", at("anew"), input=run("tessellate", *scene, input=packing))
+        run("deform", "--set", "radii=carried", at("drying"), at("response"), at("anew"), "-o", at("carried"))
+        carried = h5py.File(at("carried"))
+        radius = carried["throats/radius"][:]
+        had, has = drawn[on(drying)], radius[on(carried)]
+        kept = np.dot(carried["throats/saturation"][:], cylinders(carried)) + carried["summary"].attrs["expelled_volume"]
+        ok((size or np.allclose(has, had, rtol=1e-9, atol=0)) and (has > 0).all()
+           and "throats/volume" not in carried and abs(kept / np.dot(saturation, cylinders(drying)) - 1) < 1e-14
+           and abs(has.mean() / had.mean() - 1) < 0.02 and abs(has.std() / had.std() - 1) < 0.05,
+           f"drawn radii go along, {title}", (has.mean() / had.mean(), has.std() / had.std(), len(had), len(has)))
 done()
