@@ -20,6 +20,10 @@ static const double NOISE = 1e-15;
 // what is on the verge would change its mind for rounding.
 static const double VERGE = 1e-10;
 
+// A throat that lacks less than this of its volume is full. In a step that rounding
+// makes, menisci lose as little, and to fill them would be a step of that kind again.
+static const double SCRATCH = 1e-12;
+
 // Largest part of the rate into the air that may be lost in that: late, wet nodes have
 // links that conduct a million times what leads to the air.
 static const double ENOUGH = 1e-6;
@@ -70,16 +74,23 @@ enum status check_curved(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
-// All sites at levels of their own.
 static void find_outside(struct curved *curved, struct phases *phases)
 {
     struct star_mesh *mesh = &phases->vapour.mesh;
+    const int n_site = phases->vapour.n_site;
+    int *other = NEW_ARRAY(int, n_site);
+    double *link = NEW_ARRAY(double, n_site);
     star_mesh_bring_up_to_date(mesh);
-    for (int i = 0; i < phases->vapour.n_site; i++) {
-        curved->level[i] = i;
+    for (int i = 0; i < n_site; i++) {
         curved->outside[i] = mesh->air[i];
+        const int n = star_mesh_list_links(mesh, i, other, link);
+        for (int k = 0; k < n; k++) {
+            curved->outside[i] += link[other[k]];
+            link[other[k]] = 0;
+        }
     }
-    star_mesh_add_degrees(mesh, curved->level, curved->outside);
+    free(other);
+    free(link);
 }
 
 struct curved curved_make(struct phases *phases,
@@ -87,7 +98,8 @@ struct curved curved_make(struct phases *phases,
 {
     const struct network *network = phases->network;
     const int n = network->n_throat;
-    struct curved curved = {.by_throat = conditions->liquid == LIQUID_IMMOBILE,
+    struct curved curved = {.listed_at = -1,
+                            .by_throat = conditions->liquid == LIQUID_IMMOBILE,
                             .own = NEW_ARRAY(double, n),
                             .law = NEW_ARRAY(struct curvature_law, 1),
                             .throat = NEW_ARRAY(int, n),
@@ -102,10 +114,12 @@ struct curved curved_make(struct phases *phases,
                             .share = NEW_ARRAY(struct share, 2 * (size_t)n),
                             .raised = NEW_ARRAY(double, network->n_node),
                             .outside = NEW_ARRAY(double, phases->vapour.n_site),
+                            .reach = NEW_ARRAY(double, n),
                             .noise = NEW_ARRAY(double, n),
                             .level = NEW_ARRAY(double, phases->vapour.n_site),
                             .flow = NEW_ARRAY(double, phases->vapour.n_site)};
     *curved.law = find_law(conditions);
+    curved.floating = floating_make(n, phases->vapour.n_site);
     find_outside(&curved, phases);
     for (int t = 0; t < n; t++) {
         curved.place[t] = -1;
@@ -134,7 +148,9 @@ void curved_free(struct curved *curved)
     free(curved->outside);
     free(curved->level);
     free(curved->flow);
+    free(curved->reach);
     free(curved->noise);
+    floating_free(curved->floating);
     *curved = (struct curved){0};
 }
 
@@ -142,7 +158,7 @@ void curved_free(struct curved *curved)
 
 static bool is_full(const struct curved *curved, const struct phases *phases, int place)
 {
-    return phases_saturation(phases, curved->throat[place]) == 1;
+    return phases_saturation(phases, curved->throat[place]) > 1 - SCRATCH;
 }
 
 // Its place. What floated when last found is likely to float again.
@@ -210,6 +226,8 @@ static double potential_over_middle(const struct curved *curved,
 
 static void list_bodies(struct curved *curved, struct phases *phases)
 {
+    for (int a = 0; a < curved->n; a++)
+        curved->place[curved->body[a]] = -1;
     curved->n = 0;
     for (int k = 0; k < phases->n_wet; k++) {
         list_shares(curved, phases, k);
@@ -272,16 +290,21 @@ static double most_conductance(const struct curved *curved, const struct phases 
     return sum;
 }
 
-// How little of what each body evaporates is nothing.
-static void find_noise(struct curved *curved, const struct phases *phases)
+// Of which each body evaporates the potential's NOISE.
+static void find_reaches(struct curved *curved, const struct phases *phases)
 {
-    memset(curved->noise, 0, (size_t)curved->n * sizeof *curved->noise);
+    memset(curved->reach, 0, (size_t)curved->n * sizeof *curved->reach);
     for (int k = 0; k < phases->n_wet; k++)
         share_flow(curved, k, most_conductance(curved, phases, phases->wet[k]),
-                   curved->noise);
+                   curved->reach);
+}
+
+// How little of what each body evaporates is nothing.
+static void find_noise(struct curved *curved)
+{
     curved->all_noise = 0;
     for (int a = 0; a < curved->n; a++) {
-        curved->noise[a] *= NOISE * fabs(curved->potential[a]);
+        curved->noise[a] = NOISE * curved->reach[a] * fabs(curved->potential[a]);
         curved->all_noise += curved->noise[a];
     }
 }
@@ -335,29 +358,42 @@ static void collect(struct curved *curved, const struct phases *phases,
 static enum status find_potentials(struct curved *curved, const struct phases *phases,
                                    struct reason *reason)
 {
-    find_noise(curved, phases);
-    curved_find_gains(curved, phases);
-    float_freely(curved, phases);
+    find_noise(curved);
     for (int round = 0; round < MOST_ROUNDS; round++) {
+        if (!float_freely(curved, phases))
+            return refuse(reason, STATUS_INTERNAL, "kelvin: out of memory");
         const int most = round < ROUNDS_AT_ONCE ? curved->n : 1;
         if (revise(curved, phases, most) == 0) return STATUS_OK;
         curved_find_gains(curved, phases);
-        float_freely(curved, phases);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: no consistent menisci after %d rounds, among %d",
                   MOST_ROUNDS, curved->n);
 }
 
+void curved_forget(struct curved *curved)
+{
+    curved->listed_at = -1;
+}
+
+// A throat has emptied.
+static void begin_anew(struct curved *curved, struct phases *phases)
+{
+    curved->listed_at = phases->n_full;
+    list_bodies(curved, phases);
+    floating_forget(curved->floating);
+    star_mesh_bring_up_to_date(&phases->vapour.mesh);
+    find_reaches(curved, phases);
+    curved_find_gains(curved, phases);
+}
+
 enum status curved_find(struct curved *curved, struct phases *phases,
                         struct losses *losses, struct reason *reason)
 {
-    list_bodies(curved, phases);
-    star_mesh_bring_up_to_date(&phases->vapour.mesh);
+    if (curved->listed_at != phases->n_full) begin_anew(curved, phases);
     const enum status status = find_potentials(curved, phases, reason);
     collect(curved, phases, losses);
     for (int a = 0; a < curved->n; a++) {
-        curved->place[curved->body[a]] = -1;
         curved->floated[curved->body[a]] = curved->floats[a];
         curved->floated_at[curved->body[a]] = curved->potential[a];
     }

@@ -22,6 +22,7 @@
 #include "phases.h"
 
 struct curvature_law;
+struct floating;
 
 struct share {
     int body;    // its place
@@ -34,17 +35,20 @@ struct curved {
     double rate;     // into the air, scaled
     double residual; // largest so far of the balances, of that rate
     struct curvature_law *law;
+    struct floating *floating;
     bool *floated;      // (n_throat) by throat or cluster: did, when last found
     double *floated_at; // (n_throat) its potential then
 
-    // Of the bodies beside gas.
+    // Of the bodies beside gas, as they were when so many throats held liquid.
+    int listed_at; // -1: not yet
     int n;
     int *body;                // (n) throat or cluster
     int *throat;              // (n) that gas enters: what the body loses or takes up
     double *potential;        // (n)
     double *gain;             // (n) what it evaporates; below 0: takes up
     bool *floats;             // (n) flatter than its throat makes it
-    int *place;               // (n_throat) of a throat or cluster, -1 between calls
+    int *place;               // (n_throat) of a throat or cluster, -1: none
+    double *reach;            // (n) at most what conducts vapour from it
     double *noise, all_noise; // (n) less gain than this is none; their sum
     int *offset;              // (n_wet+1) of the shares in each wet node
     struct share *share;      // (offset[n_wet])
@@ -67,6 +71,9 @@ enum status check_curved(const struct drying_conditions *conditions,
 // STATUS_NOT_CONVERGED if the menisci are not found.
 enum status curved_find(struct curved *curved, struct phases *phases,
                         struct losses *losses, struct reason *reason);
+
+// Next time bodies are listed anew and nothing is gone on from but the state.
+void curved_forget(struct curved *curved);
 
 // What the bodies evaporate at their potentials.
 void curved_find_gains(struct curved *curved, const struct phases *phases);

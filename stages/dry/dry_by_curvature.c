@@ -9,6 +9,7 @@ enum status dry_by_curvature(struct run *run, struct reason *reason)
     if (run->losses.n == 0) return refuse_standstill(run, reason);
     const int n_before = phases->n_full;
     carry_out_losses(run);
+    run->n_flow_step++;
     if (phases->n_full > 0) {
         const enum status status =
             curved_find(&run->curved, phases, &run->losses, reason);

@@ -6,7 +6,17 @@
 
 #include "curved.h"
 
-// Those that float come to where they evaporate nothing; the gains follow.
-void float_freely(struct curved *curved, const struct phases *phases);
+struct floating;
+
+struct floating *floating_make(int n_throat, int n_site);
+
+// Gas or liquid has moved, or bodies are listed anew.
+void floating_forget(struct floating *floating);
+
+// Those that float come to where they evaporate nothing; the gains follow. False if
+// memory ran out.
+bool float_freely(struct curved *curved, const struct phases *phases);
+
+void floating_free(struct floating *floating);
 
 #endif

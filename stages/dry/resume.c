@@ -26,7 +26,6 @@ static void flow_state(struct run *run, struct state *state)
     state_numbers(state, &flow->residual, 1);
     state_long(state, &flow->rounds);
     state_long(state, &flow->solutions);
-    state_long(state, &run->n_flow_step);
     pressures_state(run, state);
 }
 
@@ -62,6 +61,7 @@ static void run_state(struct run *run, struct state *state)
     state_numbers(state, &run->imbalance, 1);
     state_numbers(state, &run->first_rate, 1);
     state_integer(state, &run->n_at_start, 0, run->phases.network->n_throat);
+    state_long(state, &run->n_flow_step);
     recorder_state(&run->recorder, run->phases.network->n_throat, state);
     phases_state(&run->phases, state);
     steps_state(run, state);
@@ -76,12 +76,13 @@ static void run_state(struct run *run, struct state *state)
     }
 }
 
+// Clocks are cut anywhere.
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
-    if (run->conditions->liquid == LIQUID_VISCOUS) {
-        if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
+    if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
+    if (run->conditions->liquid == LIQUID_VISCOUS)
         liquid_flow_forget(&run->flow, &run->phases);
-    }
+    if (run->conditions->kelvin) curved_forget(&run->curved);
     if (!is_due(keeper)) return;
     struct state state = state_to_keep();
     run_state(run, &state);

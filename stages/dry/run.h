@@ -20,7 +20,7 @@ struct run {
     struct curved curved;    // of menisci with vapour pressures of their own
     struct losses losses;    // of the last two
     int n_idle;              // viscous: steps since a throat has emptied
-    int64_t n_flow_step;     // viscous: steps so far, recorded or not
+    int64_t n_flow_step;     // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
     double first_rate;                   // scaled

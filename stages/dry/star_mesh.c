@@ -374,38 +374,25 @@ void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
     }
 }
 
-void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
-                           double *degree)
+int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
+                         double *link)
 {
-    for (int f = 0; f < mesh->n_front; f++) {
-        const struct front *front = &mesh->front[f];
-        for (int i = 1; i < front->n; i++)
-            for (int j = 0; j < i; j++) {
-                const int a = front->site[i], b = front->site[j];
-                if (level[a] == level[b]) continue;
-                const double link = triangle_entry(&front->triangle, i, j);
-                degree[a] += link;
-                degree[b] += link;
-            }
-    }
-}
-
-void star_mesh_add_links(const struct star_mesh *mesh, const int *row, int n,
-                         double *matrix)
-{
-    for (int f = 0; f < mesh->n_front; f++) {
-        const struct front *front = &mesh->front[f];
-        for (int i = 1; i < front->n; i++) {
-            const int a = row[front->site[i]];
-            for (int j = 0; a >= 0 && j < i; j++) {
-                const int b = row[front->site[j]];
-                if (b < 0) continue;
-                const double link = triangle_entry(&front->triangle, i, j);
-                matrix[(size_t)a * (size_t)n + (size_t)b] += link;
-                matrix[(size_t)b * (size_t)n + (size_t)a] += link;
-            }
+    int n = 0;
+    for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
+        const struct front *front = &mesh->front[mesh->membership[k].front];
+        int p = 0;
+        while (front->site[p] != site)
+            p++;
+        for (int i = 0; i < front->n; i++) {
+            if (i == p) continue;
+            const int at = front->site[i];
+            const double more =
+                triangle_entry(&front->triangle, i > p ? i : p, i > p ? p : i);
+            if (link[at] == 0 && more > 0) other[n++] = at;
+            link[at] += more;
         }
     }
+    return n;
 }
 
 // --- state -------------------------------------------------------------------------

@@ -55,19 +55,18 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
 // SITE leaves the mesh. O(n^2) for a front of n sites.
 void star_mesh_eliminate(struct star_mesh *mesh, int site);
 
-// With what eliminations have left to do done, adds to FLOW (n_site) what flows to each
-// site from the others when sites are at LEVEL (n_site), and to DEGREE (n_site) the
-// conductance of its links, those between sites at one level left out.
+// Does what eliminations have left to do; before those that follow.
 void star_mesh_bring_up_to_date(struct star_mesh *mesh);
+
+// Adds to FLOW (n_site) what flows to each site from the others when sites are at LEVEL
+// (n_site).
 void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
                          double *flow);
-void star_mesh_add_degrees(const struct star_mesh *mesh, const double *level,
-                           double *degree);
 
-// Adds to MATRIX (n,n) the links between sites that have a ROW (n_site), the others
-// having -1.
-void star_mesh_add_links(const struct star_mesh *mesh, const int *row, int n,
-                         double *matrix);
+// Lists in OTHER the sites that SITE is linked with, and in LINK (n_site), which is 0
+// before, the conductances at their places. Returns how many there are.
+int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
+                         double *link);
 
 void star_mesh_state(struct star_mesh *mesh, struct state *state);
 

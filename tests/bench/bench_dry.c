@@ -3,7 +3,7 @@
 // writing.
 //
 //     bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE [STEPS]]
-//     bench_dry kelvin NX NY NZ inviscid|immobile LOWERED
+//     bench_dry kelvin NX NY NZ inviscid|immobile LOWERED [STEPS]
 //
 //     bench_dry invade NX NY NZ pure|trapping
 //
@@ -155,7 +155,7 @@ int main(int argc, char **argv)
 {
     if (argc < 6) {
         fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE [STEPS]]\n"
-                        "bench_dry kelvin NX NY NZ inviscid|immobile LOWERED\n"
+                        "bench_dry kelvin NX NY NZ inviscid|immobile LOWERED [STEPS]\n"
                         "bench_dry invade NX NY NZ pure|trapping\n");
         return STATUS_USAGE;
     }
@@ -164,6 +164,6 @@ int main(int argc, char **argv)
         return invade_lattice(n, strcmp(argv[5], "trapping") == 0);
     const double number = argc > 6 ? strtod(argv[6], NULL) : 0;
     if (strcmp(argv[1], "kelvin") == 0)
-        return dry(n, with_kelvin(argv[5], number), NULL);
+        return dry(n, with_kelvin(argv[5], number), argc > 7 ? argv[7] : NULL);
     return dry(n, conditions(argv[5], number), argc > 7 ? argv[7] : NULL);
 }

@@ -301,6 +301,29 @@ static struct drying_history dry(const struct network *network,
     return history;
 }
 
+// How far each throat that has filled again had emptied: not by rounding.
+static void check_refills(const struct drying_history *history, int n_throat)
+{
+    double *lowest = NEW_ARRAY(double, n_throat);
+    for (int t = 0; t < n_throat; t++)
+        lowest[t] = 1;
+    for (int k = 0, event = 0; k < history->n_step; k++) {
+        for (int64_t c = history->change_offset[k]; c < history->change_offset[k + 1];
+             c++)
+            lowest[history->change_throat[c]] =
+                fmin(lowest[history->change_throat[c]], history->change_saturation[c]);
+        for (;
+             event < history->n_event && history->event_time[event] <= history->time[k];
+             event++) {
+            const int throat = history->event_throat[event];
+            if (history->event_kind[event] != EVENT_REFILLED) continue;
+            assert_true(lowest[throat] < 1 - 1e-12);
+            lowest[throat] = 1;
+        }
+    }
+    free(lowest);
+}
+
 // Radii from 2 to 38 nm in a random order: vapour condenses. Nothing is lost, above 1
 // or below 0, and what has filled again empties again.
 static void check_condensation(enum liquid_limit liquid)
@@ -317,6 +340,7 @@ static void check_condensation(enum liquid_limit liquid)
         refilled += history.event_kind[k] == EVENT_REFILLED;
     assert_true(refilled > 0);
     assert_int_equal(history.n_event, network.n_throat + refilled);
+    check_refills(&history, network.n_throat);
     for (int64_t c = 0; c < history.change_offset[history.n_step]; c++)
         assert_true(history.change_saturation[c] >= 0 &&
                     history.change_saturation[c] <= 1);
