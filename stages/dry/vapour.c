@@ -2,6 +2,7 @@
 #include "vapour.h"
 
 #include "basics/memory.h"
+#include "column_order.h"
 
 #include <stdlib.h>
 
@@ -38,18 +39,21 @@ static void link_level(struct star_mesh *mesh, const struct boundary_layer *laye
                        height * layer->lateral_conductance[k]);
 }
 
-// From the air down: each level is eliminated when the one below is linked to it.
-static void add_boundary_layer(struct star_mesh *mesh,
-                               const struct boundary_layer *layer, int n_node)
+// Only its feet remain.
+static void add_boundary_layer(struct star_mesh *mesh, const struct network *network,
+                               const struct boundary_layer *layer)
 {
+    const int n_node = network->n_node, top = layer->layers - 1;
     for (int i = 0; i < layer->n_exposed; i++)
-        star_mesh_link_air(mesh, level_site(layer, n_node, layer->layers - 1, i),
+        star_mesh_link_air(mesh, level_site(layer, n_node, top, i),
                            layer->area[i] / layer->spacing);
-    for (int level = layer->layers - 1; level >= 0; level--) {
+    for (int level = 0; level <= top; level++)
         link_level(mesh, layer, n_node, level);
-        for (int i = 0; level + 1 < layer->layers && i < layer->n_exposed; i++)
-            star_mesh_eliminate(mesh, level_site(layer, n_node, level + 1, i));
-    }
+    int *order = column_order(network, layer);
+    for (int k = 0; k < layer->n_exposed; k++)
+        for (int level = top; level > 0; level--)
+            star_mesh_eliminate(mesh, level_site(layer, n_node, level, order[k]));
+    free(order);
 }
 
 struct vapour vapour_make(const struct network *network, double length,
@@ -64,7 +68,7 @@ struct vapour vapour_make(const struct network *network, double length,
             vapour.conductance[t] =
                 throat_conductance(network, t, length, knudsen_radius);
     vapour.mesh = star_mesh_make(vapour.n_site, tolerance > 0);
-    add_boundary_layer(&vapour.mesh, layer, network->n_node);
+    add_boundary_layer(&vapour.mesh, network, layer);
     return vapour;
 }
 
