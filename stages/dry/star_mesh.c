@@ -8,12 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-// On a front that has been larger than this, what eliminations add waits until there
-// are many, and then passes over the triangle once for all.
+// The triangle of a front that has been larger than this is a large one.
 enum { LARGE_FRONT = 96 };
 
 struct membership {
-    int front;
+    int front, place;
     int next; // of the site, or of those unused; -1: the last
 };
 
@@ -21,24 +20,8 @@ struct front {
     int n, capacity;
     int *site;                // (n)
     struct triangle triangle; // of their links
-    int n_waiting;
-    double *waiting; // (n_waiting) rows of CAPACITY: what eliminated sites had
-    double factor[MOST_SOURCES]; // of the product of two entries of a row
     int next_unused;
 };
-
-// The more wait, the fewer passes over the triangle, and the more to add to each row
-// that is taken.
-static int most_sources(int n)
-{
-    const int most = n / 16;
-    return most < 8 ? 8 : most < MOST_SOURCES ? most : MOST_SOURCES;
-}
-
-static double *waiting_row(const struct front *front, int k)
-{
-    return front->waiting + (size_t)k * (size_t)front->capacity;
-}
 
 struct star_mesh star_mesh_make(int n_site, bool is_rounded)
 {
@@ -46,12 +29,11 @@ struct star_mesh star_mesh_make(int n_site, bool is_rounded)
                              .is_rounded = is_rounded,
                              .air = NEW_ARRAY(double, n_site),
                              .first = NEW_ARRAY(int, n_site),
-                             .place = NEW_ARRAY(int, n_site),
                              .linked = NEW_ARRAY(int, n_site),
                              .unused_membership = -1,
                              .unused_front = -1};
     for (int i = 0; i < n_site; i++)
-        mesh.first[i] = mesh.place[i] = -1;
+        mesh.first[i] = -1;
     return mesh;
 }
 
@@ -59,7 +41,6 @@ static void empty_front(struct front *front)
 {
     free(front->site);
     triangle_free(&front->triangle);
-    free(front->waiting);
     *front = (struct front){0};
 }
 
@@ -99,7 +80,16 @@ static void end_front(struct star_mesh *mesh, int front)
     mesh->unused_front = front;
 }
 
-static void join(struct star_mesh *mesh, int site, int front)
+// Of SITE on FRONT, -1 if it is not on it.
+static int membership_of(const struct star_mesh *mesh, int site, int front)
+{
+    int membership = mesh->first[site];
+    while (membership >= 0 && mesh->membership[membership].front != front)
+        membership = mesh->membership[membership].next;
+    return membership;
+}
+
+static void join(struct star_mesh *mesh, int site, int front, int place)
 {
     int membership = mesh->unused_membership;
     if (membership >= 0) {
@@ -108,7 +98,7 @@ static void join(struct star_mesh *mesh, int site, int front)
         GROW_ARRAY(mesh->membership, mesh->n_membership, mesh->membership_capacity);
         membership = mesh->n_membership++;
     }
-    mesh->membership[membership] = (struct membership){front, mesh->first[site]};
+    mesh->membership[membership] = (struct membership){front, place, mesh->first[site]};
     mesh->first[site] = membership;
 }
 
@@ -123,31 +113,30 @@ static void leave(struct star_mesh *mesh, int site, int front)
     mesh->unused_membership = membership;
 }
 
-static void widen(struct front *front)
-{
-    const int capacity = front->capacity ? front->capacity + front->capacity / 2 : 4;
-    front->site = reallocate(front->site, (size_t)capacity, sizeof *front->site);
-    if (front->waiting) {
-        double *waiting = NEW_ARRAY(double, (size_t)MOST_SOURCES *(size_t)capacity);
-        for (int k = 0; k < front->n_waiting; k++)
-            memcpy(waiting + (size_t)k * (size_t)capacity, waiting_row(front, k),
-                   (size_t)front->n * sizeof *waiting);
-        free(front->waiting);
-        front->waiting = waiting;
-    }
-    front->capacity = capacity;
-}
-
 // SITE comes last on the front, without links.
 static void add_member(struct star_mesh *mesh, int front_index, int site)
 {
     struct front *front = &mesh->front[front_index];
-    join(mesh, site, front_index);
-    if (front->n == front->capacity) widen(front);
+    join(mesh, site, front_index, front->n);
+    if (front->n == front->capacity) {
+        front->capacity = front->capacity ? 2 * front->capacity : 4;
+        front->site =
+            reallocate(front->site, (size_t)front->capacity, sizeof *front->site);
+    }
     triangle_add_row(&front->triangle, front->n);
-    for (int k = 0; k < front->n_waiting; k++)
-        waiting_row(front, k)[front->n] = 0;
     front->site[front->n++] = site;
+}
+
+// The last member takes the place of member P.
+static void remove_member(struct star_mesh *mesh, int front_index, int p)
+{
+    struct front *front = &mesh->front[front_index];
+    leave(mesh, front->site[p], front_index);
+    triangle_remove(&front->triangle, front->n, p);
+    const int last = --front->n;
+    if (p == last) return;
+    front->site[p] = front->site[last];
+    mesh->membership[membership_of(mesh, front->site[p], front_index)].place = p;
 }
 
 void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance)
@@ -187,96 +176,32 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
     mesh->summed_air = fmax(mesh->summed_air, compensated_value(mesh->all_air));
 }
 
-// --- the triangle ------------------------------------------------------------------
-
-// What has waited is added to the triangle.
-static void bring_up_to_date(struct front *front)
-{
-    if (front->n_waiting == 0) return;
-    const double *source[MOST_SOURCES];
-    for (int k = 0; k < front->n_waiting; k++)
-        source[k] = waiting_row(front, k);
-    triangle_update(&front->triangle, front->n, front->n_waiting, front->factor,
-                    source);
-    front->n_waiting = 0;
-}
-
-// Adds WEIGHT times rows that wait, from row K on, to ROW: in fours, which read and
-// write it once.
-static void add_rows(double *restrict row, const struct front *front, int k,
-                     const double *weight)
-{
-    const double *a = waiting_row(front, k), *b = waiting_row(front, k + 1);
-    const double *c = waiting_row(front, k + 2), *d = waiting_row(front, k + 3);
-    for (int i = 0; i < front->n; i++)
-        row[i] += (weight[k] * a[i] + weight[k + 1] * b[i]) +
-                  (weight[k + 2] * c[i] + weight[k + 3] * d[i]);
-}
-
-// The links of member P, what waits included.
-static void take_row(const struct front *front, int p, double *row)
-{
-    double weight[MOST_SOURCES];
-    triangle_take(&front->triangle, front->n, p, row);
-    for (int k = 0; k < front->n_waiting; k++)
-        weight[k] = front->factor[k] * waiting_row(front, k)[p];
-    int k = 0;
-    for (; k + 4 <= front->n_waiting; k += 4)
-        add_rows(row, front, k, weight);
-    for (; k < front->n_waiting; k++)
-        for (int i = 0; i < front->n; i++)
-            row[i] += weight[k] * waiting_row(front, k)[i];
-    row[p] = 0;
-}
-
-// The last member takes the place of member P.
-static void remove_member(struct star_mesh *mesh, struct front *front, int p)
-{
-    triangle_remove(&front->triangle, front->n, p);
-    const int last = --front->n;
-    mesh->row[p] = mesh->row[last];
-    for (int k = 0; k < front->n_waiting; k++)
-        waiting_row(front, k)[p] = waiting_row(front, k)[last];
-    front->site[p] = front->site[last];
-}
-
-// Links all members in proportion to the products of their entries in the row.
-static void add_mesh(struct front *front, const double *row, double factor,
-                     bool is_rounded)
-{
-    const int n = front->n;
-    if (!front->triangle.is_large) {
-        triangle_update(&front->triangle, n, 1, &factor, &row);
-        if (n > LARGE_FRONT) triangle_enlarge(&front->triangle, n, is_rounded);
-        return;
-    }
-    if (!front->waiting)
-        front->waiting =
-            NEW_ARRAY(double, (size_t)MOST_SOURCES *(size_t)front->capacity);
-    front->factor[front->n_waiting] = factor;
-    memcpy(waiting_row(front, front->n_waiting++), row, (size_t)n * sizeof *row);
-    if (front->n_waiting >= most_sources(n)) bring_up_to_date(front);
-}
-
 // --- elimination -------------------------------------------------------------------
 
-// The members of front OTHER become members of BASE, whose places are known.
-static void merge(struct star_mesh *mesh, int base_index, int other_index)
+// The members of front OTHER become members of BASE.
+static void find_places(struct star_mesh *mesh, int base_index, int other_index)
 {
-    bring_up_to_date(&mesh->front[other_index]);
+    while (mesh->place_capacity < mesh->front[other_index].n)
+        GROW_ARRAY(mesh->place, mesh->place_capacity, mesh->place_capacity);
     for (int i = 0; i < mesh->front[other_index].n; i++) {
         const int site = mesh->front[other_index].site[i];
         leave(mesh, site, other_index);
-        if (mesh->place[site] >= 0) continue;
-        mesh->place[site] = mesh->front[base_index].n;
-        add_member(mesh, base_index, site);
+        const int membership = membership_of(mesh, site, base_index);
+        mesh->place[i] = membership < 0 ? mesh->front[base_index].n
+                                        : mesh->membership[membership].place;
+        if (membership < 0) add_member(mesh, base_index, site);
     }
-    const struct front *other = &mesh->front[other_index];
-    struct front *base = &mesh->front[base_index];
+}
+
+static void merge(struct star_mesh *mesh, int base_index, int other_index)
+{
+    find_places(mesh, base_index, other_index);
+    struct front *base = &mesh->front[base_index], *other = &mesh->front[other_index];
+    triangle_bring_up_to_date(&other->triangle, other->n);
     for (int i = 1; i < other->n; i++) {
-        const int p = mesh->place[other->site[i]];
+        const int p = mesh->place[i];
         for (int j = 0; j < i; j++) {
-            const int q = mesh->place[other->site[j]];
+            const int q = mesh->place[j];
             const int high = p > q ? p : q, low = p > q ? q : p;
             triangle_set(&base->triangle, high, low,
                          triangle_entry(&base->triangle, high, low) +
@@ -295,15 +220,39 @@ static int merge_fronts(struct star_mesh *mesh, int site)
         if (largest < 0 || mesh->front[front].n > mesh->front[largest].n)
             largest = front;
     }
-    if (largest < 0) return -1;
-    for (int i = 0; i < mesh->front[largest].n; i++)
-        mesh->place[mesh->front[largest].site[i]] = i;
     for (int k = mesh->first[site]; k >= 0;) {
         const int front = mesh->membership[k].front;
         k = mesh->membership[k].next;
         if (front != largest) merge(mesh, largest, front);
     }
     return largest;
+}
+
+// Out of the front, into mesh->row: the links of SITE with those that stay.
+static void take_out(struct star_mesh *mesh, int front_index, int site)
+{
+    struct front *front = &mesh->front[front_index];
+    while (mesh->row_capacity < front->n)
+        GROW_ARRAY(mesh->row, mesh->row_capacity, mesh->row_capacity);
+    const int place = mesh->membership[membership_of(mesh, site, front_index)].place;
+    triangle_take(&front->triangle, front->n, place, mesh->row);
+    remove_member(mesh, front_index, place);
+    mesh->row[place] = mesh->row[front->n];
+}
+
+// In eight parts, which wide vectors add at once.
+static double sum_of(const double *row, int n)
+{
+    enum { PARTS = 8 };
+    double part[PARTS] = {0};
+    int i = 0;
+    for (; i + PARTS <= n; i += PARTS)
+        for (int l = 0; l < PARTS; l++)
+            part[l] += row[i + l];
+    for (; i < n; i++)
+        part[0] += row[i];
+    return ((part[0] + part[1]) + (part[2] + part[3])) +
+           ((part[4] + part[5]) + (part[6] + part[7]));
 }
 
 // What flowed to the eliminated site flows on into the air.
@@ -322,21 +271,13 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
         lower_air(mesh, air);
         return;
     }
+    take_out(mesh, front_index, site);
     struct front *front = &mesh->front[front_index];
-    while (mesh->row_capacity < front->n)
-        GROW_ARRAY(mesh->row, mesh->row_capacity, mesh->row_capacity);
-
-    const int place = mesh->place[site];
-    take_row(front, place, mesh->row);
-    for (int i = 0; i < front->n; i++)
-        mesh->place[front->site[i]] = -1;
-    leave(mesh, site, front_index);
-    remove_member(mesh, front, place);
-    double total = air;
-    for (int i = 0; i < front->n; i++)
-        total += mesh->row[i];
+    const double total = air + sum_of(mesh->row, front->n);
     if (total > 0) {
-        add_mesh(front, mesh->row, 1 / total, mesh->is_rounded);
+        triangle_add_products(&front->triangle, front->n, 1 / total, mesh->row);
+        if (!front->triangle.is_large && front->n > LARGE_FRONT)
+            triangle_enlarge(&front->triangle, front->n, mesh->is_rounded);
         if (air > 0) raise_air(mesh, front, air / total);
     }
     if (air > 0) lower_air(mesh, air * (air / total));
@@ -352,7 +293,7 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
 void star_mesh_bring_up_to_date(struct star_mesh *mesh)
 {
     for (int f = 0; f < mesh->n_front; f++)
-        bring_up_to_date(&mesh->front[f]);
+        triangle_bring_up_to_date(&mesh->front[f].triangle, mesh->front[f].n);
 }
 
 void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
@@ -402,25 +343,12 @@ static void front_state(struct front *front, int n_site, int n_front,
 {
     state_integer(state, &front->n, 0, n_site);
     state_integer(state, &front->next_unused, -1, n_front - 1);
-    state_integer(state, &front->n_waiting, 0, MOST_SOURCES);
-    const size_t n = (size_t)front->n;
-    state_flags(state, &front->triangle.is_large, 1);
     if (state->restoring) {
         front->capacity = front->n;
-        front->site = NEW_ARRAY(int, n);
-        if (front->n_waiting > 0)
-            front->waiting = NEW_ARRAY(double, (size_t)MOST_SOURCES *n);
+        front->site = NEW_ARRAY(int, front->n);
     }
     state_integers(state, front->site, front->n, 0, n_site - 1);
-    for (int i = 0; i < front->n; i++) {
-        if (state->restoring) triangle_add_row(&front->triangle, i);
-        state_numbers(
-            state, (double *)front->triangle.entry + triangle_row(&front->triangle, i),
-            i);
-    }
-    state_numbers(state, front->factor, front->n_waiting);
-    for (int k = 0; k < front->n_waiting; k++)
-        state_numbers(state, waiting_row(front, k), front->n);
+    triangle_state(&front->triangle, front->n, state);
 }
 
 static void fronts_state(struct star_mesh *mesh, struct state *state)
@@ -449,6 +377,7 @@ static void memberships_state(struct star_mesh *mesh, struct state *state)
     state_integers(state, mesh->first, mesh->n_site, -1, (int)n - 1);
     for (int k = 0; k < mesh->n_membership; k++) {
         state_integer(state, &mesh->membership[k].front, 0, mesh->n_front - 1);
+        state_integer(state, &mesh->membership[k].place, 0, mesh->n_site - 1);
         state_integer(state, &mesh->membership[k].next, -1, (int)n - 1);
     }
 }

@@ -19,7 +19,7 @@
 #include <stdbool.h>
 
 struct front;
-struct membership; // a site's being on a front
+struct membership; // a site's place on a front
 
 struct star_mesh {
     int n_site;
@@ -39,9 +39,9 @@ struct star_mesh {
     int n_linked;
     int *linked; // (n_linked)
 
-    int *place;  // (n_site) on the front at hand, -1 between calls
     double *row; // of the site that is eliminated
-    int row_capacity;
+    int *place;  // on a front, of the members of one that joins it
+    int row_capacity, place_capacity;
 };
 
 // No links yet. ROUNDED: links on large fronts are kept as floats.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Products added to a large triangle: where large fronts spend their time. Included
 // with NUMBER (the type of the entries), BYTES of a vector (32 or 64), TILE_ROWS (so
-// that a tile of that many rows and two vectors stays in registers) and UPDATE (a
-// name). Every entry gains the sum of its products, each fused with those before in the
-// order of the sources: the digits do not depend on the vectors.
+// that a tile of that many rows and two vectors stays in registers), and the names PASS
+// and GATHER. Every entry gains the sum of its products, each fused with those before
+// in the order in which they wait: the digits do not depend on the vectors.
 #include "triangle.h"
 
 #include "basics/memory.h"
@@ -20,7 +20,7 @@ typedef NUMBER lanes __attribute__((vector_size(BYTES)));
 enum {
     LANES = BYTES / sizeof(NUMBER),
     WIDTH = 2 * LANES,
-    BLOCK = 512 / sizeof(NUMBER) // columns; those of all sources stay in cache
+    BLOCK = BLOCK_BYTES / sizeof(NUMBER) // columns; of all that wait they stay in cache
 };
 
 static inline lanes fused(lanes a, lanes b, lanes c)
@@ -40,18 +40,23 @@ static inline lanes fused(lanes a, lanes b, lanes c)
 #endif
 }
 
+static const NUMBER *waiting_block(const struct triangle *triangle, int first)
+{
+    return (const NUMBER *)triangle->waiting + (size_t)first * MOST_SOURCES;
+}
+
 struct tile {
     NUMBER *row[TILE_ROWS];
-    const NUMBER *weight; // (n_source, TILE_ROWS)
+    const NUMBER *weight; // (n_waiting, TILE_ROWS)
 };
 
-static inline void add_to_tile(const struct tile *tile, int column, int n_source,
-                               const NUMBER *source)
+static inline void add_to_tile(const struct tile *tile, int column, int n_waiting,
+                               const NUMBER *waiting)
 {
     lanes sum[TILE_ROWS][2] = {0};
-    for (int k = 0; k < n_source; k++) {
+    for (int k = 0; k < n_waiting; k++) {
         lanes part[2];
-        memcpy(part, source + (size_t)k * BLOCK, sizeof part);
+        memcpy(part, waiting + (size_t)k * BLOCK, sizeof part);
         for (int r = 0; r < TILE_ROWS; r++) {
             const lanes weight = tile->weight[k * TILE_ROWS + r] - (lanes){0};
             sum[r][0] = fused(weight, part[0], sum[r][0]);
@@ -65,13 +70,15 @@ static inline void add_to_tile(const struct tile *tile, int column, int n_source
     }
 }
 
-// Columns FIRST..FIRST+BLOCK-1 of all rows. WEIGHT: (rows, n_source) by tiles.
+// Columns FIRST..FIRST+BLOCK-1 of all rows. WEIGHT: (rows, n_waiting) by tiles.
 static void add_to_columns(const struct triangle *triangle, int n, int first,
-                           int n_source, const NUMBER *weight, const NUMBER *source)
+                           const NUMBER *weight)
 {
     NUMBER *entry = triangle->entry;
+    const NUMBER *waiting = waiting_block(triangle, first);
+    const int n_waiting = triangle->n_waiting;
     for (int i = first / TILE_ROWS * TILE_ROWS; i < n; i += TILE_ROWS) {
-        struct tile tile = {.weight = weight + (size_t)i * (size_t)n_source};
+        struct tile tile = {.weight = weight + (size_t)i * (size_t)n_waiting};
         const NUMBER *next[TILE_ROWS];
         for (int r = 0; r < TILE_ROWS; r++) {
             tile.row[r] = entry + triangle_row(triangle, i + r);
@@ -83,40 +90,54 @@ static void add_to_columns(const struct triangle *triangle, int n, int first,
             for (int r = 0; r < TILE_ROWS; r++)
                 for (int line = 0; line < 2 * BYTES; line += 64)
                     __builtin_prefetch((const char *)(next[r] + column) + line, 1);
-            add_to_tile(&tile, column, n_source, source + (column - first));
+            add_to_tile(&tile, column, n_waiting, waiting + (column - first));
         }
     }
 }
 
-static void pack_columns(int n, int first, int n_source, const double *const *source,
-                         NUMBER *packed)
+// Of all that wait, times their factors, by tiles of rows.
+static NUMBER *pack_weights(const struct triangle *triangle, int n)
 {
-    for (int k = 0; k < n_source; k++)
-        for (int c = 0; c < BLOCK; c++)
-            packed[k * BLOCK + c] = first + c < n ? (NUMBER)source[k][first + c] : 0;
-}
-
-static NUMBER *pack_weights(int n, int n_source, const double *factor,
-                            const double *const *source)
-{
+    const int n_waiting = triangle->n_waiting;
     const size_t tiles = ((size_t)n + TILE_ROWS - 1) / TILE_ROWS;
-    NUMBER *weight = NEW_ARRAY(NUMBER, tiles * TILE_ROWS * (size_t)n_source);
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < n_source; k++)
-            weight[((size_t)(i / TILE_ROWS) * (size_t)n_source + (size_t)k) *
-                       TILE_ROWS +
-                   (size_t)(i % TILE_ROWS)] = (NUMBER)(factor[k] * source[k][i]);
+    NUMBER *weight =
+        allocate_uncleared(tiles * TILE_ROWS * (size_t)n_waiting, sizeof *weight);
+    for (int i = 0; i < n; i += TILE_ROWS) {
+        const NUMBER *waiting = waiting_block(triangle, i / BLOCK * BLOCK) + i % BLOCK;
+        NUMBER *tile = weight + (size_t)i * (size_t)n_waiting;
+        for (int k = 0; k < n_waiting; k++)
+            for (int r = 0; r < TILE_ROWS; r++)
+                tile[k * TILE_ROWS + r] =
+                    (NUMBER)triangle->factor[k] * waiting[k * BLOCK + r];
+    }
     return weight;
 }
 
-void UPDATE(struct triangle *triangle, int n, int n_source, const double *factor,
-            const double *const *source)
+void PASS(struct triangle *triangle, int n)
 {
-    NUMBER *weight = pack_weights(n, n_source, factor, source);
-    NUMBER packed[MOST_SOURCES * BLOCK] __attribute__((aligned(64)));
-    for (int first = 0; first < n; first += BLOCK) {
-        pack_columns(n, first, n_source, source, packed);
-        add_to_columns(triangle, n, first, n_source, weight, packed);
-    }
+    NUMBER *weight = pack_weights(triangle, n);
+    for (int first = 0; first < n; first += BLOCK)
+        add_to_columns(triangle, n, first, weight);
     free(weight);
+}
+
+void GATHER(const struct triangle *triangle, int n, const double *weight, double *row)
+{
+    for (int first = 0; first < n; first += BLOCK) {
+        const NUMBER *waiting = waiting_block(triangle, first);
+        for (int column = 0; column < BLOCK && first + column < n;
+             column += 4 * LANES) {
+            lanes sum[4] = {0};
+            for (int k = 0; k < triangle->n_waiting; k++) {
+                lanes part[4];
+                memcpy(part, waiting + k * BLOCK + column, sizeof part);
+                const lanes times = (NUMBER)weight[k] - (lanes){0};
+                for (int v = 0; v < 4; v++)
+                    sum[v] = fused(times, part[v], sum[v]);
+            }
+            const int left = n - first - column;
+            for (int c = 0; c < 4 * LANES && c < left; c++)
+                row[first + column + c] += (double)sum[c / LANES][c % LANES];
+        }
+    }
 }

@@ -2,5 +2,6 @@
 #define NUMBER double
 #define BYTES 32
 #define TILE_ROWS 4
-#define UPDATE triangle_update_narrow_double
+#define PASS triangle_pass_narrow_double
+#define GATHER triangle_gather_narrow_double
 #include "triangle_kernel.h"

@@ -2,5 +2,6 @@
 #define NUMBER float
 #define BYTES 32
 #define TILE_ROWS 4
-#define UPDATE triangle_update_narrow_float
+#define PASS triangle_pass_narrow_float
+#define GATHER triangle_gather_narrow_float
 #include "triangle_kernel.h"

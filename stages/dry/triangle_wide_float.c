@@ -6,5 +6,6 @@
 #define NUMBER float
 #define BYTES 64
 #define TILE_ROWS 8
-#define UPDATE triangle_update_wide_float
+#define PASS triangle_pass_wide_float
+#define GATHER triangle_gather_wide_float
 #include "triangle_kernel.h"

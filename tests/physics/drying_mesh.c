@@ -125,30 +125,35 @@ static void test_shut_in_is_exactly_zero(void **state)
     star_mesh_free(&mesh);
 }
 
-enum { ROWS = 301, SOURCES = 61 };
+enum { ROWS = 1101, SOURCES = 61 }; // as many wait, and are not added before
 
-// A large triangle with products of random rows, all between 0 and 1, added by KERNEL.
-static struct triangle add_products(triangle_kernel *kernel, bool is_rounded,
-                                    double row[SOURCES][ROWS], const double *factor)
+// A large triangle for which products of random rows wait, all between 0 and 1.
+static struct triangle wait_for_products(bool is_rounded, double row[SOURCES][ROWS],
+                                         const double *factor)
 {
     struct triangle triangle = {0};
-    const double *source[SOURCES];
-    for (int k = 0; k < SOURCES; k++)
-        source[k] = row[k];
     for (int i = 0; i < ROWS; i++) {
         triangle_add_row(&triangle, i);
         for (int j = 0; j < i; j++)
             triangle_set(&triangle, i, j, 1.0 / (i + j));
     }
     triangle_enlarge(&triangle, ROWS, is_rounded);
-    kernel(&triangle, ROWS, SOURCES, factor, source);
+    for (int k = 0; k < SOURCES; k++)
+        triangle_add_products(&triangle, ROWS, factor[k], row[k]);
     return triangle;
 }
 
-static void check_kernels(triangle_kernel *narrow_kernel, triangle_kernel *wide_kernel,
-                          bool is_rounded, double tolerance)
+struct kernels {
+    triangle_pass *pass;
+    triangle_gather *gather;
+};
+
+// By narrow vectors and by wide ones.
+static void check_kernels(const struct kernels kernels[2], bool is_rounded,
+                          double tolerance)
 {
     static double row[SOURCES][ROWS];
+    double gathered[2][ROWS] = {0};
     double factor[SOURCES];
     uint64_t seed = 5;
     for (int k = 0; k < SOURCES; k++) {
@@ -156,19 +161,31 @@ static void check_kernels(triangle_kernel *narrow_kernel, triangle_kernel *wide_
             row[k][i] = next_random(&seed);
         factor[k] = next_random(&seed);
     }
-    struct triangle narrow = add_products(narrow_kernel, is_rounded, row, factor);
-    struct triangle wide = add_products(wide_kernel, is_rounded, row, factor);
+    struct triangle triangle[2];
+    for (int wide = 0; wide < 2; wide++) {
+        triangle[wide] = wait_for_products(is_rounded, row, factor);
+        assert_int_equal(triangle[wide].n_waiting, SOURCES);
+        kernels[wide].gather(&triangle[wide], ROWS, factor, gathered[wide]);
+        kernels[wide].pass(&triangle[wide], ROWS);
+    }
+    for (int i = 0; i < ROWS; i++) {
+        double sum = 0;
+        for (int k = 0; k < SOURCES; k++)
+            sum += factor[k] * row[k][i];
+        assert_true(gathered[0][i] == gathered[1][i]);
+        assert_true(fabs(gathered[0][i] / sum - 1) < tolerance);
+    }
     for (int i = 0; i < ROWS; i++)
         for (int j = 0; j < i; j++) {
             double sum = 1.0 / (i + j);
             for (int k = 0; k < SOURCES; k++)
                 sum += factor[k] * row[k][i] * row[k][j];
-            const double entry = triangle_entry(&narrow, i, j);
-            assert_true(entry == triangle_entry(&wide, i, j));
+            const double entry = triangle_entry(&triangle[0], i, j);
+            assert_true(entry == triangle_entry(&triangle[1], i, j));
             assert_true(fabs(entry / sum - 1) < tolerance);
         }
-    triangle_free(&narrow);
-    triangle_free(&wide);
+    triangle_free(&triangle[0]);
+    triangle_free(&triangle[1]);
 }
 
 // Large fronts are updated by narrow vectors or wide ones: the same digits, and near
@@ -177,9 +194,14 @@ static void test_width_of_vectors_does_not_matter(void **state)
 {
     (void)state;
     if (!has_wide_vectors()) skip();
-    check_kernels(triangle_update_narrow_double, triangle_update_wide_double, false,
-                  1e-14);
-    check_kernels(triangle_update_narrow_float, triangle_update_wide_float, true, 1e-6);
+    check_kernels(
+        (struct kernels[]){{triangle_pass_narrow_double, triangle_gather_narrow_double},
+                           {triangle_pass_wide_double, triangle_gather_wide_double}},
+        false, 1e-14);
+    check_kernels(
+        (struct kernels[]){{triangle_pass_narrow_float, triangle_gather_narrow_float},
+                           {triangle_pass_wide_float, triangle_gather_wide_float}},
+        true, 1e-6);
 }
 
 int main(void)
