@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "losses.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,19 +12,27 @@
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
 
+// Sums keep twice the digits of a number, so that all are left when this part is.
+static const double LEAST_PART = 1e-10;
+
 // What a node that is linked to the air charges an account with, of what it evaporates.
 struct charge {
     double share;
-    int node, owner;
+    int node, clock;
     int incidence; // of a throat of the account at the node
 };
 
+static int owner_of(const struct clocks *clocks, int throat)
+{
+    return clocks->by_throat ? throat : clocks->phases->clusters.of_throat[throat];
+}
+
 // --- who loses ---------------------------------------------------------------------
 
-// Where THROAT is or belongs among the N that lose.
-static int losing_place(const struct clocks *clocks, int n, int throat)
+// Where THROAT is or belongs among those that lose.
+static int losing_place(const struct clocks *clocks, int throat)
 {
-    int low = 0, high = n;
+    int low = 0, high = clocks->n_losing;
     while (low < high) {
         const int middle = low + (high - low) / 2;
         if (clocks->losing[middle] < throat)
@@ -34,73 +43,111 @@ static int losing_place(const struct clocks *clocks, int n, int throat)
     return low;
 }
 
-// Of the throat that the account is to lose from.
-static int start_clock(struct clocks *clocks, int owner)
+// From the throat that the account is to lose from.
+static void start_clock(struct clocks *clocks, int k)
 {
+    const int owner = clocks->owner[k];
     const int throat = clocks->by_throat
                            ? owner
                            : clusters_invasion_throat(&clocks->phases->clusters, owner);
-    const int n = clocks->n++, place = losing_place(clocks, n, throat);
+    const int place = losing_place(clocks, throat);
     memmove(clocks->losing + place + 1, clocks->losing + place,
-            (size_t)(n - place) * sizeof *clocks->losing);
+            (size_t)(clocks->n_losing++ - place) * sizeof *clocks->losing);
     clocks->losing[place] = throat;
-    clocks->owner[n] = owner;
-    clocks->throat[n] = throat;
-    clocks->rate[n] = 0;
-    clocks->left[n] = clocks->saturation[throat] * clocks->phases->volume[throat];
-    clocks->left_lost[n] = 0;
-    clocks->nothing[n] = TIE * clocks->phases->volume[throat];
-    return n;
+    clocks->throat[k] = throat;
+    clocks->left[k] = clocks->saturation[throat] * clocks->phases->volume[throat];
+    clocks->left_lost[k] = 0;
+    clocks->since[k] = clocks->now;
+    clocks->nothing[k] = TIE * clocks->phases->volume[throat];
 }
 
-static void stop_clock(struct clocks *clocks, int clock)
+// Two-sum: what is rounded off LEFT is kept beside it.
+static void settle_clock(struct clocks *clocks, int k)
 {
-    const int last = --clocks->n, throat = clocks->throat[clock];
-    const int place = losing_place(clocks, clocks->n + 1, throat);
+    const double left = clocks->left[k];
+    const double amount =
+        clocks->left_lost[k] - clocks->rate[k] * (clocks->now - clocks->since[k]);
+    const double after = left + amount, back = after - left;
+    clocks->left_lost[k] = (left - (after - back)) + (amount - back);
+    clocks->left[k] = after;
+    clocks->since[k] = clocks->now;
+}
+
+static void stop_clock(struct clocks *clocks, int k)
+{
+    const int throat = clocks->throat[k], place = losing_place(clocks, throat);
     memmove(clocks->losing + place, clocks->losing + place + 1,
-            (size_t)(last - place) * sizeof *clocks->losing);
-    clocks->saturation[throat] = (clocks->left[clock] + clocks->left_lost[clock]) /
-                                 clocks->phases->volume[throat];
-    clocks->clock[clocks->owner[clock]] = -1;
-    if (clock == last) return;
-    clocks->owner[clock] = clocks->owner[last];
-    clocks->throat[clock] = clocks->throat[last];
-    clocks->rate[clock] = clocks->rate[last];
-    clocks->left[clock] = clocks->left[last];
-    clocks->left_lost[clock] = clocks->left_lost[last];
-    clocks->nothing[clock] = clocks->nothing[last];
-    clocks->clock[clocks->owner[clock]] = clock;
+            (size_t)(--clocks->n_losing - place) * sizeof *clocks->losing);
+    settle_clock(clocks, k);
+    clocks->saturation[throat] =
+        (clocks->left[k] + clocks->left_lost[k]) / clocks->phases->volume[throat];
+    clocks->throat[k] = -1;
+}
+
+// Of the account; a new one has no throat yet.
+static int clock_of(struct clocks *clocks, int owner)
+{
+    if (clocks->clock[owner] >= 0) return clocks->clock[owner];
+    const int k =
+        clocks->n_unused > 0 ? clocks->unused[--clocks->n_unused] : clocks->n++;
+    clocks->clock[owner] = k;
+    clocks->owner[k] = owner;
+    clocks->throat[k] = -1;
+    return k;
+}
+
+static void touch(struct clocks *clocks, int k)
+{
+    if (clocks->is_touched[k]) return;
+    clocks->is_touched[k] = true;
+    clocks->touched[clocks->n_touched++] = k;
 }
 
 // --- charges -----------------------------------------------------------------------
 
-static int owner_of(const struct clocks *clocks, int throat)
+static double amount_of(const struct clocks *clocks, const struct charge *charge)
 {
-    return clocks->by_throat ? throat : clocks->phases->clusters.of_throat[throat];
+    return charge->share * clocks->phases->vapour.mesh.air[charge->node];
+}
+
+static void add_to_sum(struct clocks *clocks, int k, double amount)
+{
+    compensated_add(&clocks->sum[k], amount);
+    clocks->summed[k] = fmax(clocks->summed[k], compensated_value(clocks->sum[k]));
 }
 
 static void remove_charge(struct clocks *clocks, int place)
 {
     const struct charge *last = &clocks->charge[--clocks->n_charge];
+    struct charge *charge = &clocks->charge[place];
+    touch(clocks, charge->clock);
+    if (--clocks->charges[charge->clock] == 0) {
+        clocks->sum[charge->clock] = (struct compensated){0};
+        clocks->summed[charge->clock] = 0;
+    } else {
+        add_to_sum(clocks, charge->clock, -amount_of(clocks, charge));
+    }
     clocks->charge_place[last->incidence] = place;
-    clocks->charge_place[clocks->charge[place].incidence] = -1;
-    clocks->charge[place] = *last;
+    clocks->charge_place[charge->incidence] = -1;
+    *charge = *last;
 }
 
 // To an account that the node charges already, or a new one.
 static void add_charge(struct clocks *clocks, int node, int incidence, double share)
 {
-    const int *throat = clocks->phases->incidence.throat;
-    const int owner = owner_of(clocks, throat[incidence]);
+    const int owner = owner_of(clocks, clocks->phases->incidence.throat[incidence]);
+    const int clock = clock_of(clocks, owner);
     for (int k = clocks->phases->incidence.offset[node]; k < incidence; k++) {
         const int place = clocks->charge_place[k];
-        if (place < 0 || clocks->charge[place].owner != owner) continue;
+        if (place < 0 || clocks->charge[place].clock != clock) continue;
         clocks->charge[place].share += share;
         return;
     }
+    touch(clocks, clock);
+    clocks->charges[clock]++;
     clocks->charge_place[incidence] = clocks->n_charge;
     GROW_ARRAY(clocks->charge, clocks->n_charge, clocks->charge_capacity);
-    clocks->charge[clocks->n_charge++] = (struct charge){share, node, owner, incidence};
+    clocks->charge[clocks->n_charge++] = (struct charge){share, node, clock, incidence};
 }
 
 // By the throats that hold liquid now: shares are proportional to their cross-sections.
@@ -120,6 +167,12 @@ static void charge_node(struct clocks *clocks, int node)
         const double section = liquid_section(phases, phases->incidence.throat[k]);
         if (section > 0) add_charge(clocks, node, k, section / sum);
     }
+    for (int k = begin; k < end; k++) {
+        const int place = clocks->charge_place[k];
+        if (place < 0) continue;
+        const struct charge *charge = &clocks->charge[place];
+        add_to_sum(clocks, charge->clock, amount_of(clocks, charge));
+    }
 }
 
 static void charge_ends(struct clocks *clocks, int throat)
@@ -128,24 +181,110 @@ static void charge_ends(struct clocks *clocks, int throat)
         charge_node(clocks, clocks->phases->network->throat_nodes[throat][end]);
 }
 
-// --- the clocks --------------------------------------------------------------------
+// --- rates -------------------------------------------------------------------------
 
-// All rates anew: sums of positive numbers, so that nothing is lost.
-static void set_rates(struct clocks *clocks)
+static void settle_all(struct clocks *clocks)
+{
+    for (int k = 0; k < clocks->n; k++)
+        settle_clock(clocks, k);
+    for (int k = 0; k < clocks->n; k++)
+        clocks->since[k] = 0;
+    clocks->now = 0;
+}
+
+static int most_charged(const struct clocks *clocks)
+{
+    int most = 0;
+    for (int k = 1; k < clocks->n; k++)
+        if (clocks->charges[k] > clocks->charges[most]) most = k;
+    return most;
+}
+
+// Of all clocks, from now on: sums of positive numbers, so that nothing is lost. That
+// of the liquid's largest piece, which gets about half of them, in eight parts: each
+// addition waits for the one before it.
+static void add_up(struct clocks *clocks)
+{
+    enum { PARTS = 8 };
+    double part[PARTS] = {0};
+    const int most = most_charged(clocks);
+    settle_all(clocks);
+    memset(clocks->rate, 0, (size_t)clocks->n * sizeof *clocks->rate);
+    for (int k = 0; k < clocks->n_charge; k++) {
+        const int clock = clocks->charge[k].clock;
+        double *sum = clock == most ? &part[k % PARTS] : &clocks->rate[clock];
+        *sum += amount_of(clocks, &clocks->charge[k]);
+    }
+    for (int l = 0; l < PARTS; l++)
+        clocks->rate[most] += part[l];
+    for (int k = 0; k < clocks->n; k++) {
+        clocks->sum[k] = (struct compensated){clocks->rate[k], 0};
+        clocks->summed[k] = clocks->rate[k];
+    }
+}
+
+// Infinite, or no number, without a rate.
+static inline void find_end(struct clocks *clocks, int k)
+{
+    const double each = 1 / clocks->rate[k], left = clocks->left[k];
+    clocks->end[k] = clocks->since[k] + left * each;
+    clocks->tie[k] = clocks->since[k] + (left - clocks->nothing[k]) * each;
+}
+
+static void end_clock(struct clocks *clocks, int k)
+{
+    if (clocks->throat[k] >= 0) stop_clock(clocks, k);
+    clocks->clock[clocks->owner[k]] = -1;
+    clocks->owner[k] = -1;
+    clocks->sum[k] = (struct compensated){0};
+    clocks->rate[k] = clocks->summed[k] = clocks->nothing[k] = 0;
+    clocks->left[k] = 1;
+    find_end(clocks, k);
+    clocks->unused[clocks->n_unused++] = k;
+}
+
+// The clocks with other charges than before run on from now.
+static void renew_touched(struct clocks *clocks)
+{
+    for (int l = 0; l < clocks->n_touched; l++) {
+        const int k = clocks->touched[l];
+        clocks->is_touched[k] = false;
+        if (clocks->charges[k] == 0) {
+            end_clock(clocks, k);
+            continue;
+        }
+        if (clocks->throat[k] < 0)
+            start_clock(clocks, k);
+        else
+            settle_clock(clocks, k);
+        clocks->rate[k] = compensated_value(clocks->sum[k]);
+        find_end(clocks, k);
+    }
+    clocks->n_touched = 0;
+}
+
+static bool too_little_is_left(const struct clocks *clocks)
+{
+    for (int l = 0; l < clocks->n_touched; l++) {
+        const int k = clocks->touched[l];
+        if (compensated_value(clocks->sum[k]) < LEAST_PART * clocks->summed[k])
+            return true;
+    }
+    return false;
+}
+
+// ALL_CHANGED: what each node evaporates.
+static void set_rates(struct clocks *clocks, bool all_changed)
 {
     struct star_mesh *mesh = &clocks->phases->vapour.mesh;
     for (int k = 0; k < mesh->n_linked; k++)
         charge_node(clocks, mesh->linked[k]);
     mesh->n_linked = 0;
-    memset(clocks->rate, 0, (size_t)clocks->n * sizeof *clocks->rate);
-    for (int k = 0; k < clocks->n_charge; k++) {
-        const struct charge *charge = &clocks->charge[k];
-        const double amount = charge->share * mesh->air[charge->node];
-        if (!(amount > 0)) continue;
-        int *clock = &clocks->clock[charge->owner];
-        if (*clock < 0) *clock = start_clock(clocks, charge->owner);
-        clocks->rate[*clock] += amount;
-    }
+    const bool all = all_changed || too_little_is_left(clocks);
+    if (all) add_up(clocks);
+    renew_touched(clocks);
+    for (int k = 0; all && k < clocks->n; k++)
+        find_end(clocks, k);
 }
 
 struct clocks clocks_make(struct phases *phases, bool by_throat)
@@ -157,12 +296,21 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
                             .clock = NEW_ARRAY(int, n),
                             .owner = NEW_ARRAY(int, n),
                             .throat = NEW_ARRAY(int, n),
+                            .charges = NEW_ARRAY(int, n),
+                            .sum = NEW_ARRAY(struct compensated, n),
+                            .summed = NEW_ARRAY(double, n),
                             .rate = NEW_ARRAY(double, n),
                             .left = NEW_ARRAY(double, n),
                             .left_lost = NEW_ARRAY(double, n),
+                            .since = NEW_ARRAY(double, n),
                             .nothing = NEW_ARRAY(double, n),
+                            .end = NEW_ARRAY(double, n),
+                            .tie = NEW_ARRAY(double, n),
+                            .saturation = NEW_ARRAY(double, n),
+                            .unused = NEW_ARRAY(int, n),
                             .losing = NEW_ARRAY(int, n),
-                            .saturation = NEW_ARRAY(double, n)};
+                            .touched = NEW_ARRAY(int, n),
+                            .is_touched = NEW_ARRAY(bool, n)};
     for (int t = 0; t < n; t++) {
         clocks.saturation[t] = phases_saturation(phases, t);
         clocks.clock[t] = -1;
@@ -171,7 +319,7 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
     for (int k = 0; k < phases->n_wet; k++)
         charge_node(&clocks, phases->wet[k]);
     phases->vapour.mesh.n_linked = 0;
-    set_rates(&clocks);
+    set_rates(&clocks, true);
     return clocks;
 }
 
@@ -182,12 +330,21 @@ void clocks_free(struct clocks *clocks)
     free(clocks->clock);
     free(clocks->owner);
     free(clocks->throat);
+    free(clocks->charges);
+    free(clocks->sum);
+    free(clocks->summed);
     free(clocks->rate);
     free(clocks->left);
     free(clocks->left_lost);
+    free(clocks->since);
     free(clocks->nothing);
-    free(clocks->losing);
+    free(clocks->end);
+    free(clocks->tie);
     free(clocks->saturation);
+    free(clocks->unused);
+    free(clocks->losing);
+    free(clocks->touched);
+    free(clocks->is_touched);
     free(clocks->ended);
     *clocks = (struct clocks){0};
 }
@@ -196,9 +353,10 @@ double clocks_saturation(const struct clocks *clocks, int throat)
 {
     const int owner = owner_of(clocks, throat);
     if (owner < 0) return 0;
-    const int clock = clocks->clock[owner];
-    if (clock < 0 || clocks->throat[clock] != throat) return clocks->saturation[throat];
-    return (clocks->left[clock] + clocks->left_lost[clock]) /
+    const int k = clocks->clock[owner];
+    if (k < 0 || clocks->throat[k] != throat) return clocks->saturation[throat];
+    const double lost = clocks->rate[k] * (clocks->now - clocks->since[k]);
+    return (clocks->left[k] + (clocks->left_lost[k] - lost)) /
            clocks->phases->volume[throat];
 }
 
@@ -209,38 +367,27 @@ double clocks_imbalance(const struct clocks *clocks)
     struct compensated sum = {.value = -rate};
     for (int k = 0; k < clocks->n; k++)
         compensated_add(&sum, clocks->rate[k]);
-    return clocks->n > 0 ? compensated_value(sum) / rate : 0;
+    return clocks->n_losing > 0 ? compensated_value(sum) / rate : 0;
 }
 
 // --- events ------------------------------------------------------------------------
 
-// INFINITY if none loses. Four at a time: they share a division.
-static double time_to_first(const struct clocks *clocks)
+// INFINITY if none loses.
+static double first_end(const struct clocks *clocks)
 {
-    enum { LANES = 4 };
-    double shortest[LANES] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    enum { LANES = 16 };
+    double first[LANES];
+    for (int l = 0; l < LANES; l++)
+        first[l] = INFINITY;
     int k = 0;
     for (; k + LANES <= clocks->n; k += LANES)
-        for (int l = 0; l < LANES; l++) {
-            const double time = clocks->left[k + l] / clocks->rate[k + l];
-            shortest[l] = time < shortest[l] ? time : shortest[l];
-        }
+        for (int l = 0; l < LANES; l++)
+            first[l] = clocks->end[k + l] < first[l] ? clocks->end[k + l] : first[l];
     for (; k < clocks->n; k++)
-        shortest[0] = fmin(shortest[0], clocks->left[k] / clocks->rate[k]);
-    return fmin(fmin(shortest[0], shortest[1]), fmin(shortest[2], shortest[3]));
-}
-
-// Two-sum: what is rounded off LEFT is kept beside it.
-static void pass(struct clocks *clocks, double duration)
-{
-    double *restrict left = clocks->left, *restrict lost = clocks->left_lost;
-    const double *restrict rate = clocks->rate;
-    for (int k = 0; k < clocks->n; k++) {
-        const double amount = lost[k] - rate[k] * duration;
-        const double after = left[k] + amount, back = after - left[k];
-        lost[k] = (left[k] - (after - back)) + (amount - back);
-        left[k] = after;
-    }
+        first[0] = fmin(first[0], clocks->end[k]);
+    for (int l = 1; l < LANES; l++)
+        first[0] = fmin(first[0], first[l]);
+    return first[0];
 }
 
 static int compare_numbers(const void *a, const void *b)
@@ -249,18 +396,29 @@ static int compare_numbers(const void *a, const void *b)
     return (*m > *n) - (*m < *n);
 }
 
-// Those that have lost all.
-static void end_throats(struct clocks *clocks)
+static void end_throat(struct clocks *clocks, int k)
 {
     struct phases *phases = clocks->phases;
+    settle_clock(clocks, k);
+    compensated_add(&phases->total_liquid, -clocks->left[k]);
+    compensated_add(&phases->total_liquid, -clocks->left_lost[k]);
+    clocks->left[k] = clocks->left_lost[k] = 0;
+    GROW_ARRAY(clocks->ended, clocks->n_ended, clocks->ended_capacity);
+    clocks->ended[clocks->n_ended++] = clocks->throat[k];
+}
+
+// Those that have lost all. Blocks in which none has are passed over in few steps.
+static void end_throats(struct clocks *clocks)
+{
+    enum { BLOCK = 128 };
     clocks->n_ended = 0;
-    for (int k = 0; k < clocks->n; k++) {
-        if (clocks->left[k] > clocks->nothing[k]) continue;
-        compensated_add(&phases->total_liquid, -clocks->left[k]);
-        compensated_add(&phases->total_liquid, -clocks->left_lost[k]);
-        clocks->left[k] = clocks->left_lost[k] = 0;
-        GROW_ARRAY(clocks->ended, clocks->n_ended, clocks->ended_capacity);
-        clocks->ended[clocks->n_ended++] = clocks->throat[k];
+    for (int first = 0; first < clocks->n; first += BLOCK) {
+        const int last = first + BLOCK < clocks->n ? first + BLOCK : clocks->n;
+        int any = 0;
+        for (int k = first; k < last; k++)
+            any |= clocks->tie[k] <= clocks->now;
+        for (int k = first; any && k < last; k++)
+            if (clocks->tie[k] <= clocks->now) end_throat(clocks, k);
     }
     if (clocks->n_ended > 1)
         qsort(clocks->ended, (size_t)clocks->n_ended, sizeof *clocks->ended,
@@ -270,29 +428,36 @@ static void end_throats(struct clocks *clocks)
 double clocks_advance(struct clocks *clocks)
 {
     struct phases *phases = clocks->phases;
-    const double span = time_to_first(clocks);
-    if (span == INFINITY) return -1;
+    const double end = first_end(clocks);
+    if (end == INFINITY) return -1;
+    const double span = end - clocks->now;
     compensated_add(&phases->total_liquid, -vapour_rate(&phases->vapour) * span);
-    pass(clocks, span);
+    clocks->now = end;
     end_throats(clocks);
     return span;
 }
 
-static void empty_throat(struct clocks *clocks, int throat)
+// Returns whether a node dries.
+static bool empty_throat(struct clocks *clocks, int throat)
 {
-    const struct clusters *clusters = &clocks->phases->clusters;
-    stop_clock(clocks, clocks->clock[owner_of(clocks, throat)]);
-    phases_empty_throat(clocks->phases, throat);
+    struct phases *phases = clocks->phases;
+    const int k = clocks->clock[owner_of(clocks, throat)];
+    stop_clock(clocks, k);
+    touch(clocks, k);
+    phases_empty_throat(phases, throat);
     charge_ends(clocks, throat);
-    for (int k = 0; k < clusters->n_moved; k++)
-        charge_ends(clocks, clusters->moved[k]);
+    for (int l = 0; l < phases->clusters.n_moved; l++)
+        charge_ends(clocks, phases->clusters.moved[l]);
+    const int32_t *node = phases->network->throat_nodes[throat];
+    return phases->liquid_beside[node[0]] == 0 || phases->liquid_beside[node[1]] == 0;
 }
 
 void clocks_empty_ended(struct clocks *clocks)
 {
+    bool dries = false;
     for (int k = 0; k < clocks->n_ended; k++)
-        empty_throat(clocks, clocks->ended[k]);
-    set_rates(clocks);
+        dries |= empty_throat(clocks, clocks->ended[k]);
+    set_rates(clocks, dries);
 }
 
 // --- state -------------------------------------------------------------------------
@@ -308,7 +473,7 @@ static void charges_state(struct clocks *clocks, struct state *state)
         struct charge *charge = &clocks->charge[k];
         state_numbers(state, &charge->share, 1);
         state_integer(state, &charge->node, 0, network->n_node - 1);
-        state_integer(state, &charge->owner, 0, network->n_throat - 1);
+        state_integer(state, &charge->clock, 0, clocks->n - 1);
         state_integer(state, &charge->incidence, 0, n_incidence - 1);
     }
     state_integers(state, clocks->charge_place, n_incidence, -1, (int)n - 1);
@@ -316,23 +481,30 @@ static void charges_state(struct clocks *clocks, struct state *state)
 
 void clocks_state(struct clocks *clocks, struct state *state)
 {
-    const struct network *network = clocks->phases->network;
-    const int n_throat = network->n_throat;
-    if (state->restoring)
-        for (int k = 0; k < clocks->n; k++)
-            clocks->clock[clocks->owner[k]] = -1;
+    const int n_throat = clocks->phases->network->n_throat;
+    for (int k = 0; state->restoring && k < clocks->n; k++)
+        if (clocks->owner[k] >= 0) clocks->clock[clocks->owner[k]] = -1;
     state_integer(state, &clocks->n, 0, n_throat);
+    state_integer(state, &clocks->n_unused, 0, n_throat);
+    state_integer(state, &clocks->n_losing, 0, n_throat);
     charges_state(clocks, state);
-    state_integers(state, clocks->owner, clocks->n, 0, n_throat - 1);
-    state_integers(state, clocks->throat, clocks->n, 0, n_throat - 1);
-    state_integers(state, clocks->losing, clocks->n, 0, n_throat - 1);
+    state_integers(state, clocks->owner, clocks->n, -1, n_throat - 1);
+    state_integers(state, clocks->throat, clocks->n, -1, n_throat - 1);
+    state_integers(state, clocks->charges, clocks->n, 0, clocks->n_charge);
+    state_integers(state, clocks->unused, clocks->n_unused, 0, clocks->n - 1);
+    state_integers(state, clocks->losing, clocks->n_losing, 0, n_throat - 1);
+    state_sums(state, clocks->sum, clocks->n);
+    state_numbers(state, clocks->summed, clocks->n);
     state_numbers(state, clocks->rate, clocks->n);
     state_numbers(state, clocks->left, clocks->n);
     state_numbers(state, clocks->left_lost, clocks->n);
+    state_numbers(state, clocks->since, clocks->n);
+    state_numbers(state, &clocks->now, 1);
     state_numbers(state, clocks->saturation, n_throat);
-    if (!state->restoring) return;
-    for (int k = 0; k < clocks->n; k++) {
-        clocks->clock[clocks->owner[k]] = k;
-        clocks->nothing[k] = TIE * clocks->phases->volume[clocks->throat[k]];
+    for (int k = 0; state->restoring && k < clocks->n; k++) {
+        if (clocks->owner[k] >= 0) clocks->clock[clocks->owner[k]] = k;
+        const int throat = clocks->throat[k];
+        clocks->nothing[k] = throat < 0 ? 0 : TIE * clocks->phases->volume[throat];
+        find_end(clocks, k);
     }
 }

@@ -21,17 +21,30 @@ struct clocks {
     struct charge *charge; // (n_charge) of nodes that are linked to the air
     int *charge_place;     // (2 n_throat) in charge, beside incidence.throat
 
-    // The clocks that run.
-    int *clock; // (n_throat) of the account, by cluster or by throat; -1: none
-    int n;
-    int *owner;         // (n) account
-    int *throat;        // (n)
-    double *rate;       // (n) of scaled volume
-    double *left;       // (n) liquid of the throat
-    double *left_lost;  // (n) what rounding takes from LEFT
-    double *nothing;    // (n) if no more is left, the throat has emptied
-    int *losing;        // (n) the throats, ascending
+    // One for each account that is charged.
+    int *clock;   // (n_throat) of the account, by cluster or by throat; -1: none
+    int n;        // so far, the unused included
+    int *owner;   // (n) account, -1: unused
+    int *throat;  // (n) that loses, -1: not found yet
+    int *charges; // (n) how many
+    struct compensated *sum; // (n) of the charges
+    double *summed;          // (n) the largest it was since they were last added up
+    double *rate;            // (n) of scaled volume
+    double *left;            // (n) liquid of the throat
+    double *left_lost;       // (n) what rounding takes from LEFT
+    double *since;           // (n) the moment at which so much was left
+    double *nothing;         // (n) if no more is left, the throat has emptied
+    double *end, *tie;  // (n) the moments at which it has lost all, or all but NOTHING
+    double now;         // since all LEFT were last brought up to date
     double *saturation; // (n_throat) of throats whose clock has stopped
+    int n_unused;
+    int *unused; // (n_unused) clocks
+    int n_losing;
+    int *losing; // (n_losing) the throats, ascending
+
+    int n_touched;
+    int *touched;     // (n_touched) clocks with other charges than before, or no throat
+    bool *is_touched; // (n)
 
     int n_ended, ended_capacity;
     int *ended; // (n_ended) throats that empty now, ascending

@@ -19,7 +19,7 @@ static void record_changes(struct run *run)
     const struct clocks *clocks = &run->clocks;
     sort_ended(run);
     int k = 0;
-    for (int l = 0; l < clocks->n; l++) {
+    for (int l = 0; l < clocks->n_losing; l++) {
         for (; k < run->n_ended && run->ended[k] < clocks->losing[l]; k++)
             record_change(run, run->ended[k]);
         record_change(run, clocks->losing[l]);
