@@ -219,6 +219,7 @@ bool improve(struct equilibrium *e, bool *is_fresh)
         *is_fresh = true;
         return factor(e);
     }
+    if (e->large) large_accelerate(e);
     for (int i = 0; i < e->n; i++) {
         pull(&e->trial[i], scaled(-1, e->step[i]));
         pull(&e->dashpots[i], scaled(-1, e->rest[i]));

@@ -23,12 +23,14 @@ static void find_units(struct equilibrium *e)
         radius = fmax(radius, fmin(packing->radius[packing->bond[b][0]],
                                    packing->radius[packing->bond[b][1]]));
     radius *= e->setup.bond.radius_fraction;
-    const double glue = e->setup.bond.normal_stiffness * M_PI * radius * radius;
+    const double glue = e->setup.bond.kind == DEM_CONTACT_BOND
+                            ? 0
+                            : e->setup.bond.normal_stiffness * M_PI * radius * radius;
     e->stiffness = fmax(glue, e->setup.material.normal_stiffness);
 }
 
 // Much softer than anything that resists: it moves what nothing holds, and nothing
-// else. Still softer where long rows may buckle, which is as much too late.
+// else.
 static double softness(const struct equilibrium *e)
 {
     double least = 1;
@@ -38,7 +40,7 @@ static double softness(const struct equilibrium *e)
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
-    return (e->setup.large_displacements ? 1e-11 : 1e-8) * least;
+    return 1e-8 * least;
 }
 
 enum status equilibrium_new(struct equilibrium **result,
@@ -62,6 +64,7 @@ enum status equilibrium_new(struct equilibrium **result,
                                        .bond = &e->setup.bond,
                                        .has_wall = setup->has_wall,
                                        .unstressed = setup->unstressed,
+                                       .rolling = setup->rolling,
                                        .length = e->length,
                                        .stiffness = e->stiffness};
     e->joint = make_joints(&joints, &e->n_joint);
@@ -77,7 +80,7 @@ enum status equilibrium_new(struct equilibrium **result,
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
     e->is_gone = NEW_ARRAY(bool, n);
     e->fragments = fragments_new(n);
-    e->soft = softness(e);
+    e->soft[0] = e->soft[1] = softness(e);
     e->matrix = stiffness_new(n, setup->fixed, e->n_joint, e->joint);
     e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
     if (setup->large_displacements) e->large = large_new(e);
@@ -114,13 +117,15 @@ static void record_crack(struct equilibrium *e, struct joint *joint, int mode)
         .mode = (uint8_t)mode,
         .cycle = e->iterations,
         .position = add(e->packing->position[i], scale(e->length, from))};
-    joint->is_bonded = false;
+    joint_break(joint, e->strain[joint - e->joint]);
 }
 
 // The most overloaded bond breaks, if one is at its strength. Whether one was.
 static bool break_one(struct equilibrium *e)
 {
-    const double stress = e->stiffness / e->length; // its unit
+    const double unit = e->setup.bond.kind == DEM_CONTACT_BOND // of strengths
+                            ? e->stiffness * e->length
+                            : e->stiffness / e->length;
     struct joint *worst = NULL;
     double most = strong;
     int mode = DEM_CRACK_NORMAL;
@@ -128,8 +133,8 @@ static bool break_one(struct equilibrium *e)
         struct joint *joint = &e->joint[j];
         if (!joint->is_bonded || joint->is_gone) continue;
         const struct overload overload =
-            joint_overload(joint, e->strain[j], e->setup.bond.normal_strength / stress,
-                           e->setup.bond.shear_strength / stress);
+            joint_overload(joint, e->strain[j], e->setup.bond.normal_strength / unit,
+                           e->setup.bond.shear_strength / unit);
         const double *relative = e->setup.relative_strength;
         const double larger = fmax(overload.normal, overload.shear) /
                               (relative ? relative[joint->bond] : 1);

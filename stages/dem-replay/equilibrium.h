@@ -21,14 +21,16 @@
 #include "net_load.h"
 
 struct equilibrium_setup {
-    const struct packing *packing;   // with its bonds
-    const uint8_t *fixed;            // (n_particle)
-    bool has_wall;                   // beneath, at the lower z wall
-    bool unstressed;                 // overlaps of the packing do not push
-    struct dem_material material;    // density and damping have no part in it
-    struct dem_bond_material bond;   // parallel
+    const struct packing *packing; // with its bonds
+    const uint8_t *fixed;          // (n_particle)
+    bool has_wall;                 // beneath, at the lower z wall
+    bool unstressed;               // overlaps of the packing do not push
+    struct dem_material material;  // density and damping have no part in it
+    struct dem_bond_material bond;
     const double *relative_strength; // (n_bond) of that of the material; NULL: 1
     bool is_free;     // nothing holds the grains: their net load is taken off
+    double rolling;   // contact bonds: stiffness against rolling and twist, of that
+                      // against shear times both arms
     double tolerance; // largest force or moment left on a grain, of the largest load
     int64_t most_iterations;  // steps in time to one equilibrium
     bool large_displacements; // found on the geometry as it is; something holds the

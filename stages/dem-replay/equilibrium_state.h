@@ -54,7 +54,7 @@ struct equilibrium {
     struct factored *factored;  // (n_joint)
     struct corrections *corrections;
     struct correction *unlike; // (n_joint) that have to be
-    double soft;
+    double soft[2]; // against shifts and turns
     double largest_load; // so far: what is left is measured by it
     double enough;       // what may be left
     int iterations, factors;

@@ -71,6 +71,8 @@ static void add_bond(const struct joint *joint, const double strain[STRAINS],
 {
     for (int k = 0; k < STRAINS; k++)
         resistance->load[k] = joint->bond_stiffness[k] * strain[k];
+    resistance->load[STRAIN_ALONG] -=
+        joint->bond_stiffness[STRAIN_ALONG] * joint->point_overlap;
     for (int k = 0; k < 3; k++) {
         resistance->slope[k][k] = joint->bond_stiffness[k];
         resistance->stiffness[k] = joint->bond_stiffness[3 + k];
@@ -149,10 +151,33 @@ struct resistance joint_resistance(const struct joint *joint,
     return resistance;
 }
 
+void joint_break(struct joint *joint, const double strain[STRAINS])
+{
+    joint->is_bonded = false;
+    if (!joint->is_point) return;
+    joint->overlap = joint->point_overlap;
+    joint->contact = (struct contact){TOUCH_NONE, {0, 0}};
+    if (joint->overlap - strain[STRAIN_ALONG] >= 0) joint->contact.touch = TOUCH_STICKS;
+}
+
+static struct overload point_overload(const struct joint *joint,
+                                      const double strain[STRAINS],
+                                      double normal_strength, double shear_strength)
+{
+    const double *stiffness = joint->bond_stiffness;
+    const double tension =
+        stiffness[STRAIN_ALONG] * (strain[STRAIN_ALONG] - joint->point_overlap);
+    const double shear = stiffness[STRAIN_ACROSS] *
+                         hypot(strain[STRAIN_ACROSS], strain[STRAIN_ACROSS + 1]);
+    return (struct overload){tension / normal_strength, shear / shear_strength};
+}
+
 // With k^n A and k^s A known, A R^2 = 4 I = 2 J gives the stresses without A.
 struct overload joint_overload(const struct joint *joint, const double strain[STRAINS],
                                double normal_strength, double shear_strength)
 {
+    if (joint->is_point)
+        return point_overload(joint, strain, normal_strength, shear_strength);
     const double *stiffness = joint->bond_stiffness;
     const double radius = joint->bond_radius, area = M_PI * radius * radius;
     const double bending =

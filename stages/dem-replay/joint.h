@@ -38,8 +38,12 @@ struct joint {
     double arm[2];         // from the centres to the contact point
     double overlap;        // at the start
     double bond_radius;
-    // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice.
+    // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice. Point of
+    // glue, a contact bond [K 4.2]: the contact's springs, also in tension; what is in
+    // contact when it breaks is OVERLAP from then on.
     double bond_stiffness[STRAINS];
+    bool is_point;
+    double point_overlap;                 // at the start; parallel bonds: 0
     double contact_along, contact_across; // [K 4.22]; no shear without friction
     double friction;
     // Of the last equilibrium, from which history goes on.
@@ -71,11 +75,14 @@ struct displacement joint_arm(const struct joint *joint, int end, int strain);
 struct displacement joint_loads(const struct joint *joint, int end,
                                 const double load[STRAINS]);
 
-// Stress over strength [K 4.41, 4.42] of an intact bond at STRAIN.
+// Stress over strength [K 4.41, 4.42] of an intact bond at STRAIN, of a point force.
 struct overload {
     double normal, shear;
 };
 struct overload joint_overload(const struct joint *joint, const double strain[STRAINS],
                                double normal_strength, double shear_strength);
+
+// What is left is a contact, if grains touch at STRAIN with the shear there is.
+void joint_break(struct joint *joint, const double strain[STRAINS]);
 
 #endif

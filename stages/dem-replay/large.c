@@ -12,7 +12,8 @@
 // known where equilibrium ends.
 static const double least_increment = 1e-6;
 
-struct large *large_new(const struct equilibrium *e)
+// Rows that buckle do so later by what is soft against shifts.
+struct large *large_new(struct equilibrium *e)
 {
     struct large *large = NEW_ARRAY(struct large, 1);
     struct lie **const of_joints[] = {&large->start, &large->before, &large->now};
@@ -22,7 +23,9 @@ struct large *large_new(const struct equilibrium *e)
             (*of_joints[k])[j] = joint_lie(&e->joint[j]);
     }
     large->more = NEW_ARRAY(struct pair_stiffness, e->n_joint);
+    large->acceleration = acceleration_new(6 * e->n);
     large->withheld = NEW_ARRAY(struct displacement, e->n);
+    e->soft[0] *= 1e-3;
     large->share = 1;
     large->is_stale = true;
     return large;
@@ -35,6 +38,7 @@ void large_free(struct large *large)
     free(large->before);
     free(large->now);
     free(large->more);
+    acceleration_free(large->acceleration);
     free(large->withheld);
     free(large);
 }
@@ -74,16 +78,30 @@ struct displacement large_loads(const struct equilibrium *e, int j, int end)
 }
 
 // With dashpots, (1 + damping) times the stiffness resists, but for this part of it.
+// Where nothing resists twist, what turns with the shear force has no symmetric part to
+// speak of: half of it there would look like grains that give way about their contacts.
 void large_linearise(struct equilibrium *e)
 {
     struct large *large = e->large;
+    acceleration_clear(large->acceleration);
     for (int j = 0; j < e->n_joint; j++) {
-        double load[STRAINS];
-        for (int k = 0; k < STRAINS; k++)
+        const struct joint *joint = &e->joint[j];
+        const bool twists = joint->is_bonded && joint->bond_stiffness[STRAIN_TWIST] > 0;
+        double load[STRAINS] = {0};
+        for (int k = 0; k < (twists ? STRAINS : 1); k++)
             load[k] = e->resistance[j].load[k] / (1 + e->damping);
         lay_joint(&e->joint[j], &large->now[j]);
         geometric_stiffness(&e->joint[j], &large->now[j], load, &large->more[j]);
     }
+}
+
+// Steps with joints unlike the factor are no linear iteration.
+void large_accelerate(struct equilibrium *e)
+{
+    if (e->damping > 0 || corrections_count(e->corrections) > 0)
+        acceleration_clear(e->large->acceleration);
+    else
+        accelerate(e->large->acceleration, &e->step[0].shift.x);
 }
 
 void large_keep_history(struct equilibrium *e)
@@ -132,17 +150,22 @@ bool large_approach(struct equilibrium *e)
     bool is_fresh = e->large->is_stale || e->damping > 0;
     if (is_fresh && !factor(e)) return false;
     e->large->is_stale = false;
+    acceleration_clear(e->large->acceleration);
     double before = INFINITY;
+    int since = 0, patience = 1; // rounds with one factor
     for (int round = 0; round < ROUNDS; round++) {
         const double left = largest_left(e);
         if (left <= well || (left <= e->enough && left >= slow * before)) return true;
-        if (left > slow * before && !is_fresh) {
+        if (left > slow * before && since >= patience) {
             is_fresh = true;
+            since = 0;
+            patience *= 4;
             if (!factor(e)) return false;
         }
         before = left;
         if (!improve(e, &is_fresh) || is_astray(e)) return false;
         is_fresh = false;
+        since++;
     }
     resist(e);
     return largest_left(e) <= e->enough;

@@ -11,20 +11,22 @@
 #ifndef CRAQUELURE_LARGE_H
 #define CRAQUELURE_LARGE_H
 
+#include "acceleration.h"
 #include "equilibrium.h"
 #include "large_joint.h"
 
 struct large {
     struct lie *start, *before, *now; // (n_joint)
     struct pair_stiffness *more;      // (n_joint) in the factor
-    struct displacement *withheld;    // (n) what was not balanced, at the start
-    double share;                     // of that let in
-    bool is_least;                    // no smaller increment is tried
-    bool is_stale;                    // the factor is not that of the last equilibrium
+    struct acceleration *acceleration;
+    struct displacement *withheld; // (n) what was not balanced, at the start
+    double share;                  // of that let in
+    bool is_least;                 // no smaller increment is tried
+    bool is_stale;                 // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored
 };
 
-struct large *large_new(const struct equilibrium *equilibrium);
+struct large *large_new(struct equilibrium *equilibrium);
 void large_free(struct large *large);
 
 // Strains at the trial, and how joints lie there.
@@ -34,6 +36,8 @@ struct displacement large_loads(const struct equilibrium *equilibrium, int joint
                                 int end);
 // Joints lie from now on, for the factor and what corrects it, as at the trial.
 void large_linearise(struct equilibrium *equilibrium);
+// The step that is found becomes the one that is taken.
+void large_accelerate(struct equilibrium *equilibrium);
 void large_keep_history(struct equilibrium *equilibrium);
 
 // As approach() and balance() do where displacements are small.

@@ -115,6 +115,11 @@ static const struct parameter table[] = {
      "steps in time, slowed by dashpots, where equilibrium is not found at once; what "
      "still moves then goes on under the next load",
      AT(settings.most_iterations)},
+    {"quasi_static.rolling_stiffness", PARAMETER_NUMBER, "1", "1e-3", BOUND_BETWEEN, 0,
+     1, NULL,
+     "contact bonds: what resists rolling and twist, of the shear stiffness times the "
+     "arms of both grains; 0: nothing, and grains that turn like gears are not held",
+     AT(settings.rolling)},
     {"quasi_static.large_displacements", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0,
      0, NULL,
      "grains may move and turn far: equilibrium on the geometry as it is; false: "
@@ -196,9 +201,6 @@ static void choose_bonds(const struct replay_parameters *parameters,
 {
     settings->bond.kind = (enum dem_bond_kind)parameters->bond;
     if (settings->bond.kind == DEM_PARALLEL_BOND) return;
-    if (settings->engine == ENGINE_QUASI_STATIC)
-        die(STATUS_BAD_DATA, "dem-replay.bond.kind: contact bonds are for "
-                             "engine=explicit");
     const double strength = parameters->contact_strength;
     settings->bond.normal_strength = isnan(strength) ? INFINITY : strength;
     settings->bond.shear_strength = settings->bond.normal_strength;

@@ -76,6 +76,26 @@ static struct joint on_wall(const struct joint_setup *setup, int i)
     return in_contact(setup, joint, 1);
 }
 
+// The contact's own springs [K 4.2], which as long as it holds nothing else joins.
+// Grains that only such points join turn about each other as gears do, and nothing says
+// how far: something must resist that.
+static void point_joint(const struct joint_setup *setup, struct joint *joint, int bond)
+{
+    joint->bond = bond;
+    joint->is_bonded = joint->is_point = true;
+    joint->bond_stiffness[STRAIN_ALONG] = joint->contact_along;
+    for (int k = 0; k < 2; k++)
+        joint->bond_stiffness[STRAIN_ACROSS + k] =
+            0.5 * setup->material->shear_stiffness / setup->stiffness;
+    for (int k = STRAIN_TWIST; k < STRAINS; k++)
+        joint->bond_stiffness[k] = setup->rolling *
+                                   joint->bond_stiffness[STRAIN_ACROSS] *
+                                   joint->arm[0] * joint->arm[1];
+    joint->point_overlap = joint->overlap;
+    joint->overlap = -INFINITY;
+    joint->contact.touch = TOUCH_NONE;
+}
+
 static void bond_joint(const struct joint_setup *setup, struct joint *joint, int bond)
 {
     const double *radius = setup->packing->radius;
@@ -112,7 +132,10 @@ static void add_bonds(const struct joint_setup *setup, struct joint_list *list)
     for (int b = 0; b < packing->n_bond; b++) {
         const int i = packing->bond[b][0], j = packing->bond[b][1];
         struct joint joint = touching(setup, i, j, nearest_image(packing, i, j));
-        bond_joint(setup, &joint, b);
+        if (setup->bond->kind == DEM_CONTACT_BOND)
+            point_joint(setup, &joint, b);
+        else
+            bond_joint(setup, &joint, b);
         append(list, joint);
     }
 }

@@ -12,7 +12,9 @@ struct joint_setup {
     const struct dem_material *material;
     const struct dem_bond_material *bond;
     bool has_wall;
-    bool unstressed;          // overlaps of the packing do not push
+    bool unstressed; // overlaps of the packing do not push
+    double rolling;  // contact bonds: stiffness against rolling and twist, of that
+                    // against shear times both arms
     double length, stiffness; // units, m and N/m
 };
 

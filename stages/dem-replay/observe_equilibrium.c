@@ -68,10 +68,12 @@ static struct dem_contact contact_of(const struct equilibrium *e, int j)
     const struct displacement on_first = joint_loads(joint, 0, e->resistance[j].load);
     const struct vector from =
         add(e->trial[i].shift, scale(joint->arm[0], joint->axis[0]));
+    const bool is_point = joint->is_bonded && joint->is_point;
+    const double overlap = is_point ? joint->point_overlap : joint->overlap;
     return (struct dem_contact){
         .particle = {i, joint->grain[1]},
         .bond = joint->is_bonded ? joint->bond : -1,
-        .overlap = e->length * (joint->overlap - joint->strain[STRAIN_ALONG]),
+        .overlap = e->length * (overlap - joint->strain[STRAIN_ALONG]),
         .force = scale(e->stiffness * e->length, on_first.shift),
         .position = add(e->packing->position[i], scale(e->length, from))};
 }

@@ -39,6 +39,7 @@ static enum status begin_equilibrium(struct run *run, struct reason *reason)
         .relative_strength = settings->relative_strength,
         .tolerance = settings->equilibrium_tolerance,
         .most_iterations = settings->most_iterations,
+        .rolling = settings->rolling,
         .large_displacements = settings->large_displacements,
         .increment = settings->increment};
     return equilibrium_new(&run->equilibrium, &setup, reason);

@@ -39,6 +39,7 @@ struct replay_settings {
     enum engine engine;
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load
     int64_t most_iterations;      // quasi-static: steps in time to one equilibrium
+    double rolling;               // quasi-static, contact bonds: of shear stiffness
     bool large_displacements;     // quasi-static: on the geometry as it is
     double increment;             // then: of turns, rad, and of strains
     double time_step_safety;

@@ -199,7 +199,7 @@ static void add_more(struct stiffness *s, int j, const struct pair_stiffness *mo
 }
 
 bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
-                      const struct pair_stiffness *more, double soft)
+                      const struct pair_stiffness *more, const double soft[2])
 {
     if (s->n_moving == 0) return true;
     memset(s->value, 0, (size_t)s->start[s->n_moving * DEGREES] * sizeof *s->value);
@@ -211,7 +211,7 @@ bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
         int stride;
         double *numbers = numbers_of(s, s->diagonal[k], &stride);
         for (int r = 0; r < DEGREES; r++)
-            numbers[r * stride + r] += soft;
+            numbers[r * stride + r] += soft[r / 3];
     }
     return supernodal_factor(s->factor, s->value);
 }

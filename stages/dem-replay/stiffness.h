@@ -17,9 +17,10 @@ struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
 void stiffness_free(struct stiffness *stiffness);
 
 // With TANGENT (n_joint) of each joint, >= 0 for each strain, MORE (n_joint) of it,
-// which may be NULL, and SOFT of every grain besides. False: it is singular.
+// which may be NULL, and of every grain besides what is SOFT against shifts and turns.
+// False: it is singular.
 bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[STRAINS],
-                      const struct pair_stiffness *more, double soft);
+                      const struct pair_stiffness *more, const double soft[2]);
 
 // Whether that is positive: whether any load grows with the displacement it makes.
 bool stiffness_is_positive(const struct stiffness *stiffness);

@@ -232,7 +232,7 @@ static void a_row_buckles(void **state)
                      STATUS_NOT_CONVERGED);
     print_message("# %s\n", reason.text);
     print_message("# %.9f of the Euler load\n", 2 * equilibrium_share(equilibrium));
-    assert_true(fabs(2 * equilibrium_share(equilibrium) - 1) < 4e-6);
+    assert_true(fabs(2 * equilibrium_share(equilibrium) - 1) < 1e-5);
     assert_non_null(strstr(reason.text, "grain 10 moves most"));
     equilibrium_free(equilibrium);
     packing_free(&packing);
@@ -289,14 +289,16 @@ static struct equilibrium_setup block_setup(const struct packing *packing,
 static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
                            int steps, struct vector still[BLOCK])
 {
+    const bool is_point = setup->bond.kind == DEM_CONTACT_BOND;
     struct dem_setup slow = {.packing = setup->packing,
                              .material = setup->material,
                              .bond = setup->bond,
                              .fixed = setup->fixed,
-                             .time_step_safety = 0.05,
+                             .time_step_safety = is_point ? 0.03 : 0.045,
                              .threads = 1};
     slow.material.density = 3230;
     slow.material.damping_ratio = 0.7;
+    slow.material.local_damping = is_point ? 0.5 : 0; // dashpots do not see rolling
     struct dem *dem;
     struct reason reason = {""};
     struct vector force[BLOCK];
@@ -306,7 +308,8 @@ static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
         dem_set_force(dem, force);
         if (dem_run(dem, 50, &reason)) fail_msg("%s", reason.text);
     }
-    if (dem_run_until(dem, 1e-10, 2000000, &reason)) fail_msg("%s", reason.text);
+    const double rest = is_point ? 1e-8 : 1e-10;
+    if (dem_run_until(dem, rest, 2000000, &reason)) fail_msg("%s", reason.text);
     dem_displacements(dem, still);
     dem_free(dem);
 }
@@ -336,6 +339,35 @@ static void a_block_as_the_discrete_elements(void **state)
         print_message("# block turned by %g rad: engines %g apart\n",
                       largest_turn(equilibrium), error);
         assert_true(error < 1e-6);
+        equilibrium_free(equilibrium);
+    }
+    packing_free(&packing);
+}
+
+// Contact bonds. Nothing resists rolling in cycles; what does here matters as much as
+// it is of the shear stiffness, while grains have not moved so far that their turning
+// like gears, which nothing then brings to rest, turns the shear forces.
+static void contact_bonds_as_the_discrete_elements(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium_setup setup = block_setup(&packing, fixed);
+    setup.bond.kind = DEM_CONTACT_BOND;
+    struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
+    cycles_to_rest(&setup, 2e-9, 4000, still);
+    load_block(force, 2e-9);
+    for (int k = 0; k < 4; k++) {
+        setup.rolling = k % 2 ? 1e-5 : 1e-3;
+        setup.large_displacements = k < 2;
+        struct equilibrium *equilibrium = make(&setup);
+        find(equilibrium, force);
+        equilibrium_displacements(equilibrium, moved);
+        const double error = apart(still, moved);
+        print_message("# contact bonds, rolling %g: engines %g apart\n", setup.rolling,
+                      error);
+        if (setup.large_displacements) assert_true(error < 5 * setup.rolling);
         equilibrium_free(equilibrium);
     }
     packing_free(&packing);
@@ -455,6 +487,7 @@ int main(void)
         cmocka_unit_test(a_row_bent_far),
         cmocka_unit_test(a_row_buckles),
         cmocka_unit_test(a_block_as_the_discrete_elements),
+        cmocka_unit_test(contact_bonds_as_the_discrete_elements),
         cmocka_unit_test(a_turned_scene_gives_the_same),
         cmocka_unit_test(work_is_stored),
     };
