@@ -119,7 +119,7 @@ struct curved curved_make(struct phases *phases,
                             .level = NEW_ARRAY(double, phases->vapour.n_site),
                             .flow = NEW_ARRAY(double, phases->vapour.n_site)};
     *curved.law = find_law(conditions);
-    curved.floating = floating_make(n, phases->vapour.n_site);
+    curved.floating = floating_make(n, phases->vapour.n_site, curved.by_throat);
     find_outside(&curved, phases);
     for (int t = 0; t < n; t++) {
         curved.place[t] = -1;
@@ -374,15 +374,22 @@ static enum status find_potentials(struct curved *curved, const struct phases *p
 void curved_forget(struct curved *curved)
 {
     curved->listed_at = -1;
+    floating_forget(curved->floating);
+}
+
+void curved_empty_throat(struct curved *curved, struct phases *phases, int throat)
+{
+    floating_empty_throat(curved->floating, phases, throat);
 }
 
 // A throat has emptied.
 static void begin_anew(struct curved *curved, struct phases *phases)
 {
+    const int n_emptied = curved->listed_at - phases->n_full;
     curved->listed_at = phases->n_full;
     list_bodies(curved, phases);
-    floating_forget(curved->floating);
     star_mesh_bring_up_to_date(&phases->vapour.mesh);
+    floating_follow(curved->floating, curved, phases, n_emptied);
     find_reaches(curved, phases);
     curved_find_gains(curved, phases);
 }

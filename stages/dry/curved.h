@@ -72,6 +72,10 @@ enum status check_curved(const struct drying_conditions *conditions,
 enum status curved_find(struct curved *curved, struct phases *phases,
                         struct losses *losses, struct reason *reason);
 
+// Empties THROAT, as phases_empty_throat, which does as well: then less can be gone on
+// from.
+void curved_empty_throat(struct curved *curved, struct phases *phases, int throat);
+
 // Next time bodies are listed anew and nothing is gone on from but the state.
 void curved_forget(struct curved *curved);
 

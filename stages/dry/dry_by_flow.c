@@ -94,7 +94,10 @@ static void empty_throats(struct run *run)
     for (int k = 0; k < run->losses.n; k++) {
         const int throat = run->losses.loss[k].throat;
         if (phases->liquid[throat].value != 0) continue;
-        phases_empty_throat(phases, throat);
+        if (run->conditions->kelvin)
+            curved_empty_throat(&run->curved, phases, throat);
+        else
+            phases_empty_throat(phases, throat);
         if (run->flow.solver) liquid_flow_follow(&run->flow, phases, throat);
         recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
     }

@@ -166,7 +166,7 @@ with scratch() as folder:
         this = [*dry, "--set", f"liquid={liquid}", network]
         in_pieces(f"dry, {liquid} liquid", this)
         killed(f"dry, {liquid} liquid", this)
-    for liquid, network in [("inviscid", make_network(folder, "least", 8)),
+    for liquid, network in [("inviscid", small),
                             ("immobile", make_network(folder, "middle", 14))]:
         killed(f"dry, curved menisci, {liquid} liquid",
                ["dry", "-p", SCENE, "--set", f"liquid={liquid}", "--set", "kelvin=true", network])
