@@ -4,14 +4,16 @@
 #
 #     make coupled                              ->  build/runs/coupled/coupled.svg, coupled.md
 #     make coupled COUPLED_PORTIONS="1 10"
+#     make collapse                             ->  build/runs/collapse/collapse.md
 
 COUPLED_PORTIONS ?= 1 5 10 20# how often; 1 is one way; the last one is drawn
 
-pipeline_goals += coupled
+COLLAPSE_PORTIONS ?= 340# in which the load rises to 1.02 of the whole
+
+pipeline_goals += coupled collapse
 coupled_folder := $(RUNS)/coupled
 coupled_samples := soft weak irregular stiff
-# Scenes, and what they change. Under its whole load the soft aggregate buckles once its throats
-# have narrowed (docs/coupling.md).
+# Scenes, and what they change. Under its whole load the soft aggregate collapses (docs/coupling.md).
 coupled_scene_soft := samples/soft-10x5x5.json force-protocol.force_scale=0.3
 coupled_scene_weak := $(coupled_scene_soft) dem-replay.bond.contact_strength=3e-8
 coupled_scene_irregular := samples/soft-300.json
@@ -38,5 +40,22 @@ coupled: $(coupled_folder)/coupled.md $(coupled_folder)/coupled.svg
 ifdef really
 	@cat $(coupled_folder)/coupled.md
 	@echo 'picture: $(coupled_folder)/coupled.svg'
+endif
+endif
+
+# Short portions and grains that come to rest at once, so that forces follow the body.
+collapse_scene := samples/soft-10x5x5.json
+collapse_settings := dem-replay.local_damping=0.7 dem-replay.time_step_safety=0.025 dem-replay.cycles=100
+collapse_folder := $(RUNS)/collapse
+
+.PHONY: collapse
+collapse: ## the load that the soft aggregate bears as its throats narrow (minutes)
+
+ifneq ($(filter collapse $(collapse_folder)/%,$(MAKECMDGOALS)),)
+$(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/collapse pipelines/coupled-run $(collapse_scene),pipelines/collapse $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
+
+collapse: $(collapse_folder)/collapse.md
+ifdef really
+	@cat $(collapse_folder)/collapse.md
 endif
 endif

@@ -74,11 +74,6 @@ static void check_scene(const struct network *network, const char *path)
         die(STATUS_BAD_DATA,
             "%s: /domain/bodies: only the walls of a box go with their grains",
             input_name(path));
-    if (is_layer(network))
-        die(STATUS_BAD_DATA,
-            "%s: /faces/particles: the network of a layer of grains "
-            "(tessellate.dimensions=2) cannot be moved",
-            input_name(path));
 }
 
 // Where the grains were at the last snapshot of RESPONSE, in place of their places.

@@ -73,6 +73,10 @@ struct surroundings find_surroundings(const struct network *network)
         for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
             add_sides(network, f, k, &around, end);
     reduce(n, end, &around);
+    // The cells of a layer are its faces, none of which lies in a wall beside it.
+    const bool layer = is_layer(network);
+    for (int i = 0; i < n && layer; i++)
+        around.walls[i] |= network->node_walls[i];
     free(end);
     return around;
 }

@@ -227,4 +227,30 @@ with scratch() as folder:
            and "throats/volume" not in carried and abs(kept / np.dot(saturation, cylinders(drying)) - 1) < 1e-14
            and abs(has.mean() / had.mean() - 1) < 0.02 and abs(has.std() / had.std() - 1) < 0.05,
            f"drawn radii go along, {title}", (has.mean() / had.mean(), has.std() / had.std(), len(had), len(has)))
+
+    # A layer of discs, each moved its own way in their plane: as tessellated anew, while that holds.
+    run("pack", "-q", *"--set method=random_sequential --set dimensions=2 --set count=80 --set".split(),
+        "upper=[6e-6,0,6e-6]", "--set", "radius=2.5e-7", "--set", "sizes.spread=0.2", "--set",
+        "sizes.distribution=lognormal", "-o", at("packing"))
+    layer = ["--set", "dimensions=2"]
+    run("tessellate", *layer, at("packing"), "-o", at("network"))
+    forces = run("force-protocol", "--set", "steps=2", input=run("dry", "-q", at("network")))
+    run("dem-replay", "-q", *"--set cycles=1 --set snapshots=[1] --set support=free".split(), "-o", at("response"),
+        input=forces)
+    with h5py.File(at("network")) as network:
+        place, unit = network["particles/position"][:], network["throats/length"][:].mean()
+    held, lost, wrong = 0, 0, []
+    for seed in range(16):
+        way = 10 ** (-4.5 + seed / 4) * unit * np.random.default_rng(seed).normal(size=place.shape)
+        lay(way * [1, 0, 1])
+        _, moved = deform("network", "--set", "on_change=keep")
+        anew = fresh(moved, *layer)
+        changed = moved["summary"].attrs["changed_nodes"]
+        held += changed == 0
+        lost += changed > 0
+        if (changed == 0) != same_diagram(moved, anew) or changed == 0 and not all(
+                same(moved, anew, e, unit, 1e-10) for e in ("nodes/position", "throats/length", "throats/radius")):
+            wrong.append((seed, changed))
+    ok(held > 3 and lost > 3 and not wrong, "a layer moved at random: as anew, or said to be another diagram",
+       (held, lost, wrong))
 done()
