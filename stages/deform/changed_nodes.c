@@ -72,6 +72,12 @@ static bool is_outside(const struct state *state, int node)
         if (!packing->periodic[wall / 2] && (wall % 2 ? beyond : -beyond) > slack)
             return true;
     }
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct vector at = state->network->node_position[node];
+        const struct body body = body_near(packing, k, at);
+        if (!body_holds(&body, at) && distance(body_nearest(&body, at), at) > slack)
+            return true;
+    }
     return false;
 }
 

@@ -70,10 +70,14 @@ static struct artifact *open_network(const char *path)
 
 static void check_scene(const struct network *network, const char *path)
 {
-    if (network->packing.n_body)
-        die(STATUS_BAD_DATA,
-            "%s: /domain/bodies: only the walls of a box go with their grains",
-            input_name(path));
+    for (int k = 0; k < network->packing.n_body; k++)
+        if (!network->packing.body[k].within ||
+            !body_is_round(&network->packing.body[k], 0))
+            die(STATUS_BAD_DATA,
+                "%s: /domain/bodies: row %d: round walls around the grains move with "
+                "them, "
+                "not what grains lie around",
+                input_name(path), k);
 }
 
 // Where the grains were at the last snapshot of RESPONSE, in place of their places.
@@ -258,8 +262,8 @@ static void move(struct scene *scene)
     const char *path = scene->input->path;
     struct surroundings around = find_surroundings(before);
     struct reason reason;
-    move_nodes(before, &around, after);
-    const int changed = count_changed_nodes(before, &around, after);
+    const int lost = move_nodes(before, &around, after);
+    const int changed = lost + count_changed_nodes(before, &around, after);
     surroundings_free(&around);
     if (changed && parameters->on_change == CHANGE_REFUSED)
         refuse_change(changed, before->n_node, path);
@@ -330,7 +334,6 @@ static void replace(struct scene *scene)
 static void write_packing(const struct scene *scene)
 {
     const struct packing *packing = &scene->after.packing;
-    const struct vector edge = subtract(packing->upper, packing->lower);
     double solid = 0, overlap = 0;
     for (int i = 0; i < packing->n_particle; i++)
         solid += 4 * M_PI / 3 * pow(packing->radius[i], 3);
@@ -344,8 +347,7 @@ static void write_packing(const struct scene *scene)
     free(pair);
     struct artifact *artifact = artifact_create("packing", scene->invocation->output);
     artifact_put_packing(artifact, packing);
-    artifact_put_number(artifact, "/summary/porosity",
-                        1 - solid / (edge.x * edge.y * edge.z));
+    artifact_put_number(artifact, "/summary/porosity", 1 - solid / room_of(packing));
     artifact_put_number(artifact, "/summary/max_overlap", overlap);
     artifact_put_number(artifact, "/summary/coordination",
                         packing->n_particle ? 2.0 * n / packing->n_particle : 0);

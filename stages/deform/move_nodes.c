@@ -5,54 +5,9 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <stdlib.h>
+#include <string.h>
 
-// ---- the box ------------------------------------------------------------------------
-
-// Of the grains beside a wall, along its axis, m.
-struct layer_of_grains {
-    int count;
-    double place, moved; // means
-};
-
-static struct layer_of_grains beside_wall(const struct packing *before,
-                                          const struct packing *after, int wall,
-                                          double reach)
-{
-    struct layer_of_grains layer = {0};
-    const int axis = wall / 2;
-    for (int i = 0; i < before->n_particle; i++) {
-        const double place = component(before->position[i], axis);
-        if (fabs(place - wall_position(before, wall)) > reach) continue;
-        layer.place += place;
-        layer.moved += component(after->position[i], axis) - place;
-        layer.count++;
-    }
-    if (!layer.count) return layer;
-    layer.place /= layer.count;
-    layer.moved /= layer.count;
-    return layer;
-}
-
-void move_box(const struct packing *before, struct packing *after)
-{
-    double diameter = 0;
-    for (int i = 0; i < before->n_particle; i++)
-        diameter += 2 * before->radius[i] / before->n_particle;
-    for (int wall = 0; wall < WALL_COUNT; wall++) {
-        const int axis = wall / 2;
-        if (before->periodic[axis]) continue;
-        const struct layer_of_grains here = beside_wall(before, after, wall, diameter),
-                                     there =
-                                         beside_wall(before, after, wall ^ 1, diameter);
-        const double at = wall_position(before, wall);
-        const double apart = there.place - here.place;
-        // A single layer, or none, tells nothing of how the body stretches.
-        const bool stretches = here.count && there.count && fabs(apart) > diameter / 2;
-        const double stretch = stretches ? (there.moved - here.moved) / apart : 0;
-        set_component(wall % 2 ? &after->upper : &after->lower, axis,
-                      at + (here.moved + stretch * (at - here.place)));
-    }
-}
+enum { ROUND = 1u << WALL_OUTER };
 
 // ---- one node -----------------------------------------------------------------------
 
@@ -83,23 +38,29 @@ static void look(const struct packing *packing, const struct grain_beside *besid
     }
 }
 
-// The shortest step along the AXES (n_axis) for which every
+// Directions, at right angles, that a node may move in.
+struct ways {
+    int n;
+    struct vector way[3];
+};
+
+// The shortest step along these for which every
 //     -2 (to - mean) . step = wanted
 // holds, or nearly so; not a number where there is none.
 static struct vector solve(const struct view *view, const double *wanted,
-                           const int *axes, int n_axis)
+                           const struct ways *along)
 {
     static const double negligible = 1e-10; // of the largest singular value
-    const size_t rows = (size_t)(view->n > n_axis ? view->n : n_axis);
-    const size_t columns = (size_t)n_axis;
+    const size_t rows = (size_t)(view->n > along->n ? view->n : along->n);
+    const size_t columns = (size_t)along->n;
     gsl_matrix *a = gsl_matrix_calloc(rows, columns);
     gsl_matrix *v = gsl_matrix_alloc(columns, columns);
     gsl_vector *s = gsl_vector_alloc(columns), *b = gsl_vector_calloc(rows);
     gsl_vector *x = gsl_vector_alloc(columns);
     for (int k = 0; k < view->n; k++) {
         const struct vector off = subtract(view->to[k], view->mean);
-        for (int c = 0; c < n_axis; c++)
-            gsl_matrix_set(a, (size_t)k, (size_t)c, -2 * component(off, axes[c]));
+        for (int c = 0; c < along->n; c++)
+            gsl_matrix_set(a, (size_t)k, (size_t)c, -2 * dot(off, along->way[c]));
         gsl_vector_set(b, (size_t)k, wanted[k]);
     }
     const bool fails = gsl_linalg_SV_decomp_jacobi(a, v, s) != GSL_SUCCESS;
@@ -108,8 +69,8 @@ static struct vector solve(const struct view *view, const double *wanted,
             gsl_vector_set(s, c, 0);
     gsl_linalg_SV_solve(a, v, s, b, x);
     struct vector step = {fails ? NAN : 0, 0, 0};
-    for (int c = 0; c < n_axis && !fails; c++)
-        set_component(&step, axes[c], gsl_vector_get(x, (size_t)c));
+    for (int c = 0; c < along->n && !fails; c++)
+        step = add(step, scale(gsl_vector_get(x, (size_t)c), along->way[c]));
     gsl_matrix_free(a);
     gsl_matrix_free(v);
     gsl_vector_free(s);
@@ -125,61 +86,127 @@ static double wall_step(const struct packing *before, const struct packing *afte
     return wall_position(after, wall) - wall_position(before, wall);
 }
 
-// The grains' mean, or that of the wall along the axes of WALLS; lists the others.
+// The grains' mean, or that of the wall along the axes of flat WALLS.
 static struct vector first_guess(const struct packing *before,
                                  const struct packing *after,
                                  const struct grain_beside *beside, int n,
-                                 unsigned walls, int axes[3], int *n_axis)
+                                 unsigned walls)
 {
     struct vector step = {0};
     for (int k = 0; k < n; k++)
         step = add(step, scale(1.0 / n, subtract(after->position[beside[k].grain],
                                                  before->position[beside[k].grain])));
-    *n_axis = 0;
     for (int axis = 0; axis < 3; axis++) {
         const unsigned here = walls >> (2 * axis) & 3;
         if (here)
             set_component(&step, axis,
                           wall_step(before, after, 2 * axis + !(here & 1)));
-        else
-            axes[(*n_axis)++] = axis;
     }
     return step;
 }
 
-static void move_node(const struct network *before, const struct surroundings *around,
-                      int node, struct view view[2], struct network *after)
+static bool same_bodies(const struct packing *a, const struct packing *b)
 {
-    const struct grain_beside *beside = around->at + around->offset[node];
-    const int n = (int)(around->offset[node + 1] - around->offset[node]);
-    const struct vector at = before->node_position[node];
-    int axes[3], n_axis;
-    const struct vector guess =
-        add(at, first_guess(&before->packing, &after->packing, beside, n,
-                            around->walls[node], axes, &n_axis));
-    after->node_position[node] = guess;
-    if (n < 2 || n_axis == 0) return;
-    view[0].n = view[1].n = n;
-    look(&before->packing, beside, at, &view[0]);
-    look(&after->packing, beside, guess, &view[1]);
-    const double scaling = view[1].spread / view[0].spread;
-    double *wanted = view[0].power; // no longer needed
-    bool moves = false;
-    for (int k = 0; k < n; k++) {
-        wanted[k] = scaling * (view[0].power[k] - view[0].mean_power) -
-                    (view[1].power[k] - view[1].mean_power);
-        moves |= wanted[k] != 0;
-    }
-    if (!isfinite(scaling))
-        after->node_position[node].x = NAN; // no numbers hold it
-    else if (moves)
-        after->node_position[node] = add(guess, solve(&view[1], wanted, axes, n_axis));
+    return !memcmp(a->body, b->body, (size_t)a->n_body * sizeof *a->body);
 }
 
-void move_nodes(const struct network *before, const struct surroundings *around,
-                struct network *after)
+// Which way out of the round wall it is at AT.
+static struct vector outward(const struct packing *packing, struct vector at)
 {
-    int most = 0;
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body body = body_near(packing, k, at);
+        if (body_wall(&body) == WALL_OUTER) return body_outward(&body, at);
+    }
+    return (struct vector){0};
+}
+
+// Of a node AT in WALLS: along them.
+static struct ways find_ways(const struct packing *packing, unsigned walls,
+                             struct vector at)
+{
+    struct ways ways = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        if (walls >> (2 * axis) & 3) continue;
+        struct vector way = {0};
+        set_component(&way, axis, 1);
+        ways.way[ways.n++] = way;
+    }
+    if (!(walls & ROUND) || !ways.n) return ways;
+    struct vector out = {0}; // within the flat walls
+    for (int c = 0; c < ways.n; c++)
+        out = add(out, scale(dot(outward(packing, at), ways.way[c]), ways.way[c]));
+    if (!(norm(out) > 0)) return ways;
+    out = scale(1 / norm(out), out);
+    int steepest = 0;
+    for (int c = 1; c < ways.n; c++)
+        if (fabs(dot(out, ways.way[c])) > fabs(dot(out, ways.way[steepest])))
+            steepest = c;
+    ways.way[steepest] = ways.way[--ways.n];
+    for (int c = 0; c < ways.n; c++) { // Gram and Schmidt
+        struct vector *way = &ways.way[c];
+        *way = subtract(*way, scale(dot(*way, out), out));
+        for (int b = 0; b < c; b++)
+            *way = subtract(*way, scale(dot(*way, ways.way[b]), ways.way[b]));
+        *way = scale(1 / norm(*way), *way);
+    }
+    return ways;
+}
+
+// From AT, where the grains are VIEWed from now, to where the differences of powers are
+// those BEFORE, scaled; AT itself where they are so.
+static struct vector step_to(const struct view *before, struct view *now,
+                             const struct ways *along)
+{
+    const double scaling = now->spread / before->spread;
+    if (!isfinite(scaling)) return (struct vector){NAN, 0, 0}; // no numbers hold it
+    double *wanted = now->power;                               // no longer needed
+    bool moves = false;
+    for (int k = 0; k < now->n; k++) {
+        wanted[k] = scaling * (before->power[k] - before->mean_power) -
+                    (now->power[k] - now->mean_power);
+        moves |= wanted[k] != 0;
+    }
+    return moves ? solve(now, wanted, along) : (struct vector){0};
+}
+
+// False where no place in its round wall is found.
+static bool move_node(const struct network *before, const struct surroundings *around,
+                      int node, struct view view[2], struct network *after)
+{
+    enum { MOST_STEPS = 30 };
+    static const double rest = 1e-13; // of how far the grains spread
+    const struct grain_beside *beside = around->at + around->offset[node];
+    const int n = (int)(around->offset[node + 1] - around->offset[node]);
+    const unsigned walls = around->walls[node];
+    const struct packing *packing = &after->packing;
+    const struct vector from = before->node_position[node];
+    const struct vector guess =
+        first_guess(&before->packing, packing, beside, n, walls);
+    struct vector at = add(from, guess);
+    const bool is_round = walls & ROUND;
+    if (is_round && (norm(guess) > 0 || !same_bodies(&before->packing, packing)))
+        at = nearest_on_wall(packing, WALL_OUTER, at);
+    after->node_position[node] = at;
+    struct ways ways = find_ways(packing, walls, at);
+    if (n < 2 || ways.n == 0) return true;
+    view[0].n = view[1].n = n;
+    look(&before->packing, beside, from, &view[0]);
+    for (int k = 0; k < MOST_STEPS; k++) {
+        look(packing, beside, at, &view[1]);
+        const struct vector step = step_to(&view[0], &view[1], &ways);
+        at = after->node_position[node] = add(at, step);
+        if (!is_round || norm(step) == 0) return true;
+        at = after->node_position[node] = nearest_on_wall(packing, WALL_OUTER, at);
+        if (norm(step) <= rest * sqrt(view[1].spread)) return true;
+        ways = find_ways(packing, walls, at);
+    }
+    return false;
+}
+
+int move_nodes(const struct network *before, const struct surroundings *around,
+               struct network *after)
+{
+    int most = 0, lost = 0;
     for (int i = 0; i < before->n_node; i++) {
         const int n = (int)(around->offset[i + 1] - around->offset[i]);
         most = n > most ? n : most;
@@ -189,9 +216,10 @@ void move_nodes(const struct network *before, const struct surroundings *around,
         view[k] = (struct view){.to = NEW_ARRAY(struct vector, most),
                                 .power = NEW_ARRAY(double, most)};
     for (int i = 0; i < before->n_node; i++)
-        move_node(before, around, i, view, after);
+        lost += !move_node(before, around, i, view, after);
     for (int k = 0; k < 2; k++) {
         free(view[k].to);
         free(view[k].power);
     }
+    return lost;
 }

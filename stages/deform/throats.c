@@ -82,6 +82,22 @@ enum status move_throats(const struct network *before, enum clearance how,
 
 // ---- volumes ------------------------------------------------------------------------
 
+static double product(struct vector edge)
+{
+    return edge.x * edge.y * edge.z;
+}
+
+double room_of(const struct packing *packing)
+{
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body *body = &packing->body[k];
+        if (!body->within || body->shape == BODY_BOX) continue;
+        const double share = body->shape == BODY_SPHERE ? M_PI / 6 : M_PI / 4;
+        return share * product(subtract(body->upper, body->lower));
+    }
+    return product(subtract(packing->upper, packing->lower));
+}
+
 static double void_of(const struct packing *packing)
 {
     struct contacts contacts;
@@ -91,7 +107,7 @@ static double void_of(const struct packing *packing)
     double porosity;
     slice_porosity(packing, &contacts, &box, 1, &porosity);
     free((void *)(uintptr_t)contacts.pair);
-    return porosity * edge.x * edge.y * edge.z;
+    return room_of(packing) - (1 - porosity) * product(edge);
 }
 
 // Whether the volumes of NETWORK are what find_void_volumes gives.

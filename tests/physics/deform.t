@@ -44,8 +44,9 @@ with scratch() as folder:
     def fresh(moved, *words):
         """A tessellation of the moved grains in their moved box."""
         with h5py.File(at("packing"), "r+") as packing:
-            for entry in "particles/position", "domain/lower", "domain/upper":
-                packing[entry][...] = moved[entry][:]
+            for entry in "particles/position", "domain/lower", "domain/upper", "domain/bodies/lower", "domain/bodies/upper":
+                if entry in packing:
+                    packing[entry][...] = moved[entry][:]
         run("tessellate", *words, at("packing"), "-o", at("fresh"))
         return h5py.File(at("fresh"))
 
@@ -228,29 +229,48 @@ with scratch() as folder:
            and abs(has.mean() / had.mean() - 1) < 0.02 and abs(has.std() / had.std() - 1) < 0.05,
            f"drawn radii go along, {title}", (has.mean() / had.mean(), has.std() / had.std(), len(had), len(has)))
 
-    # A layer of discs, each moved its own way in their plane: as tessellated anew, while that holds.
+    def moved_at_random(title, sizes, *words, way=(1, 1, 1)):
+        """Each grain its own way: as tessellated anew (by WORDS), while that holds."""
+        with h5py.File(at("network")) as network:
+            place, unit = network["particles/position"][:], network["throats/length"][:].mean()
+        held, lost, wrong = 0, 0, []
+        for seed, size in enumerate(sizes):
+            lay(size * unit * np.random.default_rng(seed).normal(size=place.shape) * way)
+            _, moved = deform("network", "--set", "on_change=keep")
+            anew = fresh(moved, *words)
+            changed = moved["summary"].attrs["changed_nodes"]
+            held += changed == 0
+            lost += changed > 0
+            if (changed == 0) != same_diagram(moved, anew) or changed == 0 and not all(
+                    same(moved, anew, e, unit, 1e-10) for e in ("nodes/position", "throats/length", "throats/radius")):
+                wrong.append((seed, changed))
+        ok(held > 3 and lost > 3 and not wrong, f"{title} moved at random: as anew, or said to be another diagram",
+           (held, lost, wrong))
+
+    def answer(*settings):
+        """A response of the grains of the packing to lay displacements into."""
+        forces = run("force-protocol", "--set", "steps=2", input=run("dry", "-q", input=run("tessellate", *settings, at("packing"))))
+        run("dem-replay", "-q", *"--set cycles=1 --set snapshots=[1] --set support=free".split(), "-o", at("response"),
+            input=forces)
+
+    # A layer of discs, in their plane; grains in round walls, which go along.
+    sizes = ["--set", "radius=2.5e-7", "--set", "sizes.spread=0.2", "--set", "sizes.distribution=lognormal"]
     run("pack", "-q", *"--set method=random_sequential --set dimensions=2 --set count=80 --set".split(),
-        "upper=[6e-6,0,6e-6]", "--set", "radius=2.5e-7", "--set", "sizes.spread=0.2", "--set",
-        "sizes.distribution=lognormal", "-o", at("packing"))
+        "upper=[6e-6,0,6e-6]", *sizes, "-o", at("packing"))
     layer = ["--set", "dimensions=2"]
+    answer(*layer)
     run("tessellate", *layer, at("packing"), "-o", at("network"))
-    forces = run("force-protocol", "--set", "steps=2", input=run("dry", "-q", at("network")))
-    run("dem-replay", "-q", *"--set cycles=1 --set snapshots=[1] --set support=free".split(), "-o", at("response"),
-        input=forces)
-    with h5py.File(at("network")) as network:
-        place, unit = network["particles/position"][:], network["throats/length"][:].mean()
-    held, lost, wrong = 0, 0, []
-    for seed in range(16):
-        way = 10 ** (-4.5 + seed / 4) * unit * np.random.default_rng(seed).normal(size=place.shape)
-        lay(way * [1, 0, 1])
-        _, moved = deform("network", "--set", "on_change=keep")
-        anew = fresh(moved, *layer)
-        changed = moved["summary"].attrs["changed_nodes"]
-        held += changed == 0
-        lost += changed > 0
-        if (changed == 0) != same_diagram(moved, anew) or changed == 0 and not all(
-                same(moved, anew, e, unit, 1e-10) for e in ("nodes/position", "throats/length", "throats/radius")):
-            wrong.append((seed, changed))
-    ok(held > 3 and lost > 3 and not wrong, "a layer moved at random: as anew, or said to be another diagram",
-       (held, lost, wrong))
+    moved_at_random("a layer", 10 ** np.linspace(-4.5, -0.7, 14), *layer, way=(1, 0, 1))
+    for title, shape in ("a cylinder", ["domain.shape=cylinder", "--set", "domain.height=5e-6"]), \
+            ("a sphere", ["domain.shape=sphere"]):
+        run("pack", "-q", *"--set method=random_sequential --set count=60 --set domain.radius=2.5e-6 --set".split(),
+            *shape, *sizes, "-o", at("packing"))
+        run("tessellate", at("packing"), "-o", at("network"))
+        with h5py.File(at("packing"), "r+") as packing:
+            packing.copy("domain/bodies", "kept")
+            del packing["domain/bodies"]
+        answer()
+        with h5py.File(at("packing"), "r+") as packing:
+            packing.move("kept", "domain/bodies")
+        moved_at_random(title, 10 ** np.linspace(-5, -1, 13))
 done()
