@@ -239,6 +239,7 @@ static bool approach(struct equilibrium *e)
     e->enough = e->setup.tolerance * e->largest_load;
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
     const double well = (e->damping > 0 ? 1 : 1e-3) * e->enough;
+    if (largest_left(e) <= well) return true; // foreseen
     bool is_fresh =
         e->factors == 0 || corrections_work(e->corrections) > stiffness_work(e->matrix);
     if (is_fresh && !factor(e)) return false;
@@ -314,6 +315,7 @@ void balance(struct equilibrium *e)
     do {
         e->damping = 0;
         go_back(e);
+        foresee(e);
         rests = approach(e);
         if (rests)
             keep_history(e);

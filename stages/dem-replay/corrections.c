@@ -98,6 +98,11 @@ double corrections_work(const struct corrections *c)
     return c->work;
 }
 
+void corrections_count_work(struct corrections *c, double more)
+{
+    c->work += more;
+}
+
 // ---- rows ---------------------------------------------------------------------------
 
 static double *compliance_of(const struct corrections *c, int row)
@@ -131,7 +136,7 @@ static void make_room(struct corrections *c)
 static void fill_compliance(struct corrections *c, const struct addition *new)
 {
     const int columns = new->halves.columns;
-    c->work += (double)columns * new->halves.size *(c->count + new->halves.size);
+    c->work += new->halves.work + (double)columns *new->halves.size * c->count;
     for (int k = 0; k < c->n_addition; k++) {
         const struct addition *other = &c->addition[k];
         double product[LANES * LANES];
@@ -191,6 +196,35 @@ bool corrections_add(struct corrections *c, int count, const struct correction *
         fill_compliance(c, &c->addition[c->n_addition - 1]);
     }
     return true;
+}
+
+struct unit_load corrections_row(const struct corrections *c, int row)
+{
+    return (struct unit_load){c->entry[c->entry_of[row]].joint, c->strain_of[row]};
+}
+
+int corrections_of(const struct corrections *c, int joint)
+{
+    return c->of[joint] < 0 ? 0 : c->entry[c->of[joint]].count;
+}
+
+const double *corrections_compliance(const struct corrections *c, int row)
+{
+    return compliance_of(c, row);
+}
+
+void corrections_strain_lanes(const struct corrections *c, double *strain)
+{
+    for (int k = 0; k < c->n_addition; k++)
+        stiffness_strain_lanes(c->stiffness, &c->addition[k].halves,
+                               strain + (long)c->addition[k].first * LANES);
+}
+
+void corrections_take_off_lanes(const struct corrections *c, const double *load)
+{
+    for (int k = 0; k < c->n_addition; k++)
+        stiffness_take_off_lanes(c->stiffness, &c->addition[k].halves,
+                                 load + (long)c->addition[k].first * LANES);
 }
 
 // ---- what is left of e - B K^-1 r + W q(e) ------------------------------------------

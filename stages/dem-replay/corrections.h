@@ -32,8 +32,20 @@ bool corrections_add(struct corrections *corrections, int count,
                      const struct correction *new);
 int corrections_count(const struct corrections *corrections); // of strains
 
+// Rows in the order in which they came: the strain of each, how many a joint has, and
+// how the strains of all, (count), answer its load.
+struct unit_load corrections_row(const struct corrections *corrections, int row);
+int corrections_of(const struct corrections *corrections, int joint);
+const double *corrections_compliance(const struct corrections *corrections, int row);
+
+// As stiffness_strain_lanes and stiffness_take_off_lanes, for all rows (count * LANES).
+void corrections_strain_lanes(const struct corrections *corrections, double *strain);
+void corrections_take_off_lanes(const struct corrections *corrections,
+                                const double *load);
+
 // Multiplications spent on dense systems since there were no corrections.
 double corrections_work(const struct corrections *corrections);
+void corrections_count_work(struct corrections *corrections, double more);
 
 // Finds q for grains that move on from STRAIN (n_joint) under the load that the
 // stiffness has begun with, where SHARE of their answers counts; strains to ENOUGH,

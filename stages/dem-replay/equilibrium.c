@@ -83,6 +83,7 @@ enum status equilibrium_new(struct equilibrium **result,
     e->soft[0] = e->soft[1] = softness(e);
     e->matrix = stiffness_new(n, setup->fixed, e->n_joint, e->joint);
     e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
+    e->foresight = foresight_new(e);
     if (setup->large_displacements) e->large = large_new(e);
     *result = e;
     return STATUS_OK;
@@ -95,6 +96,7 @@ void equilibrium_free(struct equilibrium *e)
     corrections_free(e->corrections);
     stiffness_free(e->matrix);
     large_free(e->large);
+    foresight_free(e->foresight);
     void *const owned[] = {e->joint,   e->strain, e->more,     e->resistance,
                            e->trial,   e->load,   e->dashpots, e->left,
                            e->step,    e->before, e->tangent,  e->factored,
@@ -174,11 +176,17 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
     return STATUS_OK;
 }
 
+void equilibrium_expect(struct equilibrium *e, int count, const struct vector *force)
+{
+    foresight_expect(e->foresight, count, force);
+}
+
 enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
                              struct reason *reason)
 {
     e->force = force;
     load_grains(e);
+    foresight_check(e->foresight, e->n, force);
     for (int i = 0; i < e->n; i++)
         e->largest_load = fmax(e->largest_load, norm(e->load[i].shift));
     do {
@@ -186,5 +194,6 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
         if (status) return status;
         if (!e->large) balance(e);
     } while (break_one(e));
+    foresight_go_on(e->foresight);
     return check_small(e, reason);
 }

@@ -47,6 +47,11 @@ enum status equilibrium_new(struct equilibrium **result,
                             struct reason *reason);
 void equilibrium_free(struct equilibrium *equilibrium);
 
+// The forces of the next COUNT equilibria, one after the other (count * n_particle) N,
+// which are kept, not copied: those that lie ahead are found together [foresee.h].
+void equilibrium_expect(struct equilibrium *equilibrium, int count,
+                        const struct vector *force);
+
 // The next one, under FORCE (n_particle) N, with the history of those before.
 // STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small;
 // or if they may be large, equilibrium ends on the way, at equilibrium_share.

@@ -6,6 +6,7 @@
 
 #include "corrections.h"
 #include "equilibrium.h"
+#include "foresee.h"
 #include "fragments.h"
 #include "large.h"
 #include "net_load.h"
@@ -63,10 +64,14 @@ struct equilibrium {
     int n_crack, crack_capacity;
     struct dem_crack *crack;
     struct large *large; // NULL: displacements are small
+    struct foresight *foresight;
 };
 
 // The force from outside becomes the load, as far as grains are there and free.
 void load_grains(struct equilibrium *equilibrium);
+// The same of the forces FROM (n), into LOAD (n); what was taken off.
+struct net_load loads_of(const struct equilibrium *equilibrium,
+                         const struct vector *from, struct vector *load);
 
 // Equilibrium under the load: at once or, where that is not found, in time. What does
 // not even then come to rest leaves if nothing supports it; else it goes on moving

@@ -319,6 +319,7 @@ static enum status repeat_earlier(struct run *run, struct reason *reason)
     const struct vector *force =
         saved_loads(run->settings->begin, run->packing, &n_load, reason);
     if (!force) return STATUS_BAD_DATA;
+    equilibrium_expect(run->equilibrium, n_load, force);
     for (int k = 0; k < n_load; k++) {
         memcpy(run->force, force + (size_t)k * n, n * sizeof *run->force);
         const enum status status = settle_equilibrium(run, reason);
@@ -385,6 +386,7 @@ enum status replay(const struct packing *packing, const struct load *load,
     enum status status = begin(&run, reason);
     if (!status && settings->begin) status = go_on_from_earlier(&run, reason);
     if (!status && keeper && keeper->begin) status = go_on(&run, reason);
+    if (run.equilibrium) equilibrium_expect(run.equilibrium, load->n_time, load->force);
     while (!status && run.place.step < load->n_time) {
         status = do_step(&run, reason);
         if (progress && progress->report)

@@ -27,8 +27,9 @@ struct stiffness {
     int *start, *row; // lower triangle by columns, upper halves of diagonal blocks too
     double *value;
     struct supernodal *factor;
-    double *load;         // (n_moving * DEGREES)
-    double *begun, *left; // the same, halves of answers
+    double *load;                                  // (n_moving * DEGREES)
+    double *begun, *left;                          // the same, halves of answers
+    double *load_lanes, *begun_lanes, *left_lanes; // of LANES of each; NULL: not yet
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -119,8 +120,10 @@ void stiffness_free(struct stiffness *s)
 {
     if (!s) return;
     supernodal_free(s->factor);
-    void *const owned[] = {s->number, s->block, s->block_of, s->diagonal, s->start,
-                           s->row,    s->value, s->load,     s->begun,    s->left};
+    void *const owned[] = {s->number,    s->block, s->block_of,   s->diagonal,
+                           s->start,     s->row,   s->value,      s->load,
+                           s->begun,     s->left,  s->load_lanes, s->begun_lanes,
+                           s->left_lanes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -293,7 +296,59 @@ void stiffness_product(const struct stiffness *s, const struct halves *a,
     halves_product(s->factor, a, b, product);
 }
 
+// ---- lanes --------------------------------------------------------------------------
+
+enum { GRAIN_LANES = DEGREES * LANES };
+
+void stiffness_begin_lanes(struct stiffness *s, const double *load)
+{
+    const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
+    if (s->n_moving == 0) return;
+    if (!s->begun_lanes) {
+        s->load_lanes = NEW_ARRAY(double, numbers);
+        s->begun_lanes = NEW_ARRAY(double, numbers);
+        s->left_lanes = NEW_ARRAY(double, numbers);
+    }
+    for (int i = 0; i < s->n; i++)
+        if (s->number[i] >= 0)
+            memcpy(s->load_lanes + (long)s->number[i] * GRAIN_LANES,
+                   load + (long)i * GRAIN_LANES, GRAIN_LANES * sizeof *load);
+    supernodal_forward_lanes(s->factor, s->load_lanes, s->begun_lanes);
+    memcpy(s->left_lanes, s->begun_lanes, numbers * sizeof *s->left_lanes);
+}
+
+void stiffness_finish_lanes(struct stiffness *s, double *answer)
+{
+    const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
+    memset(answer, 0, (size_t)s->n * GRAIN_LANES * sizeof *answer);
+    if (s->n_moving == 0) return;
+    supernodal_backward_lanes(s->factor, s->left_lanes, s->load_lanes);
+    memcpy(s->left_lanes, s->begun_lanes, numbers * sizeof *s->left_lanes);
+    for (int i = 0; i < s->n; i++)
+        if (s->number[i] >= 0)
+            memcpy(answer + (long)i * GRAIN_LANES,
+                   s->load_lanes + (long)s->number[i] * GRAIN_LANES,
+                   GRAIN_LANES * sizeof *answer);
+}
+
+void stiffness_strain_lanes(const struct stiffness *s, const struct halves *halves,
+                            double *strain)
+{
+    halves_apply_lanes(s->factor, halves, s->begun_lanes, strain);
+}
+
+void stiffness_take_off_lanes(struct stiffness *s, const struct halves *halves,
+                              const double *load)
+{
+    halves_take_off_lanes(s->factor, halves, load, s->left_lanes);
+}
+
 double stiffness_work(const struct stiffness *s)
 {
     return s->factor ? supernodal_work(s->factor) : 0;
+}
+
+double stiffness_numbers(const struct stiffness *s)
+{
+    return s->factor ? supernodal_numbers(s->factor) : 0;
 }

@@ -49,7 +49,17 @@ void stiffness_strain(const struct stiffness *stiffness, const struct halves *ha
 void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves,
                         const double *load);
 
-// Multiplications that a factor takes.
+// The same of LANES loads side by side, LOAD and ANSWER (n * 6 * LANES), STRAIN and
+// LOAD of halves (columns * LANES).
+void stiffness_begin_lanes(struct stiffness *stiffness, const double *load);
+void stiffness_finish_lanes(struct stiffness *stiffness, double *answer);
+void stiffness_strain_lanes(const struct stiffness *stiffness,
+                            const struct halves *halves, double *strain);
+void stiffness_take_off_lanes(struct stiffness *stiffness, const struct halves *halves,
+                              const double *load);
+
+// Multiplications that a factor takes, and numbers in it.
 double stiffness_work(const struct stiffness *stiffness);
+double stiffness_numbers(const struct stiffness *stiffness);
 
 #endif

@@ -2,6 +2,7 @@
 // Sparse Cholesky factors and small dense systems against what they are put into.
 #include "sparse/supernodal.h"
 #include "basics/memory.h"
+#include "sparse/dense_symmetric.h"
 #include "sparse/dense_system.h"
 
 // clang-format off
@@ -132,6 +133,52 @@ static void halves_make_the_same_products(void **state)
     free(s);
 }
 
+// And what halves are taken off in all lanes at once.
+static void lanes_are_answers_each(void **state)
+{
+    (void)state;
+    struct springs *s = make_springs(0.1);
+    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    assert_true(supernodal_factor(factor, s->value));
+    static double x[N * LANES], half[N * LANES], product[2 * LANES];
+    double one[N], single[2], alone[N];
+    for (int k = 0; k < N * LANES; k++)
+        x[k] = sin(k);
+    const int index[2] = {3, 500};
+    struct halves halves = supernodal_halves(factor, 2, 1, index, (double[]){2, -1});
+    supernodal_forward_lanes(factor, x, half);
+    halves_apply_lanes(factor, &halves, half, product);
+    for (int l = 0; l < LANES; l++) {
+        for (int i = 0; i < N; i++)
+            one[i] = x[i * LANES + l];
+        supernodal_forward(factor, one, alone);
+        halves_apply(factor, &halves, alone, single);
+        for (int k = 0; k < 2; k++)
+            assert_true(fabs(product[k * LANES + l] - single[k]) < 1e-12);
+    }
+    double share[2 * LANES];
+    for (int l = 0; l < LANES; l++) {
+        share[l] = l;
+        share[LANES + l] = -l;
+        x[3 * LANES + l] -= 2 * l;
+        x[500 * LANES + l] -= l;
+    }
+    halves_take_off_lanes(factor, &halves, share, half);
+    static double answer[N * LANES];
+    supernodal_backward_lanes(factor, half, answer);
+    for (int l = 0; l < LANES; l++) {
+        double left[N];
+        for (int i = 0; i < N; i++)
+            one[i] = answer[i * LANES + l];
+        multiply(s, one, left);
+        for (int i = 0; i < N; i++)
+            assert_true(fabs(left[i] - x[i * LANES + l]) < 1e-12);
+    }
+    halves_free(&halves);
+    supernodal_free(factor);
+    free(s);
+}
+
 // Nothing holds the cube: a pivot is rounding, the answer to a load in balance a number
 // all the same. A matrix that is none is refused.
 static void a_pivot_of_rounding_stays_a_number(void **state)
@@ -178,12 +225,43 @@ static void dense_systems(void **state)
     assert_false(dense_factor(2, none, 2, order));
 }
 
+// The first half of the pivots positive, the rest negative; one that is not is refused.
+static void symmetric_systems(void **state)
+{
+    (void)state;
+    enum { MOST = 30 };
+    for (int n = 1; n <= MOST; n++) {
+        double whole[MOST][MOST] = {{0}}, matrix[MOST * MOST + 8], work[20 * MOST];
+        double sign[MOST], x[MOST], right[MOST];
+        for (int i = 0; i < n; i++) {
+            sign[i] = i < n / 2 ? 1 : -1;
+            x[i] = right[i] = cos(i);
+            for (int j = 0; j <= i; j++)
+                whole[i][j] = whole[j][i] = i == j ? n * sign[i] : sin(3 * i + 7 * j);
+        }
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++)
+                matrix[j * n + i] = whole[i][j];
+        assert_true(dense_symmetric_factor(n, matrix, n, sign, work));
+        dense_symmetric_solve(n, matrix, n, sign, x);
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++)
+                right[i] -= whole[i][j] * x[j];
+            assert_true(fabs(right[i]) < 1e-12);
+        }
+    }
+    double wrong[1 + 8] = {-1}, work[20];
+    assert_false(dense_symmetric_factor(1, wrong, 1, (double[]){1}, work));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(answers_are_those_of_the_matrix),
         cmocka_unit_test(halves_make_the_same_products),
         cmocka_unit_test(a_pivot_of_rounding_stays_a_number),
+        cmocka_unit_test(lanes_are_answers_each),
+        cmocka_unit_test(symmetric_systems),
         cmocka_unit_test(dense_systems)};
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -56,6 +56,7 @@ struct halves supernodal_halves(struct supernodal *f, int columns, int count,
         memcpy(to, x + (long)super->first * lanes, numbers * sizeof *to);
         memset(x + (long)super->first * lanes, 0, numbers * sizeof *to);
         to += numbers;
+        halves.work += (double)numbers * super->rows;
     }
     return halves;
 }

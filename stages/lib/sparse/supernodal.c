@@ -125,6 +125,11 @@ double supernodal_work(const struct supernodal *f)
     return work;
 }
 
+double supernodal_numbers(const struct supernodal *f)
+{
+    return (double)f->size;
+}
+
 // ---- numbers ------------------------------------------------------------------------
 
 // Columns FIRST to END - 1 of a panel, whose earlier columns are done with. A pivot is

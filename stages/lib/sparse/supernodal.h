@@ -23,8 +23,9 @@ bool supernodal_factor(struct supernodal *factor, const double *value);
 // pivot was negative or what rounding leaves.
 bool supernodal_is_positive(const struct supernodal *factor, const double *diagonal);
 
-// Multiplications that a factor takes.
+// Multiplications that a factor takes, and numbers in it.
 double supernodal_work(const struct supernodal *factor);
+double supernodal_numbers(const struct supernodal *factor);
 
 // The two halves of a solution: HALF (n), in the order of the factor, of the right-hand
 // side X (n), and the answer X from it.
@@ -46,6 +47,7 @@ struct halves {
     int lanes;           // that they take
     int n_super, *super; // the way, in ascending order
     int size;            // of a column
+    double work;         // multiplications that they took
     double *value;       // (size * lanes)
 };
 

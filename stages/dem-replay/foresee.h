@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibria that lie ahead, LANES loads at a time. Without friction contacts have no
+// history, and until a bond breaks each load has its equilibrium whatever comes
+// between: one way through the factor serves them all. What is foreseen is where
+// balance.c begins; whether it is an equilibrium is seen there.
+#ifndef CRAQUELURE_FORESEE_H
+#define CRAQUELURE_FORESEE_H
+
+#include "geometry/vector.h"
+
+struct equilibrium;
+struct foresight;
+
+// NULL, which the others take: there is friction, or glue at points, or displacements
+// may be large. The caller frees it.
+struct foresight *foresight_new(const struct equilibrium *equilibrium);
+void foresight_free(struct foresight *foresight);
+
+// FORCE (count * n) of the next COUNT loads, kept, not copied. Nothing is expected any
+// longer where the next one has other forces than FORCE (n). On to the next.
+void foresight_expect(struct foresight *foresight, int count,
+                      const struct vector *force);
+void foresight_check(struct foresight *foresight, int n, const struct vector *force);
+void foresight_go_on(struct foresight *foresight);
+
+// The trial goes to where equilibrium under the load is, if that can be foreseen.
+void foresee(struct equilibrium *equilibrium);
+
+#endif

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small dense symmetric systems without pivoting, where it is known which pivots are
+// negative.
+#ifndef CRAQUELURE_DENSE_SYMMETRIC_H
+#define CRAQUELURE_DENSE_SYMMETRIC_H
+
+#include <stdbool.h>
+
+// MATRIX (n by n, its lower triangle by columns STRIDE apart, eight numbers more at the
+// end) becomes L of L S L^T, S being the diagonal of SIGN (n), 1 or -1. WORK (20 n).
+// False: a pivot has not that sign.
+bool dense_symmetric_factor(int n, double *matrix, int stride, const double *sign,
+                            double *work);
+
+// The right-hand side X (n) becomes the answer.
+void dense_symmetric_solve(int n, const double *matrix, int stride, const double *sign,
+                           double *x);
+
+#endif
