@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "column_order.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 // Diffusion in the gas and at the wall in series (Bosanquet): 1/D + 1/D_K, where D_K
@@ -39,7 +40,33 @@ static void link_level(struct star_mesh *mesh, const struct boundary_layer *laye
                        height * layer->lateral_conductance[k]);
 }
 
-// Only its feet remain.
+// From the air down: each level is eliminated when the one below is linked to it.
+static void add_by_levels(struct star_mesh *mesh, const struct boundary_layer *layer,
+                          int n_node)
+{
+    for (int level = layer->layers - 1; level >= 0; level--) {
+        link_level(mesh, layer, n_node, level);
+        for (int i = 0; level + 1 < layer->layers && i < layer->n_exposed; i++)
+            star_mesh_eliminate(mesh, level_site(layer, n_node, level + 1, i));
+    }
+}
+
+static void add_by_columns(struct star_mesh *mesh, const struct network *network,
+                           const struct boundary_layer *layer)
+{
+    for (int level = 0; level < layer->layers; level++)
+        link_level(mesh, layer, network->n_node, level);
+    int *order = column_order(network, layer);
+    for (int k = 0; k < layer->n_exposed; k++)
+        for (int level = layer->layers - 1; level > 0; level--)
+            star_mesh_eliminate(mesh,
+                                level_site(layer, network->n_node, level, order[k]));
+    free(order);
+}
+
+// Only its feet remain. What is linked at once while it is eliminated is a level, or
+// the columns that part it in two, about twice the root of their number: whichever is
+// less.
 static void add_boundary_layer(struct star_mesh *mesh, const struct network *network,
                                const struct boundary_layer *layer)
 {
@@ -47,13 +74,10 @@ static void add_boundary_layer(struct star_mesh *mesh, const struct network *net
     for (int i = 0; i < layer->n_exposed; i++)
         star_mesh_link_air(mesh, level_site(layer, n_node, top, i),
                            layer->area[i] / layer->spacing);
-    for (int level = 0; level <= top; level++)
-        link_level(mesh, layer, n_node, level);
-    int *order = column_order(network, layer);
-    for (int k = 0; k < layer->n_exposed; k++)
-        for (int level = top; level > 0; level--)
-            star_mesh_eliminate(mesh, level_site(layer, n_node, level, order[k]));
-    free(order);
+    if (2 * sqrt(layer->n_exposed) * layer->layers < layer->n_exposed)
+        add_by_columns(mesh, network, layer);
+    else
+        add_by_levels(mesh, layer, n_node);
 }
 
 struct vapour vapour_make(const struct network *network, double length,

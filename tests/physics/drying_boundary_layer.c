@@ -3,6 +3,7 @@
 // 3.3.5, Fig. 3.44], no area lost or won anywhere, and lateral diffusion over stripes
 // that has a closed form.
 #include "dry/boundary_layer.h"
+#include "dry/vapour.h"
 
 #include "basics/memory.h"
 #include "support_lattice.h"
@@ -14,6 +15,7 @@
 #include <stdlib.h>
 
 #include <cmocka.h>
+#include <gsl/gsl_linalg.h>
 
 static const double spacing = 5e-7;
 
@@ -401,6 +403,84 @@ static void test_lumped_transfer_knows_no_neighbours(void **state)
     assert_true(fabs(striped_rate(16, true) - 0.5) < 1e-12);
 }
 
+// ---- against one matrix of all nodes ------------------------------------------------
+
+static int foot_is_wet(int i)
+{
+    return i % 3 == 0;
+}
+
+// The link that is part of MATRIX, or where one end (-1) is wet or the air (-2) of the
+// right side.
+static void add_link(gsl_matrix *matrix, gsl_vector *right, int a, int b,
+                     double conductance)
+{
+    const int end[2] = {a, b};
+    for (int k = 0; k < 2; k++) {
+        if (end[k] < 0) continue;
+        const size_t i = (size_t)end[k];
+        *gsl_matrix_ptr(matrix, i, i) += conductance;
+        if (end[1 - k] >= 0)
+            *gsl_matrix_ptr(matrix, i, (size_t)end[1 - k]) -= conductance;
+        if (end[1 - k] == -2) *gsl_vector_ptr(right, i) += conductance;
+    }
+}
+
+// (n_exposed levels) The potential: 0 at wet feet, 1 in the air.
+static gsl_vector *solve_at_once(const struct boundary_layer *layer)
+{
+    const int n = layer->n_exposed, levels = layer->layers;
+    const size_t size = (size_t)(n * levels);
+    gsl_matrix *matrix = gsl_matrix_calloc(size, size);
+    gsl_vector *right = gsl_vector_calloc(size);
+#define SITE(level, i) ((level) == 0 && foot_is_wet(i) ? -1 : (level)*n + (i))
+    for (int level = 0; level < levels; level++) {
+        for (int i = 0; i < n; i++)
+            add_link(matrix, right, SITE(level, i),
+                     level + 1 < levels ? SITE(level + 1, i) : -2,
+                     layer->area[i] / layer->spacing);
+        for (int k = 0; k < layer->n_lateral; k++) {
+            const int *column = layer->lateral[k];
+            add_link(matrix, right, SITE(level, column[0]), SITE(level, column[1]),
+                     layer->lateral_conductance[k] * (level == 0 ? 0.5 : 1));
+        }
+    }
+#undef SITE
+    for (int i = 0; i < n; i++)
+        if (foot_is_wet(i)) gsl_matrix_set(matrix, (size_t)i, (size_t)i, 1);
+    gsl_linalg_cholesky_decomp1(matrix);
+    gsl_linalg_cholesky_svx(matrix, right);
+    gsl_matrix_free(matrix);
+    return right;
+}
+
+// Wide layers are eliminated column by column, narrow ones level by level.
+static void test_columns_and_levels_are_eliminated(void **state)
+{
+    (void)state;
+    for (int wide = 0; wide < 2; wide++) {
+        struct network network = wide ? lattice_network(14, 15, 1, spacing)
+                                      : lattice_network(3, 4, 1, spacing);
+        struct boundary_layer layer =
+            make(&network, 5, &(struct boundary_form){.layers = wide ? 4 : 20});
+        struct vapour vapour = vapour_make(&network, spacing, 0, &layer, 0);
+        for (int i = 0; i < layer.n_exposed; i++)
+            if (!foot_is_wet(i)) vapour_dry_node(&vapour, layer.exposed[i]);
+        gsl_vector *potential = solve_at_once(&layer);
+        double rate = 0;
+        for (int i = 0; i < layer.n_exposed; i++) {
+            const size_t below = (size_t)((layer.layers - 1) * layer.n_exposed + i);
+            rate +=
+                layer.area[i] / layer.spacing * (1 - gsl_vector_get(potential, below));
+        }
+        assert_true(fabs(vapour_rate(&vapour) / rate - 1) < 1e-12);
+        gsl_vector_free(potential);
+        vapour_free(&vapour);
+        boundary_layer_free(&layer);
+        network_free(&network);
+    }
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -415,6 +495,7 @@ int main(void)
         cmocka_unit_test(test_outermost_of_nodes_in_one_column),
         cmocka_unit_test(test_auxiliary_feet),
         cmocka_unit_test(test_lateral_diffusion_over_stripes),
-        cmocka_unit_test(test_lumped_transfer_knows_no_neighbours)};
+        cmocka_unit_test(test_lumped_transfer_knows_no_neighbours),
+        cmocka_unit_test(test_columns_and_levels_are_eliminated)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
