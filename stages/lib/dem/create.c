@@ -372,6 +372,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     dem->threads = setup->threads;
     dem->balance_energy = setup->balance_energy;
     dem->skin = FIRST_SKIN;
+    dem->least_gap = 1e-6;
     dem->expected_overlap = setup->largest_overlap > 0 ? setup->largest_overlap : 0.01;
     take_materials(dem, setup);
     take_grains(dem, setup);

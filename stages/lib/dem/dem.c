@@ -226,6 +226,7 @@ static double fastest_wall(const struct dem *dem)
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
 {
     for (int64_t k = 0; k < cycles; k++) {
+        rest_or_wake(dem, cycles - k, k == 0);
         keep_pairs(dem);
         dem->keeps_loads = k == cycles - 1; // for who looks at them after it
         sweep_walls(dem);
@@ -235,13 +236,15 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
         move_walls(dem);
         const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
         dem->travelled += dem->time_step * fastest;
-        if (!outcome.pace.sound)
+        if (!outcome.pace.sound) {
+            wake_pairs(dem);
             return refuse(
                 reason, STATUS_NOT_CONVERGED,
                 "diverged in cycle %lld: a grain would move more than %g mean "
                 "radii in one time step of %g s (stable below %g s)",
                 (long long)dem->cycle, FURTHEST_STEP, dem_time_step(dem),
                 dem_time_step_limit(dem));
+        }
         dem->cycle++;
     }
     return STATUS_OK;

@@ -250,6 +250,8 @@ struct dem {
     double *bond_strength[2];    // (n_bond) by enum dem_crack_mode; -1 once broken
 
     struct pair_list pairs;
+    struct resting *resting; // what is left out of them for now; NULL: nothing
+    double least_gap;      // of two grains that may rest; tuned, never seen in results
     struct liquid *liquid; // NULL: dry
     int n_wall;
     struct rigid_wall *wall;
@@ -307,6 +309,12 @@ void find_pairs(struct dem *dem);
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
 // Seeks them if a grain may have moved further than half the skin.
 void keep_pairs(struct dem *dem);
+// Makes rows to add up in for the pairs that are swept.
+void arrange_sums(struct dem *dem);
+// Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them in again
+// before they can, and for the last cycle [resting.c].
+void rest_or_wake(struct dem *dem, int64_t left, bool begins);
+void wake_pairs(struct dem *dem);
 // Adds the losses of all pairs to the books and clears them.
 void close_pair_books(struct dem *dem);
 // Empty lists of N_PAIR pairs, with what the scene needs; takes over both arrays.
@@ -320,6 +328,8 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
 struct vector separation_now(const struct dem *dem, int i, int j);
 // Sets how the pair in lane LANE of GROUP lies as of where its grains began.
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);
+// Makes lane PAIR one that holds no pair.
+void set_nobody(struct dem *dem, int pair);
 // Sets the numbers of its own of pair PAIR.
 void set_pair_law(struct dem *dem, int pair);
 

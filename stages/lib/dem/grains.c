@@ -114,38 +114,49 @@ static void keep_books(const struct dem *dem, int i, const struct load *sum,
     dem->grain_books[i][1] += dem->time_step * sum_of(taken);
 }
 
+// What is read again for each grain is held in registers: the compiler cannot know that
+// grains are not written over it.
 INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool turns)
 {
-    const double dt = dem->time_step;
+    const double dt = dem->time_step, share = dem->local_damping;
     const double furthest = FURTHEST_STEP / dt, limit = furthest * furthest;
     const double turning = dem->largest_radius * dem->largest_radius;
+    const uint8_t *const is_late = dem->is_late;
+    const double(*const mobility)[2] = dem->mobility;
+    const size_t next_mobility = dem->moves_alike ? 0 : 1;
+    struct motion *const motion = dem->motion;
+    struct place *const place = dem->place;
+    const bool balance = dem->balance_energy;
     const quad zero = {0};
-    struct pace pace = {.largest = 0, .sound = true};
+    double largest = 0;
+    bool sound = true;
     for (int k = begin; k < end; k++) {
         const int i = late ? dem->late[k] : k;
-        if (!late && dem->is_late[i]) continue;
+        if (!late && is_late[i]) continue;
         const struct load sum =
             late ? take_late_sum(dem, k, turns) : take_sum(dem, i, turns);
-        const double *mobility = dem->mobility[dem->moves_alike ? 0 : i];
-        quad *velocity = (quad *)dem->motion[i].linear;
-        quad *spin = (quad *)dem->motion[i].angular;
-        struct load net = {damped(sum.force, *velocity, dem->local_damping), zero};
-        if (turns) net.moment = damped(sum.moment, *spin, dem->local_damping);
-        const quad v = *velocity + dt * mobility[0] * net.force;
-        const quad w = turns ? *spin + dt * mobility[1] * net.moment : zero;
+        const double *mobile = mobility[next_mobility * (size_t)i];
+        quad *velocity = (quad *)motion[i].linear, *spin = (quad *)motion[i].angular;
+        struct load net = {sum.force + zero, sum.moment + zero}; // +0, as damped has it
+        if (share > 0) {
+            net.force = damped(sum.force, *velocity, share);
+            if (turns) net.moment = damped(sum.moment, *spin, share);
+        }
+        const quad v = *velocity + dt * mobile[0] * net.force;
+        const quad w = turns ? *spin + dt * mobile[1] * net.moment : zero;
         const quad squares = turns ? v * v + turning * (w * w) : v * v;
         const double square = sum_of(squares);
         if (!(square <= limit)) { // also when it is not a number
-            pace.sound = false;
+            sound = false;
             continue;
         }
-        if (square > pace.largest) pace.largest = square;
+        largest = square > largest ? square : largest;
         *velocity = v;
         if (turns) *spin = w;
-        *(quad *)&dem->place[i] += dt * v; // the radius by 0
-        if (dem->balance_energy && mobility[0] > 0) keep_books(dem, i, &sum, net, v, w);
+        *(quad *)&place[i] += dt * v; // the radius by 0
+        if (balance && mobile[0] > 0) keep_books(dem, i, &sum, net, v, w);
     }
-    return pace;
+    return (struct pace){.largest = largest, .sound = sound};
 }
 
 struct pace move_grains(struct dem *dem, int begin, int end)

@@ -165,8 +165,7 @@ static void set_bond(struct dem *dem, struct lane to, int bond)
     bonds->shear_strength[to.at] = dem->bond_strength[DEM_CRACK_SHEAR][bond];
 }
 
-// A lane that holds no pair.
-static void set_nobody(struct dem *dem, int pair)
+void set_nobody(struct dem *dem, int pair)
 {
     const struct lane to = lane_of(pair);
     struct pair_group *group = &dem->pairs.group[to.group];
@@ -427,6 +426,12 @@ static void tune_skin(struct dem *dem)
     dem->skin = fmax(skin, 1e-3);
 }
 
+void arrange_sums(struct dem *dem)
+{
+    assign_groups(dem);
+    assign_sums(dem);
+}
+
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond)
 {
     struct pair_list old = dem->pairs;
@@ -434,8 +439,7 @@ void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bo
     fill_pairs(dem, &old);
     free_pairs(&old);
     list_pairs_of_grains(dem);
-    assign_groups(dem);
-    assign_sums(dem);
+    arrange_sums(dem);
     if (dem->liquid) count_bridges(dem);
 }
 
@@ -465,6 +469,7 @@ void keep_pairs(struct dem *dem)
     dem->travelled = furthest;
     // So near the limit that looking again soon would cost more than a search.
     if (furthest <= 0.9 * 0.5 * dem->skin && !skin_is_too_deep(dem)) return;
+    wake_pairs(dem);
     enum { SEARCHES_IN_ORDER = 64 };
     if (++dem->searches_in_order > SEARCHES_IN_ORDER) renumber_grains(dem);
     find_pairs(dem);

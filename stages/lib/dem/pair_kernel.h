@@ -75,6 +75,11 @@ INLINE lanes choose(mask m, lanes a, lanes b)
     return (lanes)((m & (mask)a) | (~m & (mask)b));
 }
 
+INLINE lanes magnitude(lanes a)
+{
+    return (lanes)((mask)a & INT64_MAX);
+}
+
 INLINE lanes square_root(lanes a)
 {
 #if LANES == 8
@@ -138,9 +143,33 @@ INLINE struct lanes3 add_scaled3(struct lanes3 a, lanes s, struct lanes3 b)
     return (struct lanes3){fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.z, a.z)};
 }
 
+// A B - C and C - A B in the same way, without an instruction for the sign.
+INLINE lanes fused_less(lanes a, lanes b, lanes c)
+{
+#if !FUSED
+    return a * b - c;
+#elif LANES == 8
+    return (lanes)_mm512_fmsub_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#else
+    return (lanes)_mm256_fmsub_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#endif
+}
+
+INLINE lanes less_fused(lanes a, lanes b, lanes c)
+{
+#if !FUSED
+    return c - a * b;
+#elif LANES == 8
+    return (lanes)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#else
+    return (lanes)_mm256_fnmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#endif
+}
+
 INLINE struct lanes3 subtract_scaled3(struct lanes3 a, lanes s, struct lanes3 b)
 {
-    return add_scaled3(a, -s, b);
+    return (struct lanes3){less_fused(s, b.x, a.x), less_fused(s, b.y, a.y),
+                           less_fused(s, b.z, a.z)};
 }
 
 INLINE struct lanes3 only_where3(mask m, struct lanes3 a)
@@ -155,8 +184,9 @@ INLINE lanes dot3(struct lanes3 a, struct lanes3 b)
 
 INLINE struct lanes3 cross3(struct lanes3 a, struct lanes3 b)
 {
-    return (struct lanes3){fused(a.y, b.z, -(a.z * b.y)), fused(a.z, b.x, -(a.x * b.z)),
-                           fused(a.x, b.y, -(a.y * b.x))};
+    return (struct lanes3){fused_less(a.y, b.z, a.z * b.y),
+                           fused_less(a.z, b.x, a.x * b.z),
+                           fused_less(a.x, b.y, a.y * b.x)};
 }
 
 // Four numbers from each of LANES places, transposed to three vectors and a fourth.
@@ -583,7 +613,7 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
     const lanes shear_strength = load(g->shear_strength + at) * area * radius;
     const lanes tension = -normal * radius;
     const lanes bending_left = normal_strength - tension;
-    const lanes twist_size = choose(twist < 0.0, -twist, twist);
+    const lanes twist_size = magnitude(twist);
     const lanes shear_left = shear_strength - 2.0 * twist_size;
     const lanes bending_square = 16.0 * dot3(bending, bending);
     const lanes shear_square = radius * radius * dot3(shear, shear);
@@ -755,10 +785,13 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
 
     const struct lanes3 torque = cross3(n, pair->shear);
     struct lanes3 on_first = scale3(m->first_arm, torque);
-    struct lanes3 on_second = scale3(-m->second_arm, torque);
+    const struct lanes3 from_second = scale3(m->second_arm, torque);
+    struct lanes3 on_second;
     if (features & FEATURE_PARALLEL_BOND) {
         on_first = add3(on_first, pair->moment);
-        on_second = add3(pair->moment, on_second);
+        on_second = subtract3(pair->moment, from_second);
+    } else {
+        on_second = scale3(splat(-1), from_second);
     }
     if (have_one_arm(features))
         add_opposite(dem->sum, first, second, rows_of(force), rows_of(on_first));
