@@ -12,6 +12,9 @@
 // known where equilibrium ends.
 static const double least_increment = 1e-6;
 
+// Without a sign that it ends, equilibrium is not looked for in smaller ones than this.
+static const double rough_increment = 1e-2;
+
 // Rows that buckle do so later by what is soft against shifts.
 struct large *large_new(struct equilibrium *e)
 {
@@ -217,19 +220,24 @@ static int softest_grain(struct equilibrium *e)
 static enum status refuse_end(struct equilibrium *e, double reached,
                               struct reason *reason)
 {
-    const bool is_unstable = e->large->is_unstable;
     e->large->share = reached;
     go_back(e);
     resist(e);
     factor(e);
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "equilibrium ends with %.6f of what this load changes: %s, grain %d "
-                  "moves most (engine=explicit follows what comes then)",
-                  reached,
-                  is_unstable ? "the stiffness is no longer positive (buckling, or a "
-                                "snap through)"
-                              : "none is found near the last",
-                  softest_grain(e));
+                  "equilibrium ends with %.6f of what this load changes: the stiffness "
+                  "is no longer positive (buckling, or a snap through), grain %d moves "
+                  "most (engine=explicit follows what comes then)",
+                  reached, softest_grain(e));
+}
+
+// Where slip and contacts that open leave no equilibrium near the last.
+static void walk_in_time(struct equilibrium *e)
+{
+    e->large->share = 1;
+    e->large->is_least = true;
+    balance(e);
+    e->large->is_stale = true;
 }
 
 enum status large_balance(struct equilibrium *e, struct reason *reason)
@@ -249,7 +257,12 @@ enum status large_balance(struct equilibrium *e, struct reason *reason)
             continue;
         }
         large->is_stale = true;
-        if (large->is_least) return refuse_end(e, reached, reason);
+        if (large->is_least && large->is_unstable)
+            return refuse_end(e, reached, reason);
+        if (increment <= rough_increment && !large->is_unstable) {
+            walk_in_time(e);
+            return STATUS_OK;
+        }
         increment = fmin(increment, 1 - reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
     }
     return STATUS_OK;
