@@ -2,7 +2,6 @@
 #include "equilibrium_state.h"
 
 #include "basics/memory.h"
-#include "make_joints.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,6 +42,41 @@ static double softness(const struct equilibrium *e)
     return 1e-8 * least;
 }
 
+struct joint_setup joints_of(const struct equilibrium *e)
+{
+    return (struct joint_setup){.packing = e->packing,
+                                .material = &e->setup.material,
+                                .bond = &e->setup.bond,
+                                .has_wall = e->setup.has_wall,
+                                .unstressed = e->setup.unstressed,
+                                .rolling = e->setup.rolling,
+                                .length = e->length,
+                                .stiffness = e->stiffness};
+}
+
+static void free_room_for_joints(struct equilibrium *e)
+{
+    void *const of_joints[] = {e->strain,   e->more,       e->tangent,
+                               e->factored, e->resistance, e->unlike};
+    for (size_t k = 0; k < sizeof of_joints / sizeof *of_joints; k++)
+        free(of_joints[k]);
+    corrections_free(e->corrections);
+    stiffness_free(e->matrix);
+}
+
+void make_room_for_joints(struct equilibrium *e)
+{
+    free_room_for_joints(e);
+    e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
+    e->more = allocate((size_t)e->n_joint, sizeof *e->more);
+    e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
+    e->factored = NEW_ARRAY(struct factored, e->n_joint);
+    e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
+    e->unlike = NEW_ARRAY(struct correction, e->n_joint);
+    e->matrix = stiffness_new(e->n, e->setup.fixed, e->n_joint, e->joint);
+    e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
+}
+
 enum status equilibrium_new(struct equilibrium **result,
                             const struct equilibrium_setup *setup,
                             struct reason *reason)
@@ -59,21 +93,8 @@ enum status equilibrium_new(struct equilibrium **result,
         return refuse(reason, STATUS_BAD_DATA,
                       "neither contacts nor bonds resist: there is no equilibrium");
     }
-    const struct joint_setup joints = {.packing = setup->packing,
-                                       .material = &e->setup.material,
-                                       .bond = &e->setup.bond,
-                                       .has_wall = setup->has_wall,
-                                       .unstressed = setup->unstressed,
-                                       .rolling = setup->rolling,
-                                       .length = e->length,
-                                       .stiffness = e->stiffness};
+    const struct joint_setup joints = joints_of(e);
     e->joint = make_joints(&joints, &e->n_joint);
-    e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
-    e->more = allocate((size_t)e->n_joint, sizeof *e->more);
-    e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
-    e->factored = NEW_ARRAY(struct factored, e->n_joint);
-    e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
-    e->unlike = NEW_ARRAY(struct correction, e->n_joint);
     struct displacement **const of_grains[] = {
         &e->trial, &e->load, &e->dashpots, &e->left, &e->step, &e->before, &e->rest};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
@@ -81,8 +102,7 @@ enum status equilibrium_new(struct equilibrium **result,
     e->is_gone = NEW_ARRAY(bool, n);
     e->fragments = fragments_new(n);
     e->soft[0] = e->soft[1] = softness(e);
-    e->matrix = stiffness_new(n, setup->fixed, e->n_joint, e->joint);
-    e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
+    make_room_for_joints(e);
     e->foresight = foresight_new(e);
     if (setup->large_displacements) e->large = large_new(e);
     *result = e;
@@ -93,14 +113,11 @@ void equilibrium_free(struct equilibrium *e)
 {
     if (!e) return;
     fragments_free(&e->fragments);
-    corrections_free(e->corrections);
-    stiffness_free(e->matrix);
+    free_room_for_joints(e);
     large_free(e->large);
     foresight_free(e->foresight);
-    void *const owned[] = {e->joint,   e->strain, e->more,     e->resistance,
-                           e->trial,   e->load,   e->dashpots, e->left,
-                           e->step,    e->before, e->tangent,  e->factored,
-                           e->is_gone, e->crack,  e->rest,     e->unlike};
+    void *const owned[] = {e->joint, e->trial,  e->load, e->dashpots, e->left,
+                           e->step,  e->before, e->rest, e->is_gone,  e->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);

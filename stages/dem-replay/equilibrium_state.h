@@ -9,6 +9,7 @@
 #include "foresee.h"
 #include "fragments.h"
 #include "large.h"
+#include "make_joints.h"
 #include "net_load.h"
 #include "stiffness.h"
 
@@ -66,6 +67,11 @@ struct equilibrium {
     struct large *large; // NULL: displacements are small
     struct foresight *foresight;
 };
+
+struct joint_setup joints_of(const struct equilibrium *equilibrium);
+
+// What there is for each joint, and the matrix, for as many joints as there are now.
+void make_room_for_joints(struct equilibrium *equilibrium);
 
 // The force from outside becomes the load, as far as grains are there and free.
 void load_grains(struct equilibrium *equilibrium);

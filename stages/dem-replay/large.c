@@ -13,7 +13,7 @@
 static const double least_increment = 1e-6;
 
 // Without a sign that it ends, equilibrium is not looked for in smaller ones than this.
-static const double rough_increment = 1e-2;
+static const double rough_increment = 1e-3;
 
 // Rows that buckle do so later by what is soft against shifts.
 struct large *large_new(struct equilibrium *e)
@@ -27,6 +27,7 @@ struct large *large_new(struct equilibrium *e)
     }
     large->more = NEW_ARRAY(struct pair_stiffness, e->n_joint);
     large->acceleration = acceleration_new(6 * e->n);
+    large->searched = NEW_ARRAY(struct vector, e->n);
     large->withheld = NEW_ARRAY(struct displacement, e->n);
     e->soft[0] *= 1e-3;
     large->share = 1;
@@ -42,6 +43,7 @@ void large_free(struct large *large)
     free(large->now);
     free(large->more);
     acceleration_free(large->acceleration);
+    free(large->searched);
     free(large->withheld);
     free(large);
 }
@@ -115,13 +117,18 @@ void large_keep_history(struct equilibrium *e)
 
 // ---- one increment ------------------------------------------------------------------
 
+// Mean radii that a grain may move in an increment, so that others do not pass it.
+static const double stride = 0.5;
+
 // The furthest that a grain or a joint has turned, or grains came closer, since the
 // last equilibrium.
 static double furthest_since(const struct equilibrium *e)
 {
     double most = 0;
     for (int i = 0; i < e->n; i++) {
-        const double size = norm(since_before(e, i).turn);
+        const struct displacement since = since_before(e, i);
+        const double way = norm(since.shift) * e->setup.increment / stride;
+        const double size = fmax(norm(since.turn), way);
         if (!e->is_gone[i] && !(size <= most)) most = size;
     }
     for (int j = 0; j < e->n_joint; j++) {
@@ -174,16 +181,20 @@ bool large_approach(struct equilibrium *e)
     return largest_left(e) <= e->enough;
 }
 
-// The equilibrium at the share that is let in, if there is a stable one near: how far
-// it is from the last, as a share of what an increment may be.
-static bool advance(struct equilibrium *e, double *moved)
+enum advance { ADVANCED, TOO_FAR, MEETS, UNSTABLE, NOT_FOUND };
+
+// To the equilibrium at the share that is let in, if there is a stable one near: MOVED,
+// as a share of what an increment may be.
+static enum advance advance(struct equilibrium *e, double *moved)
 {
     go_back(e);
     e->damping = 0;
     *moved = 4; // if it is not known
-    if (!large_approach(e)) return false;
+    if (!large_approach(e)) return e->large->is_unstable ? UNSTABLE : NOT_FOUND;
     *moved = furthest_since(e) / e->setup.increment;
-    return *moved <= 1 && factor(e);
+    if (*moved > 1) return TOO_FAR;
+    if (large_meet(e)) return MEETS;
+    return factor(e) ? ADVANCED : UNSTABLE;
 }
 
 // ---- the way ------------------------------------------------------------------------
@@ -237,31 +248,35 @@ static void walk_in_time(struct equilibrium *e)
     e->large->share = 1;
     e->large->is_least = true;
     balance(e);
+    large_meet(e);
     e->large->is_stale = true;
 }
 
 enum status large_balance(struct equilibrium *e, struct reason *reason)
 {
     struct large *large = e->large;
-    double reached = 0, increment = 1;
+    double reached = 0, increment = 1, usual = 1;
     fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
     withhold(e);
     while (reached < 1) {
         large->is_least = increment <= least_increment;
         large->share = fmin(1, reached + increment);
         double moved;
-        if (advance(e, &moved)) {
-            keep_history(e);
-            reached = large->share;
-            increment = fmin(2, 0.8 / fmax(moved, 0.01)) * increment;
-            continue;
-        }
-        large->is_stale = true;
-        if (large->is_least && large->is_unstable)
+        const enum advance outcome = advance(e, &moved);
+        large->is_stale = outcome != ADVANCED;
+        if (outcome == UNSTABLE && large->is_least)
             return refuse_end(e, reached, reason);
-        if (increment <= rough_increment && !large->is_unstable) {
+        if (outcome == NOT_FOUND && increment <= rough_increment * usual) {
             walk_in_time(e);
             return STATUS_OK;
+        }
+        if (outcome == MEETS) continue;
+        if (outcome == ADVANCED) {
+            keep_history(e);
+            usual = increment;
+            reached = large->share;
+            increment *= fmin(2, 0.8 / fmax(moved, 0.01));
+            continue;
         }
         increment = fmin(increment, 1 - reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
     }

@@ -19,6 +19,7 @@ struct large {
     struct lie *start, *before, *now; // (n_joint)
     struct pair_stiffness *more;      // (n_joint) in the factor
     struct acceleration *acceleration;
+    struct vector *searched;       // (n) shifts when grains near each other were sought
     struct displacement *withheld; // (n) what was not balanced, at the start
     double share;                  // of that let in
     bool is_least;                 // no smaller increment is tried
@@ -39,6 +40,10 @@ void large_linearise(struct equilibrium *equilibrium);
 // The step that is found becomes the one that is taken.
 void large_accelerate(struct equilibrium *equilibrium);
 void large_keep_history(struct equilibrium *equilibrium);
+
+// Grains that have come near each other, or the wall, become joints. Whether any of
+// these touch at the trial.
+bool large_meet(struct equilibrium *equilibrium);
 
 // As approach() and balance() do where displacements are small.
 bool large_approach(struct equilibrium *equilibrium);

@@ -7,10 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Grains this far apart, of the sum of their radii, may come to touch: what is left of
-// the aggregate moves less.
-static const double reach = 0.1;
-
 static void find_axes(struct joint *joint, struct vector separation)
 {
     struct vector *axis = joint->axis;
@@ -48,8 +44,8 @@ static struct joint in_contact(const struct joint_setup *setup, struct joint joi
     return joint;
 }
 
-static struct joint touching(const struct joint_setup *setup, int i, int j,
-                             struct vector separation)
+struct joint contact_joint(const struct joint_setup *setup, int i, int j,
+                           struct vector separation)
 {
     const struct packing *packing = setup->packing;
     const double r[2] = {packing->radius[i] / setup->length,
@@ -63,7 +59,7 @@ static struct joint touching(const struct joint_setup *setup, int i, int j,
     return in_contact(setup, joint, 0.5); // two grains in series
 }
 
-static struct joint on_wall(const struct joint_setup *setup, int i)
+struct joint wall_joint(const struct joint_setup *setup, int i)
 {
     const struct packing *packing = setup->packing;
     const double radius = packing->radius[i] / setup->length;
@@ -131,7 +127,7 @@ static void add_bonds(const struct joint_setup *setup, struct joint_list *list)
     const struct packing *packing = setup->packing;
     for (int b = 0; b < packing->n_bond; b++) {
         const int i = packing->bond[b][0], j = packing->bond[b][1];
-        struct joint joint = touching(setup, i, j, nearest_image(packing, i, j));
+        struct joint joint = contact_joint(setup, i, j, nearest_image(packing, i, j));
         if (setup->bond->kind == DEM_CONTACT_BOND)
             point_joint(setup, &joint, b);
         else
@@ -148,13 +144,13 @@ static void add_near(const struct joint_setup *setup, struct joint_list *list)
     if (packing->n_bond > 0)
         qsort(bonded, (size_t)packing->n_bond, sizeof *bonded, compare_pairs);
     int n_near;
-    int32_t(*near)[2] = neighbour_pairs(packing, reach, &n_near);
+    int32_t(*near)[2] = neighbour_pairs(packing, joint_reach, &n_near);
     for (int k = 0; k < n_near; k++) {
         if (packing->n_bond > 0 && bsearch(near[k], bonded, (size_t)packing->n_bond,
                                            sizeof *bonded, compare_pairs))
             continue;
-        append(list, touching(setup, near[k][0], near[k][1],
-                              nearest_image(packing, near[k][0], near[k][1])));
+        append(list, contact_joint(setup, near[k][0], near[k][1],
+                                   nearest_image(packing, near[k][0], near[k][1])));
     }
     free(near);
     free(bonded);
@@ -165,7 +161,8 @@ static void add_wall(const struct joint_setup *setup, struct joint_list *list)
     const struct packing *packing = setup->packing;
     for (int i = 0; i < packing->n_particle; i++) {
         const double height = packing->position[i].z - packing->lower.z;
-        if (height <= (1 + reach) * packing->radius[i]) append(list, on_wall(setup, i));
+        if (height <= (1 + joint_reach) * packing->radius[i])
+            append(list, wall_joint(setup, i));
     }
 }
 

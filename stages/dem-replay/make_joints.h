@@ -14,9 +14,18 @@ struct joint_setup {
     bool has_wall;
     bool unstressed; // overlaps of the packing do not push
     double rolling;  // contact bonds: stiffness against rolling and twist, of that
-                    // against shear times both arms
+                     // against shear times both arms
     double length, stiffness; // units, m and N/m
 };
+
+// Grains this far apart, of the sum of their radii, may come to touch: what is left of
+// the aggregate moves less, or they are looked for again.
+static const double joint_reach = 0.1;
+
+// Of grains I and J, which lie SEPARATION apart, m; of grain I and the wall beneath.
+struct joint contact_joint(const struct joint_setup *setup, int i, int j,
+                           struct vector separation);
+struct joint wall_joint(const struct joint_setup *setup, int i);
 
 // A new array of *COUNT, or NULL for none, that the caller frees: bonds first, in their
 // order.

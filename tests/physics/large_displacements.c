@@ -284,12 +284,13 @@ static struct equilibrium_setup block_setup(const struct packing *packing,
     return setup;
 }
 
-// Where cycles come to rest under a load that grows so slowly that they follow the way
-// of equilibria: shear depends on the way.
-static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
-                           int steps, struct vector still[BLOCK])
+// Where cycles come to rest under a load that grows to FULL (n_particle) so slowly that
+// they follow the way of equilibria: shear depends on the way.
+static void grow_to_rest(const struct equilibrium_setup *setup,
+                         const struct vector *full, int steps, struct vector *still)
 {
     const bool is_point = setup->bond.kind == DEM_CONTACT_BOND;
+    const int n = setup->packing->n_particle;
     struct dem_setup slow = {.packing = setup->packing,
                              .material = setup->material,
                              .bond = setup->bond,
@@ -301,10 +302,11 @@ static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
     slow.material.local_damping = is_point ? 0.5 : 0; // dashpots do not see rolling
     struct dem *dem;
     struct reason reason = {""};
-    struct vector force[BLOCK];
+    struct vector *force = NEW_ARRAY(struct vector, n);
     if (dem_create(&dem, &slow, &reason)) fail_msg("%s", reason.text);
     for (int step = 1; step <= steps; step++) {
-        load_block(force, size * step / steps);
+        for (int i = 0; i < n; i++)
+            force[i] = scale((double)step / steps, full[i]);
         dem_set_force(dem, force);
         if (dem_run(dem, 50, &reason)) fail_msg("%s", reason.text);
     }
@@ -312,6 +314,15 @@ static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
     if (dem_run_until(dem, rest, 2000000, &reason)) fail_msg("%s", reason.text);
     dem_displacements(dem, still);
     dem_free(dem);
+    free(force);
+}
+
+static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
+                           int steps, struct vector still[BLOCK])
+{
+    struct vector full[BLOCK];
+    load_block(full, size);
+    grow_to_rest(setup, full, steps, still);
 }
 
 // Contacts push and open, grains turn by 0.009 to 0.33 rad.
@@ -370,6 +381,44 @@ static void contact_bonds_as_the_discrete_elements(void **state)
         if (setup.large_displacements) assert_true(error < 5 * setup.rolling);
         equilibrium_free(equilibrium);
     }
+    packing_free(&packing);
+}
+
+// A row that is bent until its end lies on a grain that was half a radius away, and
+// further: contacts are found on the way.
+static void grains_that_come_to_touch(void **state)
+{
+    (void)state;
+    enum { LONG = 6, N = LONG + 1 };
+    struct packing packing = cubic_lattice(LONG, 1, 1, false);
+    packing.n_particle = N;
+    packing.position = reallocate(packing.position, N, sizeof *packing.position);
+    packing.radius = reallocate(packing.radius, N, sizeof *packing.radius);
+    packing.radius[LONG] = RADIUS;
+    packing.position[LONG] =
+        add(packing.position[LONG - 1], (struct vector){0.3 * RADIUS, 2.5 * RADIUS, 0});
+    packing.upper.y += 3 * RADIUS;
+    const uint8_t fixed[N] = {[0] = 1, [LONG] = 1};
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
+    setup.increment = 0.005;
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector force[N] = {{0, 0, 0}}, moved[N], still[N];
+    force[LONG - 1].y = 1e-8;
+    find(equilibrium, force);
+    equilibrium_displacements(equilibrium, moved);
+    int count;
+    struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+    assert_int_equal(contact[count - 1].particle[1], LONG);
+    assert_true(contact[count - 1].overlap > 1e-5 * RADIUS);
+    free(contact);
+    grow_to_rest(&setup, force, 1000, still);
+    const double error =
+        distance(moved[LONG - 1], still[LONG - 1]) / norm(still[LONG - 1]);
+    print_message("# an end that moved %g radii: engines %g apart\n",
+                  norm(moved[LONG - 1]) / RADIUS, error);
+    assert_true(error < 1e-6);
+    equilibrium_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -487,6 +536,7 @@ int main(void)
         cmocka_unit_test(a_row_bent_far),
         cmocka_unit_test(a_row_buckles),
         cmocka_unit_test(a_block_as_the_discrete_elements),
+        cmocka_unit_test(grains_that_come_to_touch),
         cmocka_unit_test(contact_bonds_as_the_discrete_elements),
         cmocka_unit_test(a_turned_scene_gives_the_same),
         cmocka_unit_test(work_is_stored),
