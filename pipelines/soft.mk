@@ -4,8 +4,10 @@
 #
 #     make soft                       ->  build/runs/soft/soft.svg, soft.md
 #     make soft SOFT_SCALES="0.1 1"
+#     make soft SOFT_SET='engine="quasi-static" quasi_static.large_displacements=true'
 
 SOFT_SCALES ?= 0.01 0.03 0.1 0.3 1# of the physical force; the last one is drawn
+SOFT_SET ?=# more parameters of dem-replay
 
 pipeline_goals += soft
 soft_scene := samples/soft-10x5x5.json
@@ -14,7 +16,7 @@ soft_folder := $(RUNS)/soft
 # The aggregate under $1 times the force; its strength is twice the force too.
 define soft_arm
 $(call step,$(soft_folder)/$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$(soft_scene),force_scale=$1,$(soft_folder)/drying.h5)
-$(call step,$(soft_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(soft_scene),bond.contact_strength=$(shell awk 'BEGIN { print 5.3e-7 * $1 }'),$(soft_folder)/$1/forces.h5)
+$(call step,$(soft_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(soft_scene),bond.contact_strength=$(shell awk 'BEGIN { print 5.3e-7 * $1 }') $(SOFT_SET),$(soft_folder)/$1/forces.h5)
 $(call step,$(soft_folder)/$1/crackstats.json,crackstats,$(CRACKSTATS),$(soft_scene),,$(soft_folder)/$1/response.h5 $(soft_folder)/drying.h5)
 endef
 
