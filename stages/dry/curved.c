@@ -80,7 +80,7 @@ static void find_outside(struct curved *curved, struct phases *phases)
     const int n_site = phases->vapour.n_site;
     int *other = NEW_ARRAY(int, n_site);
     double *link = NEW_ARRAY(double, n_site);
-    star_mesh_bring_up_to_date(mesh);
+    star_mesh_list_fronts(mesh);
     for (int i = 0; i < n_site; i++) {
         curved->outside[i] = mesh->air[i];
         const int n = star_mesh_list_links(mesh, i, other, link);
@@ -101,6 +101,7 @@ struct curved curved_make(struct phases *phases,
     struct curved curved = {.listed_at = -1,
                             .by_throat = conditions->liquid == LIQUID_IMMOBILE,
                             .own = NEW_ARRAY(double, n),
+                            .section = NEW_ARRAY(double, n),
                             .law = NEW_ARRAY(struct curvature_law, 1),
                             .throat = NEW_ARRAY(int, n),
                             .potential = NEW_ARRAY(double, n),
@@ -110,9 +111,12 @@ struct curved curved_make(struct phases *phases,
                             .floated = NEW_ARRAY(bool, n),
                             .floated_at = NEW_ARRAY(double, n),
                             .body = NEW_ARRAY(int, n),
+                            .ranked = NEW_ARRAY(int, n),
+                            .at_throat = NEW_ARRAY(int, n),
                             .offset = NEW_ARRAY(int, network->n_node + 1),
                             .share = NEW_ARRAY(struct share, 2 * (size_t)n),
                             .raised = NEW_ARRAY(double, network->n_node),
+                            .conducted = NEW_ARRAY(double, network->n_node),
                             .outside = NEW_ARRAY(double, phases->vapour.n_site),
                             .reach = NEW_ARRAY(double, n),
                             .noise = NEW_ARRAY(double, n),
@@ -120,6 +124,8 @@ struct curved curved_make(struct phases *phases,
                             .flow = NEW_ARRAY(double, phases->vapour.n_site)};
     *curved.law = find_law(conditions);
     curved.floating = floating_make(n, phases->vapour.n_site, curved.by_throat);
+    for (int t = 0; t < n; t++)
+        curved.section[t] = phases->volume[t] / network->throat_length[t];
     find_outside(&curved, phases);
     for (int t = 0; t < n; t++) {
         curved.place[t] = -1;
@@ -133,6 +139,7 @@ struct curved curved_make(struct phases *phases,
 void curved_free(struct curved *curved)
 {
     free(curved->own);
+    free(curved->section);
     free(curved->law);
     free(curved->throat);
     free(curved->potential);
@@ -142,9 +149,12 @@ void curved_free(struct curved *curved)
     free(curved->floated);
     free(curved->floated_at);
     free(curved->body);
+    free(curved->ranked);
+    free(curved->at_throat);
     free(curved->offset);
     free(curved->share);
     free(curved->raised);
+    free(curved->conducted);
     free(curved->outside);
     free(curved->level);
     free(curved->flow);
@@ -188,22 +198,27 @@ static int add_share(struct share *share, int begin, int end, int body, double s
     return k == end ? end + 1 : end;
 }
 
-// The shares of the K-th wet node come at curved->offset[k].
+// The shares of the K-th wet node come at curved->offset[k]. No more conducts vapour
+// from it than at first and in the throats that have emptied since: what is eliminated
+// only puts more in series.
 static void list_shares(struct curved *curved, struct phases *phases, int k)
 {
     const int node = phases->wet[k], begin = curved->offset[k];
     int end = begin;
     double sum = 0;
+    curved->conducted[k] = curved->outside[node];
     for (int i = phases->incidence.offset[node]; i < phases->incidence.offset[node + 1];
          i++) {
         const int throat = phases->incidence.throat[i];
-        const double section = liquid_section(phases, throat);
-        if (!(section > 0)) continue;
-        const int body =
-            curved->by_throat ? throat : phases->clusters.of_throat[throat];
+        const int cluster = phases->clusters.of_throat[throat];
+        if (cluster < 0) {
+            curved->conducted[k] += phases->vapour.conductance[throat];
+            continue;
+        }
+        const int body = curved->by_throat ? throat : cluster;
         end = add_share(curved->share, begin, end, find_body(curved, phases, body),
-                        section);
-        sum += section;
+                        curved->section[throat]);
+        sum += curved->section[throat];
     }
     for (int i = begin; i < end; i++)
         curved->share[i].part = end == begin + 1 ? 1 : curved->share[i].part / sum;
@@ -222,6 +237,19 @@ static double potential_over_middle(const struct curved *curved,
     const double exponent = law->exponent / network->throat_radius[throat];
     return potential_above(law, exponent + law->steepness * height) -
            curved->own[throat];
+}
+
+// By throats, ascending.
+static void rank_bodies(struct curved *curved, int n_throat)
+{
+    for (int a = 0; a < curved->n; a++)
+        curved->at_throat[curved->throat[a]] = a + 1;
+    int n = 0;
+    for (int t = 0; t < n_throat; t++) {
+        if (curved->at_throat[t] == 0) continue;
+        curved->ranked[n++] = curved->at_throat[t] - 1;
+        curved->at_throat[t] = 0;
+    }
 }
 
 static void list_bodies(struct curved *curved, struct phases *phases)
@@ -276,27 +304,12 @@ void curved_find_gains(struct curved *curved, const struct phases *phases)
         share_flow(curved, k, curved->flow[phases->wet[k]], curved->gain);
 }
 
-// No less than what conducts vapour from NODE: eliminations only put more in series.
-static double most_conductance(const struct curved *curved, const struct phases *phases,
-                               int node)
-{
-    double sum = curved->outside[node];
-    for (int i = phases->incidence.offset[node]; i < phases->incidence.offset[node + 1];
-         i++) {
-        const int throat = phases->incidence.throat[i];
-        if (phases->clusters.of_throat[throat] < 0)
-            sum += phases->vapour.conductance[throat];
-    }
-    return sum;
-}
-
 // Of which each body evaporates the potential's NOISE.
 static void find_reaches(struct curved *curved, const struct phases *phases)
 {
     memset(curved->reach, 0, (size_t)curved->n * sizeof *curved->reach);
     for (int k = 0; k < phases->n_wet; k++)
-        share_flow(curved, k, most_conductance(curved, phases, phases->wet[k]),
-                   curved->reach);
+        share_flow(curved, k, curved->conducted[k], curved->reach);
 }
 
 // How little of what each body evaporates is nothing.
@@ -311,22 +324,28 @@ static void find_noise(struct curved *curved)
 
 // --- menisci that are flatter ------------------------------------------------------
 
-// Returns how many begin or cease to float; no more than MOST.
-static int revise(struct curved *curved, const struct phases *phases, int most)
+struct revision {
+    int begun, ended;
+};
+
+// Which begin or cease to float; no more than MOST.
+static struct revision revise(struct curved *curved, const struct phases *phases,
+                              int most)
 {
-    int n = 0;
-    for (int a = 0; a < curved->n && n < most; a++) {
-        const int throat = curved->throat[a];
-        const bool floats =
-            is_full(curved, phases, a) &&
-            (curved->floats[a]
-                 ? curved->potential[a] <= (1 + VERGE) * curved->own[throat]
-                 : curved->gain[a] < -10 * curved->all_noise);
-        n += floats != curved->floats[a];
-        curved->floats[a] = floats;
-        if (!floats) curved->potential[a] = curved->own[throat];
+    struct revision revision = {0};
+    for (int a = 0; a < curved->n && revision.begun + revision.ended < most; a++) {
+        const double own = curved->own[curved->throat[a]];
+        if (curved->floats[a] && curved->potential[a] > (1 + VERGE) * own) {
+            curved->floats[a] = false;
+            curved->potential[a] = own;
+            revision.ended++;
+        } else if (!curved->floats[a] && curved->gain[a] < -10 * curved->all_noise &&
+                   is_full(curved, phases, a)) {
+            curved->floats[a] = true;
+            revision.begun++;
+        }
     }
-    return n;
+    return revision;
 }
 
 // --- all ---------------------------------------------------------------------------
@@ -338,8 +357,8 @@ static void collect(struct curved *curved, const struct phases *phases,
     struct compensated rest = {.value = curved->rate};
     int largest = -1;
     losses->n = 0;
-    for (int a = 0; a < curved->n; a++) {
-        const int throat = curved->throat[a];
+    for (int r = 0; r < curved->n; r++) {
+        const int a = curved->ranked[r], throat = curved->throat[a];
         const double gain = curved->gain[a];
         if (curved->floats[a] || fabs(gain) <= curved->noise[a] ||
             (gain < 0 && is_full(curved, phases, a)))
@@ -352,7 +371,6 @@ static void collect(struct curved *curved, const struct phases *phases,
     if (largest >= 0) losses->loss[largest].rate += compensated_value(rest);
     curved->residual =
         fmax(curved->residual, fabs(compensated_value(rest)) / curved->rate);
-    losses_sort(losses);
 }
 
 static enum status find_potentials(struct curved *curved, const struct phases *phases,
@@ -363,8 +381,9 @@ static enum status find_potentials(struct curved *curved, const struct phases *p
         if (!float_freely(curved, phases))
             return refuse(reason, STATUS_INTERNAL, "kelvin: out of memory");
         const int most = round < ROUNDS_AT_ONCE ? curved->n : 1;
-        if (revise(curved, phases, most) == 0) return STATUS_OK;
-        curved_find_gains(curved, phases);
+        const struct revision revision = revise(curved, phases, most);
+        if (revision.begun + revision.ended == 0) return STATUS_OK;
+        if (revision.ended > 0) curved_find_gains(curved, phases);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: no consistent menisci after %d rounds, among %d",
@@ -388,7 +407,8 @@ static void begin_anew(struct curved *curved, struct phases *phases)
     const int n_emptied = curved->listed_at - phases->n_full;
     curved->listed_at = phases->n_full;
     list_bodies(curved, phases);
-    star_mesh_bring_up_to_date(&phases->vapour.mesh);
+    rank_bodies(curved, phases->network->n_throat);
+    star_mesh_list_fronts(&phases->vapour.mesh);
     floating_follow(curved->floating, curved, phases, n_emptied);
     find_reaches(curved, phases);
     curved_find_gains(curved, phases);

@@ -31,6 +31,7 @@ struct share {
 
 struct curved {
     bool by_throat;  // a throat is a body of liquid; else a cluster
+    double *section; // (n_throat) proportional to its cross-section
     double *own;     // (n_throat) potential above its meniscus: 0 flat, 1 as in the air
     double rate;     // into the air, scaled
     double residual; // largest so far of the balances, of that rate
@@ -50,9 +51,12 @@ struct curved {
     int *place;               // (n_throat) of a throat or cluster, -1: none
     double *reach;            // (n) at most what conducts vapour from it
     double *noise, all_noise; // (n) less gain than this is none; their sum
+    int *ranked;              // (n) places by throats, ascending
+    int *at_throat;           // (n_throat) room
     int *offset;              // (n_wet+1) of the shares in each wet node
     struct share *share;      // (offset[n_wet])
     double *raised;           // (n_wet) potential that gravity adds there
+    double *conducted;        // (n_wet) at most what conducts vapour from there
     double *outside;          // (n_site) conductance of the boundary layer, at first
     double *level, *flow;     // (n_site) room
 };

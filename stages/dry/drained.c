@@ -94,7 +94,8 @@ static void note_dried(struct drained *drained, struct phases *phases, int throa
                            phases->liquid_beside[end[1]] == 1};
     if (!dries[0] && !dries[1]) return;
     struct star_mesh *mesh = &phases->vapour.mesh;
-    star_mesh_bring_up_to_date(mesh);
+    star_mesh_bring_up_to_date(mesh, end[0]);
+    star_mesh_bring_up_to_date(mesh, end[1]);
     const int one = dries[0] ? end[0] : end[1], other = dries[0] ? end[1] : end[0];
     const double between =
         note_node(drained, mesh, one, other) + phases->vapour.conductance[throat];

@@ -42,6 +42,12 @@ struct star_mesh {
     double *row; // of the site that is eliminated
     int *place;  // on a front, of the members of one that joins it
     int row_capacity, place_capacity;
+
+    // As listed last.
+    int n_pair, pair_capacity, n_wide, wide_capacity;
+    struct pair *pair; // (n_pair) fronts of two sites
+    int *wide;         // (n_wide) those of more
+    int widest;        // sites on one
 };
 
 // No links yet. ROUNDED: links on large fronts are kept as floats.
@@ -55,11 +61,14 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
 // SITE leaves the mesh. O(n^2) for a front of n sites.
 void star_mesh_eliminate(struct star_mesh *mesh, int site);
 
-// Does what eliminations have left to do; before those that follow.
-void star_mesh_bring_up_to_date(struct star_mesh *mesh);
+// Does what eliminations have left to do at SITE; before star_mesh_list_links.
+void star_mesh_bring_up_to_date(struct star_mesh *mesh, int site);
+
+// Does that everywhere, and lists all links; before star_mesh_add_flows.
+void star_mesh_list_fronts(struct star_mesh *mesh);
 
 // Adds to FLOW (n_site) what flows to each site from the others when sites are at LEVEL
-// (n_site).
+// (n_site). Not where links are floats.
 void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
                          double *flow);
 
