@@ -87,6 +87,7 @@ static void make_waiting_room(struct triangle *triangle, int n)
 {
     const int n_block = blocks_of(triangle, n);
     if (n_block <= triangle->n_block) return;
+    if (!triangle->factor) triangle->factor = NEW_ARRAY(double, MOST_SOURCES);
     const size_t size = (size_t)MOST_SOURCES * BLOCK_BYTES;
     const int capacity = n_block + triangle->n_block / 2;
     void *waiting = allocate_aligned((size_t)capacity, size);
@@ -240,6 +241,7 @@ void triangle_state(struct triangle *triangle, int n, struct state *state)
 void triangle_free(struct triangle *triangle)
 {
     free(triangle->entry);
+    free(triangle->factor);
     free(triangle->waiting);
     *triangle = (struct triangle){0};
 }

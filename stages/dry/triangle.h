@@ -24,8 +24,8 @@ struct triangle {
     void *entry;
 
     int n_waiting, n_block;
-    double factor[MOST_SOURCES]; // (n_waiting)
-    void *waiting;               // (n_block, MOST_SOURCES, BLOCK_BYTES) parts of rows
+    double *factor; // (n_waiting)
+    void *waiting;  // (n_block, MOST_SOURCES, BLOCK_BYTES) parts of rows
 };
 
 // Where row I begins.
