@@ -19,7 +19,6 @@ static const double LEAST_PART = 1e-10;
 struct charge {
     double share;
     int node, clock;
-    int incidence; // of a throat of the account at the node
 };
 
 static int owner_of(const struct clocks *clocks, int throat)
@@ -112,24 +111,29 @@ static double amount_of(const struct clocks *clocks, const struct charge *charge
 
 static void add_to_sum(struct clocks *clocks, int k, double amount)
 {
+    if (!clocks->has_sum[k]) {
+        clocks->has_sum[k] = true;
+        clocks->sum[k] = (struct compensated){clocks->rate[k], 0};
+        clocks->summed[k] = clocks->rate[k];
+    }
     compensated_add(&clocks->sum[k], amount);
     clocks->summed[k] = fmax(clocks->summed[k], compensated_value(clocks->sum[k]));
 }
 
 static void remove_charge(struct clocks *clocks, int place)
 {
-    const struct charge *last = &clocks->charge[--clocks->n_charge];
+    const int last = --clocks->n_charge;
     struct charge *charge = &clocks->charge[place];
     touch(clocks, charge->clock);
+    add_to_sum(clocks, charge->clock, -amount_of(clocks, charge));
     if (--clocks->charges[charge->clock] == 0) {
         clocks->sum[charge->clock] = (struct compensated){0};
         clocks->summed[charge->clock] = 0;
-    } else {
-        add_to_sum(clocks, charge->clock, -amount_of(clocks, charge));
     }
-    clocks->charge_place[last->incidence] = place;
-    clocks->charge_place[charge->incidence] = -1;
-    *charge = *last;
+    clocks->charge_place[clocks->charge_incidence[last]] = place;
+    clocks->charge_place[clocks->charge_incidence[place]] = -1;
+    *charge = clocks->charge[last];
+    clocks->charge_incidence[place] = clocks->charge_incidence[last];
 }
 
 // To an account that the node charges already, or a new one.
@@ -146,8 +150,8 @@ static void add_charge(struct clocks *clocks, int node, int incidence, double sh
     touch(clocks, clock);
     clocks->charges[clock]++;
     clocks->charge_place[incidence] = clocks->n_charge;
-    GROW_ARRAY(clocks->charge, clocks->n_charge, clocks->charge_capacity);
-    clocks->charge[clocks->n_charge++] = (struct charge){share, node, clock, incidence};
+    clocks->charge_incidence[clocks->n_charge] = incidence;
+    clocks->charge[clocks->n_charge++] = (struct charge){share, node, clock};
 }
 
 // By the throats that hold liquid now: shares are proportional to their cross-sections.
@@ -217,10 +221,7 @@ static void add_up(struct clocks *clocks)
     }
     for (int l = 0; l < PARTS; l++)
         clocks->rate[most] += part[l];
-    for (int k = 0; k < clocks->n; k++) {
-        clocks->sum[k] = (struct compensated){clocks->rate[k], 0};
-        clocks->summed[k] = clocks->rate[k];
-    }
+    memset(clocks->has_sum, 0, (size_t)clocks->n * sizeof *clocks->has_sum);
 }
 
 // Infinite, or no number, without a rate.
@@ -236,8 +237,8 @@ static void end_clock(struct clocks *clocks, int k)
     if (clocks->throat[k] >= 0) stop_clock(clocks, k);
     clocks->clock[clocks->owner[k]] = -1;
     clocks->owner[k] = -1;
-    clocks->sum[k] = (struct compensated){0};
-    clocks->rate[k] = clocks->summed[k] = clocks->nothing[k] = 0;
+    clocks->has_sum[k] = false;
+    clocks->rate[k] = clocks->nothing[k] = 0;
     clocks->left[k] = 1;
     find_end(clocks, k);
     clocks->unused[clocks->n_unused++] = k;
@@ -257,7 +258,7 @@ static void renew_touched(struct clocks *clocks)
             start_clock(clocks, k);
         else
             settle_clock(clocks, k);
-        clocks->rate[k] = compensated_value(clocks->sum[k]);
+        if (clocks->has_sum[k]) clocks->rate[k] = compensated_value(clocks->sum[k]);
         find_end(clocks, k);
     }
     clocks->n_touched = 0;
@@ -267,7 +268,8 @@ static bool too_little_is_left(const struct clocks *clocks)
 {
     for (int l = 0; l < clocks->n_touched; l++) {
         const int k = clocks->touched[l];
-        if (compensated_value(clocks->sum[k]) < LEAST_PART * clocks->summed[k])
+        if (clocks->has_sum[k] &&
+            compensated_value(clocks->sum[k]) < LEAST_PART * clocks->summed[k])
             return true;
     }
     return false;
@@ -292,11 +294,14 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
     const int n = phases->network->n_throat;
     struct clocks clocks = {.phases = phases,
                             .by_throat = by_throat,
+                            .charge = NEW_ARRAY(struct charge, 2 * (size_t)n),
+                            .charge_incidence = NEW_ARRAY(int, 2 * (size_t)n),
                             .charge_place = NEW_ARRAY(int, 2 * (size_t)n),
                             .clock = NEW_ARRAY(int, n),
                             .owner = NEW_ARRAY(int, n),
                             .throat = NEW_ARRAY(int, n),
                             .charges = NEW_ARRAY(int, n),
+                            .has_sum = NEW_ARRAY(bool, n),
                             .sum = NEW_ARRAY(struct compensated, n),
                             .summed = NEW_ARRAY(double, n),
                             .rate = NEW_ARRAY(double, n),
@@ -326,11 +331,13 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
 void clocks_free(struct clocks *clocks)
 {
     free(clocks->charge);
+    free(clocks->charge_incidence);
     free(clocks->charge_place);
     free(clocks->clock);
     free(clocks->owner);
     free(clocks->throat);
     free(clocks->charges);
+    free(clocks->has_sum);
     free(clocks->sum);
     free(clocks->summed);
     free(clocks->rate);
@@ -466,17 +473,16 @@ static void charges_state(struct clocks *clocks, struct state *state)
 {
     const struct network *network = clocks->phases->network;
     const int n_incidence = 2 * network->n_throat;
-    int64_t n = clocks->n_charge;
-    clocks->charge = state_room(state, clocks->charge, &n, sizeof *clocks->charge);
-    if (state->restoring) clocks->n_charge = clocks->charge_capacity = (int)n;
+    state_integer(state, &clocks->n_charge, 0, n_incidence);
     for (int k = 0; k < clocks->n_charge; k++) {
         struct charge *charge = &clocks->charge[k];
         state_numbers(state, &charge->share, 1);
         state_integer(state, &charge->node, 0, network->n_node - 1);
         state_integer(state, &charge->clock, 0, clocks->n - 1);
-        state_integer(state, &charge->incidence, 0, n_incidence - 1);
     }
-    state_integers(state, clocks->charge_place, n_incidence, -1, (int)n - 1);
+    state_integers(state, clocks->charge_incidence, clocks->n_charge, 0,
+                   n_incidence - 1);
+    state_integers(state, clocks->charge_place, n_incidence, -1, clocks->n_charge - 1);
 }
 
 void clocks_state(struct clocks *clocks, struct state *state)
@@ -493,6 +499,7 @@ void clocks_state(struct clocks *clocks, struct state *state)
     state_integers(state, clocks->charges, clocks->n, 0, clocks->n_charge);
     state_integers(state, clocks->unused, clocks->n_unused, 0, clocks->n - 1);
     state_integers(state, clocks->losing, clocks->n_losing, 0, n_throat - 1);
+    state_flags(state, clocks->has_sum, clocks->n);
     state_sums(state, clocks->sum, clocks->n);
     state_numbers(state, clocks->summed, clocks->n);
     state_numbers(state, clocks->rate, clocks->n);

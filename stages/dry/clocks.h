@@ -17,16 +17,18 @@ struct clocks {
     struct phases *phases;
     bool by_throat; // an account for each throat; else for each cluster
 
-    int n_charge, charge_capacity;
+    int n_charge;
     struct charge *charge; // (n_charge) of nodes that are linked to the air
+    int *charge_incidence; // (n_charge) where the account has a throat at the node
     int *charge_place;     // (2 n_throat) in charge, beside incidence.throat
 
     // One for each account that is charged.
-    int *clock;   // (n_throat) of the account, by cluster or by throat; -1: none
-    int n;        // so far, the unused included
-    int *owner;   // (n) account, -1: unused
-    int *throat;  // (n) that loses, -1: not found yet
-    int *charges; // (n) how many
+    int *clock;    // (n_throat) of the account, by cluster or by throat; -1: none
+    int n;         // so far, the unused included
+    int *owner;    // (n) account, -1: unused
+    int *throat;   // (n) that loses, -1: not found yet
+    int *charges;  // (n) how many
+    bool *has_sum; // (n) whether SUM follows the charges
     struct compensated *sum; // (n) of the charges
     double *summed;          // (n) the largest it was since they were last added up
     double *rate;            // (n) of scaled volume
