@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { MOST_SOURCES = 64, PANEL = 32, BLOCK_BYTES = 512 };
+enum { MOST_SOURCES = 64, PANEL = 48, BLOCK_BYTES = 576 };
 
 // Entries i > j, row by row. Small: packed, doubles. Large: rows come in panels, as
 // long as the longest of their panel is with its diagonal block, so that whole vectors

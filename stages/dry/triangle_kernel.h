@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Products added to a large triangle: where large fronts spend their time. Included
-// with NUMBER (the type of the entries), BYTES of a vector (32 or 64), TILE_ROWS (so
-// that a tile of that many rows and two vectors stays in registers), and the names PASS
-// and GATHER. Every entry gains the sum of its products, each fused with those before
-// in the order in which they wait: the digits do not depend on the vectors.
+// with NUMBER (the type of the entries), BYTES of a vector (32 or 64), TILE_ROWS and
+// VECTORS (so that a tile of that many rows and vectors stays in registers), and the
+// names PASS and GATHER. Every entry gains the sum of its products, each fused with
+// those before in the order in which they wait: the digits do not depend on the
+// vectors.
 #include "triangle.h"
 
 #include "basics/memory.h"
@@ -19,7 +20,7 @@ typedef NUMBER lanes __attribute__((vector_size(BYTES)));
 
 enum {
     LANES = BYTES / sizeof(NUMBER),
-    WIDTH = 2 * LANES,
+    WIDTH = VECTORS * LANES,
     BLOCK = BLOCK_BYTES / sizeof(NUMBER) // columns; of all that wait they stay in cache
 };
 
@@ -53,71 +54,75 @@ struct tile {
 static inline void add_to_tile(const struct tile *tile, int column, int n_waiting,
                                const NUMBER *waiting)
 {
-    lanes sum[TILE_ROWS][2] = {0};
+    lanes sum[TILE_ROWS][VECTORS] = {0};
     for (int k = 0; k < n_waiting; k++) {
-        lanes part[2];
+        lanes part[VECTORS];
         memcpy(part, waiting + (size_t)k * BLOCK, sizeof part);
+#pragma GCC unroll 8
         for (int r = 0; r < TILE_ROWS; r++) {
             const lanes weight = tile->weight[k * TILE_ROWS + r] - (lanes){0};
-            sum[r][0] = fused(weight, part[0], sum[r][0]);
-            sum[r][1] = fused(weight, part[1], sum[r][1]);
+#pragma GCC unroll 3
+            for (int v = 0; v < VECTORS; v++)
+                sum[r][v] = fused(weight, part[v], sum[r][v]);
         }
     }
+#pragma GCC unroll 8
     for (int r = 0; r < TILE_ROWS; r++) {
         lanes *to = (lanes *)__builtin_assume_aligned(tile->row[r] + column, BYTES);
-        to[0] += sum[r][0];
-        to[1] += sum[r][1];
+#pragma GCC unroll 3
+        for (int v = 0; v < VECTORS; v++)
+            to[v] += sum[r][v];
     }
 }
 
-// Columns FIRST..FIRST+BLOCK-1 of all rows. WEIGHT: (rows, n_waiting) by tiles.
-static void add_to_columns(const struct triangle *triangle, int n, int first,
-                           const NUMBER *weight)
+// Rows BEGIN..END-1, columns FIRST..FIRST+BLOCK-1. WEIGHT: (rows, n_waiting) by tiles.
+static void add_to_block(const struct triangle *triangle, int begin, int end, int first,
+                         const NUMBER *weight)
 {
     NUMBER *entry = triangle->entry;
     const NUMBER *waiting = waiting_block(triangle, first);
     const int n_waiting = triangle->n_waiting;
-    for (int i = first / TILE_ROWS * TILE_ROWS; i < n; i += TILE_ROWS) {
-        struct tile tile = {.weight = weight + (size_t)i * (size_t)n_waiting};
+    for (int i = begin > first ? begin : first; i < end; i += TILE_ROWS) {
+        struct tile tile = {.weight = weight + (size_t)(i - begin) * (size_t)n_waiting};
         const NUMBER *next[TILE_ROWS];
         for (int r = 0; r < TILE_ROWS; r++) {
             tile.row[r] = entry + triangle_row(triangle, i + r);
             next[r] = entry + triangle_row(triangle, i + r + TILE_ROWS);
         }
         const int width = (i / PANEL + 1) * PANEL;
-        const int end = width < first + BLOCK ? width : first + BLOCK;
-        for (int column = first; column < end; column += WIDTH) {
+        const int last = width < first + BLOCK ? width : first + BLOCK;
+        for (int column = first; column < last; column += WIDTH) {
             for (int r = 0; r < TILE_ROWS; r++)
-                for (int line = 0; line < 2 * BYTES; line += 64)
+                for (int line = 0; line < VECTORS * BYTES; line += 64)
                     __builtin_prefetch((const char *)(next[r] + column) + line, 1);
             add_to_tile(&tile, column, n_waiting, waiting + (column - first));
         }
     }
 }
 
-// Of all that wait, times their factors, by tiles of rows.
-static NUMBER *pack_weights(const struct triangle *triangle, int n)
+// Of all that wait, times their factors: of rows BEGIN..END-1, by tiles.
+static void pack_weights(const struct triangle *triangle, int begin, int end,
+                         NUMBER *weight)
 {
-    const int n_waiting = triangle->n_waiting;
-    const size_t tiles = ((size_t)n + TILE_ROWS - 1) / TILE_ROWS;
-    NUMBER *weight =
-        allocate_uncleared(tiles * TILE_ROWS * (size_t)n_waiting, sizeof *weight);
-    for (int i = 0; i < n; i += TILE_ROWS) {
+    for (int i = begin; i < end; i += TILE_ROWS) {
         const NUMBER *waiting = waiting_block(triangle, i / BLOCK * BLOCK) + i % BLOCK;
-        NUMBER *tile = weight + (size_t)i * (size_t)n_waiting;
-        for (int k = 0; k < n_waiting; k++)
+        for (int k = 0; k < triangle->n_waiting; k++)
             for (int r = 0; r < TILE_ROWS; r++)
-                tile[k * TILE_ROWS + r] =
-                    (NUMBER)triangle->factor[k] * waiting[k * BLOCK + r];
+                *weight++ = (NUMBER)triangle->factor[k] * waiting[k * BLOCK + r];
     }
-    return weight;
 }
 
+// As many rows at once as their weights stay in the second cache.
 void PASS(struct triangle *triangle, int n)
 {
-    NUMBER *weight = pack_weights(triangle, n);
-    for (int first = 0; first < n; first += BLOCK)
-        add_to_columns(triangle, n, first, weight);
+    enum { ROWS = 4 * BLOCK };
+    NUMBER *weight = allocate_uncleared((size_t)ROWS * MOST_SOURCES, sizeof *weight);
+    for (int begin = 0; begin < n; begin += ROWS) {
+        const int end = n < begin + ROWS ? n : begin + ROWS;
+        pack_weights(triangle, begin, end, weight);
+        for (int first = 0; first < end; first += BLOCK)
+            add_to_block(triangle, begin, end, first, weight);
+    }
     free(weight);
 }
 
@@ -126,17 +131,17 @@ void GATHER(const struct triangle *triangle, int n, const double *weight, double
     for (int first = 0; first < n; first += BLOCK) {
         const NUMBER *waiting = waiting_block(triangle, first);
         for (int column = 0; column < BLOCK && first + column < n;
-             column += 4 * LANES) {
-            lanes sum[4] = {0};
+             column += 3 * LANES) {
+            lanes sum[3] = {0};
             for (int k = 0; k < triangle->n_waiting; k++) {
-                lanes part[4];
+                lanes part[3];
                 memcpy(part, waiting + k * BLOCK + column, sizeof part);
                 const lanes times = (NUMBER)weight[k] - (lanes){0};
-                for (int v = 0; v < 4; v++)
+                for (int v = 0; v < 3; v++)
                     sum[v] = fused(times, part[v], sum[v]);
             }
             const int left = n - first - column;
-            for (int c = 0; c < 4 * LANES && c < left; c++)
+            for (int c = 0; c < 3 * LANES && c < left; c++)
                 row[first + column + c] += (double)sum[c / LANES][c % LANES];
         }
     }

@@ -6,6 +6,7 @@
 #define NUMBER double
 #define BYTES 64
 #define TILE_ROWS 8
+#define VECTORS 3
 #define PASS triangle_pass_wide_double
 #define GATHER triangle_gather_wide_double
 #include "triangle_kernel.h"
