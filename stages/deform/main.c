@@ -74,9 +74,8 @@ static void check_scene(const struct network *network, const char *path)
         if (!network->packing.body[k].within ||
             !body_is_round(&network->packing.body[k], 0))
             die(STATUS_BAD_DATA,
-                "%s: /domain/bodies: row %d: round walls around the grains move with "
-                "them, "
-                "not what grains lie around",
+                "%s: /domain/bodies: row %d: round walls around grains move with them, "
+                "not what they lie around",
                 input_name(path), k);
 }
 

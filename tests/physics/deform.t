@@ -255,22 +255,30 @@ with scratch() as folder:
 
     # A layer of discs, in their plane; grains in round walls, which go along.
     sizes = ["--set", "radius=2.5e-7", "--set", "sizes.spread=0.2", "--set", "sizes.distribution=lognormal"]
-    run("pack", "-q", *"--set method=random_sequential --set dimensions=2 --set count=80 --set".split(),
-        "upper=[6e-6,0,6e-6]", *sizes, "-o", at("packing"))
     layer = ["--set", "dimensions=2"]
+    run("pack", "-q", *"--set method=random_sequential --set count=80 --set upper=[6e-6,0,6e-6]".split(), *layer,
+        *sizes, "-o", at("packing"))
     answer(*layer)
     run("tessellate", *layer, at("packing"), "-o", at("network"))
     moved_at_random("a layer", 10 ** np.linspace(-4.5, -0.7, 14), *layer, way=(1, 0, 1))
-    for title, shape in ("a cylinder", ["domain.shape=cylinder", "--set", "domain.height=5e-6"]), \
-            ("a sphere", ["domain.shape=sphere"]):
-        run("pack", "-q", *"--set method=random_sequential --set count=60 --set domain.radius=2.5e-6 --set".split(),
-            *shape, *sizes, "-o", at("packing"))
-        run("tessellate", at("packing"), "-o", at("network"))
+    cylinder = ["--set", "domain.shape=cylinder", "--set", "domain.height=5e-6"]
+    sphere = ["--set", "domain.shape=sphere"]
+    for title, shape, plane in ("a cylinder", cylinder, []), ("a sphere", sphere, []), ("a disc", sphere, layer):
+        run("pack", "-q", *"--set method=random_sequential --set count=60 --set domain.radius=2.5e-6".split(),
+            *shape, *plane, *sizes, "-o", at("packing"))
+        run("tessellate", *plane, at("packing"), "-o", at("network"))
         with h5py.File(at("packing"), "r+") as packing:
             packing.copy("domain/bodies", "kept")
             del packing["domain/bodies"]
-        answer()
+        answer(*plane)
         with h5py.File(at("packing"), "r+") as packing:
             packing.move("kept", "domain/bodies")
-        moved_at_random(title, 10 ** np.linspace(-5, -1, 13))
+        moved_at_random(title, 10 ** np.linspace(-5, -0.6, 12), *plane, way=(1, 0, 1) if plane else (1, 1, 1))
+    run("pack", "-q", *"--set method=random_sequential --set count=60 --set domain.radius=2.5e-6".split(),
+        *"--set domain.shape=ring --set domain.inner_radius=1e-6 --set domain.height=5e-6".split(), *sizes,
+        "-o", at("packing"))
+    run("tessellate", at("packing"), "-o", at("network"))
+    status, says = deform("network")
+    ok(status == 65 and "/domain/bodies: row 1: round walls around grains move with them" in says,
+       "a hole is refused", says)
 done()
