@@ -41,7 +41,7 @@ struct foresight *foresight_new(const struct equilibrium *e)
     f->load = NEW_ARRAY(struct vector, e->n);
     double **const of_grains[] = {&f->applied, &f->left, &f->moved, &f->step};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
-        *of_grains[k] = NEW_ARRAY(double, (size_t)e->n *GRAIN);
+        *of_grains[k] = allocate_aligned((size_t)e->n, GRAIN * sizeof **of_grains[k]);
     f->from = NEW_ARRAY(struct displacement, e->n);
     f->settler = settler_new();
     return f;

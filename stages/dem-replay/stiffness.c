@@ -305,9 +305,9 @@ void stiffness_begin_lanes(struct stiffness *s, const double *load)
     const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
     if (s->n_moving == 0) return;
     if (!s->begun_lanes) {
-        s->load_lanes = NEW_ARRAY(double, numbers);
-        s->begun_lanes = NEW_ARRAY(double, numbers);
-        s->left_lanes = NEW_ARRAY(double, numbers);
+        s->load_lanes = allocate_aligned(numbers, sizeof(double));
+        s->begun_lanes = allocate_aligned(numbers, sizeof(double));
+        s->left_lanes = allocate_aligned(numbers, sizeof(double));
     }
     for (int i = 0; i < s->n; i++)
         if (s->number[i] >= 0)

@@ -231,7 +231,7 @@ static void symmetric_systems(void **state)
     (void)state;
     enum { MOST = 30 };
     for (int n = 1; n <= MOST; n++) {
-        double whole[MOST][MOST] = {{0}}, matrix[MOST * MOST + 8], work[20 * MOST];
+        double whole[MOST][MOST] = {{0}}, matrix[MOST * MOST + 8], work[24 * MOST];
         double sign[MOST], x[MOST], right[MOST];
         for (int i = 0; i < n; i++) {
             sign[i] = i < n / 2 ? 1 : -1;
@@ -250,7 +250,7 @@ static void symmetric_systems(void **state)
             assert_true(fabs(right[i]) < 1e-12);
         }
     }
-    double wrong[1 + 8] = {-1}, work[20];
+    double wrong[1 + 8] = {-1}, work[24];
     assert_false(dense_symmetric_factor(1, wrong, 1, (double[]){1}, work));
 }
 

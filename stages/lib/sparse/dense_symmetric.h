@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 // MATRIX (n by n, its lower triangle by columns STRIDE apart, eight numbers more at the
-// end) becomes L of L S L^T, S being the diagonal of SIGN (n), 1 or -1. WORK (20 n).
+// end) becomes L of L S L^T, S being the diagonal of SIGN (n), 1 or -1. WORK (24 n).
 // False: a pivot has not that sign.
 bool dense_symmetric_factor(int n, double *matrix, int stride, const double *sign,
                             double *work);

@@ -5,11 +5,10 @@
 
 #include "basics/memory.h"
 #include "dense_kernels.h"
+#include "vector_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define INLINE static inline __attribute__((always_inline))
 
 static int compare_ints(const void *a, const void *b)
 {
@@ -41,7 +40,8 @@ struct halves supernodal_halves(struct supernodal *f, int columns, int count,
     const int lanes = columns == 1 ? 1 : columns <= 4 ? 4 : LANES;
     struct halves halves = {.columns = columns, .lanes = lanes};
     find_way(f, columns * count, index, &halves);
-    halves.value = allocate((size_t)lanes * (size_t)halves.size, sizeof *halves.value);
+    halves.value =
+        allocate_uncleared((size_t)lanes * (size_t)halves.size, sizeof *halves.value);
     double *x = f->lanes, *to = halves.value;
     for (int c = 0; c < columns; c++)
         for (int k = c * count; k < (c + 1) * count; k++)
@@ -51,7 +51,7 @@ struct halves supernodal_halves(struct supernodal *f, int columns, int count,
         if (lanes == 1)
             forward_through(f, super, x);
         else
-            (lanes == 4 ? forward_four : forward_eight)(super, x);
+            (lanes == 4 ? forward_four : vector_kernels()->forward_eight)(super, x);
         const size_t numbers = (size_t)super->columns * (size_t)lanes;
         memcpy(to, x + (long)super->first * lanes, numbers * sizeof *to);
         memset(x + (long)super->first * lanes, 0, numbers * sizeof *to);
@@ -70,37 +70,12 @@ void halves_free(struct halves *halves)
 
 // ---- products -----------------------------------------------------------------------
 
-// SUM (TILE by 4 QUADS) grows by the products of N rows of lanes of A, from the first
-// on, with those of B.
-INLINE void add_tile(int n, const double *a, int a_lanes, const double *b, int tile,
-                     int quads, double *sum)
-{
-    four part[4][2];
-    for (int i = 0; i < tile; i++)
-        for (int q = 0; q < quads; q++)
-            part[i][q] = load_four(sum + i * LANES + 4 * q);
-    for (int p = 0; p < n; p++, a += a_lanes, b += 4 * quads)
-        for (int i = 0; i < tile; i++)
-            for (int q = 0; q < quads; q++)
-                part[i][q] = fused((four){a[i], a[i], a[i], a[i]}, load_four(b + 4 * q),
-                                   part[i][q]);
-    for (int i = 0; i < tile; i++)
-        for (int q = 0; q < quads; q++)
-            store_four(sum + i * LANES + 4 * q, part[i][q]);
-}
-
 // B has four lanes or eight.
 static void add_product(int n, const double *a, int a_lanes, const double *b,
                         int b_lanes, double sum[LANES][LANES])
 {
-    if (a_lanes == 1)
-        return b_lanes == 4 ? add_tile(n, a, 1, b, 1, 1, sum[0])
-                            : add_tile(n, a, 1, b, 1, 2, sum[0]);
-    for (int i = 0; i < a_lanes; i += 4)
-        if (b_lanes == 4)
-            add_tile(n, a + i, a_lanes, b, 4, 1, sum[i]);
-        else
-            add_tile(n, a + i, a_lanes, b, 4, 2, sum[i]);
+    (b_lanes == 4 ? add_product_of_four
+                  : vector_kernels()->add_product_of_eight)(n, a, a_lanes, b, sum);
 }
 
 // Both ways, from the first supernode that they share: where they run together, at

@@ -34,7 +34,7 @@ static void copy_supernodes(struct supernodal *f, const cholmod_factor *analysed
         if (super->columns > f->widest) f->widest = super->columns;
         if (super->rows > f->tallest) f->tallest = super->rows;
     }
-    f->panels = NEW_ARRAY(double, f->size + 8);
+    f->panels = allocate_aligned(f->size + 8, sizeof *f->panels);
     double *panel = f->panels;
     for (int s = 0; s < f->n_super; s++) {
         struct supernode *super = &f->super[s];
@@ -99,10 +99,10 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     free(matrix.p);
     free(matrix.i);
     find_targets(f, start, row);
-    f->work = NEW_ARRAY(double, ((size_t)f->tallest + 4) * (size_t)f->widest);
+    f->work = NEW_ARRAY(double, ((size_t)f->tallest + 8) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->is_on_way = NEW_ARRAY(bool, f->n_super);
-    f->lanes = NEW_ARRAY(double, (size_t)n *LANES);
+    f->lanes = allocate_aligned((size_t)n, LANES * sizeof *f->lanes);
     return f;
 }
 

@@ -28,7 +28,7 @@ struct supernodal {
     long *target;    // (n_entry) in the panels, or -1
     int widest;      // most columns of a supernode
     int tallest;     // most rows
-    double *work;    // (tallest * widest) and (4 widest)
+    double *work;    // (tallest * widest) and (8 widest)
     double *lanes;   // (n * LANES), of zeros between calls
     int *local;      // (tallest)
     bool *is_on_way; // (n_super), false between calls
@@ -37,8 +37,5 @@ struct supernodal {
 // X (n), in the order of the factor, becomes L^-1 X as far as SUPER is concerned.
 void forward_through(struct supernodal *factor, const struct supernode *super,
                      double *x);
-// The same with four or eight lanes a row.
-void forward_four(const struct supernode *super, double *x);
-void forward_eight(const struct supernode *super, double *x);
 
 #endif

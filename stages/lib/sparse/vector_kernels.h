@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What most of the work on factors is done by, for the vectors that the processor has.
+#ifndef CRAQUELURE_VECTOR_KERNELS_H
+#define CRAQUELURE_VECTOR_KERNELS_H
+
+#include "basics/wide_vectors.h"
+#include "supernodal.h"
+
+struct supernode;
+
+struct vector_kernels {
+    // X (n * LANES), in the order of the factor, as far as SUPER is concerned: becomes
+    // L^-1 X, or L^-T X.
+    void (*forward_eight)(const struct supernode *super, double *x);
+    void (*backward_eight)(const struct supernode *super, double *x);
+    // SUM grows by A^T B, (n) rows of lanes, one, four or eight of A, eight of B.
+    void (*add_product_of_eight)(int n, const double *a, int a_lanes, const double *b,
+                                 double sum[LANES][LANES]);
+    // As dense_kernels.h says.
+    void (*multiply_transposed)(int m, int n, int k, const double *a, int a_stride,
+                                const double *b, int b_stride, double *c, int c_stride,
+                                bool lower, double *work);
+};
+extern const struct vector_kernels vector_kernels_narrow, vector_kernels_wide;
+
+static inline const struct vector_kernels *vector_kernels(void)
+{
+    return has_wide_vectors() ? &vector_kernels_wide : &vector_kernels_narrow;
+}
+
+// Of four lanes.
+void forward_four(const struct supernode *super, double *x);
+void add_product_of_four(int n, const double *a, int a_lanes, const double *b,
+                         double sum[LANES][LANES]);
+
+#endif

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What most of the work on factors is done by, once for vectors of four numbers, once
+// of eight (BYTES): each number has the same digits in both. NAMED(x) is the name of x.
+#include "supernodal_state.h"
+#include "vector_kernels.h"
+
+#include <math.h>
+#if defined __x86_64__ && defined __FMA__
+#include <immintrin.h>
+#endif
+
+#define INLINE static inline __attribute__((always_inline))
+
+typedef double vector __attribute__((vector_size(BYTES), aligned(8), may_alias));
+
+enum { NUMBERS = BYTES / sizeof(double), PARTS = LANES / NUMBERS };
+
+INLINE vector load(const double *from)
+{
+    return *(const vector *)from;
+}
+
+INLINE void store(double *to, vector a)
+{
+    *(vector *)to = a;
+}
+
+INLINE vector all_of(double a)
+{
+    return a - (vector){0};
+}
+
+// A B + C, written out, as compilers do not contract alike.
+INLINE vector fused(vector a, vector b, vector c)
+{
+#if defined __x86_64__ && defined __FMA__ && BYTES == 64
+    return (vector)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+#elif defined __x86_64__ && defined __FMA__
+    return (vector)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+#else
+    for (int k = 0; k < NUMBERS; k++)
+        c[k] = fma(a[k], b[k], c[k]);
+    return c;
+#endif
+}
+
+// ---- lanes through a supernode ------------------------------------------------------
+
+// Of the row that SUPER's Ith is.
+INLINE double *lanes_of(const struct supernode *super, int i, int parts, double *x)
+{
+    return x + (long)super->row[i] * NUMBERS * parts;
+}
+
+// WIDE columns from FIRST on.
+INLINE void forward_columns(const struct supernode *super, int first, int wide,
+                            int parts, double *x)
+{
+    const int rows = super->rows;
+    const double *panel = super->panel + (long)first * rows;
+    vector own[4][PARTS];
+    for (int j = 0; j < wide; j++) {
+        double *at = lanes_of(super, first + j, parts, x);
+        for (int q = 0; q < parts; q++) {
+            own[j][q] = load(at + NUMBERS * q);
+            for (int l = 0; l < j; l++)
+                own[j][q] = fused(all_of(-panel[(long)l * rows + first + j]), own[l][q],
+                                  own[j][q]);
+            own[j][q] /= all_of(panel[(long)j * rows + first + j]);
+            store(at + NUMBERS * q, own[j][q]);
+        }
+    }
+    for (int i = first + wide; i < rows; i++) {
+        double *at = lanes_of(super, i, parts, x);
+        for (int q = 0; q < parts; q++) {
+            vector left = load(at + NUMBERS * q);
+            for (int j = 0; j < wide; j++)
+                left = fused(all_of(-panel[(long)j * rows + i]), own[j][q], left);
+            store(at + NUMBERS * q, left);
+        }
+    }
+}
+
+INLINE void backward_columns(const struct supernode *super, int first, int wide,
+                             int parts, double *x)
+{
+    const int rows = super->rows;
+    const double *panel = super->panel + (long)first * rows;
+    vector left[4][PARTS];
+    for (int j = 0; j < wide; j++)
+        for (int q = 0; q < parts; q++)
+            left[j][q] = load(lanes_of(super, first + j, parts, x) + NUMBERS * q);
+    for (int i = first + wide; i < rows; i++) {
+        const double *at = lanes_of(super, i, parts, x);
+        for (int j = 0; j < wide; j++)
+            for (int q = 0; q < parts; q++)
+                left[j][q] = fused(all_of(-panel[(long)j * rows + i]),
+                                   load(at + NUMBERS * q), left[j][q]);
+    }
+    for (int j = wide - 1; j >= 0; j--)
+        for (int q = 0; q < parts; q++) {
+            for (int l = j + 1; l < wide; l++)
+                left[j][q] = fused(all_of(-panel[(long)j * rows + first + l]),
+                                   left[l][q], left[j][q]);
+            left[j][q] /= all_of(panel[(long)j * rows + first + j]);
+            store(lanes_of(super, first + j, parts, x) + NUMBERS * q, left[j][q]);
+        }
+}
+
+INLINE void forward(const struct supernode *super, int parts, double *x)
+{
+    const int columns = super->columns;
+    int first = 0;
+    for (; first + 4 <= columns; first += 4)
+        forward_columns(super, first, 4, parts, x);
+    if (columns - first >= 2) {
+        forward_columns(super, first, 2, parts, x);
+        first += 2;
+    }
+    if (first < columns) forward_columns(super, first, 1, parts, x);
+}
+
+INLINE void backward(const struct supernode *super, int parts, double *x)
+{
+    int end = super->columns;
+    if (end % 2) backward_columns(super, --end, 1, parts, x);
+    if (end % 4) backward_columns(super, end -= 2, 2, parts, x);
+    while (end > 0)
+        backward_columns(super, end -= 4, 4, parts, x);
+}
+
+#if BYTES == 32
+void forward_four(const struct supernode *super, double *x)
+{
+    forward(super, 1, x);
+}
+#endif
+
+static void forward_eight(const struct supernode *super, double *x)
+{
+    forward(super, PARTS, x);
+}
+
+static void backward_eight(const struct supernode *super, double *x)
+{
+    backward(super, PARTS, x);
+}
+
+// ---- products -----------------------------------------------------------------------
+
+// SUM (TILE by the lanes of B) grows by the products of N rows of lanes of A, from the
+// first on, with those of B.
+INLINE void add_tile(int n, const double *a, int a_lanes, const double *b, int tile,
+                     int parts, double *sum)
+{
+    vector part[4][PARTS];
+    for (int i = 0; i < tile; i++)
+        for (int q = 0; q < parts; q++)
+            part[i][q] = load(sum + i * LANES + NUMBERS * q);
+    for (int p = 0; p < n; p++, a += a_lanes, b += NUMBERS * parts)
+        for (int i = 0; i < tile; i++)
+            for (int q = 0; q < parts; q++)
+                part[i][q] = fused(all_of(a[i]), load(b + NUMBERS * q), part[i][q]);
+    for (int i = 0; i < tile; i++)
+        for (int q = 0; q < parts; q++)
+            store(sum + i * LANES + NUMBERS * q, part[i][q]);
+}
+
+#if BYTES == 32
+void add_product_of_four(int n, const double *a, int a_lanes, const double *b,
+                         double sum[LANES][LANES])
+{
+    if (a_lanes == 1) return add_tile(n, a, 1, b, 1, 1, sum[0]);
+    for (int i = 0; i < a_lanes; i += 4)
+        add_tile(n, a + i, a_lanes, b, 4, 1, sum[i]);
+}
+#endif
+
+static void add_product_of_eight(int n, const double *a, int a_lanes, const double *b,
+                                 double sum[LANES][LANES])
+{
+    if (a_lanes == 1) return add_tile(n, a, 1, b, 1, PARTS, sum[0]);
+    for (int i = 0; i < a_lanes; i += 4)
+        add_tile(n, a + i, a_lanes, b, 4, PARTS, sum[i]);
+}
+
+// Eight rows of WIDE columns, which stay in registers.
+enum { WIDE = NUMBERS, HIGH = 8 };
+
+static void multiply_tile(int k, const double *a, int a_stride, const double *packed,
+                          double c[WIDE][HIGH])
+{
+    vector sum[WIDE][PARTS];
+    for (int j = 0; j < WIDE; j++)
+        for (int q = 0; q < PARTS; q++)
+            sum[j][q] = all_of(0);
+    for (int p = 0; p < k; p++, a += a_stride)
+        for (int j = 0; j < WIDE; j++)
+            for (int q = 0; q < PARTS; q++)
+                sum[j][q] = fused(load(a + NUMBERS * q), all_of(packed[WIDE * p + j]),
+                                  sum[j][q]);
+    for (int j = 0; j < WIDE; j++)
+        for (int q = 0; q < PARTS; q++)
+            store(c[j] + NUMBERS * q, sum[j][q]);
+}
+
+static void multiply(int m, int n, int k, const double *a, int a_stride,
+                     const double *b, int b_stride, double *c, int c_stride, bool lower,
+                     double *work)
+{
+    for (int j = 0; j < n; j += WIDE) {
+        const int columns = n - j < WIDE ? n - j : WIDE;
+        for (int p = 0; p < k; p++)
+            for (int l = 0; l < WIDE; l++)
+                work[WIDE * p + l] = l < columns ? b[(long)p * b_stride + j + l] : 0;
+        for (int i = lower ? j : 0; i < m; i += HIGH) {
+            const int rows = m - i < HIGH ? m - i : HIGH;
+            double tile[WIDE][HIGH];
+            multiply_tile(k, a + i, a_stride, work, tile);
+            for (int l = 0; l < columns; l++)
+                for (int r = 0; r < rows; r++)
+                    c[(long)(j + l) * c_stride + i + r] = tile[l][r];
+        }
+    }
+}
+
+const struct vector_kernels NAMED(vector_kernels) = {
+    .forward_eight = forward_eight,
+    .backward_eight = backward_eight,
+    .add_product_of_eight = add_product_of_eight,
+    .multiply_transposed = multiply,
+};
