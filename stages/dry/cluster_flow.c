@@ -3,20 +3,37 @@
 
 #include <math.h>
 
-static void list_movers(struct liquid_flow *flow, const struct piece *piece)
+// Of the flow that a response would make of all of a potential: what rounding leaves is
+// FLOW_AIM of this.
+static const double ROUNDED = 1e-2;
+
+static void list_ends(struct liquid_flow *flow, const struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
     solver->n_mover = 0;
     for (int t = first_throat(solver, piece, LIST_MENISCI); t >= 0;
          t = solver->lists.next[t])
         if (flow->moving[t]) solver->mover[solver->n_mover++] = t;
+    solver->n_end = solver->n_mover;
+    for (int t = first_throat(solver, piece, LIST_MENISCI); flow->response && t >= 0;
+         t = solver->lists.next[t])
+        if (!flow->moving[t] && flow->response[t] > 0)
+            solver->mover[solver->n_end++] = t;
 }
 
-double flow_scale(const struct flow_solver *solver, const struct piece *piece)
+double flow_scale(const struct liquid_flow *flow, const struct piece *piece)
 {
-    double scale = piece->evaporation;
+    const struct flow_solver *solver = flow->solver;
+    double scale = piece->turnover;
     for (int k = 0; k < solver->n_mover; k++)
         scale = fmax(scale, fabs(solver->inflow[solver->mover[k]]));
+    for (int k = solver->n_mover; k < solver->n_end; k++) {
+        const int throat = solver->mover[k];
+        const double moves =
+            menisci_potential(&flow->menisci, throat, piece->reference);
+        const double sum = fabs(moves) + fabs(flow->surplus[throat]);
+        scale = fmax(scale, ROUNDED * flow->response[throat] * sum);
+    }
     return scale;
 }
 
@@ -25,7 +42,7 @@ enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
 {
     struct flow_solver *solver = flow->solver;
     double error = INFINITY;
-    list_movers(flow, piece);
+    list_ends(flow, piece);
     struct liquid_graph *graph = find_graph(flow, piece);
     if (graph) error = solve_by_graph(flow, piece, graph);
     if (graph && !(error < FLOW_TOLERANCE)) {

@@ -17,7 +17,7 @@ enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
                                struct reason *reason);
 
 // The scale of the flows: the largest to or from a moving meniscus, or what evaporates.
-double flow_scale(const struct flow_solver *solver, const struct piece *piece);
+double flow_scale(const struct liquid_flow *flow, const struct piece *piece);
 
 // Either way: movers and nodes are listed; returns the error of the balances, of the
 // largest flow.

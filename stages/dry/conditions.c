@@ -50,11 +50,6 @@ static enum status check_liquid(const struct drying_conditions *conditions,
     if ((unsigned)conditions->liquid > LIQUID_VISCOUS)
         return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
                       (int)conditions->liquid);
-    if (conditions->liquid == LIQUID_VISCOUS && conditions->kelvin)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "kelvin: must be false in viscous liquid, whose menisci are as "
-                      "curved as its flow makes them; inviscid and immobile liquid, "
-                      "the limits, have it");
     if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0 &&
         !conditions->kelvin)
         return STATUS_OK;

@@ -35,6 +35,7 @@ struct curvature_law {
     double over_flat, saturation; // p_g - p_sat, p_sat, Pa
     double fall;                  // of the potential to the drying air
     double exponent;              // of a throat 1 m in radius
+    double of_pressure;           // of 1 Pa
     double steepness;             // rise of the exponent a metre upwards, 1/m
 };
 
@@ -51,6 +52,7 @@ static struct curvature_law find_law(const struct drying_conditions *conditions)
             log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
                   over_flat),
         .exponent = tension / (conditions->liquid_density * heat),
+        .of_pressure = 1 / (conditions->liquid_density * heat),
         .steepness =
             conditions->liquid == LIQUID_IMMOBILE ? 0 : conditions->gravity / heat};
 }
@@ -58,6 +60,39 @@ static struct curvature_law find_law(const struct drying_conditions *conditions)
 static double potential_above(const struct curvature_law *law, double exponent)
 {
     return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->fall;
+}
+
+double curved_exponent(const struct curved *curved)
+{
+    return curved->law->exponent;
+}
+
+double curved_exponent_of_pressure(const struct curved *curved)
+{
+    return curved->law->of_pressure;
+}
+
+double curved_least_exponent(const struct curved *curved)
+{
+    return -log1p(curved->law->over_flat / curved->law->saturation / 2);
+}
+
+double curved_potential(const struct curved *curved, double exponent)
+{
+    return potential_above(curved->law, exponent);
+}
+
+double curved_steepness(const struct curved *curved, double exponent)
+{
+    const struct curvature_law *law = curved->law;
+    const double gas = law->over_flat - law->saturation * expm1(-exponent);
+    return law->saturation * exp(-exponent) / gas / law->fall;
+}
+
+double curved_exponent_at(const struct curved *curved, double potential)
+{
+    const struct curvature_law *law = curved->law;
+    return -log1p(-expm1(potential * law->fall) * law->over_flat / law->saturation);
 }
 
 enum status check_curved(const struct drying_conditions *conditions,
@@ -99,7 +134,7 @@ struct curved curved_make(struct phases *phases,
     const struct network *network = phases->network;
     const int n = network->n_throat;
     struct curved curved = {.listed_at = -1,
-                            .by_throat = conditions->liquid == LIQUID_IMMOBILE,
+                            .by_throat = conditions->liquid != LIQUID_INVISCID,
                             .own = NEW_ARRAY(double, n),
                             .section = NEW_ARRAY(double, n),
                             .law = NEW_ARRAY(struct curvature_law, 1),
@@ -107,6 +142,8 @@ struct curved curved_make(struct phases *phases,
                             .potential = NEW_ARRAY(double, n),
                             .gain = NEW_ARRAY(double, n),
                             .floats = NEW_ARRAY(bool, n),
+                            .flows = NEW_ARRAY(bool, n),
+                            .exponent = NEW_ARRAY(double, n),
                             .place = NEW_ARRAY(int, n),
                             .floated = NEW_ARRAY(bool, n),
                             .floated_at = NEW_ARRAY(double, n),
@@ -145,6 +182,8 @@ void curved_free(struct curved *curved)
     free(curved->potential);
     free(curved->gain);
     free(curved->floats);
+    free(curved->flows);
+    free(curved->exponent);
     free(curved->place);
     free(curved->floated);
     free(curved->floated_at);
@@ -180,7 +219,12 @@ static int find_body(struct curved *curved, struct phases *phases, int body)
     curved->body[place] = body;
     curved->throat[place] =
         curved->by_throat ? body : clusters_invasion_throat(&phases->clusters, body);
-    curved->floats[place] = curved->floated[body] && is_full(curved, phases, place);
+    curved->flows[place] = curved->by_throat && phases->clusters.gas_parts &&
+                           phases->clusters.size[phases->clusters.of_throat[body]] > 1;
+    curved->exponent[place] =
+        curved->law->exponent / phases->network->throat_radius[curved->throat[place]];
+    curved->floats[place] = curved->floated[body] && !curved->flows[place] &&
+                            is_full(curved, phases, place);
     curved->potential[place] = curved->floats[place]
                                    ? curved->floated_at[body]
                                    : curved->own[curved->throat[place]];
@@ -225,18 +269,18 @@ static void list_shares(struct curved *curved, struct phases *phases, int k)
     curved->offset[k + 1] = end;
 }
 
-// What the potential at NODE is above that at the middle of THROAT, in liquid at rest
-// whose meniscus there is as curved as the throat makes it.
+// What the potential at NODE is above that at the middle of the throat of a body, in
+// liquid at rest.
 static double potential_over_middle(const struct curved *curved,
-                                    const struct network *network, int node, int throat)
+                                    const struct network *network, int node, int place)
 {
     const struct curvature_law *law = curved->law;
-    const int32_t *end = network->throat_nodes[throat];
+    const int32_t *end = network->throat_nodes[curved->throat[place]];
     const struct vector *at = network->node_position;
     const double height = at[node].z - (at[end[0]].z + at[end[1]].z) / 2;
-    const double exponent = law->exponent / network->throat_radius[throat];
+    const double exponent = curved->exponent[place];
     return potential_above(law, exponent + law->steepness * height) -
-           curved->own[throat];
+           potential_above(law, exponent);
 }
 
 // By throats, ascending.
@@ -257,15 +301,20 @@ static void list_bodies(struct curved *curved, struct phases *phases)
     for (int a = 0; a < curved->n; a++)
         curved->place[curved->body[a]] = -1;
     curved->n = 0;
-    for (int k = 0; k < phases->n_wet; k++) {
+    for (int k = 0; k < phases->n_wet; k++)
         list_shares(curved, phases, k);
+}
+
+static void raise_nodes(struct curved *curved, const struct phases *phases)
+{
+    for (int k = 0; k < phases->n_wet; k++) {
         curved->raised[k] = 0;
         for (int i = curved->offset[k];
              curved->law->steepness != 0 && i < curved->offset[k + 1]; i++)
             curved->raised[k] +=
-                curved->share[i].part *
-                potential_over_middle(curved, phases->network, phases->wet[k],
-                                      curved->throat[curved->share[i].body]);
+                curved->share[i].part * potential_over_middle(curved, phases->network,
+                                                              phases->wet[k],
+                                                              curved->share[i].body);
     }
 }
 
@@ -335,6 +384,7 @@ static struct revision revise(struct curved *curved, const struct phases *phases
     struct revision revision = {0};
     for (int a = 0; a < curved->n && revision.begun + revision.ended < most; a++) {
         const double own = curved->own[curved->throat[a]];
+        if (curved->flows[a]) continue;
         if (curved->floats[a] && curved->potential[a] > (1 + VERGE) * own) {
             curved->floats[a] = false;
             curved->potential[a] = own;
@@ -350,25 +400,29 @@ static struct revision revise(struct curved *curved, const struct phases *phases
 
 // --- all ---------------------------------------------------------------------------
 
-// The error of the balances is left to the largest.
-static void collect(struct curved *curved, const struct phases *phases,
-                    struct losses *losses)
+static void add_losses(const struct curved *curved, const struct phases *phases,
+                       struct losses *losses)
 {
-    struct compensated rest = {.value = curved->rate};
-    int largest = -1;
-    losses->n = 0;
     for (int r = 0; r < curved->n; r++) {
         const int a = curved->ranked[r], throat = curved->throat[a];
         const double gain = curved->gain[a];
-        if (curved->floats[a] || fabs(gain) <= curved->noise[a] ||
+        if (curved->floats[a] || curved->flows[a] || fabs(gain) <= curved->noise[a] ||
             (gain < 0 && is_full(curved, phases, a)))
             continue;
-        compensated_add(&rest, -gain);
-        losses->loss[losses->n] = (struct loss){throat, gain};
-        if (largest < 0 || gain > losses->loss[largest].rate) largest = losses->n;
-        losses->n++;
+        losses->loss[losses->n++] = (struct loss){throat, gain};
     }
-    if (largest >= 0) losses->loss[largest].rate += compensated_value(rest);
+}
+
+// The error of the balances is left to the largest.
+static void balance(struct curved *curved, struct losses *losses)
+{
+    struct compensated rest = {.value = curved->rate};
+    int largest = 0;
+    for (int k = 0; k < losses->n; k++) {
+        compensated_add(&rest, -losses->loss[k].rate);
+        if (losses->loss[k].rate > losses->loss[largest].rate) largest = k;
+    }
+    if (losses->n > 0) losses->loss[largest].rate += compensated_value(rest);
     curved->residual =
         fmax(curved->residual, fabs(compensated_value(rest)) / curved->rate);
 }
@@ -411,24 +465,46 @@ static void begin_anew(struct curved *curved, struct phases *phases)
     star_mesh_list_fronts(&phases->vapour.mesh);
     floating_follow(curved->floating, curved, phases, n_emptied);
     find_reaches(curved, phases);
+    raise_nodes(curved, phases);
     curved_find_gains(curved, phases);
+}
+
+void curved_begin(struct curved *curved, struct phases *phases)
+{
+    if (curved->listed_at != phases->n_full) begin_anew(curved, phases);
+}
+
+enum status curved_find_others(struct curved *curved, const struct phases *phases,
+                               struct reason *reason)
+{
+    raise_nodes(curved, phases);
+    curved_find_gains(curved, phases);
+    return find_potentials(curved, phases, reason);
+}
+
+enum status curved_end(struct curved *curved, const struct phases *phases,
+                       struct losses *losses, struct reason *reason)
+{
+    add_losses(curved, phases, losses);
+    balance(curved, losses);
+    for (int a = 0; a < curved->n; a++) {
+        curved->floated[curved->body[a]] = curved->floats[a];
+        curved->floated_at[curved->body[a]] = curved->potential[a];
+    }
+    if (curved->residual <= ENOUGH) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "kelvin: what %d menisci evaporate is %.3g off what goes into the "
+                  "air, of that; needed is %g",
+                  curved->n, curved->residual, ENOUGH);
 }
 
 enum status curved_find(struct curved *curved, struct phases *phases,
                         struct losses *losses, struct reason *reason)
 {
-    if (curved->listed_at != phases->n_full) begin_anew(curved, phases);
+    losses->n = 0;
+    curved_begin(curved, phases);
     const enum status status = find_potentials(curved, phases, reason);
-    collect(curved, phases, losses);
-    for (int a = 0; a < curved->n; a++) {
-        curved->floated[curved->body[a]] = curved->floats[a];
-        curved->floated_at[curved->body[a]] = curved->potential[a];
-    }
-    if (status || curved->residual <= ENOUGH) return status;
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "kelvin: what %d menisci evaporate is %.3g off what goes into the "
-                  "air, of that; needed is %g",
-                  curved->n, curved->residual, ENOUGH);
+    return status ? status : curved_end(curved, phases, losses, reason);
 }
 
 void curved_state(struct curved *curved, const struct network *network,

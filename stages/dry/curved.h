@@ -48,6 +48,9 @@ struct curved {
     double *potential;        // (n)
     double *gain;             // (n) what it evaporates; below 0: takes up
     bool *floats;             // (n) flatter than its throat makes it
+    bool *flows;              // (n) its exponent and potential are given, by its flow
+    double *exponent;         // (n) p_c M / (rho R T) in its throat; as curved as that
+                              // makes it, if it floats
     int *place;               // (n_throat) of a throat or cluster, -1: none
     double *reach;            // (n) at most what conducts vapour from it
     double *noise, all_noise; // (n) less gain than this is none; their sum
@@ -82,6 +85,28 @@ void curved_empty_throat(struct curved *curved, struct phases *phases, int throa
 
 // Next time bodies are listed anew and nothing is gone on from but the state.
 void curved_forget(struct curved *curved);
+
+// The same in steps, for viscous liquid: lists the bodies, of which those are given
+// that are throats of a cluster of several; finds the others from what is given, and
+// what all evaporate; adds to LOSSES, which has those of the given, what the others
+// lose, and makes all of it equal to what goes into the air.
+void curved_begin(struct curved *curved, struct phases *phases);
+enum status curved_find_others(struct curved *curved, const struct phases *phases,
+                               struct reason *reason);
+enum status curved_end(struct curved *curved, const struct phases *phases,
+                       struct losses *losses, struct reason *reason);
+
+// p_c M / (rho R T) of a throat 1 m in radius, and of a p_c of 1 Pa.
+double curved_exponent(const struct curved *curved);
+double curved_exponent_of_pressure(const struct curved *curved);
+
+// At which half of the gas beside saturated vapour would be vapour: below 0, bulging.
+double curved_least_exponent(const struct curved *curved);
+
+// Above a meniscus, how it rises with the exponent, and at which exponent it is so.
+double curved_potential(const struct curved *curved, double exponent);
+double curved_steepness(const struct curved *curved, double exponent);
+double curved_exponent_at(const struct curved *curved, double potential);
 
 // What the bodies evaporate at their potentials.
 void curved_find_gains(struct curved *curved, const struct phases *phases);

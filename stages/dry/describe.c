@@ -60,6 +60,10 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
                 ? "Kelvin effect: each throat's meniscus has its own vapour "
                   "pressure; vapour may condense in throats partly empty, full ones "
                   "become flatter\n"
+            : conditions->liquid == LIQUID_VISCOUS
+                ? "Kelvin effect: menisci that move have the vapour pressure of their "
+                  "throat, those that stay that of their liquid's pressure; vapour may "
+                  "condense\n"
                 : "Kelvin effect: each cluster has the vapour pressure of its widest "
                   "meniscus; vapour may condense there in a throat partly empty, "
                   "full ones become flatter\n");

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Menisci with vapour pressures of their own: on to the moment at which a throat has
-// emptied or filled.
+// emptied or filled, or changed.
 #include "run.h"
+
+enum status find_curved_losses(struct run *run, struct reason *reason)
+{
+    if (run->conditions->liquid != LIQUID_VISCOUS)
+        return curved_find(&run->curved, &run->phases, &run->losses, reason);
+    run->flow.wants_pressures = snapshot_is_due(run);
+    return curved_flow_find(&run->both, &run->phases, &run->losses, reason);
+}
 
 enum status dry_by_curvature(struct run *run, struct reason *reason)
 {
@@ -11,10 +19,10 @@ enum status dry_by_curvature(struct run *run, struct reason *reason)
     carry_out_losses(run);
     run->n_flow_step++;
     if (phases->n_full > 0) {
-        const enum status status =
-            curved_find(&run->curved, phases, &run->losses, reason);
+        const enum status status = find_curved_losses(run, reason);
         if (status) return status;
     }
     record_losses(run);
+    if (phases->n_full > 0) keep_pressures(run);
     return note_idle(run, phases->n_full == n_before, reason);
 }

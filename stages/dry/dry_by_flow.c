@@ -117,7 +117,7 @@ void record_losses(struct run *run)
     record_state(run);
 }
 
-static void keep_pressures(struct run *run)
+static void keep_pressures_once(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
     const size_t n = (size_t)run->phases.network->n_node;
@@ -126,6 +126,12 @@ static void keep_pressures(struct run *run)
     double *pressure = history->pressure + n * (size_t)history->n_pressure++;
     for (size_t i = 0; i < n; i++)
         pressure[i] = run->flow.pressure[i] * run->flow.menisci.pressure;
+}
+
+void keep_pressures(struct run *run)
+{
+    while (snapshot_is_due(run))
+        keep_pressures_once(run);
 }
 
 // Throats may refill in turn, but not for ever.
@@ -147,8 +153,7 @@ enum status dry_by_flow(struct run *run, struct reason *reason)
     run->flow.wants_pressures = snapshot_is_due(run);
     enum status status = losses_find(&run->losses, phases, &run->flow, reason);
     if (status) return status;
-    while (snapshot_is_due(run))
-        keep_pressures(run);
+    keep_pressures(run);
     if (run->losses.n == 0) return refuse_standstill(run, reason);
     const int n_before = phases->n_full;
     carry_out_losses(run);

@@ -173,18 +173,19 @@ static enum status start(struct run *run, struct reason *reason)
 static void prepare(struct run *run)
 {
     const struct network *network = run->phases.network;
-    if (run->conditions->kelvin) {
-        run->curved = curved_make(&run->phases, run->conditions);
-        run->losses = losses_make(network->n_throat);
-    } else if (run->conditions->liquid == LIQUID_VISCOUS) {
+    const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
+    const bool is_curved = run->conditions->kelvin;
+    if (is_viscous)
         run->flow =
             liquid_flow_make(&run->phases, run->scale.length,
                              menisci_make(network, run->conditions, &run->scale));
+    if (is_curved) run->curved = curved_make(&run->phases, run->conditions);
+    if (is_viscous && is_curved) run->both = curved_flow_make(&run->curved, &run->flow);
+    if (is_viscous || is_curved)
         run->losses = losses_make(network->n_throat);
-    } else {
+    else
         run->clocks =
             clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
-    }
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, network->n_throat);
     run->is_ended = NEW_ARRAY(bool, network->n_throat);
@@ -233,12 +234,6 @@ static enum status make_phases(const struct network *network, struct run *run,
     return status;
 }
 
-static enum status find_curved(struct run *run, struct reason *reason)
-{
-    if (!run->conditions->kelvin) return STATUS_OK;
-    return curved_find(&run->curved, &run->phases, &run->losses, reason);
-}
-
 // At the start, or where another run was when its state was kept.
 static enum status begin_run(struct run *run, const struct keeper *keeper,
                              struct reason *reason)
@@ -250,7 +245,7 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
     enum status status = start(run, reason);
     if (status) return status;
     prepare(run);
-    status = find_curved(run, reason);
+    status = run->conditions->kelvin ? find_curved_losses(run, reason) : STATUS_OK;
     if (status) return status;
     if (!goes_on(run))
         return refuse(reason, STATUS_BAD_DATA,
@@ -258,6 +253,7 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
                       "is %g",
                       network_saturation(run), run->conditions->stop_saturation);
     begin(run);
+    if (run->conditions->kelvin) keep_pressures(run);
     return STATUS_OK;
 }
 
@@ -265,6 +261,7 @@ static void free_run(struct run *run)
 {
     liquid_flow_free(&run->flow);
     losses_free(&run->losses);
+    curved_flow_free(&run->both);
     curved_free(&run->curved);
     clocks_free(&run->clocks);
     free(run->ended);

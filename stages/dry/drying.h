@@ -48,7 +48,7 @@ struct drying_conditions {
     double contact_angle;   // degrees, from 0 to below 90
     double gravity;         // towards -z, m/s2; 0: none
     bool knudsen;           // molecules meet the walls of narrow throats
-    bool kelvin;            // curved menisci have less vapour; not of viscous liquid
+    bool kelvin;            // curved menisci have less vapour
     int n_snapshot;
     const double *snapshot; // (n_snapshot) saturations, each below the one before:
                             // where the pressures of viscous liquid are kept

@@ -4,11 +4,18 @@
 
 #include <math.h>
 
-static double fall_between_movers(const void *context, int b, int a)
+static double surplus_of(const struct liquid_flow *flow, int throat)
+{
+    return flow->moving[throat] ? 0 : flow->surplus[throat];
+}
+
+static double fall_between_ends(const void *context, int b, int a)
 {
     const struct liquid_flow *flow = context;
-    return menisci_potential(&flow->menisci, flow->solver->mover[b],
-                             flow->solver->mover[a]);
+    const int to = flow->solver->mover[a], from = flow->solver->mover[b];
+    const double fall = menisci_potential(&flow->menisci, from, to);
+    if (a < flow->solver->n_mover && b < flow->solver->n_mover) return fall;
+    return fall + (surplus_of(flow, from) - surplus_of(flow, to));
 }
 
 static void link_throat(struct liquid_flow *flow, int throat)
@@ -17,20 +24,21 @@ static void link_throat(struct liquid_flow *flow, int throat)
     int end[2];
     const int n = liquid_ends(flow, throat, end);
     for (int e = 0; e < n; e++)
-        kron_take(&solver->kron, solver->site[end[e]], solver->charge[throat] / n);
+        kron_take(&solver->kron, solver->site[end[e]], taken_from_end(flow, throat, n));
     if (n == 2)
         kron_link(&solver->kron, solver->site[end[0]], solver->site[end[1]],
                   flow->conductance[throat]);
 }
 
-static void link_mover(struct liquid_flow *flow, int k)
+static void link_end(struct liquid_flow *flow, int k)
 {
     struct flow_solver *solver = flow->solver;
     int end[2];
-    const int n = liquid_ends(flow, solver->mover[k], end);
+    const int throat = solver->mover[k], n = liquid_ends(flow, throat, end);
     for (int e = 0; e < n; e++)
         kron_link(&solver->kron, solver->site[end[e]], solver->n_node + k,
-                  meniscus_arm(flow, solver->mover[k], n));
+                  k < solver->n_mover ? meniscus_arm(flow, throat, n)
+                                      : response_arm(flow, throat, n));
 }
 
 // Returns by how much what flows to the menisci differs from what is taken on the way.
@@ -38,9 +46,13 @@ static double find_inflow(struct liquid_flow *flow, const struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
     double sum = piece->evaporation;
-    for (int k = 0; k < solver->n_mover; k++) {
+    for (int k = 0; k < solver->n_end; k++) {
         const int throat = solver->mover[k];
-        solver->inflow[throat] = kron_flow(&solver->kron, k, fall_between_movers, flow);
+        int end[2];
+        const int n = liquid_ends(flow, throat, end);
+        solver->inflow[throat] = kron_flow(&solver->kron, k, fall_between_ends, flow);
+        if (k >= solver->n_mover)
+            solver->inflow[throat] += n * taken_from_end(flow, throat, n);
         sum += solver->inflow[throat] - solver->charge[throat];
     }
     return fabs(sum);
@@ -51,9 +63,9 @@ static void keep_potentials(struct liquid_flow *flow, const struct piece *piece)
     struct flow_solver *solver = flow->solver;
     struct cluster_memory *memory = &solver->cluster[piece->cluster];
     double *level = solver->level;
-    for (int k = 0; k < solver->n_mover; k++)
+    for (int k = 0; k < solver->n_end; k++)
         level[solver->n_node + k] =
-            menisci_potential(&flow->menisci, solver->mover[k], piece->reference);
+            end_potential(flow, solver->mover[k], piece->reference);
     kron_potentials(&solver->kron, level);
     for (int k = 0; k < solver->n_node; k++) {
         const int node = solver->node[k];
@@ -69,19 +81,19 @@ static void keep_potentials(struct liquid_flow *flow, const struct piece *piece)
 double solve_by_elimination(struct liquid_flow *flow, struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
-    kron_begin(&solver->kron, solver->n_node, solver->n_mover);
+    kron_begin(&solver->kron, solver->n_node, solver->n_end);
     for (int k = 0; k < solver->n_node; k++)
         solver->site[solver->node[k]] = k;
     for (enum throat_list l = 0; l < LISTS; l++)
         for (int t = first_throat(solver, piece, l); t >= 0; t = solver->lists.next[t])
             if (!flow->moving[t]) link_throat(flow, t);
-    for (int k = 0; k < solver->n_mover; k++)
-        link_mover(flow, k);
+    for (int k = 0; k < solver->n_end; k++)
+        link_end(flow, k);
     for (int k = 0; k < solver->n_node; k++)
         solver->site[solver->node[k]] = -1;
     kron_eliminate(&solver->kron);
     const double lack = find_inflow(flow, piece);
     keep_potentials(flow, piece);
-    piece->flow = flow_scale(solver, piece);
+    piece->flow = flow_scale(flow, piece);
     return lack > 0 ? lack / piece->flow : 0;
 }

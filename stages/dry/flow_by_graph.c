@@ -86,7 +86,7 @@ static void change_reference(struct liquid_flow *flow, const struct piece *piece
     memory->reference = piece->reference;
 }
 
-// What menisci take that stay, and the arms to those that move.
+// What menisci take that stay, and the arms to those that move or respond.
 static void describe_menisci(struct liquid_flow *flow, const struct piece *piece,
                              struct liquid_graph *graph)
 {
@@ -108,21 +108,29 @@ static void describe_menisci(struct liquid_flow *flow, const struct piece *piece
                     row, meniscus_arm(flow, t, n),
                     menisci_potential(&flow->menisci, t, piece->reference)};
             else
-                graph->source[row] -= solver->charge[t] / n;
+                graph->source[row] -= taken_from_end(flow, t, n);
         }
+    }
+    for (int k = solver->n_mover; k < solver->n_end; k++) {
+        int end[2];
+        const int t = solver->mover[k], n = liquid_ends(flow, t, end);
+        for (int e = 0; e < n; e++)
+            solver->arm[n_arm++] =
+                (struct graph_arm){solver->row[end[e]], response_arm(flow, t, n),
+                                   end_potential(flow, t, piece->reference)};
     }
     liquid_graph_set_arms(graph, n_arm, solver->arm);
 }
 
-// Movers and arms come in one order.
+// Movers, what responds, and arms come in one order.
 static void collect_inflow(struct liquid_flow *flow, const struct liquid_graph *graph)
 {
     struct flow_solver *solver = flow->solver;
     const struct graph_arm *arm = graph->arm;
-    for (int k = 0; k < solver->n_mover; k++) {
+    for (int k = 0; k < solver->n_end; k++) {
         int end[2];
         const int throat = solver->mover[k], n = liquid_ends(flow, throat, end);
-        double sum = 0;
+        double sum = k < solver->n_mover ? 0 : n * taken_from_end(flow, throat, n);
         for (int e = 0; e < n; e++, arm++) {
             const struct compensated level = {.value = arm->level};
             sum += arm->conductance *
@@ -139,7 +147,7 @@ static double graph_error(struct liquid_flow *flow, struct piece *piece,
 {
     const double lack = liquid_graph_lack(graph);
     collect_inflow(flow, graph);
-    piece->flow = flow_scale(flow->solver, piece);
+    piece->flow = flow_scale(flow, piece);
     return lack > 0 ? lack / piece->flow : 0;
 }
 

@@ -33,6 +33,30 @@ double meniscus_arm(const struct liquid_flow *flow, int throat, int n)
            phases_saturation(flow->solver->phases, throat);
 }
 
+// Half of the response is at either end of a throat that has two.
+static double through_arm(const struct liquid_flow *flow, int throat, int n)
+{
+    if (!flow->response) return 1;
+    const double arm = meniscus_arm(flow, throat, n);
+    return arm / (arm + flow->response[throat] / n);
+}
+
+double response_arm(const struct liquid_flow *flow, int throat, int n)
+{
+    return flow->response[throat] / n * through_arm(flow, throat, n);
+}
+
+double taken_from_end(const struct liquid_flow *flow, int throat, int n)
+{
+    return flow->solver->charge[throat] / n * through_arm(flow, throat, n);
+}
+
+double end_potential(const struct liquid_flow *flow, int throat, int reference)
+{
+    const double moves = menisci_potential(&flow->menisci, throat, reference);
+    return flow->moving[throat] ? moves : moves + flow->surplus[throat];
+}
+
 double node_potential(const struct flow_solver *solver, int cluster, int node)
 {
     const struct liquid_graph *graph = solver->cluster[cluster].graph;

@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_FLOW_SOLVER_H
 #define CRAQUELURE_FLOW_SOLVER_H
 
-#include "sparse/kron.h"
 #include "liquid_graph.h"
+#include "sparse/kron.h"
 #include "sparse/plain_cholmod.h"
 #include "throat_lists.h"
 #include "viscous.h"
@@ -34,7 +34,8 @@ struct flow_solver {
     double *inflow;                // (n_throat) to each meniscus that moves
 
     // Of the cluster at hand.
-    int n_mover, *mover;   // (n_mover) throats whose meniscus moves
+    int n_mover, *mover;   // (n_mover) throats whose meniscus moves, and after them, to
+    int n_end;             // (n_end), those that stay and whose vapour responds
     struct graph_arm *arm; // from liquid ends to them, in their order
     int n_node, *node;
     int *site; // (n_node of the network) in kron, -1: none
@@ -48,6 +49,7 @@ struct piece {
     int cluster, n_throat;
     int reference;      // throat that gas enters most easily: potentials are above its
     double evaporation; // of all its throats
+    double turnover;    // the same, what they take up added to what they evaporate
     int n_meniscus, n_partial; // of them, in throats partly empty
     double margin;             // of the reference over the next throat that gas enters
     double flow;               // scale of the flows in it
@@ -72,6 +74,12 @@ int liquid_ends(const struct liquid_flow *flow, int throat, int end[2]);
 
 // From the meniscus of THROAT to each of its N liquid ends.
 double meniscus_arm(const struct liquid_flow *flow, int throat, int n);
+
+// The same where the vapour responds, up to where the meniscus would evaporate CHARGE;
+// what is taken from each of its N liquid ends; potential there.
+double response_arm(const struct liquid_flow *flow, int throat, int n);
+double taken_from_end(const struct liquid_flow *flow, int throat, int n);
+double end_potential(const struct liquid_flow *flow, int throat, int reference);
 
 // Of NODE in CLUSTER.
 double node_potential(const struct flow_solver *solver, int cluster, int node);

@@ -37,9 +37,9 @@ const struct parameter dry_table[] = {
      AT(conditions.knudsen)},
     {"kelvin", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "curved menisci have less vapour, p_sat exp(-p_c M / (rho R T)), p_c = 2 "
-     "surface_tension cos(contact_angle) / r of each throat (immobile) or of a "
-     "cluster's widest meniscus (inviscid); vapour also goes from wide throats to "
-     "narrow ones, and may condense there",
+     "surface_tension cos(contact_angle) / r of each throat (immobile), of a cluster's "
+     "widest meniscus (inviscid), or as the flow makes it (viscous); vapour also goes "
+     "from wide throats to narrow ones, and may condense there",
      AT(conditions.kelvin)},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", BOUND_BETWEEN, 1e-6, 1, NULL,
      "viscous: flow is solved anew when a throat's saturation has changed by this; 1: "

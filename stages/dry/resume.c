@@ -66,14 +66,14 @@ static void run_state(struct run *run, struct state *state)
     phases_state(&run->phases, state);
     steps_state(run, state);
     const int n_throat = run->phases.network->n_throat;
+    const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
     if (run->conditions->kelvin) {
         curved_state(&run->curved, run->phases.network, state);
         losses_state(&run->losses, n_throat, state);
-    } else if (run->conditions->liquid == LIQUID_VISCOUS) {
-        flow_state(run, state);
-    } else {
-        clocks_state(&run->clocks, state);
     }
+    if (is_viscous) flow_state(run, state);
+    if (is_viscous && run->conditions->kelvin) curved_flow_state(&run->both, state);
+    if (!is_viscous && !run->conditions->kelvin) clocks_state(&run->clocks, state);
 }
 
 // Clocks are cut anywhere.

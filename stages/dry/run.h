@@ -7,6 +7,7 @@
 #include "clocks.h"
 #include "conditions.h"
 #include "curved.h"
+#include "curved_flow.h"
 #include "history.h"
 #include "losses.h"
 #include "phases.h"
@@ -18,7 +19,8 @@ struct run {
     struct clocks clocks;    // of liquid without viscosity, or immobile
     struct liquid_flow flow; // of viscous liquid
     struct curved curved;    // of menisci with vapour pressures of their own
-    struct losses losses;    // of the last two
+    struct curved_flow both; // of the last two
+    struct losses losses;    // of the last three
     int n_idle;              // viscous: steps since a throat has emptied
     int64_t n_flow_step;     // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
@@ -62,6 +64,12 @@ void note_breakthrough(struct run *run);
 // Until the first throat has emptied or filled, or changed by saturation_step, all lose
 // as run->losses say; gas fills what has emptied.
 void carry_out_losses(struct run *run);
+
+// With menisci that have vapour pressures of their own: finds the losses of now.
+enum status find_curved_losses(struct run *run, struct reason *reason);
+
+// Keeps the pressures of viscous liquid as often as they are due.
+void keep_pressures(struct run *run);
 
 // Records the step that follows if it is time for one; with losses.
 void record_losses(struct run *run);

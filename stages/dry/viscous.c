@@ -52,8 +52,20 @@ void liquid_flow_free(struct liquid_flow *flow)
     free(flow->conductance);
     free(flow->resistance);
     free(flow->moving);
+    free(flow->response);
+    free(flow->surplus);
+    free(flow->found);
+    free(flow->used);
     free(flow->pressure);
     *flow = (struct liquid_flow){0};
+}
+
+void liquid_flow_respond(struct liquid_flow *flow)
+{
+    flow->response = NEW_ARRAY(double, flow->network->n_throat);
+    flow->surplus = NEW_ARRAY(double, flow->network->n_throat);
+    flow->found = NEW_ARRAY(double, flow->network->n_throat);
+    flow->used = NEW_ARRAY(double, flow->network->n_throat);
 }
 
 // --- the menisci ---------------------------------------------------------------------
@@ -89,7 +101,11 @@ static double potential_at_mouth(const struct liquid_flow *flow,
     double mean = 0;
     for (int k = 0; k < n; k++)
         mean += node_potential(flow->solver, piece->cluster, end[k]) / n;
-    return mean - flow->solver->charge[throat] / (n * meniscus_arm(flow, throat, n));
+    const double arm = n * meniscus_arm(flow, throat, n);
+    const double alone = mean - flow->solver->charge[throat] / arm;
+    if (!flow->response) return alone;
+    const double part = flow->response[throat] / arm;
+    return (alone + part * end_potential(flow, throat, piece->reference)) / (1 + part);
 }
 
 // Whether more flows to a full throat than evaporates, but for rounding.
@@ -185,7 +201,8 @@ static void collect_losses(const struct liquid_flow *flow, const struct piece *p
     for (int k = first; k < *n_loss; k++)
         if (fabs(loss[k].rate) > fabs(loss[largest].rate)) largest = k;
     if (*n_loss == first + 1)
-        loss[first].rate = piece->evaporation;
+        loss[first].rate =
+            fmax(piece->evaporation, is_full(flow, loss[first].throat) ? 0 : -INFINITY);
     else if (*n_loss > first)
         loss[largest].rate += piece->evaporation - sum;
 }
@@ -214,6 +231,7 @@ static void survey(const struct liquid_flow *flow, struct piece *piece)
     for (int t = first_meniscus(flow, piece); t >= 0; t = next_throat(flow, t)) {
         piece->n_partial += !is_full(flow, t);
         piece->evaporation += flow->solver->charge[t];
+        piece->turnover += fabs(flow->solver->charge[t]);
         if (piece->n_meniscus++ == 0) {
             piece->reference = t;
         } else if (entry(flow, piece, t) > 0) {
@@ -259,11 +277,42 @@ static void move_reference(struct liquid_flow *flow, const struct piece *piece)
     flow->moving[piece->reference] = true;
 }
 
+// As it is where the vapour responds, and what evaporates then.
+static void keep_menisci(struct liquid_flow *flow, struct piece *piece)
+{
+    const struct flow_solver *solver = flow->solver;
+    piece->evaporation = 0;
+    for (int t = first_meniscus(flow, piece); t >= 0; t = next_throat(flow, t)) {
+        const bool responds = !flow->moving[t] && flow->response[t] > 0;
+        flow->found[t] = flow->moving[t] ? solver->charge[t] - solver->inflow[t]
+                                         : -shortfall(flow, piece, t);
+        flow->used[t] = responds ? solver->inflow[t] : solver->charge[t];
+        piece->evaporation += flow->used[t];
+    }
+}
+
+// Where the vapour responds: with menisci as they are given.
+static enum status find_given(struct liquid_flow *flow, struct piece *piece,
+                              struct loss *loss, int *n_loss, struct reason *reason)
+{
+    if (piece->n_throat == 1) return STATUS_OK;
+    survey(flow, piece);
+    const enum status status = cluster_flow_solve(flow, piece, reason);
+    if (status) return status;
+    keep_menisci(flow, piece);
+    collect_losses(flow, piece, loss, n_loss);
+    if (flow->wants_pressures) write_pressures(flow, piece, false);
+    flow->solutions++;
+    flow->rounds++;
+    return STATUS_OK;
+}
+
 static enum status find_losses(struct liquid_flow *flow, struct piece *piece,
                                struct loss *loss, int *n_loss, struct reason *reason)
 {
+    if (flow->response) return find_given(flow, piece, loss, n_loss, reason);
     survey(flow, piece);
-    if (!(piece->evaporation > 0) && piece->n_partial < 2) {
+    if (!(piece->turnover > 0) && piece->n_partial < 2) {
         if (flow->wants_pressures) write_pressures(flow, piece, true);
         return STATUS_OK;
     }

@@ -26,9 +26,14 @@ struct flow_solver; // what is kept from step to step, and room to solve in
 struct liquid_flow {
     const struct network *network;
     struct menisci menisci;
-    double *conductance;  // (n_throat) of a full throat, scaled
-    double *resistance;   // (n_throat) its inverse
-    bool *moving;         // (n_throat) its meniscus, when last solved for
+    double *conductance; // (n_throat) of a full throat, scaled
+    double *resistance;  // (n_throat) its inverse
+    bool *moving;        // (n_throat) its meniscus, when last solved for
+    // Where vapour follows the pressure of menisci, else NULL. (n_throat)
+    double *response; // of one that stays: rise of what evaporates with the pressure
+    double *surplus;  // pressure over that at which it moves, where CHARGE evaporates
+    double *found;    // what that is then; of one that moves: what it loses
+    double *used;     // what evaporates then
     bool wants_pressures; // where they decide nothing, too
     double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit,
                       // 0 in gas: if they were wanted
@@ -50,6 +55,9 @@ void liquid_flow_follow(struct liquid_flow *flow, const struct phases *phases,
 // CHARGE[throat]: LOSS, with room for one entry a throat, and their number N_LOSS, in
 // no order. The losses of a cluster add up to what it evaporates.
 //
+// Where vapour follows pressure MOVING is given, partly empty throats among them, and
+// throats by themselves are left out: in them nothing flows.
+//
 // STATUS_NOT_CONVERGED if menisci are not found or the balance does not close.
 enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phases,
                              const double *charge, struct loss *loss, int *n_loss,
@@ -58,6 +66,9 @@ enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phas
 // What is remembered from call to call only to be faster is not any more: the next
 // goes on from the menisci alone.
 void liquid_flow_forget(struct liquid_flow *flow, const struct phases *phases);
+
+// From now on vapour follows the pressure of menisci that stay.
+void liquid_flow_respond(struct liquid_flow *flow);
 
 void liquid_flow_free(struct liquid_flow *flow);
 

@@ -167,7 +167,8 @@ with scratch() as folder:
         in_pieces(f"dry, {liquid} liquid", this)
         killed(f"dry, {liquid} liquid", this)
     for liquid, network in [("inviscid", small),
-                            ("immobile", make_network(folder, "middle", 14))]:
+                            ("immobile", make_network(folder, "middle", 14)),
+                            ("viscous", make_network(folder, "few", 6))]:
         killed(f"dry, curved menisci, {liquid} liquid",
                ["dry", "-p", SCENE, "--set", f"liquid={liquid}", "--set", "kelvin=true", network])
     in_pieces("dry, viscous liquid with snapshots",

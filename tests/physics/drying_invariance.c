@@ -115,6 +115,7 @@ static void test_numbering_does_not_matter(void **state)
     }
     check_renumbered(LIQUID_INVISCID, 0.2, 0, true);
     check_renumbered(LIQUID_IMMOBILE, 0.2, 0, true);
+    check_renumbered(LIQUID_VISCOUS, 0.2, 0, true);
 }
 
 // Nodes moved at random, and each throat as wide as its narrower node: most share that

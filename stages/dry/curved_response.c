@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "curved_response.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int throat_of(const struct curved_flow *both, int k)
+{
+    return both->curved->throat[both->body[k]];
+}
+
+static int cluster_of(const struct curved *curved, const struct phases *phases,
+                      const struct share *share)
+{
+    return phases->clusters.of_throat[curved->throat[share->body]];
+}
+
+// Part of the K-th wet node that is of the cluster of SHARE.
+static double part_of_cluster(const struct curved *curved, const struct phases *phases,
+                              int k, const struct share *share)
+{
+    double part = 0;
+    for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
+        if (cluster_of(curved, phases, &curved->share[i]) ==
+            cluster_of(curved, phases, share))
+            part += curved->share[i].part;
+    return part;
+}
+
+// The cluster of which the K-th wet node is alone; a number of its own if of several.
+static int group_of(const struct curved *curved, const struct phases *phases, int k)
+{
+    const struct share *share = &curved->share[curved->offset[k]];
+    return part_of_cluster(curved, phases, k, share) > 1 - 1e-9
+               ? cluster_of(curved, phases, share)
+               : -1 - k;
+}
+
+struct links {
+    int *group;   // (n_site)
+    int *other;   // (n_site) room
+    double *link; // (n_site) room, 0 between calls
+};
+
+// Conductance from the K-th wet node to others and the air: to all in ALL, but to those
+// of its group in APART.
+static void find_degrees(const struct phases *phases, struct links *links, int k,
+                         double *all, double *apart)
+{
+    const struct star_mesh *mesh = &phases->vapour.mesh;
+    const int node = phases->wet[k];
+    const int n = star_mesh_list_links(mesh, node, links->other, links->link);
+    *all = *apart = mesh->air[node];
+    for (int i = 0; i < n; i++) {
+        const int other = links->other[i];
+        *all += links->link[other];
+        if (links->group[other] != links->group[node]) *apart += links->link[other];
+        links->link[other] = 0;
+    }
+}
+
+static void add_falls(struct curved_flow *both, const struct phases *phases,
+                      struct links *links, const int *place)
+{
+    const struct curved *curved = both->curved;
+    for (int k = 0; k < phases->n_wet; k++) {
+        double all, apart;
+        find_degrees(phases, links, k, &all, &apart);
+        for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++) {
+            const struct share *share = &curved->share[i];
+            const int which = place[share->body] - 1;
+            if (which < 0) continue;
+            both->single[which] += share->part * all;
+            both->lumped[which] +=
+                share->part * part_of_cluster(curved, phases, k, share) * apart;
+        }
+    }
+}
+
+void find_falls(struct curved_flow *both, const struct phases *phases)
+{
+    const struct curved *curved = both->curved;
+    const int n_site = phases->vapour.n_site;
+    struct links links = {.group = NEW_ARRAY(int, n_site),
+                          .other = NEW_ARRAY(int, n_site),
+                          .link = NEW_ARRAY(double, n_site)};
+    int *place = NEW_ARRAY(int, curved->n);
+    for (int k = 0; k < both->n; k++) {
+        place[both->body[k]] = k + 1;
+        both->lumped[k] = both->single[k] = 0;
+    }
+    for (int k = 0; k < phases->n_wet; k++)
+        links.group[phases->wet[k]] = group_of(curved, phases, k);
+    add_falls(both, phases, &links, place);
+    free(links.group);
+    free(links.other);
+    free(links.link);
+    free(place);
+}
+
+void set_responses(struct curved_flow *both)
+{
+    struct liquid_flow *flow = both->flow;
+    for (int k = 0; k < both->n; k++) {
+        const int throat = throat_of(both, k);
+        const double slope =
+            both->unit *
+            curved_steepness(both->curved, both->curved->exponent[both->body[k]]);
+        const double alone = slope * both->single[k];
+        const double more = fmax(both->single[k] - both->lumped[k], 0);
+        const double part = alone / (alone + flow->conductance[throat]);
+        flow->response[throat] = slope * (both->lumped[k] + part * more);
+    }
+}
