@@ -39,7 +39,7 @@ static double softness(const struct equilibrium *e)
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
-    return 1e-8 * least;
+    return 1e-9 * least;
 }
 
 struct joint_setup joints_of(const struct equilibrium *e)

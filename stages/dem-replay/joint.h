@@ -66,6 +66,14 @@ void joint_strains(const struct joint *joint, const struct displacement *first,
 struct resistance joint_resistance(const struct joint *joint,
                                    const double strain[STRAINS]);
 
+// The same while Newton's method looks for a solution: whether a contact slips, and
+// which way, is judged as if its shear spring had SHARE of its stiffness (at most 1, as
+// it is) and had pulled with PULL before. A solution is the same [Alart and Curnier
+// 1991]; on the way strains much larger than the spring's own tell less.
+struct resistance joint_softened(const struct joint *joint,
+                                 const double strain[STRAINS], double share,
+                                 const double pull[2]);
+
 // What of STRAIN a displacement of the grain at END makes: the transpose is what the
 // load does to that grain.
 struct displacement joint_arm(const struct joint *joint, int end, int strain);

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "corrections_state.h"
+
+#include "sparse/dense_system.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- what is left of e - B K^-1 r + W q(e) ------------------------------------------
+
+static double bond_across(const struct joint *joint)
+{
+    return joint->is_bonded && !joint->is_gone ? joint->bond_stiffness[STRAIN_ACROSS]
+                                               : 0;
+}
+
+// How stiff what holds the joint is against shear without its contact, of the contact,
+// which can be stiffer by orders of magnitude.
+static double softness(const struct corrections *c, const struct entry *entry)
+{
+    const struct joint *joint = &c->joint[entry->joint];
+    double compliance = 0;
+    for (int k = STRAIN_ACROSS; k < STRAINS / 2; k++)
+        compliance += 0.5 * c->share * compliance_of(c, entry->row[k])[entry->row[k]];
+    const double held = c->tangent[entry->joint][STRAIN_ACROSS] - bond_across(joint);
+    return fmin(1, fmax(1e-4, (1 / compliance - held) / joint->contact_across));
+}
+
+void note_pull(const struct corrections *c, struct entry *entry)
+{
+    const int j = entry->joint;
+    const double bond = bond_across(&c->joint[j]);
+    for (int k = STRAIN_ACROSS; k < STRAINS / 2 && entry->count > k; k++) {
+        const double more = c->strain[entry->row[k]];
+        entry->pull[k - STRAIN_ACROSS] = c->more[entry->row[k]] + entry->load[k] +
+                                         c->tangent[j][k] * more -
+                                         bond * (c->from[j][k] + more);
+    }
+}
+
+void resist_entry(struct corrections *c, struct entry *entry, bool softened)
+{
+    const int j = entry->joint;
+    const double *tangent = c->tangent[j];
+    const double soft = softened && entry->count >= 3 ? softness(c, entry) : 1;
+    double strain[STRAINS];
+    memcpy(strain, c->from[j], sizeof strain);
+    for (int k = 0; k < entry->count; k++)
+        strain[k] += c->strain[entry->row[k]];
+    const struct resistance resistance =
+        joint_softened(&c->joint[j], strain, soft, entry->pull);
+    entry->touch = resistance.contact.touch;
+    for (int k = 0; k < entry->count; k++) {
+        const double more = c->strain[entry->row[k]];
+        double *q = &c->more[entry->row[k]];
+        if (k >= 3) {
+            entry->slope[k][0] = resistance.stiffness[k - 3] - tangent[k];
+            *q = entry->slope[k][0] * more;
+            continue;
+        }
+        for (int l = 0; l < 3; l++)
+            entry->slope[k][l] = resistance.slope[k][l] - (k == l ? tangent[k] : 0);
+        *q = resistance.load[k] - entry->load[k] - tangent[k] * more;
+    }
+    if (softened) note_pull(c, entry);
+}
+
+// Adds W MORE in ROW to SUM; by columns, which are rows too: no sum waits for itself.
+void add_answer(const struct corrections *c, int row, double more, double *restrict sum)
+{
+    const double *restrict compliance = compliance_of(c, row);
+    if (more == 0) return;
+    for (int k = 0; k < c->count; k++)
+        sum[k] += c->share * more * compliance[k];
+}
+
+double find_left(struct corrections *c)
+{
+    double most = 0;
+    for (int k = 0; k < c->count; k++)
+        c->left[k] = c->strain[k] - c->linear[k];
+    c->work += (double)c->count * c->n_acting;
+    for (int k = 0; k < c->count; k++)
+        add_answer(c, k, c->more[k], c->left);
+    for (int k = 0; k < c->count; k++)
+        most = fmax(most, fabs(c->left[k]));
+    return most;
+}
+
+double resist_entries(struct corrections *c, bool softened)
+{
+    for (int k = 0; k < c->n_entry; k++)
+        resist_entry(c, &c->entry[k], softened);
+    return find_left(c);
+}
+
+// ---- Newton's method ----------------------------------------------------------------
+
+static const double *slope_of(const struct corrections *c, int row)
+{
+    return c->entry[c->entry_of[row]].slope[c->strain_of[row]];
+}
+
+// Loads that change with the strains: rows of dq/de that are not 0.
+static void list_acting(struct corrections *c)
+{
+    c->n_acting = 0;
+    for (int row = 0; row < c->count; row++) {
+        const double *slope = slope_of(c, row);
+        const bool is_moment = c->strain_of[row] >= 3;
+        if (slope[0] != 0 || (!is_moment && (slope[1] != 0 || slope[2] != 0)))
+            c->acting[c->n_acting++] = row;
+    }
+}
+
+// The matrix of another step does where little has changed: the same loads act, with
+// about the same slopes.
+static bool is_factored(const struct corrections *c)
+{
+    const double near = 1e-3;
+    if (c->n_acting != c->n_factored) return false;
+    for (int a = 0; a < c->n_acting; a++) {
+        if (c->acting[a] != c->factored[a]) return false;
+        const double *slope = slope_of(c, c->acting[a]), *old = c->factored_slope[a];
+        const int terms = c->strain_of[c->acting[a]] >= 3 ? 1 : 3;
+        double size = 0, apart = 0;
+        for (int k = 0; k < terms; k++) {
+            size = fmax(size, fabs(old[k]));
+            apart = fmax(apart, fabs(slope[k] - old[k]));
+        }
+        if (apart > near * size) return false;
+    }
+    return true;
+}
+
+// 1 + dq/de W
+static void fill_matrix(struct corrections *c)
+{
+    for (int a = 0; a < c->n_acting; a++) {
+        const int row = c->acting[a];
+        const struct entry *entry = &c->entry[c->entry_of[row]];
+        const bool is_moment = c->strain_of[row] >= 3;
+        const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
+        const int *of = is_moment ? &row : entry->row;
+        double *to = c->matrix + (size_t)a * (size_t)c->capacity;
+        memset(to, 0, (size_t)c->n_acting * sizeof *to);
+        for (int k = 0; k < terms; k++) {
+            const double slope = c->share * slope_of(c, row)[k];
+            const double *compliance = compliance_of(c, of[k]);
+            if (slope == 0) continue;
+            for (int b = 0; b < c->n_acting; b++)
+                to[b] += slope * compliance[c->acting[b]];
+        }
+        to[a] += 1;
+    }
+}
+
+static bool factor(struct corrections *c)
+{
+    const double n = c->n_acting;
+    if (is_factored(c)) return true;
+    c->work += n * n * n / 3;
+    fill_matrix(c);
+    c->n_factored = 0;
+    if (!dense_factor(c->n_acting, c->matrix, c->capacity, c->order)) return false;
+    c->n_factored = c->n_acting;
+    memcpy(c->factored, c->acting, (size_t)c->n_acting * sizeof *c->acting);
+    for (int a = 0; a < c->n_acting; a++)
+        memcpy(c->factored_slope[a], slope_of(c, c->acting[a]),
+               sizeof *c->factored_slope);
+    return true;
+}
+
+// How q would change; the strains follow from it.
+static bool find_step(struct corrections *c)
+{
+    list_acting(c);
+    if (!factor(c)) return false;
+    for (int a = 0; a < c->n_acting; a++) {
+        const int row = c->acting[a];
+        const struct entry *entry = &c->entry[c->entry_of[row]];
+        const bool is_moment = c->strain_of[row] >= 3;
+        const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
+        const int *of = is_moment ? &row : entry->row;
+        c->right[a] = 0;
+        for (int k = 0; k < terms; k++)
+            c->right[a] -= slope_of(c, row)[k] * c->left[of[k]];
+    }
+    dense_substitute(c->n_acting, c->matrix, c->capacity, c->order, c->right,
+                     c->answer);
+    for (int row = 0; row < c->count; row++)
+        c->step[row] = -c->left[row];
+    for (int a = 0; a < c->n_acting; a++)
+        add_answer(c, c->acting[a], -c->answer[a], c->step);
+    return true;
+}
+
+// Pulls of springs follow the loads that Newton's method says.
+static void go(struct corrections *c)
+{
+    for (int e = 0; e < c->n_entry; e++) {
+        struct entry *entry = &c->entry[e];
+        const double *tangent = c->tangent[entry->joint];
+        const double bond = bond_across(&c->joint[entry->joint]);
+        for (int k = 1; k < 3 && entry->count >= 3; k++) {
+            entry->pull[k - 1] += tangent[k] * c->step[entry->row[k]];
+            for (int l = 0; l < 3; l++)
+                entry->pull[k - 1] += entry->slope[k][l] * c->step[entry->row[l]];
+            entry->pull[k - 1] -= bond * c->step[entry->row[k]];
+        }
+    }
+    for (int row = 0; row < c->count; row++)
+        c->strain[row] += c->step[row];
+}
+
+// Given up where nothing gets better; nearly found is enough where joints hold hardly
+// anything and numbers end.
+bool settle_together(struct corrections *c, bool softened, double enough)
+{
+    enum { PATIENCE = 6 };
+    double best = INFINITY, most = 0;
+    double left = resist_entries(c, softened);
+    for (int waited = 0; waited < PATIENCE; waited++) {
+        if (!find_step(c)) return false;
+        go(c);
+        left = resist_entries(c, softened);
+        if (left <= enough && resist_entries(c, false) <= enough) return true;
+        if (left < 0.5 * best) {
+            best = left;
+            waited = 0;
+        }
+    }
+    for (int row = 0; row < c->count; row++)
+        most = fmax(most, fabs(c->linear[row]));
+    return resist_entries(c, false) <= fmax(enough, 1e-6 * most);
+}
