@@ -3,8 +3,10 @@
 // 3.3.5, Fig. 3.44], no area lost or won anywhere, and lateral diffusion over stripes
 // that has a closed form.
 #include "dry/boundary_layer.h"
+#include "dry/column_order.h"
 #include "dry/vapour.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "support_lattice.h"
 
@@ -454,7 +456,7 @@ static gsl_vector *solve_at_once(const struct boundary_layer *layer)
     return right;
 }
 
-// Wide layers are eliminated column by column, narrow ones level by level.
+// Wide layers and high ones, eliminated, give what all equations at once do.
 static void test_columns_and_levels_are_eliminated(void **state)
 {
     (void)state;
@@ -481,6 +483,38 @@ static void test_columns_and_levels_are_eliminated(void **state)
     }
 }
 
+// The row of columns in the middle comes last, and without it two halves are left.
+static void test_last_columns_part_the_others(void **state)
+{
+    (void)state;
+    enum { EDGE = 16, COLUMNS = EDGE * EDGE };
+    struct network network = lattice_network(EDGE, EDGE, 1, spacing);
+    struct boundary_layer layer = make(&network, 5, &(struct boundary_form){0});
+    assert_int_equal(layer.n_exposed, COLUMNS);
+    int *order = column_order(&network, &layer);
+    int place[COLUMNS], parent[COLUMNS];
+    for (int i = 0; i < COLUMNS; i++) {
+        place[i] = -1;
+        parent[i] = i;
+    }
+    for (int k = 0; k < COLUMNS; k++) {
+        assert_int_equal(place[order[k]], -1);
+        place[order[k]] = k;
+    }
+    for (int k = 0; k < layer.n_lateral; k++) {
+        const int a = layer.lateral[k][0], b = layer.lateral[k][1];
+        if (place[a] < COLUMNS - EDGE && place[b] < COLUMNS - EDGE)
+            unite_sets(parent, a, b);
+    }
+    int n_part = 0;
+    for (int k = 0; k < COLUMNS - EDGE; k++)
+        n_part += parent[order[k]] == order[k];
+    assert_int_equal(n_part, 2);
+    free(order);
+    boundary_layer_free(&layer);
+    network_free(&network);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -496,6 +530,7 @@ int main(void)
         cmocka_unit_test(test_auxiliary_feet),
         cmocka_unit_test(test_lateral_diffusion_over_stripes),
         cmocka_unit_test(test_lumped_transfer_knows_no_neighbours),
-        cmocka_unit_test(test_columns_and_levels_are_eliminated)};
+        cmocka_unit_test(test_columns_and_levels_are_eliminated),
+        cmocka_unit_test(test_last_columns_part_the_others)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
