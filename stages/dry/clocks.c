@@ -2,7 +2,7 @@
 #include "clocks.h"
 
 #include "basics/memory.h"
-#include "losses.h"
+#include "charges.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,20 +11,6 @@
 // Throats that have this part of their volume left, or less, when another empties would
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
-
-// Sums keep twice the digits of a number, so that all are left when this part is.
-static const double LEAST_PART = 1e-10;
-
-// What a node that is linked to the air charges an account with, of what it evaporates.
-struct charge {
-    double share;
-    int node, clock;
-};
-
-static int owner_of(const struct clocks *clocks, int throat)
-{
-    return clocks->by_throat ? throat : clocks->phases->clusters.of_throat[throat];
-}
 
 // --- who loses ---------------------------------------------------------------------
 
@@ -83,108 +69,6 @@ static void stop_clock(struct clocks *clocks, int k)
     clocks->throat[k] = -1;
 }
 
-// Of the account; a new one has no throat yet.
-static int clock_of(struct clocks *clocks, int owner)
-{
-    if (clocks->clock[owner] >= 0) return clocks->clock[owner];
-    const int k =
-        clocks->n_unused > 0 ? clocks->unused[--clocks->n_unused] : clocks->n++;
-    clocks->clock[owner] = k;
-    clocks->owner[k] = owner;
-    clocks->throat[k] = -1;
-    return k;
-}
-
-static void touch(struct clocks *clocks, int k)
-{
-    if (clocks->is_touched[k]) return;
-    clocks->is_touched[k] = true;
-    clocks->touched[clocks->n_touched++] = k;
-}
-
-// --- charges -----------------------------------------------------------------------
-
-static double amount_of(const struct clocks *clocks, const struct charge *charge)
-{
-    return charge->share * clocks->phases->vapour.mesh.air[charge->node];
-}
-
-static void add_to_sum(struct clocks *clocks, int k, double amount)
-{
-    if (!clocks->has_sum[k]) {
-        clocks->has_sum[k] = true;
-        clocks->sum[k] = (struct compensated){clocks->rate[k], 0};
-        clocks->summed[k] = clocks->rate[k];
-    }
-    compensated_add(&clocks->sum[k], amount);
-    clocks->summed[k] = fmax(clocks->summed[k], compensated_value(clocks->sum[k]));
-}
-
-static void remove_charge(struct clocks *clocks, int place)
-{
-    const int last = --clocks->n_charge;
-    struct charge *charge = &clocks->charge[place];
-    touch(clocks, charge->clock);
-    add_to_sum(clocks, charge->clock, -amount_of(clocks, charge));
-    if (--clocks->charges[charge->clock] == 0) {
-        clocks->sum[charge->clock] = (struct compensated){0};
-        clocks->summed[charge->clock] = 0;
-    }
-    clocks->charge_place[clocks->charge_incidence[last]] = place;
-    clocks->charge_place[clocks->charge_incidence[place]] = -1;
-    *charge = clocks->charge[last];
-    clocks->charge_incidence[place] = clocks->charge_incidence[last];
-}
-
-// To an account that the node charges already, or a new one.
-static void add_charge(struct clocks *clocks, int node, int incidence, double share)
-{
-    const int owner = owner_of(clocks, clocks->phases->incidence.throat[incidence]);
-    const int clock = clock_of(clocks, owner);
-    for (int k = clocks->phases->incidence.offset[node]; k < incidence; k++) {
-        const int place = clocks->charge_place[k];
-        if (place < 0 || clocks->charge[place].clock != clock) continue;
-        clocks->charge[place].share += share;
-        return;
-    }
-    touch(clocks, clock);
-    clocks->charges[clock]++;
-    clocks->charge_place[incidence] = clocks->n_charge;
-    clocks->charge_incidence[clocks->n_charge] = incidence;
-    clocks->charge[clocks->n_charge++] = (struct charge){share, node, clock};
-}
-
-// By the throats that hold liquid now: shares are proportional to their cross-sections.
-static void charge_node(struct clocks *clocks, int node)
-{
-    const struct phases *phases = clocks->phases;
-    const int begin = phases->incidence.offset[node];
-    const int end = phases->incidence.offset[node + 1];
-    double sum = 0;
-    for (int k = begin; k < end; k++) {
-        if (clocks->charge_place[k] >= 0)
-            remove_charge(clocks, clocks->charge_place[k]);
-        sum += liquid_section(phases, phases->incidence.throat[k]);
-    }
-    if (!(vapour_evaporation(&phases->vapour, node) > 0)) return;
-    for (int k = begin; k < end; k++) {
-        const double section = liquid_section(phases, phases->incidence.throat[k]);
-        if (section > 0) add_charge(clocks, node, k, section / sum);
-    }
-    for (int k = begin; k < end; k++) {
-        const int place = clocks->charge_place[k];
-        if (place < 0) continue;
-        const struct charge *charge = &clocks->charge[place];
-        add_to_sum(clocks, charge->clock, amount_of(clocks, charge));
-    }
-}
-
-static void charge_ends(struct clocks *clocks, int throat)
-{
-    for (int end = 0; end < 2; end++)
-        charge_node(clocks, clocks->phases->network->throat_nodes[throat][end]);
-}
-
 // --- rates -------------------------------------------------------------------------
 
 static void settle_all(struct clocks *clocks)
@@ -194,34 +78,6 @@ static void settle_all(struct clocks *clocks)
     for (int k = 0; k < clocks->n; k++)
         clocks->since[k] = 0;
     clocks->now = 0;
-}
-
-static int most_charged(const struct clocks *clocks)
-{
-    int most = 0;
-    for (int k = 1; k < clocks->n; k++)
-        if (clocks->charges[k] > clocks->charges[most]) most = k;
-    return most;
-}
-
-// Of all clocks, from now on: sums of positive numbers, so that nothing is lost. That
-// of the liquid's largest piece, which gets about half of them, in eight parts: each
-// addition waits for the one before it.
-static void add_up(struct clocks *clocks)
-{
-    enum { PARTS = 8 };
-    double part[PARTS] = {0};
-    const int most = most_charged(clocks);
-    settle_all(clocks);
-    memset(clocks->rate, 0, (size_t)clocks->n * sizeof *clocks->rate);
-    for (int k = 0; k < clocks->n_charge; k++) {
-        const int clock = clocks->charge[k].clock;
-        double *sum = clock == most ? &part[k % PARTS] : &clocks->rate[clock];
-        *sum += amount_of(clocks, &clocks->charge[k]);
-    }
-    for (int l = 0; l < PARTS; l++)
-        clocks->rate[most] += part[l];
-    memset(clocks->has_sum, 0, (size_t)clocks->n * sizeof *clocks->has_sum);
 }
 
 // Infinite, or no number, without a rate.
@@ -258,21 +114,10 @@ static void renew_touched(struct clocks *clocks)
             start_clock(clocks, k);
         else
             settle_clock(clocks, k);
-        if (clocks->has_sum[k]) clocks->rate[k] = compensated_value(clocks->sum[k]);
+        charges_set_rate(clocks, k);
         find_end(clocks, k);
     }
     clocks->n_touched = 0;
-}
-
-static bool too_little_is_left(const struct clocks *clocks)
-{
-    for (int l = 0; l < clocks->n_touched; l++) {
-        const int k = clocks->touched[l];
-        if (clocks->has_sum[k] &&
-            compensated_value(clocks->sum[k]) < LEAST_PART * clocks->summed[k])
-            return true;
-    }
-    return false;
 }
 
 // ALL_CHANGED: what each node evaporates.
@@ -280,10 +125,13 @@ static void set_rates(struct clocks *clocks, bool all_changed)
 {
     struct star_mesh *mesh = &clocks->phases->vapour.mesh;
     for (int k = 0; k < mesh->n_linked; k++)
-        charge_node(clocks, mesh->linked[k]);
+        charge_by_node(clocks, mesh->linked[k]);
     mesh->n_linked = 0;
-    const bool all = all_changed || too_little_is_left(clocks);
-    if (all) add_up(clocks);
+    const bool all = all_changed || charges_lack_digits(clocks);
+    if (all) {
+        settle_all(clocks);
+        charges_add_up(clocks);
+    }
     renew_touched(clocks);
     for (int k = 0; all && k < clocks->n; k++)
         find_end(clocks, k);
@@ -322,7 +170,7 @@ struct clocks clocks_make(struct phases *phases, bool by_throat)
         clocks.charge_place[2 * t] = clocks.charge_place[2 * t + 1] = -1;
     }
     for (int k = 0; k < phases->n_wet; k++)
-        charge_node(&clocks, phases->wet[k]);
+        charge_by_node(&clocks, phases->wet[k]);
     phases->vapour.mesh.n_linked = 0;
     set_rates(&clocks, true);
     return clocks;
@@ -358,7 +206,7 @@ void clocks_free(struct clocks *clocks)
 
 double clocks_saturation(const struct clocks *clocks, int throat)
 {
-    const int owner = owner_of(clocks, throat);
+    const int owner = account_of(clocks, throat);
     if (owner < 0) return 0;
     const int k = clocks->clock[owner];
     if (k < 0 || clocks->throat[k] != throat) return clocks->saturation[throat];
@@ -448,13 +296,13 @@ double clocks_advance(struct clocks *clocks)
 static bool empty_throat(struct clocks *clocks, int throat)
 {
     struct phases *phases = clocks->phases;
-    const int k = clocks->clock[owner_of(clocks, throat)];
+    const int k = clocks->clock[account_of(clocks, throat)];
     stop_clock(clocks, k);
-    touch(clocks, k);
+    touch_clock(clocks, k);
     phases_empty_throat(phases, throat);
-    charge_ends(clocks, throat);
+    charge_by_ends(clocks, throat);
     for (int l = 0; l < phases->clusters.n_moved; l++)
-        charge_ends(clocks, phases->clusters.moved[l]);
+        charge_by_ends(clocks, phases->clusters.moved[l]);
     const int32_t *node = phases->network->throat_nodes[throat];
     return phases->liquid_beside[node[0]] == 0 || phases->liquid_beside[node[1]] == 0;
 }
@@ -468,22 +316,6 @@ void clocks_empty_ended(struct clocks *clocks)
 }
 
 // --- state -------------------------------------------------------------------------
-
-static void charges_state(struct clocks *clocks, struct state *state)
-{
-    const struct network *network = clocks->phases->network;
-    const int n_incidence = 2 * network->n_throat;
-    state_integer(state, &clocks->n_charge, 0, n_incidence);
-    for (int k = 0; k < clocks->n_charge; k++) {
-        struct charge *charge = &clocks->charge[k];
-        state_numbers(state, &charge->share, 1);
-        state_integer(state, &charge->node, 0, network->n_node - 1);
-        state_integer(state, &charge->clock, 0, clocks->n - 1);
-    }
-    state_integers(state, clocks->charge_incidence, clocks->n_charge, 0,
-                   n_incidence - 1);
-    state_integers(state, clocks->charge_place, n_incidence, -1, clocks->n_charge - 1);
-}
 
 void clocks_state(struct clocks *clocks, struct state *state)
 {

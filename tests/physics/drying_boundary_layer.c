@@ -456,7 +456,7 @@ static gsl_vector *solve_at_once(const struct boundary_layer *layer)
     return right;
 }
 
-// Wide layers and high ones, eliminated, give what all equations at once do.
+// Wide layers are eliminated column by column, narrow ones level by level.
 static void test_columns_and_levels_are_eliminated(void **state)
 {
     (void)state;
