@@ -155,6 +155,10 @@ static const struct parameter table[] = {
      "run past the stability limit of the aggregate", AT(settings.force_time_step)},
     {"cycles", PARAMETER_INTEGER, "1", "500", BOUND_BETWEEN, 1, 1e12, NULL,
      "time steps at each step of the forces [K 5.2]", AT(settings.cycles)},
+    {"ramp", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 1e12, NULL,
+     "explicit: time steps over which the first load grows, before its cycles; 0: it "
+     "comes at once",
+     AT(settings.ramp)},
     {"tolerance", PARAMETER_NUMBER, "1", "null", BOUND_ABOVE, 0, 0, NULL,
      "then go on until the unbalanced ratio [K 4.20] is below this; null: go on at "
      "once",

@@ -119,12 +119,28 @@ static void take_off(struct run *run)
         free(state[k]);
 }
 
+// Time steps before those that every step of the load has. Where an earlier replay went
+// before, its last load is on already.
+static int64_t ramp(const struct run *run)
+{
+    const bool is_first = run->place.step == 0 && !run->settings->begin;
+    return is_first ? run->settings->ramp : 0;
+}
+
+static void grow(struct run *run)
+{
+    const int64_t next = dem_cycle(run->dem) - run->place.began + 1;
+    for (int i = 0; next < ramp(run) && i < run->packing->n_particle; i++)
+        run->force[i] = scale((double)next / (double)ramp(run), run->force[i]);
+}
+
 // The load of STEP, on the grains as they are.
 static void apply_load(struct run *run, int step)
 {
     const size_t n = (size_t)run->packing->n_particle;
     memcpy(run->force, run->load->force + (size_t)step * n, n * sizeof *run->force);
     if (!is_explicit(run)) return; // equilibria see to it
+    grow(run);
     if (run->settings->support == SUPPORT_FREE) take_off(run);
     dem_set_force(run->dem, run->force);
 }
@@ -175,7 +191,7 @@ static enum status run_on(struct run *run, struct reason *reason)
     enum { LOOK_EVERY = 16 };
     const struct replay_settings *settings = run->settings;
     if (isnan(settings->tolerance) || !is_loaded(run)) return STATUS_OK;
-    const int64_t first = run->place.began + settings->cycles;
+    const int64_t first = run->place.began + ramp(run) + settings->cycles;
     for (;;) {
         const int64_t done = dem_cycle(run->dem) - first;
         const int64_t left = settings->most_cycles - done;
@@ -201,8 +217,14 @@ static int64_t cycles_done(const struct run *run)
 
 static enum status settle_dem(struct run *run, struct reason *reason)
 {
-    const int64_t end = run->place.began + run->settings->cycles;
-    const enum status status = run_cycles(run, end - dem_cycle(run->dem), reason);
+    const int64_t full = run->place.began + ramp(run);
+    enum status status = STATUS_OK;
+    while (!status && dem_cycle(run->dem) < full) {
+        apply_load(run, run->place.step);
+        status = run_cycles(run, 1, reason);
+    }
+    const int64_t left = full + run->settings->cycles - dem_cycle(run->dem);
+    if (!status) status = run_cycles(run, left, reason);
     return status ? status : run_on(run, reason);
 }
 

@@ -45,6 +45,7 @@ struct replay_settings {
     double time_step_safety;
     bool force_time_step;
     int64_t cycles;      // at every step of the load
+    int64_t ramp;        // before them at the first, while the load grows from nothing
     double tolerance;    // on [K 4.20]: go on until below; NAN: the cycles are enough
     int64_t most_cycles; // beyond them at one step; then it has failed
     int n_snapshot;
