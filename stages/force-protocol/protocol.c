@@ -5,6 +5,13 @@
 
 #include <stdlib.h>
 
+// Inlined, which fmax, with its rules for what is not a number, is not: a third of the
+// time of this stage.
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 struct protocol make_protocol(const struct process *process, double *times, int n_time)
 {
     const size_t n_particle = (size_t)process->network->packing.n_particle;
@@ -38,7 +45,7 @@ double largest_force(const struct protocol *protocol, int n_particle)
 {
     double largest = 0;
     for (size_t k = 0; k < (size_t)protocol->n_time * (size_t)n_particle; k++)
-        largest = fmax(largest, norm(protocol->force[k]));
+        largest = larger(largest, norm(protocol->force[k]));
     return largest;
 }
 
@@ -47,7 +54,7 @@ double largest_change(const struct protocol *protocol, int n_particle)
     const size_t n = (size_t)n_particle;
     double largest = 0;
     for (size_t k = n; k < (size_t)protocol->n_time * n; k++)
-        largest = fmax(largest, distance(protocol->force[k], protocol->force[k - n]));
+        largest = larger(largest, distance(protocol->force[k], protocol->force[k - n]));
     return largest;
 }
 
@@ -87,7 +94,8 @@ static double worst_deviation(const struct walk *walk, const struct protocol *pr
     for (int k = 0; k < walk->n_changed; k++) {
         const int i = walk->changed[k];
         const double then = deviation(protocol, n, before, i, walk->former[k]);
-        worst = fmax(worst, fmax(then, deviation(protocol, n, now, i, walk->force[i])));
+        worst =
+            larger(worst, larger(then, deviation(protocol, n, now, i, walk->force[i])));
     }
     return worst;
 }
