@@ -3,16 +3,19 @@
 #
 #     make monte-carlo                      ->  build/runs/monte-carlo/stiff-10x10x20/explicit/
 #     make monte-carlo REALISATIONS=1000 ENGINE=quasi-static
+#     make monte-carlo REALISATIONS=1000 DRYING_INTERVAL=0.001
 #     make monte-carlo MONTE_CARLO_SCENE=samples/stiff-5x5x10.json
 #
-# More realisations keep those that are there: some 11 MB each.
+# More realisations keep those that are there: some 11 MB each, nearly all of it the drying with
+# a step at each event. Recorded at each fall of the saturation by 0.001 they are 3 MB each.
 
 REALISATIONS ?= 10# in each limit; K: 10
 ENGINE ?= explicit
+DRYING_INTERVAL ?=# of saturation, between recorded steps of the drying; none: each event
 MONTE_CARLO_SCENE ?= samples/stiff-10x10x20.json
 
 pipeline_goals += monte-carlo
-monte_carlo_top := $(RUNS)/monte-carlo/$(basename $(notdir $(MONTE_CARLO_SCENE)))
+monte_carlo_top := $(RUNS)/monte-carlo/$(basename $(notdir $(MONTE_CARLO_SCENE)))$(DRYING_INTERVAL:%=-%)
 monte_carlo_folder := $(monte_carlo_top)/$(ENGINE)
 monte_carlo_limits := inviscid immobile
 
@@ -23,7 +26,7 @@ realisation = $(call artifact,$1,stage=realisation version=$(call version_of,for
 
 # Realisation $1 in limit $2.
 define monte_carlo_run
-$(call step,$(monte_carlo_top)/drying/$2-$1.h5,dry,$(DRY),$(MONTE_CARLO_SCENE),liquid=$2 throat_radius.seed=$1,$(monte_carlo_top)/network.h5)
+$(call step,$(monte_carlo_top)/drying/$2-$1.h5,dry,$(DRY),$(MONTE_CARLO_SCENE),liquid=$2 throat_radius.seed=$1 $(DRYING_INTERVAL:%=step_interval=%),$(monte_carlo_top)/network.h5)
 $(call realisation,$(monte_carlo_folder)/$2-$1.h5,$(monte_carlo_top)/drying/$2-$1.h5,$(MONTE_CARLO_SCENE))
 endef
 
