@@ -377,17 +377,33 @@ struct revision {
     int begun, ended;
 };
 
+static double excess(const struct curved *curved, int a)
+{
+    if (!curved->floats[a] || curved->flows[a]) return 0;
+    return curved->potential[a] / curved->own[curved->throat[a]] - 1;
+}
+
+// Those more curved than this cease to float: not all that are too much so, for others
+// follow when the worst have.
+static double most_excess(const struct curved *curved)
+{
+    double worst = 0;
+    for (int a = 0; a < curved->n; a++)
+        worst = fmax(worst, excess(curved, a));
+    return fmax(VERGE, worst / 2);
+}
+
 // Which begin or cease to float; no more than MOST.
 static struct revision revise(struct curved *curved, const struct phases *phases,
                               int most)
 {
     struct revision revision = {0};
+    const double most_curved = most_excess(curved);
     for (int a = 0; a < curved->n && revision.begun + revision.ended < most; a++) {
-        const double own = curved->own[curved->throat[a]];
         if (curved->flows[a]) continue;
-        if (curved->floats[a] && curved->potential[a] > (1 + VERGE) * own) {
+        if (excess(curved, a) > most_curved) {
             curved->floats[a] = false;
-            curved->potential[a] = own;
+            curved->potential[a] = curved->own[curved->throat[a]];
             revision.ended++;
         } else if (!curved->floats[a] && curved->gain[a] < -10 * curved->all_noise &&
                    is_full(curved, phases, a)) {

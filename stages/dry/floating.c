@@ -17,7 +17,7 @@ enum { REFINEMENTS = 4, STALE = 2 };
 
 // A new order costs as much as the changes of some ten throats; by then they have
 // filled the factor.
-enum { MOST_FOLLOWED = 32 };
+enum { MOST_FOLLOWED = 16 };
 
 // What is added to the diagonal of one of the menisci that float, of it: where vapour
 // cannot leave, all could float at any one potential.
