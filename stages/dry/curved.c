@@ -344,7 +344,7 @@ void curved_find_gains(struct curved *curved, const struct phases *phases)
     for (int k = 0; k < phases->n_wet; k++) {
         const int node = phases->wet[k];
         curved->flow[node] = mesh->air[node] * (1 - curved->level[node]);
-        compensated_add(&rate, curved->flow[node]);
+        if (mesh->air[node] > 0) compensated_add(&rate, curved->flow[node]);
     }
     curved->rate = compensated_value(rate);
     star_mesh_add_flows(mesh, curved->level, curved->flow);
@@ -379,8 +379,9 @@ struct revision {
 
 static double excess(const struct curved *curved, int a)
 {
-    if (!curved->floats[a] || curved->flows[a]) return 0;
-    return curved->potential[a] / curved->own[curved->throat[a]] - 1;
+    const double own = curved->own[curved->throat[a]];
+    if (!curved->floats[a] || curved->flows[a] || curved->potential[a] <= own) return 0;
+    return curved->potential[a] / own - 1;
 }
 
 // Those more curved than this cease to float: not all that are too much so, for others

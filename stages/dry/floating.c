@@ -288,10 +288,11 @@ static void add_parts(struct floating *floating, const struct curved *curved, in
 {
     for (int j = curved->offset[k]; j < curved->offset[k + 1]; j++) {
         const int owner = curved->body[curved->share[j].body];
-        if (!floating->has[owner]) continue;
+        const double part = curved->share[j].part * conductance;
+        if (!floating->has[owner] || !(part > 0)) continue;
         const int slot = floating->slot[owner];
         if (floating->x[slot] == 0) add_to_column(column, slot, 0);
-        floating->x[slot] += curved->share[j].part * conductance;
+        floating->x[slot] += part;
     }
 }
 
