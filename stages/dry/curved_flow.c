@@ -18,15 +18,15 @@ static const double AGREED = 1e-12;
 static const double ENOUGH = 10;
 
 // By mixing; in all.
-enum { PATIENT_ROUNDS = 60, MOST_ROUNDS = 300 };
+enum { PATIENT_ROUNDS = 60, MOST_ROUNDS = 200 };
 
 // Part of a potential by which it is changed to see what follows.
 static const double DIFFERENCE = 1e-4;
 
 // In the first revisions all menisci that must stop do, and those begin to move that
 // lack at least this part of what the worst of their cluster does; from then on only
-// the first of them, which always comes to an end (Murty 1974).
-enum { REVISIONS_AT_ONCE = 30, MOST_REVISIONS = 1000 };
+// the first of them (Murty 1974).
+enum { REVISIONS_AT_ONCE = 30, MOST_REVISIONS = 200 };
 static const double BEGINNERS = 0.5;
 
 // From then on one may stay that is more curved than its throat by this part: where
@@ -158,7 +158,7 @@ static enum status find_flow(struct curved_flow *both, const struct phases *phas
 {
     for (int k = 0; k < both->n; k++)
         losses->charge[throat_of(both, k)] = both->curved->gain[both->body[k]];
-    set_responses(both);
+    set_responses(both, phases);
     losses->n = 0;
     const enum status status = liquid_flow_find(both->flow, phases, losses->charge,
                                                 losses->loss, &losses->n, reason);
@@ -201,8 +201,7 @@ static int revise(struct curved_flow *both, const struct phases *phases, double 
             fmax(BEGINNERS * worst[phases->clusters.of_throat[throat]],
                  far * own_exponent(both, throat) / both->unit);
         const bool changes = flow->moving[throat]
-                                 ? throat_is_full(phases, throat) &&
-                                       flow->response[throat] > 0 && found < -noise
+                                 ? throat_is_full(phases, throat) && found < -noise
                                  : found < 0 && -found >= enough;
         flow->moving[throat] ^= changes;
         n += changes;

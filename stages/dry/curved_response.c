@@ -6,6 +6,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+// Of the conductance of its throat: less and the flow settles what evaporates in a few
+// rounds.
+static const double FELT = 1e-2;
+
 int throat_of(const struct curved_flow *both, int k)
 {
     return both->curved->throat[both->body[k]];
@@ -100,17 +104,49 @@ void find_falls(struct curved_flow *both, const struct phases *phases)
     free(place);
 }
 
-void set_responses(struct curved_flow *both)
+// What the K-th evaporates alone rises with its pressure by this.
+static double rise_alone(const struct curved_flow *both, int k, double *slope)
 {
-    struct liquid_flow *flow = both->flow;
+    const struct curved *curved = both->curved;
+    *slope = both->unit * curved_steepness(curved, curved->exponent[both->body[k]]);
+    return *slope * both->single[k];
+}
+
+// Of each cluster, whether a response is needed: none of its menisci moves, or one
+// evaporates so much more with its pressure that the flow is felt.
+static bool *find_responsive(const struct curved_flow *both,
+                             const struct phases *phases)
+{
+    const struct liquid_flow *flow = both->flow;
+    bool *moves = NEW_ARRAY(bool, phases->clusters.n_id);
+    bool *responsive = NEW_ARRAY(bool, phases->clusters.n_id);
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k);
-        const double slope =
-            both->unit *
-            curved_steepness(both->curved, both->curved->exponent[both->body[k]]);
-        const double alone = slope * both->single[k];
+        const int cluster = phases->clusters.of_throat[throat];
+        double slope;
+        moves[cluster] |= flow->moving[throat];
+        responsive[cluster] |=
+            rise_alone(both, k, &slope) > FELT * flow->conductance[throat];
+    }
+    for (int c = 0; c < phases->clusters.n_id; c++)
+        responsive[c] |= !moves[c];
+    free(moves);
+    return responsive;
+}
+
+void set_responses(struct curved_flow *both, const struct phases *phases)
+{
+    struct liquid_flow *flow = both->flow;
+    bool *responsive = find_responsive(both, phases);
+    for (int k = 0; k < both->n; k++) {
+        const int throat = throat_of(both, k);
+        double slope;
+        const double alone = rise_alone(both, k, &slope);
         const double more = fmax(both->single[k] - both->lumped[k], 0);
         const double part = alone / (alone + flow->conductance[throat]);
-        flow->response[throat] = slope * (both->lumped[k] + part * more);
+        flow->response[throat] = responsive[phases->clusters.of_throat[throat]]
+                                     ? slope * (both->lumped[k] + part * more)
+                                     : 0;
     }
+    free(responsive);
 }

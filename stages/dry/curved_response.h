@@ -14,6 +14,6 @@ void find_falls(struct curved_flow *both, const struct phases *phases);
 
 // Of the flow, at the exponents of now: where liquid flows easily menisci rise and fall
 // with their cluster, else alone.
-void set_responses(struct curved_flow *both);
+void set_responses(struct curved_flow *both, const struct phases *phases);
 
 #endif

@@ -55,7 +55,6 @@ void liquid_flow_free(struct liquid_flow *flow)
     free(flow->response);
     free(flow->surplus);
     free(flow->found);
-    free(flow->used);
     free(flow->pressure);
     *flow = (struct liquid_flow){0};
 }
@@ -65,7 +64,6 @@ void liquid_flow_respond(struct liquid_flow *flow)
     flow->response = NEW_ARRAY(double, flow->network->n_throat);
     flow->surplus = NEW_ARRAY(double, flow->network->n_throat);
     flow->found = NEW_ARRAY(double, flow->network->n_throat);
-    flow->used = NEW_ARRAY(double, flow->network->n_throat);
 }
 
 // --- the menisci ---------------------------------------------------------------------
@@ -277,7 +275,7 @@ static void move_reference(struct liquid_flow *flow, const struct piece *piece)
     flow->moving[piece->reference] = true;
 }
 
-// As it is where the vapour responds, and what evaporates then.
+// As they are where the vapour responds, and what evaporates then.
 static void keep_menisci(struct liquid_flow *flow, struct piece *piece)
 {
     const struct flow_solver *solver = flow->solver;
@@ -286,9 +284,22 @@ static void keep_menisci(struct liquid_flow *flow, struct piece *piece)
         const bool responds = !flow->moving[t] && flow->response[t] > 0;
         flow->found[t] = flow->moving[t] ? solver->charge[t] - solver->inflow[t]
                                          : -shortfall(flow, piece, t);
-        flow->used[t] = responds ? solver->inflow[t] : solver->charge[t];
-        piece->evaporation += flow->used[t];
+        piece->evaporation += responds ? solver->inflow[t] : solver->charge[t];
     }
+}
+
+// Whether none of its menisci moves and no vapour gets to or from them.
+static bool is_shut_in(const struct liquid_flow *flow, const struct piece *piece)
+{
+    for (int t = first_meniscus(flow, piece); t >= 0; t = next_throat(flow, t))
+        if (flow->moving[t] || flow->response[t] > 0) return false;
+    return true;
+}
+
+static void keep_as_is(struct liquid_flow *flow, const struct piece *piece)
+{
+    for (int t = first_meniscus(flow, piece); t >= 0; t = next_throat(flow, t))
+        flow->found[t] = flow->surplus[t];
 }
 
 // Where the vapour responds: with menisci as they are given.
@@ -297,6 +308,10 @@ static enum status find_given(struct liquid_flow *flow, struct piece *piece,
 {
     if (piece->n_throat == 1) return STATUS_OK;
     survey(flow, piece);
+    if (is_shut_in(flow, piece)) {
+        keep_as_is(flow, piece);
+        return STATUS_OK;
+    }
     const enum status status = cluster_flow_solve(flow, piece, reason);
     if (status) return status;
     keep_menisci(flow, piece);

@@ -33,7 +33,6 @@ struct liquid_flow {
     double *response; // of one that stays: rise of what evaporates with the pressure
     double *surplus;  // pressure over that at which it moves, where CHARGE evaporates
     double *found;    // what that is then; of one that moves: what it loses
-    double *used;     // what evaporates then
     bool wants_pressures; // where they decide nothing, too
     double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit,
                       // 0 in gas: if they were wanted
