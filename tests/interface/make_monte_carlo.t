@@ -38,4 +38,10 @@ is 'one more runs alone' 'counts.svg immobile-4.h5 immobile.json inviscid-4.h5 i
     "$(study REALISATIONS=4)"
 rm "$where/immobile-1.h5"
 is 'one that is lost is made again' 'immobile-1.h5' "$(study REALISATIONS=4)"
+rows() { build/bin/inspect "$1" | jq '.datasets[] | select(.name == "/history/time").shape[0]'; }
+study DRYING_INTERVAL=0.1 >"$scratch/coarse"
+every=$(rows "$scratch/monte-carlo/tiny/drying/inviscid-1.h5")
+coarse=$(rows "$scratch/monte-carlo/tiny-0.1/drying/inviscid-1.h5")
+is 'dryings recorded at intervals stand apart, with fewer steps' true \
+    "$(jq -n "$coarse > 5 and $coarse < $every / 2")"
 finish
