@@ -169,7 +169,7 @@ static enum outcome find_step(struct equilibrium *e)
 }
 
 // What is marked leaves: its load counts no more, and nothing touches it.
-static void let_go(struct equilibrium *e, const bool *leaves)
+void let_go(struct equilibrium *e, const bool *leaves)
 {
     for (int i = 0; i < e->n; i++) {
         if (!leaves[e->fragments.of[i]] || e->is_gone[i]) continue;

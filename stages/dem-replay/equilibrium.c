@@ -139,8 +139,7 @@ static void record_crack(struct equilibrium *e, struct joint *joint, int mode)
     joint_break(joint, e->strain[joint - e->joint]);
 }
 
-// The most overloaded bond breaks, if one is at its strength. Whether one was.
-static bool break_one(struct equilibrium *e)
+bool break_one(struct equilibrium *e)
 {
     const double unit = e->setup.bond.kind == DEM_CONTACT_BOND // of strengths
                             ? e->stiffness * e->length

@@ -56,9 +56,9 @@ struct equilibrium {
     struct factored *factored;  // (n_joint)
     struct corrections *corrections;
     struct correction *unlike; // (n_joint) that have to be
-    double soft[2]; // against shifts and turns
-    double largest_load; // so far: what is left is measured by it
-    double enough;       // what may be left
+    double soft[2];            // against shifts and turns
+    double largest_load;       // so far: what is left is measured by it
+    double enough;             // what may be left
     int iterations, factors;
     int n_restless; // loads under which not all came to rest
     int restless;   // grain that had most left to balance under the last of them
@@ -84,6 +84,9 @@ struct net_load loads_of(const struct equilibrium *equilibrium,
 // under the next load.
 void balance(struct equilibrium *equilibrium);
 
+// The most overloaded bond breaks, if one is at its strength. Whether one was.
+bool break_one(struct equilibrium *equilibrium);
+
 // Steps on the way [balance.c]: what is left at the trial; a factor as all is there, if
 // there is one; a better trial; the trial becomes the last equilibrium, and the
 // reverse.
@@ -91,6 +94,8 @@ void resist(struct equilibrium *equilibrium);
 double largest_left(const struct equilibrium *equilibrium);
 bool factor(struct equilibrium *equilibrium);
 bool improve(struct equilibrium *equilibrium, bool *is_fresh);
+// Fragments that are marked leave: their load counts no more, and nothing touches them.
+void let_go(struct equilibrium *equilibrium, const bool *leaves);
 void keep_history(struct equilibrium *equilibrium);
 void go_back(struct equilibrium *equilibrium);
 

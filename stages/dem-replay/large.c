@@ -143,10 +143,14 @@ static double furthest_since(const struct equilibrium *e)
     return most;
 }
 
-// Newton's method goes astray before it goes so far.
+// Newton's method goes astray before it goes so far, or where numbers end.
 static bool is_astray(const struct equilibrium *e)
 {
-    return !(furthest_since(e) <= 4 * e->setup.increment);
+    double sum = 0;
+    for (int i = 0; i < e->n; i++)
+        sum += norm(e->left[i].shift) + norm(e->left[i].turn) +
+               norm(e->trial[i].shift) + norm(e->trial[i].turn);
+    return !isfinite(sum) || !(furthest_since(e) <= 4 * e->setup.increment);
 }
 
 bool large_approach(struct equilibrium *e)
@@ -158,6 +162,7 @@ bool large_approach(struct equilibrium *e)
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
     const double well = (e->damping > 0 ? 1 : 1e-3) * e->enough;
     bool is_fresh = e->large->is_stale || e->damping > 0;
+    if (is_astray(e)) return false;
     if (is_fresh && !factor(e)) return false;
     e->large->is_stale = false;
     acceleration_clear(e->large->acceleration);
@@ -207,13 +212,19 @@ static void withhold(struct equilibrium *e)
     memcpy(e->large->withheld, e->left, (size_t)e->n * sizeof *e->left);
 }
 
-// The grain that moves or turns most in the softest mode, found by inverse iteration.
+// The grain that moves or turns most in the mode that is resisted least at the last
+// equilibrium, or by joints alone if that is not positive either, by inverse iteration.
 static int softest_grain(struct equilibrium *e)
 {
     enum { ROUNDS = 8 };
+    const struct displacement none = {{0, 0, 0}, {0, 0, 0}};
     int softest = 0;
+    const double(*tangent)[STRAINS] = (const double(*)[STRAINS])e->tangent;
+    if (!factor(e)) stiffness_factor(e->matrix, tangent, NULL, e->soft);
     for (int i = 0; i < e->n; i++)
-        e->step[i] = (struct displacement){{1, 0.7, 0.4 + i % 3}, {0.3, 0.6, 1}};
+        e->step[i] = e->is_gone[i]
+                         ? none
+                         : (struct displacement){{1, 0.7, 0.4 + i % 3}, {0.3, 0.6, 1}};
     for (int round = 0; round < ROUNDS; round++) {
         stiffness_begin(e->matrix, e->step);
         stiffness_finish(e->matrix, e->step);
@@ -227,19 +238,36 @@ static int softest_grain(struct equilibrium *e)
     return softest;
 }
 
-// Back at the last equilibrium, whose stiffness says what gave way.
-static enum status refuse_end(struct equilibrium *e, double reached,
-                              struct reason *reason)
+static bool let_go_of(struct equilibrium *e, int fragment)
+{
+    if (e->fragments.is_held[fragment]) return false;
+    bool *leaves = NEW_ARRAY(bool, e->n);
+    leaves[fragment] = true;
+    let_go(e, leaves);
+    free(leaves);
+    return true;
+}
+
+// Where the stiffness is not positive, a bond that is at its strength there breaks, or
+// a fragment that nothing holds leaves. Whether there was one: if not, SOFTEST gave
+// way.
+static bool give_way(struct equilibrium *e, double reached, int *softest)
 {
     e->large->share = reached;
     go_back(e);
     resist(e);
-    factor(e);
+    if (break_one(e)) return true;
+    *softest = softest_grain(e);
+    return let_go_of(e, e->fragments.of[*softest]);
+}
+
+static enum status refuse_end(double balanced, int softest, struct reason *reason)
+{
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "equilibrium ends with %.6f of what this load changes: the stiffness "
                   "is no longer positive (buckling, or a snap through), grain %d moves "
                   "most (engine=explicit follows what comes then)",
-                  reached, softest_grain(e));
+                  balanced, softest);
 }
 
 // Where slip and contacts that open leave no equilibrium near the last.
@@ -249,36 +277,67 @@ static void walk_in_time(struct equilibrium *e)
     e->large->is_least = true;
     balance(e);
     large_meet(e);
+    resist(e);
+    large_linearise(e);
     e->large->is_stale = true;
+}
+
+// How far the way is.
+struct way {
+    double reached, increment;
+    double usual;  // increment
+    double before; // of the load, balanced when this began
+};
+
+static struct way begin_way(struct equilibrium *e, double before)
+{
+    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    withhold(e);
+    return (struct way){.increment = 1, .usual = 1, .before = before};
+}
+
+static double balanced(const struct way *way)
+{
+    return way->before + (1 - way->before) * way->reached;
+}
+
+static enum advance try_increment(struct equilibrium *e, struct way *way)
+{
+    struct large *large = e->large;
+    double moved;
+    large->is_least = way->increment <= least_increment;
+    large->share = fmin(1, way->reached + way->increment);
+    const enum advance outcome = advance(e, &moved);
+    large->is_stale = outcome != ADVANCED;
+    if (outcome == ADVANCED) {
+        keep_history(e);
+        way->usual = way->increment;
+        way->reached = large->share;
+        way->increment *= fmin(2, 0.8 / fmax(moved, 0.01));
+    } else if (outcome != MEETS && !large->is_least) {
+        way->increment =
+            fmin(way->increment, 1 - way->reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
+    }
+    return outcome;
 }
 
 enum status large_balance(struct equilibrium *e, struct reason *reason)
 {
-    struct large *large = e->large;
-    double reached = 0, increment = 1, usual = 1;
-    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
-    withhold(e);
-    while (reached < 1) {
-        large->is_least = increment <= least_increment;
-        large->share = fmin(1, reached + increment);
-        double moved;
-        const enum advance outcome = advance(e, &moved);
-        large->is_stale = outcome != ADVANCED;
-        if (outcome == UNSTABLE && large->is_least)
-            return refuse_end(e, reached, reason);
-        if (outcome == NOT_FOUND && increment <= rough_increment * usual) {
+    struct way way = begin_way(e, 0);
+    while (way.reached < 1) {
+        const bool is_rough = way.increment <= rough_increment * way.usual;
+        const enum advance outcome = try_increment(e, &way);
+        e->large->balanced = balanced(&way);
+        if (outcome == NOT_FOUND && is_rough) {
             walk_in_time(e);
-            return STATUS_OK;
+            break;
         }
-        if (outcome == MEETS) continue;
-        if (outcome == ADVANCED) {
-            keep_history(e);
-            usual = increment;
-            reached = large->share;
-            increment *= fmin(2, 0.8 / fmax(moved, 0.01));
-            continue;
-        }
-        increment = fmin(increment, 1 - reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
+        if (outcome != UNSTABLE || !e->large->is_least) continue;
+        int softest;
+        if (!give_way(e, way.reached, &softest))
+            return refuse_end(e->large->balanced, softest, reason);
+        way = begin_way(e, e->large->balanced);
     }
+    e->large->balanced = 1;
     return STATUS_OK;
 }

@@ -20,8 +20,9 @@ struct large {
     struct pair_stiffness *more;      // (n_joint) in the factor
     struct acceleration *acceleration;
     struct vector *searched;       // (n) shifts when grains near each other were sought
-    struct displacement *withheld; // (n) what was not balanced, at the start
+    struct displacement *withheld; // (n) what was not balanced when the way began
     double share;                  // of that let in
+    double balanced;               // of the last load
     bool is_least;                 // no smaller increment is tried
     bool is_stale;                 // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored

@@ -20,7 +20,7 @@ int equilibrium_iterations(const struct equilibrium *e)
 
 double equilibrium_share(const struct equilibrium *e)
 {
-    return e->large ? e->large->share : 1;
+    return e->large ? e->large->balanced : 1;
 }
 
 const bool *equilibrium_is_gone(const struct equilibrium *e)

@@ -4,13 +4,15 @@
 # back; the strength is a force.
 import json
 import os
+import re
+import subprocess
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch
 
 SOFT = "samples/soft-10x5x5.json"
 
@@ -57,4 +59,24 @@ with scratch() as folder:
     shrinkage = stats["shrinkage"]
     ok(0.05 < shrinkage["largest"] < 0.3, "the full force shrinks it by percent", shrinkage)
     ok(abs(shrinkage["spring_back"] - 1) < 2e-3, "and equilibria spring back", shrinkage)
+
+    # A column three grains thick and ten high topples in cycles: its equilibrium ends.
+    column = run("merge-nodes", "-p", SOFT, input=run("tessellate", "-p", SOFT, input=run(
+        "pack", "-p", SOFT, "--set", "counts=[3,3,10]")))
+    forces = run("force-protocol", "-p", SOFT, "--set", "steps=2",
+                 input=run("dry", "-p", SOFT, input=column))
+
+    def refused(*settings):
+        words = [word for s in ("engine=quasi-static", "quasi_static.large_displacements=true",
+                                *settings) for word in ("--set", s)]
+        tried = subprocess.run([f"{BIN}/dem-replay", "-p", SOFT, *words], input=forces,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return tried.returncode, tried.stderr.decode()
+
+    status, message = refused()
+    ok(status == 3 and "buckling" in message and re.search("grain 8[1-9] moves", message),
+       "a column that topples is named, with a grain of its top", message)
+    status, message = refused("support=free")
+    ok(status == 65 and "something must hold the grains" in message,
+       "what nothing holds is refused", message)
 done()
