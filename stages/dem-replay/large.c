@@ -285,7 +285,7 @@ static void walk_in_time(struct equilibrium *e)
 // How far the way is.
 struct way {
     double reached, increment;
-    double usual;  // increment
+    double widest; // increment so far, 0: none
     double before; // of the load, balanced when this began
 };
 
@@ -293,7 +293,7 @@ static struct way begin_way(struct equilibrium *e, double before)
 {
     fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
     withhold(e);
-    return (struct way){.increment = 1, .usual = 1, .before = before};
+    return (struct way){.increment = 1, .before = before};
 }
 
 static double balanced(const struct way *way)
@@ -311,7 +311,7 @@ static enum advance try_increment(struct equilibrium *e, struct way *way)
     large->is_stale = outcome != ADVANCED;
     if (outcome == ADVANCED) {
         keep_history(e);
-        way->usual = way->increment;
+        way->widest = fmax(way->widest, large->share - way->reached);
         way->reached = large->share;
         way->increment *= fmin(2, 0.8 / fmax(moved, 0.01));
     } else if (outcome != MEETS && !large->is_least) {
@@ -325,7 +325,8 @@ enum status large_balance(struct equilibrium *e, struct reason *reason)
 {
     struct way way = begin_way(e, 0);
     while (way.reached < 1) {
-        const bool is_rough = way.increment <= rough_increment * way.usual;
+        const double usual = way.widest > 0 ? way.widest : 1;
+        const bool is_rough = way.increment <= rough_increment * usual;
         const enum advance outcome = try_increment(e, &way);
         e->large->balanced = balanced(&way);
         if (outcome == NOT_FOUND && is_rough) {
