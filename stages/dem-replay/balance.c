@@ -44,11 +44,10 @@ void resist(struct equilibrium *e)
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         e->resistance[j] = joint_resistance(joint, e->strain[j]);
-        for (int end = 0; end < 2; end++)
+        if (!e->large) joint_take_off(joint, e->resistance[j].load, e->left);
+        for (int end = 0; end < 2 && e->large; end++)
             if (joint->grain[end] >= 0)
-                pull(&e->left[joint->grain[end]],
-                     e->large ? large_loads(e, j, end)
-                              : joint_loads(joint, end, e->resistance[j].load));
+                pull(&e->left[joint->grain[end]], large_loads(e, j, end));
     }
     if (e->large)
         for (int i = 0; i < e->n; i++)

@@ -185,10 +185,11 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
                       "(engine=explicit, or stiffer bonds)",
                       i, size_of(e->trial[i]));
     }
-    for (int j = 0; j < e->n_joint; j++)
-        if (!e->joint[j].is_gone &&
-            isnan(norm(joint_loads(&e->joint[j], 0, e->resistance[j].load).shift)))
+    for (int j = 0; j < e->n_joint; j++) {
+        const double *load = e->resistance[j].load;
+        if (!e->joint[j].is_gone && isnan(load[0] + load[1] + load[2]))
             return refuse_numbers(e->joint[j].grain[0], reason);
+    }
     return STATUS_OK;
 }
 

@@ -10,6 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Rows go through the factor side by side, a factor is made of smaller products: that
+// many multiplications of the ones take the time of one of the other.
+static const double row_speed = 2;
+
 struct foresight {
     int n_grain;
     int n_expected; // loads
@@ -221,13 +225,13 @@ static int list_unlike(struct equilibrium *e, int n_lane, int in_lane[LANES])
         if (!(joint->contact_along > 0) || joint->is_gone ||
             corrections_of(e->corrections, j) > 0)
             continue;
-        lanes more[STRAINS];
-        joint_strains_lanes(joint, e->foresight->moved, more);
+        lanes more;
+        joint_lengthen_lanes(joint, e->foresight->moved, &more);
         const double closed_to = joint->overlap - joint->strain[STRAIN_ALONG];
         const bool touched = e->factored[j].touch;
         int unlike = 0;
         for (int l = 0; l < LANES; l++) {
-            const bool is_unlike = l < n_lane && (more[0][l] <= closed_to) != touched;
+            const bool is_unlike = l < n_lane && (more[l] <= closed_to) != touched;
             in_lane[l] += is_unlike;
             unlike += is_unlike;
         }
@@ -304,10 +308,10 @@ static bool factor_first_lane(struct equilibrium *e)
     const struct foresight *f = e->foresight;
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
-        lanes more[STRAINS];
-        joint_strains_lanes(joint, f->moved, more);
+        lanes more;
+        joint_lengthen_lanes(joint, f->moved, &more);
         const bool touches = joint->contact_along > 0 && !joint->is_gone &&
-                             joint->strain[STRAIN_ALONG] + more[0][0] <= joint->overlap;
+                             joint->strain[STRAIN_ALONG] + more[0] <= joint->overlap;
         e->resistance[j].contact.touch = touches ? TOUCH_STICKS : TOUCH_NONE;
     }
     return factor_anew(e);
@@ -318,7 +322,8 @@ static bool factor_first_lane(struct equilibrium *e)
 static int lanes_with_few(const struct equilibrium *e, int count,
                           const int in_lane[LANES])
 {
-    const double most = stiffness_work(e->matrix) / stiffness_numbers(e->matrix);
+    const double most =
+        row_speed * stiffness_work(e->matrix) / stiffness_numbers(e->matrix);
     for (int l = 0; l < count; l++)
         if (in_lane[l] > most) return l;
     return count;
@@ -371,7 +376,7 @@ static int look_ahead(struct equilibrium *e)
     const int count = f->n_expected < LANES ? f->n_expected : LANES;
     if (f->factors != e->factors) settler_forget(f->settler);
     if (e->factors == 0 ||
-        corrections_work(e->corrections) > stiffness_work(e->matrix)) {
+        corrections_work(e->corrections) > row_speed * stiffness_work(e->matrix)) {
         resist(e);
         if (!factor_anew(e)) return 0;
     }

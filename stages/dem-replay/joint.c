@@ -66,6 +66,18 @@ struct displacement joint_loads(const struct joint *joint, int end,
         add(scale(arm, turning), scale(sign, moment))};
 }
 
+void joint_take_off(const struct joint *joint, const double load[STRAINS],
+                    struct displacement *left)
+{
+    for (int end = 0; end < 2; end++) {
+        if (joint->grain[end] < 0) continue;
+        const struct displacement part = joint_loads(joint, end, load);
+        struct displacement *of = &left[joint->grain[end]];
+        of->shift = subtract(of->shift, part.shift);
+        of->turn = subtract(of->turn, part.turn);
+    }
+}
+
 static void add_bond(const struct joint *joint, const double strain[STRAINS],
                      struct resistance *resistance)
 {
@@ -185,6 +197,12 @@ void joint_break(struct joint *joint, const double strain[STRAINS])
     if (joint->overlap - strain[STRAIN_ALONG] >= 0) joint->contact.touch = TOUCH_STICKS;
 }
 
+// In units in which numbers are far from their ends: no need of hypot.
+static double size_of_two(const double a[2])
+{
+    return sqrt(a[0] * a[0] + a[1] * a[1]);
+}
+
 static struct overload point_overload(const struct joint *joint,
                                       const double strain[STRAINS],
                                       double normal_strength, double shear_strength)
@@ -192,8 +210,7 @@ static struct overload point_overload(const struct joint *joint,
     const double *stiffness = joint->bond_stiffness;
     const double tension =
         stiffness[STRAIN_ALONG] * (strain[STRAIN_ALONG] - joint->point_overlap);
-    const double shear = stiffness[STRAIN_ACROSS] *
-                         hypot(strain[STRAIN_ACROSS], strain[STRAIN_ACROSS + 1]);
+    const double shear = stiffness[STRAIN_ACROSS] * size_of_two(strain + STRAIN_ACROSS);
     return (struct overload){tension / normal_strength, shear / shear_strength};
 }
 
@@ -205,10 +222,8 @@ struct overload joint_overload(const struct joint *joint, const double strain[ST
         return point_overload(joint, strain, normal_strength, shear_strength);
     const double *stiffness = joint->bond_stiffness;
     const double radius = joint->bond_radius, area = M_PI * radius * radius;
-    const double bending =
-        stiffness[STRAIN_BEND] * hypot(strain[STRAIN_BEND], strain[STRAIN_BEND + 1]);
-    const double shear = stiffness[STRAIN_ACROSS] *
-                         hypot(strain[STRAIN_ACROSS], strain[STRAIN_ACROSS + 1]);
+    const double bending = stiffness[STRAIN_BEND] * size_of_two(strain + STRAIN_BEND);
+    const double shear = stiffness[STRAIN_ACROSS] * size_of_two(strain + STRAIN_ACROSS);
     const double twisting = stiffness[STRAIN_TWIST] * fabs(strain[STRAIN_TWIST]);
     const double tension = stiffness[STRAIN_ALONG] * strain[STRAIN_ALONG];
     return (struct overload){(tension + 4 * bending / radius) / area / normal_strength,

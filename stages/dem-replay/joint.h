@@ -83,6 +83,10 @@ struct displacement joint_arm(const struct joint *joint, int end, int strain);
 struct displacement joint_loads(const struct joint *joint, int end,
                                 const double load[STRAINS]);
 
+// Takes those off LEFT (n) of both grains.
+void joint_take_off(const struct joint *joint, const double load[STRAINS],
+                    struct displacement *left);
+
 // Stress over strength [K 4.41, 4.42] of an intact bond at STRAIN, of a point force.
 struct overload {
     double normal, shear;

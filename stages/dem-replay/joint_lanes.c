@@ -28,6 +28,17 @@ void joint_strains_lanes(const struct joint *joint, const double *moved,
         strain[STRAIN_TWIST + k] = ALONG(axis[k], turn);
 }
 
+void joint_lengthen_lanes(const struct joint *joint, const double *moved, lanes *strain)
+{
+    const int32_t *grain = joint->grain;
+    const double *i = moved + (long)grain[0] * GRAIN;
+    const double *j = grain[1] < 0 ? unmoved : moved + (long)grain[1] * GRAIN;
+    lanes shift[3];
+    for (int k = 0; k < 3; k++)
+        shift[k] = AT(j, k) - AT(i, k);
+    *strain = ALONG(joint->axis[0], shift);
+}
+
 // Takes LOADS off the grain at END.
 static inline void pull(const struct joint *joint, int end, const lanes load[STRAINS],
                         double *left)

@@ -13,6 +13,8 @@ enum { DEGREES = 6, GRAIN = DEGREES * LANES }; // of freedom of a grain; numbers
 // By how much the joint is strained where the grains MOVED (n * GRAIN).
 void joint_strains_lanes(const struct joint *joint, const double *moved,
                          lanes strain[STRAINS]);
+void joint_lengthen_lanes(const struct joint *joint, const double *moved, // the first
+                          lanes *strain);
 
 // What the joint resists with when it has been strained by MORE than at the last
 // equilibrium, taken off LEFT (n * GRAIN).

@@ -130,8 +130,8 @@ double equilibrium_unbalanced_ratio(const struct equilibrium *e)
         moving++;
     }
     for (int j = 0; j < e->n_joint; j++) {
-        const double force =
-            norm(joint_loads(&e->joint[j], 0, e->resistance[j].load).shift);
+        const double *load = e->resistance[j].load; // along axes that are perpendicular
+        const double force = norm((struct vector){load[0], load[1], load[2]});
         if (!(force > 0)) continue;
         carried += force;
         carrying++;
