@@ -19,6 +19,7 @@ struct foresight {
     int n_expected; // loads
     const struct vector *force;
     int found, used; // lanes that are known, and of them those that were asked for
+    int sight; // lanes to look at: one after a crack, then twice as many each time
     bool has_looked; // since the load, cracks or grains that left changed
     int n_crack, n_gone;
     int factors;               // that there were then
@@ -68,6 +69,7 @@ void foresight_expect(struct foresight *f, int count, const struct vector *force
     f->n_expected = count;
     f->force = force;
     f->found = f->used = 0;
+    f->sight = LANES;
     f->has_looked = false;
 }
 
@@ -85,7 +87,9 @@ void foresight_go_on(struct foresight *f)
     f->n_expected--;
     f->force += f->n_grain;
     f->used++;
-    if (f->used >= f->found) f->has_looked = false;
+    if (f->used < f->found) return;
+    f->has_looked = false;
+    f->sight = 2 * f->sight < LANES ? 2 * f->sight : LANES;
 }
 
 // ---- the last equilibrium, as factored ----------------------------------------------
@@ -373,7 +377,7 @@ static int look(struct equilibrium *e, int count)
 static int look_ahead(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
-    const int count = f->n_expected < LANES ? f->n_expected : LANES;
+    const int count = f->n_expected < f->sight ? f->n_expected : f->sight;
     if (f->factors != e->factors) settler_forget(f->settler);
     if (e->factors == 0 ||
         corrections_work(e->corrections) > row_speed * stiffness_work(e->matrix)) {
@@ -388,7 +392,9 @@ void foresee(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
     if (!f || f->n_expected == 0) return;
-    if (!f->has_looked || f->n_crack != e->n_crack || f->n_gone != e->n_gone) {
+    const bool is_other = f->n_crack != e->n_crack || f->n_gone != e->n_gone;
+    if (!f->has_looked || is_other) {
+        if (is_other) f->sight = 1;
         f->found = look_ahead(e);
         f->used = 0;
         f->has_looked = true;
