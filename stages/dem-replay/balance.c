@@ -117,10 +117,10 @@ static enum outcome include_joints(struct equilibrium *e, const double (*more)[S
     for (int j = 0; j < e->n_joint; j++) {
         enum touch touch = e->resistance[j].contact.touch;
         int strains = strains_unlike(e, j, touch);
-        if (strains == 0 && more) {
+        if (strains == 0) {
             double strain[STRAINS];
             for (int k = 0; k < STRAINS; k++)
-                strain[k] = e->strain[j][k] + more[j][k];
+                strain[k] = e->strain[j][k] + (more ? more[j][k] : 2 * e->grown[j][k]);
             touch = joint_resistance(&e->joint[j], strain).contact.touch;
             strains = strains_unlike(e, j, touch);
         }
@@ -240,7 +240,7 @@ static bool approach(struct equilibrium *e)
     const double well = (e->damping > 0 ? 1 : 1e-3) * e->enough;
     if (largest_left(e) <= well) return true; // foreseen
     bool is_fresh =
-        e->factors == 0 || corrections_work(e->corrections) > stiffness_work(e->matrix);
+        e->factors == 0 || corrections_work(e->corrections) > 4 * stiffness_work(e->matrix);
     if (is_fresh && !factor(e)) return false;
     double before = INFINITY;
     for (int round = 0; round < ROUNDS; round++) {
@@ -257,6 +257,8 @@ void keep_history(struct equilibrium *e)
 {
     memcpy(e->before, e->trial, (size_t)e->n * sizeof *e->before);
     for (int j = 0; j < e->n_joint; j++) {
+        for (int k = 0; k < STRAINS; k++)
+            e->grown[j][k] = e->strain[j][k] - e->joint[j].strain[k];
         memcpy(e->joint[j].strain, e->strain[j], sizeof e->joint[j].strain);
         e->joint[j].contact = e->resistance[j].contact;
         if (e->joint[j].contact.touch == TOUCH_BEGINS)

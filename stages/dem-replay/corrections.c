@@ -73,7 +73,7 @@ static void make_room(struct corrections *c)
                (size_t)c->count * sizeof *compliance);
     free(c->compliance);
     c->compliance = compliance;
-    c->matrix = reallocate(c->matrix, after * after, sizeof *c->matrix);
+    c->matrix = reallocate(c->matrix, after * (after + 16), sizeof *c->matrix);
     c->n_factored = 0;
     int **const whole[] = {&c->entry_of, &c->strain_of, &c->order, &c->acting,
                            &c->factored};

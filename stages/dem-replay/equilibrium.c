@@ -69,6 +69,7 @@ void make_room_for_joints(struct equilibrium *e)
     free_room_for_joints(e);
     e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
     e->more = allocate((size_t)e->n_joint, sizeof *e->more);
+    e->grown = allocate((size_t)e->n_joint, sizeof *e->grown);
     e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
     e->factored = NEW_ARRAY(struct factored, e->n_joint);
     e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
@@ -116,8 +117,9 @@ void equilibrium_free(struct equilibrium *e)
     free_room_for_joints(e);
     large_free(e->large);
     foresight_free(e->foresight);
-    void *const owned[] = {e->joint, e->trial,  e->load, e->dashpots, e->left,
-                           e->step,  e->before, e->rest, e->is_gone,  e->crack};
+    void *const owned[] = {e->joint,   e->trial, e->load,   e->dashpots,
+                           e->left,    e->step,  e->before, e->rest,
+                           e->is_gone, e->crack, e->grown};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);

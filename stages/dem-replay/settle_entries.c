@@ -133,6 +133,12 @@ static bool is_factored(const struct corrections *c)
     return true;
 }
 
+// An odd number of cache lines: columns do not fall on the same few.
+static int stride_of(const struct corrections *c)
+{
+    return ((c->n_acting + 7) / 8 | 1) * 8;
+}
+
 // 1 + dq/de W
 static void fill_matrix(struct corrections *c)
 {
@@ -141,15 +147,17 @@ static void fill_matrix(struct corrections *c)
         const struct entry *entry = &c->entry[c->entry_of[row]];
         const bool is_moment = c->strain_of[row] >= 3;
         const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
-        const int *of = is_moment ? &row : entry->row;
-        double *to = c->matrix + (size_t)a * (size_t)c->capacity;
-        memset(to, 0, (size_t)c->n_acting * sizeof *to);
-        for (int k = 0; k < terms; k++) {
-            const double slope = c->share * slope_of(c, row)[k];
-            const double *compliance = compliance_of(c, of[k]);
-            if (slope == 0) continue;
-            for (int b = 0; b < c->n_acting; b++)
-                to[b] += slope * compliance[c->acting[b]];
+        double slope[3] = {0};
+        const double *of[3];
+        for (int k = 0; k < 3; k++) {
+            of[k] = compliance_of(c, is_moment || k >= terms ? row : entry->row[k]);
+            if (k < terms) slope[k] = c->share * slope_of(c, row)[k];
+        }
+        double *to = c->matrix + (size_t)a * (size_t)stride_of(c);
+        for (int b = 0; b < c->n_acting; b++) {
+            const int column = c->acting[b];
+            to[b] = slope[0] * of[0][column] + slope[1] * of[1][column] +
+                    slope[2] * of[2][column];
         }
         to[a] += 1;
     }
@@ -162,7 +170,7 @@ static bool factor(struct corrections *c)
     c->work += n * n * n / 3;
     fill_matrix(c);
     c->n_factored = 0;
-    if (!dense_factor(c->n_acting, c->matrix, c->capacity, c->order)) return false;
+    if (!dense_factor(c->n_acting, c->matrix, stride_of(c), c->order)) return false;
     c->n_factored = c->n_acting;
     memcpy(c->factored, c->acting, (size_t)c->n_acting * sizeof *c->acting);
     for (int a = 0; a < c->n_acting; a++)
@@ -186,7 +194,7 @@ static bool find_step(struct corrections *c)
         for (int k = 0; k < terms; k++)
             c->right[a] -= slope_of(c, row)[k] * c->left[of[k]];
     }
-    dense_substitute(c->n_acting, c->matrix, c->capacity, c->order, c->right,
+    dense_substitute(c->n_acting, c->matrix, stride_of(c), c->order, c->right,
                      c->answer);
     for (int row = 0; row < c->count; row++)
         c->step[row] = -c->left[row];
@@ -217,7 +225,7 @@ static void go(struct corrections *c)
 // anything and numbers end.
 bool settle_together(struct corrections *c, bool softened, double enough)
 {
-    enum { PATIENCE = 6 };
+    enum { PATIENCE = 4 };
     double best = INFINITY, most = 0;
     double left = resist_entries(c, softened);
     for (int waited = 0; waited < PATIENCE; waited++) {
