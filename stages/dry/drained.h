@@ -17,7 +17,8 @@ struct dried_node {
 };
 
 struct drained {
-    int n_throat;
+    bool by_throat; // a throat is a body of liquid; else a cluster
+    int n_throat;   // that have emptied
     int n_body;
     int *body;  // (n_body) throats or clusters that are others now
     bool *seen; // (n_throat of the network) whether in BODY
@@ -27,7 +28,6 @@ struct drained {
     struct dried_link *link; // (n_link)
     int *other;              // (n_site) room
     double *conductance;     // (n_site) 0 between calls
-    bool by_throat;
 };
 
 struct drained drained_make(int n_throat, int n_site, bool by_throat);
