@@ -160,7 +160,7 @@ static void begin_lanes(struct equilibrium *e)
 
 static void make_room(struct foresight *f, int count)
 {
-    if (count <= f->row_capacity) return;
+    if (f->row && count <= f->row_capacity) return;
     const size_t n = (size_t)(f->row_capacity = 2 * count + 64);
     f->row = reallocate(f->row, n, sizeof *f->row);
     f->touches = reallocate(f->touches, n * LANES, sizeof *f->touches);

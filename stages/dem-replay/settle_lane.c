@@ -45,7 +45,7 @@ void settler_forget(struct settler *s)
 
 static void make_room(struct settler *s, int count)
 {
-    if (count <= s->capacity) return;
+    if (s->matrix && count <= s->capacity) return;
     const size_t n = (size_t)(s->capacity = 2 * count + 64);
     int **const whole[] = {&s->acting, &s->factored};
     for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
