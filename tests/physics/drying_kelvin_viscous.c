@@ -223,10 +223,12 @@ static double largest_distance(const struct network *network, const double *a,
 
 // As FACTOR takes the viscosity to a limit, each throat's time goes there with the
 // first power of it.
-static void check_limit(enum liquid_limit limit, double viscosity, double factor)
+static void check_limit(enum liquid_limit limit, double viscosity, double factor,
+                        double gravity)
 {
     struct network network = make_network((int[]){4, 4, 4}, 0.6);
     struct drying_conditions conditions = kelvin_conditions(limit);
+    conditions.gravity = gravity;
     double *there = times_of(&network, &conditions), before = 0;
     conditions.liquid = LIQUID_VISCOUS;
     for (int k = 0; k < 4; k++) {
@@ -246,13 +248,14 @@ static void check_limit(enum liquid_limit limit, double viscosity, double factor
 static void test_no_viscosity(void **state)
 {
     (void)state;
-    check_limit(LIQUID_INVISCID, 1e-11, 0.1);
+    check_limit(LIQUID_INVISCID, 1e-11, 0.1, 0);
+    check_limit(LIQUID_INVISCID, 1e-11, 0.1, 1e11); // four times capillarity
 }
 
 static void test_all_viscosity(void **state)
 {
     (void)state;
-    check_limit(LIQUID_IMMOBILE, 1e4, 10);
+    check_limit(LIQUID_IMMOBILE, 1e4, 10, 0);
 }
 
 // The exponent goes with the molar mass; so does the rate, and the pressures of the
