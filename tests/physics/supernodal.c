@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "sparse/dense_symmetric.h"
 #include "sparse/dense_system.h"
+#include "sparse/vector_kernels.h"
 
 // clang-format off
 #include <stdarg.h>
@@ -225,6 +226,34 @@ static void dense_systems(void **state)
     assert_false(dense_factor(2, none, 2, order));
 }
 
+// Vectors of four numbers or of eight: the same digits.
+static void vectors_of_any_width(void **state)
+{
+    (void)state;
+    enum { M = 21, COLUMNS = 13, K = 17 };
+    if (!has_wide_vectors()) skip();
+    double a[M * K + 8], sum[2][LANES][LANES] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
+    double work[8 * K];
+    for (int k = 0; k < M * K + 8; k++)
+        a[k] = sin(k * k);
+    const struct vector_kernels *const both[] = {&vector_kernels_narrow,
+                                                 &vector_kernels_wide};
+    for (int wide = 0; wide < 2; wide++) {
+        both[wide]->multiply_transposed(M, COLUMNS, K, a, M, a + 5, M, c[wide], M,
+                                        false, work);
+        both[wide]->add_product_of_eight(K, a, 8, a + 9, sum[wide]);
+    }
+    assert_memory_equal(c[0], c[1], sizeof c[0]);
+    assert_memory_equal(sum[0], sum[1], sizeof sum[0]);
+    for (int i = 0; i < M; i++)
+        for (int j = 0; j < COLUMNS; j++) {
+            double expected = 0;
+            for (int k = 0; k < K; k++)
+                expected += a[k * M + i] * a[5 + k * M + j];
+            assert_true(fabs(c[1][j * M + i] - expected) < 1e-12);
+        }
+}
+
 // The first half of the pivots positive, the rest negative; one that is not is refused.
 static void symmetric_systems(void **state)
 {
@@ -261,6 +290,7 @@ int main(void)
         cmocka_unit_test(halves_make_the_same_products),
         cmocka_unit_test(a_pivot_of_rounding_stays_a_number),
         cmocka_unit_test(lanes_are_answers_each),
+        cmocka_unit_test(vectors_of_any_width),
         cmocka_unit_test(symmetric_systems),
         cmocka_unit_test(dense_systems)};
     cmocka_set_message_output(CM_OUTPUT_TAP);
