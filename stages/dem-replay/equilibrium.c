@@ -56,7 +56,7 @@ struct joint_setup joints_of(const struct equilibrium *e)
 
 static void free_room_for_joints(struct equilibrium *e)
 {
-    void *const of_joints[] = {e->strain,   e->more,       e->tangent,
+    void *const of_joints[] = {e->strain,   e->more,       e->grown, e->tangent,
                                e->factored, e->resistance, e->unlike};
     for (size_t k = 0; k < sizeof of_joints / sizeof *of_joints; k++)
         free(of_joints[k]);
@@ -117,9 +117,8 @@ void equilibrium_free(struct equilibrium *e)
     free_room_for_joints(e);
     large_free(e->large);
     foresight_free(e->foresight);
-    void *const owned[] = {e->joint,   e->trial, e->load,   e->dashpots,
-                           e->left,    e->step,  e->before, e->rest,
-                           e->is_gone, e->crack, e->grown};
+    void *const owned[] = {e->joint, e->trial,  e->load, e->dashpots, e->left,
+                           e->step,  e->before, e->rest, e->is_gone,  e->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(e);
