@@ -107,7 +107,8 @@ static int strains_unlike(const struct equilibrium *e, int j, enum touch touch)
 
 enum outcome { FOUND, TOO_MANY, STUCK };
 
-// Corrects joints that are unlike the factor, here or where the strains MORE lead.
+// Corrects joints that are unlike the factor, here or where the strains MORE lead, or if
+// that is NULL as much again as the last load did, and once more.
 // Whether there are new ones.
 static enum outcome include_joints(struct equilibrium *e, const double (*more)[STRAINS],
                                    bool *is_new)

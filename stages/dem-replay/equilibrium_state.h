@@ -37,7 +37,7 @@ struct equilibrium {
     struct joint *joint;
     double (*strain)[STRAINS];     // (n_joint) of the trial
     double (*more)[STRAINS];       // (n_joint) that a step would add
-    double (*grown)[STRAINS];      // (n_joint) from the last equilibrium but one
+    double (*grown)[STRAINS];      // (n_joint) by the last load or step in time
     struct resistance *resistance; // (n_joint) of the trial
     struct displacement *trial;    // (n) and once found, the equilibrium
     const struct vector *force;    // (n) N, from outside, while one is looked for
