@@ -107,9 +107,9 @@ static int strains_unlike(const struct equilibrium *e, int j, enum touch touch)
 
 enum outcome { FOUND, TOO_MANY, STUCK };
 
-// Corrects joints that are unlike the factor, here or where the strains MORE lead, or if
-// that is NULL as much again as the last load did, and once more.
-// Whether there are new ones.
+// Corrects joints that are unlike the factor, here or where the strains MORE lead, or
+// if that is NULL as much again as the last load did, and once more. Whether there are
+// new ones.
 static enum outcome include_joints(struct equilibrium *e, const double (*more)[STRAINS],
                                    bool *is_new)
 {
@@ -240,8 +240,8 @@ static bool approach(struct equilibrium *e)
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
     const double well = (e->damping > 0 ? 1 : 1e-3) * e->enough;
     if (largest_left(e) <= well) return true; // foreseen
-    bool is_fresh =
-        e->factors == 0 || corrections_work(e->corrections) > 4 * stiffness_work(e->matrix);
+    bool is_fresh = e->factors == 0 ||
+                    corrections_work(e->corrections) > 4 * stiffness_work(e->matrix);
     if (is_fresh && !factor(e)) return false;
     double before = INFINITY;
     for (int round = 0; round < ROUNDS; round++) {

@@ -26,7 +26,8 @@ struct large *large_new(struct equilibrium *e)
             (*of_joints[k])[j] = joint_lie(&e->joint[j]);
     }
     large->more = NEW_ARRAY(struct pair_stiffness, e->n_joint);
-    large->acceleration = acceleration_new(6 * e->n);
+    large->acceleration = anderson_make(6 * e->n);
+    anderson_begin(&large->acceleration, 6 * e->n);
     large->searched = NEW_ARRAY(struct vector, e->n);
     large->withheld = NEW_ARRAY(struct displacement, e->n);
     e->soft[0] *= 1e-3;
@@ -42,7 +43,7 @@ void large_free(struct large *large)
     free(large->before);
     free(large->now);
     free(large->more);
-    acceleration_free(large->acceleration);
+    anderson_free(&large->acceleration);
     free(large->searched);
     free(large->withheld);
     free(large);
@@ -88,7 +89,7 @@ struct displacement large_loads(const struct equilibrium *e, int j, int end)
 void large_linearise(struct equilibrium *e)
 {
     struct large *large = e->large;
-    acceleration_clear(large->acceleration);
+    anderson_begin(&large->acceleration, 6 * e->n);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         const bool twists = joint->is_bonded && joint->bond_stiffness[STRAIN_TWIST] > 0;
@@ -104,9 +105,9 @@ void large_linearise(struct equilibrium *e)
 void large_accelerate(struct equilibrium *e)
 {
     if (e->damping > 0 || corrections_count(e->corrections) > 0)
-        acceleration_clear(e->large->acceleration);
+        anderson_begin(&e->large->acceleration, 6 * e->n);
     else
-        accelerate(e->large->acceleration, &e->step[0].shift.x);
+        anderson_step(&e->large->acceleration, &e->step[0].shift.x);
 }
 
 void large_keep_history(struct equilibrium *e)
@@ -165,7 +166,7 @@ bool large_approach(struct equilibrium *e)
     if (is_astray(e)) return false;
     if (is_fresh && !factor(e)) return false;
     e->large->is_stale = false;
-    acceleration_clear(e->large->acceleration);
+    anderson_begin(&e->large->acceleration, 6 * e->n);
     double before = INFINITY;
     int since = 0, patience = 1; // rounds with one factor
     for (int round = 0; round < ROUNDS; round++) {

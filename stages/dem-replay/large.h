@@ -11,14 +11,14 @@
 #ifndef CRAQUELURE_LARGE_H
 #define CRAQUELURE_LARGE_H
 
-#include "acceleration.h"
 #include "equilibrium.h"
 #include "large_joint.h"
+#include "sparse/anderson.h"
 
 struct large {
     struct lie *start, *before, *now; // (n_joint)
     struct pair_stiffness *more;      // (n_joint) in the factor
-    struct acceleration *acceleration;
+    struct anderson acceleration;     // of steps, for what the factor has not
     struct vector *searched;       // (n) shifts when grains near each other were sought
     struct displacement *withheld; // (n) what was not balanced when the way began
     double share;                  // of that let in

@@ -302,6 +302,16 @@ static enum status newton_step(struct curved_flow *both, const struct phases *ph
     return status;
 }
 
+static void mix(struct curved_flow *both)
+{
+    double *step = both->image;
+    for (int k = 0; k < both->n; k++)
+        step[k] -= both->x[k];
+    anderson_step(&both->anderson, step);
+    for (int k = 0; k < both->n; k++)
+        both->x[k] += step[k];
+}
+
 // For menisci of which it is known which move, but for those that are far from it.
 static enum status find_both(struct curved_flow *both, const struct phases *phases,
                              bool revises, struct losses *losses, struct reason *reason)
@@ -324,7 +334,7 @@ static enum status find_both(struct curved_flow *both, const struct phases *phas
             patience = round + PATIENT_ROUNDS;
         }
         if (round < patience)
-            anderson_step(&both->anderson, both->x, both->image);
+            mix(both);
         else
             status = newton_step(both, phases, losses, reason);
         if (status) return status;

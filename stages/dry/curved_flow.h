@@ -16,8 +16,8 @@
 #ifndef CRAQUELURE_CURVED_FLOW_H
 #define CRAQUELURE_CURVED_FLOW_H
 
-#include "anderson.h"
 #include "curved.h"
+#include "sparse/anderson.h"
 #include "viscous.h"
 
 struct curved_flow {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "anderson.h"
+#include "sparse/anderson.h"
 
 #include "basics/memory.h"
 
@@ -17,7 +17,7 @@ static const double ALIKE = 1e-3;
 struct anderson anderson_make(int most)
 {
     struct anderson anderson = {.last = NEW_ARRAY(double, most),
-                                .last_image = NEW_ARRAY(double, most)};
+                                .sent = NEW_ARRAY(double, most)};
     for (int k = 0; k < ANDERSON_DEPTH; k++) {
         anderson.fall[k] = NEW_ARRAY(double, most);
         anderson.rise[k] = NEW_ARRAY(double, most);
@@ -34,7 +34,7 @@ void anderson_free(struct anderson *anderson)
         free(anderson->base[k]);
     }
     free(anderson->last);
-    free(anderson->last_image);
+    free(anderson->sent);
     *anderson = (struct anderson){0};
 }
 
@@ -65,22 +65,18 @@ static void move_down(struct anderson *anderson)
     anderson->rise[0] = rise;
 }
 
-static void keep(struct anderson *anderson, const double *x, const double *image)
+static void keep(struct anderson *anderson, const double *step)
 {
-    double norm = 0;
-    for (int i = 0; i < anderson->n; i++)
-        norm += (image[i] - x[i]) * (image[i] - x[i]);
-    norm = sqrt(norm);
+    const double norm = sqrt(product(step, step, anderson->n));
     if (norm > LOST * anderson->norm) anderson->n_kept = -1;
     anderson->norm = norm;
     if (anderson->n_kept >= 0) move_down(anderson);
     for (int i = 0; anderson->n_kept >= 0 && i < anderson->n; i++) {
-        anderson->rise[0][i] = image[i] - anderson->last_image[i];
-        anderson->fall[0][i] = anderson->rise[0][i] - (x[i] - anderson->last[i]);
+        anderson->fall[0][i] = step[i] - anderson->last[i];
+        anderson->rise[0][i] = anderson->fall[0][i] + anderson->sent[i];
     }
     if (anderson->n_kept < ANDERSON_DEPTH) anderson->n_kept++;
-    memcpy(anderson->last, x, (size_t)anderson->n * sizeof *x);
-    memcpy(anderson->last_image, image, (size_t)anderson->n * sizeof *x);
+    memcpy(anderson->last, step, (size_t)anderson->n * sizeof *step);
 }
 
 // Gram and Schmidt's, twice for the digits. What remains of the K-th fall, and its
@@ -106,25 +102,23 @@ static bool straighten(struct anderson *anderson, int k, double *r)
     return good;
 }
 
-void anderson_step(struct anderson *anderson, double *x, const double *image)
+void anderson_step(struct anderson *anderson, double *step)
 {
-    keep(anderson, x, image);
+    keep(anderson, step);
     const int n = anderson->n, m = anderson->n_kept;
     double r[ANDERSON_DEPTH][ANDERSON_DEPTH], part[ANDERSON_DEPTH];
     bool good[ANDERSON_DEPTH];
-    for (int i = 0; i < n; i++)
-        x[i] = image[i] - x[i];
     for (int k = 0; k < m; k++) {
         good[k] = straighten(anderson, k, r[k]);
-        part[k] = product(anderson->base[k], x, n);
+        part[k] = product(anderson->base[k], step, n);
     }
-    memcpy(x, image, (size_t)n * sizeof *x);
     for (int k = m - 1; k >= 0; k--) {
         if (!good[k]) continue;
         part[k] /= r[k][k];
         for (int j = 0; j < k; j++)
             part[j] -= part[k] * r[k][j];
         for (int i = 0; i < n; i++)
-            x[i] -= part[k] * anderson->rise[k][i];
+            step[i] -= part[k] * anderson->rise[k][i];
     }
+    memcpy(anderson->sent, step, (size_t)n * sizeof *step);
 }
