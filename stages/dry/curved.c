@@ -28,87 +28,6 @@ static const double SCRATCH = 1e-12;
 // links that conduct a million times what leads to the air.
 static const double ENOUGH = 1e-6;
 
-// The potential -ln(1 - p_v/p_g) falls from a flat meniscus to one at which
-// p_c M / (rho R T) is the EXPONENT, of its fall to the drying air. This form keeps its
-// digits for wide throats.
-struct curvature_law {
-    double over_flat, saturation; // p_g - p_sat, p_sat, Pa
-    double fall;                  // of the potential to the drying air
-    double exponent;              // of a throat 1 m in radius
-    double of_pressure;           // of 1 Pa
-    double steepness;             // rise of the exponent a metre upwards, 1/m
-};
-
-static struct curvature_law find_law(const struct drying_conditions *conditions)
-{
-    const double heat = GAS_CONSTANT * conditions->temperature / conditions->molar_mass;
-    const double over_flat = conditions->gas_pressure - conditions->saturation_pressure;
-    const double tension =
-        2 * conditions->surface_tension * cos(conditions->contact_angle * (M_PI / 180));
-    return (struct curvature_law){
-        .over_flat = over_flat,
-        .saturation = conditions->saturation_pressure,
-        .fall =
-            log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
-                  over_flat),
-        .exponent = tension / (conditions->liquid_density * heat),
-        .of_pressure = 1 / (conditions->liquid_density * heat),
-        .steepness =
-            conditions->liquid == LIQUID_IMMOBILE ? 0 : conditions->gravity / heat};
-}
-
-static double potential_above(const struct curvature_law *law, double exponent)
-{
-    return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->fall;
-}
-
-double curved_exponent(const struct curved *curved)
-{
-    return curved->law->exponent;
-}
-
-double curved_exponent_of_pressure(const struct curved *curved)
-{
-    return curved->law->of_pressure;
-}
-
-double curved_least_exponent(const struct curved *curved)
-{
-    return -log1p(curved->law->over_flat / curved->law->saturation / 2);
-}
-
-double curved_potential(const struct curved *curved, double exponent)
-{
-    return potential_above(curved->law, exponent);
-}
-
-double curved_steepness(const struct curved *curved, double exponent)
-{
-    const struct curvature_law *law = curved->law;
-    const double gas = law->over_flat - law->saturation * expm1(-exponent);
-    return law->saturation * exp(-exponent) / gas / law->fall;
-}
-
-double curved_exponent_at(const struct curved *curved, double potential)
-{
-    const struct curvature_law *law = curved->law;
-    return -log1p(-expm1(potential * law->fall) * law->over_flat / law->saturation);
-}
-
-enum status check_curved(const struct drying_conditions *conditions,
-                         const struct network *network, struct reason *reason)
-{
-    const struct curvature_law law = find_law(conditions);
-    for (int t = 0; conditions->kelvin && t < network->n_throat; t++)
-        if (network->throat_kind[t] == THROAT_NETWORK &&
-            !(potential_above(&law, law.exponent / network->throat_radius[t]) < 1))
-            return refuse(reason, STATUS_BAD_DATA,
-                          "kelvin: the throat of /throats/radius row %d, %g m, never "
-                          "dries: its meniscus has no more vapour than the air",
-                          t, network->throat_radius[t]);
-    return STATUS_OK;
-}
-
 static void find_outside(struct curved *curved, struct phases *phases)
 {
     struct star_mesh *mesh = &phases->vapour.mesh;
@@ -137,7 +56,7 @@ struct curved curved_make(struct phases *phases,
                             .by_throat = conditions->liquid != LIQUID_INVISCID,
                             .own = NEW_ARRAY(double, n),
                             .section = NEW_ARRAY(double, n),
-                            .law = NEW_ARRAY(struct curvature_law, 1),
+                            .law = kelvin_law(conditions),
                             .throat = NEW_ARRAY(int, n),
                             .potential = NEW_ARRAY(double, n),
                             .gain = NEW_ARRAY(double, n),
@@ -159,7 +78,6 @@ struct curved curved_make(struct phases *phases,
                             .noise = NEW_ARRAY(double, n),
                             .level = NEW_ARRAY(double, phases->vapour.n_site),
                             .flow = NEW_ARRAY(double, phases->vapour.n_site)};
-    *curved.law = find_law(conditions);
     curved.floating = floating_make(n, phases->vapour.n_site, curved.by_throat);
     for (int t = 0; t < n; t++)
         curved.section[t] = phases->volume[t] / network->throat_length[t];
@@ -167,8 +85,8 @@ struct curved curved_make(struct phases *phases,
     for (int t = 0; t < n; t++) {
         curved.place[t] = -1;
         if (network->throat_kind[t] == THROAT_NETWORK)
-            curved.own[t] = potential_above(curved.law, curved.law->exponent /
-                                                            network->throat_radius[t]);
+            curved.own[t] = kelvin_potential(
+                &curved.law, curved.law.exponent / network->throat_radius[t]);
     }
     return curved;
 }
@@ -177,7 +95,6 @@ void curved_free(struct curved *curved)
 {
     free(curved->own);
     free(curved->section);
-    free(curved->law);
     free(curved->throat);
     free(curved->potential);
     free(curved->gain);
@@ -222,7 +139,7 @@ static int find_body(struct curved *curved, struct phases *phases, int body)
     curved->flows[place] = curved->by_throat && phases->clusters.gas_parts &&
                            phases->clusters.size[phases->clusters.of_throat[body]] > 1;
     curved->exponent[place] =
-        curved->law->exponent / phases->network->throat_radius[curved->throat[place]];
+        curved->law.exponent / phases->network->throat_radius[curved->throat[place]];
     curved->floats[place] = curved->floated[body] && !curved->flows[place] &&
                             is_full(curved, phases, place);
     curved->potential[place] = curved->floats[place]
@@ -274,13 +191,13 @@ static void list_shares(struct curved *curved, struct phases *phases, int k)
 static double potential_over_middle(const struct curved *curved,
                                     const struct network *network, int node, int place)
 {
-    const struct curvature_law *law = curved->law;
+    const struct kelvin_law *law = &curved->law;
     const int32_t *end = network->throat_nodes[curved->throat[place]];
     const struct vector *at = network->node_position;
     const double height = at[node].z - (at[end[0]].z + at[end[1]].z) / 2;
     const double exponent = curved->exponent[place];
-    return potential_above(law, exponent + law->steepness * height) -
-           potential_above(law, exponent);
+    return kelvin_potential(law, exponent + law->steepness * height) -
+           kelvin_potential(law, exponent);
 }
 
 // By throats, ascending.
@@ -310,7 +227,7 @@ static void raise_nodes(struct curved *curved, const struct phases *phases)
     for (int k = 0; k < phases->n_wet; k++) {
         curved->raised[k] = 0;
         for (int i = curved->offset[k];
-             curved->law->steepness != 0 && i < curved->offset[k + 1]; i++)
+             curved->law.steepness != 0 && i < curved->offset[k + 1]; i++)
             curved->raised[k] +=
                 curved->share[i].part * potential_over_middle(curved, phases->network,
                                                               phases->wet[k],

@@ -18,10 +18,10 @@
 #define CRAQUELURE_CURVED_H
 
 #include "conditions.h"
+#include "kelvin_law.h"
 #include "losses.h"
 #include "phases.h"
 
-struct curvature_law;
 struct floating;
 
 struct share {
@@ -35,7 +35,7 @@ struct curved {
     double *own;     // (n_throat) potential above its meniscus: 0 flat, 1 as in the air
     double rate;     // into the air, scaled
     double residual; // largest so far of the balances, of that rate
-    struct curvature_law *law;
+    struct kelvin_law law;
     struct floating *floating;
     bool *floated;      // (n_throat) by throat or cluster: did, when last found
     double *floated_at; // (n_throat) its potential then
@@ -67,11 +67,6 @@ struct curved {
 struct curved curved_make(struct phases *phases,
                           const struct drying_conditions *conditions);
 
-// STATUS_BAD_DATA with the throat whose meniscus has no more vapour than the air: it
-// never dries.
-enum status check_curved(const struct drying_conditions *conditions,
-                         const struct network *network, struct reason *reason);
-
 // What each body loses, or takes up (negative), with PHASES as they are, by throats.
 // LOSSES come in ascending throats.
 //
@@ -95,18 +90,6 @@ enum status curved_find_others(struct curved *curved, const struct phases *phase
                                struct reason *reason);
 enum status curved_end(struct curved *curved, const struct phases *phases,
                        struct losses *losses, struct reason *reason);
-
-// p_c M / (rho R T) of a throat 1 m in radius, and of a p_c of 1 Pa.
-double curved_exponent(const struct curved *curved);
-double curved_exponent_of_pressure(const struct curved *curved);
-
-// At which half of the gas beside saturated vapour would be vapour: below 0, bulging.
-double curved_least_exponent(const struct curved *curved);
-
-// Above a meniscus, how it rises with the exponent, and at which exponent it is so.
-double curved_potential(const struct curved *curved, double exponent);
-double curved_steepness(const struct curved *curved, double exponent);
-double curved_exponent_at(const struct curved *curved, double potential);
 
 // What the bodies evaporate at their potentials.
 void curved_find_gains(struct curved *curved, const struct phases *phases);

@@ -46,8 +46,7 @@ struct curved_flow curved_flow_make(struct curved *curved, struct liquid_flow *f
                                .flow = flow,
                                .surplus = NEW_ARRAY(double, n),
                                .waited = NEW_ARRAY(bool, n),
-                               .unit = curved_exponent_of_pressure(curved) *
-                                       flow->menisci.pressure,
+                               .unit = curved->law.of_pressure * flow->menisci.pressure,
                                .body = NEW_ARRAY(int, n),
                                .x = NEW_ARRAY(double, n),
                                .image = NEW_ARRAY(double, n),
@@ -84,7 +83,7 @@ void curved_flow_state(struct curved_flow *both, struct state *state)
 
 static double own_exponent(const struct curved_flow *both, int throat)
 {
-    return curved_exponent(both->curved) / both->flow->network->throat_radius[throat];
+    return both->curved->law.exponent / both->flow->network->throat_radius[throat];
 }
 
 // Those in throats partly empty move, those that are new, and else as they did.
@@ -96,9 +95,9 @@ static void list_menisci(struct curved_flow *both, struct phases *phases)
         const int throat = curved->throat[a];
         if (!curved->flows[a]) continue;
         both->body[both->n] = a;
-        both->x[both->n++] =
-            curved_potential(curved, own_exponent(both, throat) -
-                                         both->unit * fmax(both->surplus[throat], 0));
+        both->x[both->n++] = kelvin_potential(
+            &curved->law,
+            own_exponent(both, throat) - both->unit * fmax(both->surplus[throat], 0));
         both->flow->moving[throat] |=
             both->surplus[throat] < 0 || !throat_is_full(phases, throat);
     }
@@ -125,15 +124,17 @@ static void begin_lone(struct curved_flow *both, struct phases *phases)
 static void set_potentials(struct curved_flow *both)
 {
     struct curved *curved = both->curved;
-    const double flattest = curved_potential(curved, curved_least_exponent(curved));
+    const double flattest =
+        kelvin_potential(&curved->law, kelvin_least_exponent(&curved->law));
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k), a = both->body[k];
         const double own = own_exponent(both, throat);
-        const double most = curved_potential(curved, 2 * own);
+        const double most = kelvin_potential(&curved->law, 2 * own);
         const bool moves = both->flow->moving[throat];
         both->x[k] = fmin(fmax(both->x[k], flattest), most);
-        curved->exponent[a] = moves ? own : curved_exponent_at(curved, both->x[k]);
-        curved->potential[a] = moves ? curved_potential(curved, own) : both->x[k];
+        curved->exponent[a] =
+            moves ? own : kelvin_exponent_at(&curved->law, both->x[k]);
+        curved->potential[a] = moves ? kelvin_potential(&curved->law, own) : both->x[k];
         both->x[k] = curved->potential[a];
         both->flow->surplus[throat] = (own - curved->exponent[a]) / both->unit;
     }
@@ -146,7 +147,7 @@ static double potential_found(const struct curved_flow *both, int k)
     const int throat = throat_of(both, k);
     if (flow->moving[throat]) return both->x[k];
     const double slope =
-        curved_steepness(both->curved, both->curved->exponent[both->body[k]]);
+        kelvin_slope(&both->curved->law, both->curved->exponent[both->body[k]]);
     return both->x[k] -
            slope * both->unit * (flow->found[throat] - flow->surplus[throat]);
 }

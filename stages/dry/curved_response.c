@@ -108,7 +108,7 @@ void find_falls(struct curved_flow *both, const struct phases *phases)
 static double rise_alone(const struct curved_flow *both, int k, double *slope)
 {
     const struct curved *curved = both->curved;
-    *slope = both->unit * curved_steepness(curved, curved->exponent[both->body[k]]);
+    *slope = both->unit * kelvin_slope(&curved->law, curved->exponent[both->body[k]]);
     return *slope * both->single[k];
 }
 

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kelvin_law.h"
+
+#include <math.h>
+
+struct kelvin_law kelvin_law(const struct drying_conditions *conditions)
+{
+    const double heat = GAS_CONSTANT * conditions->temperature / conditions->molar_mass;
+    const double over_flat = conditions->gas_pressure - conditions->saturation_pressure;
+    const double tension =
+        2 * conditions->surface_tension * cos(conditions->contact_angle * (M_PI / 180));
+    return (struct kelvin_law){
+        .over_flat = over_flat,
+        .saturation = conditions->saturation_pressure,
+        .fall =
+            log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
+                  over_flat),
+        .exponent = tension / (conditions->liquid_density * heat),
+        .of_pressure = 1 / (conditions->liquid_density * heat),
+        .steepness =
+            conditions->liquid == LIQUID_IMMOBILE ? 0 : conditions->gravity / heat};
+}
+
+// This form keeps its digits for wide throats.
+double kelvin_potential(const struct kelvin_law *law, double exponent)
+{
+    return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->fall;
+}
+
+double kelvin_slope(const struct kelvin_law *law, double exponent)
+{
+    const double gas = law->over_flat - law->saturation * expm1(-exponent);
+    return law->saturation * exp(-exponent) / gas / law->fall;
+}
+
+double kelvin_exponent_at(const struct kelvin_law *law, double potential)
+{
+    return -log1p(-expm1(potential * law->fall) * law->over_flat / law->saturation);
+}
+
+double kelvin_least_exponent(const struct kelvin_law *law)
+{
+    return -log1p(law->over_flat / law->saturation / 2);
+}
+
+enum status check_kelvin(const struct drying_conditions *conditions,
+                         const struct network *network, struct reason *reason)
+{
+    const struct kelvin_law law = kelvin_law(conditions);
+    for (int t = 0; conditions->kelvin && t < network->n_throat; t++)
+        if (network->throat_kind[t] == THROAT_NETWORK &&
+            !(kelvin_potential(&law, law.exponent / network->throat_radius[t]) < 1))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "kelvin: the throat of /throats/radius row %d, %g m, never "
+                          "dries: its meniscus has no more vapour than the air",
+                          t, network->throat_radius[t]);
+    return STATUS_OK;
+}
