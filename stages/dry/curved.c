@@ -357,8 +357,8 @@ static void balance(struct curved *curved, struct losses *losses)
         if (losses->loss[k].rate > losses->loss[largest].rate) largest = k;
     }
     if (losses->n > 0) losses->loss[largest].rate += compensated_value(rest);
-    curved->residual =
-        fmax(curved->residual, fabs(compensated_value(rest)) / curved->rate);
+    const double residual = fabs(compensated_value(rest)) / curved->rate;
+    if (!(residual <= curved->residual)) curved->residual = residual;
 }
 
 static enum status find_potentials(struct curved *curved, const struct phases *phases,
@@ -428,8 +428,17 @@ enum status curved_end(struct curved *curved, const struct phases *phases,
     if (curved->residual <= ENOUGH) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: what %d menisci evaporate is %.3g off what goes into the "
-                  "air, of that; needed is %g",
-                  curved->n, curved->residual, ENOUGH);
+                  "air, of that; needed is %g; the widest are driven by %.2g of what "
+                  "flat ones would be",
+                  curved->n, curved->residual, ENOUGH, curved_drive(curved));
+}
+
+double curved_drive(const struct curved *curved)
+{
+    double least = INFINITY;
+    for (int a = 0; a < curved->n; a++)
+        least = fmin(least, curved->potential[a]);
+    return 1 - least;
 }
 
 enum status curved_find(struct curved *curved, struct phases *phases,

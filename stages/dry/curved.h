@@ -91,6 +91,10 @@ enum status curved_find_others(struct curved *curved, const struct phases *phase
 enum status curved_end(struct curved *curved, const struct phases *phases,
                        struct losses *losses, struct reason *reason);
 
+// What drives vapour from the widest meniscus into the air, of what would from a flat
+// one.
+double curved_drive(const struct curved *curved);
+
 // What the bodies evaporate at their potentials.
 void curved_find_gains(struct curved *curved, const struct phases *phases);
 

@@ -120,7 +120,8 @@ static void begin_lone(struct curved_flow *both, struct phases *phases)
 }
 
 // On the way menisci may bulge, but not so far that the gas would be all vapour, or be
-// more curved than their throats can hold, but not so that it would be dry.
+// more curved than their throats can hold, but not so that it would be dry (where
+// vapour rounds to none, neither).
 static void set_potentials(struct curved_flow *both)
 {
     struct curved *curved = both->curved;
@@ -133,7 +134,7 @@ static void set_potentials(struct curved_flow *both)
         const bool moves = both->flow->moving[throat];
         both->x[k] = fmin(fmax(both->x[k], flattest), most);
         curved->exponent[a] =
-            moves ? own : kelvin_exponent_at(&curved->law, both->x[k]);
+            moves ? own : fmin(kelvin_exponent_at(&curved->law, both->x[k]), 2 * own);
         curved->potential[a] = moves ? kelvin_potential(&curved->law, own) : both->x[k];
         both->x[k] = curved->potential[a];
         both->flow->surplus[throat] = (own - curved->exponent[a]) / both->unit;
@@ -326,6 +327,7 @@ static enum status find_both(struct curved_flow *both, const struct phases *phas
         enum status status = find_image(both, phases, losses, reason);
         if (status) return status;
         apart = disagreement(both);
+        if (!isfinite(apart)) break;
         const double enough = round < patience ? 1 : ENOUGH;
         if (apart <= enough * agreement(both)) return STATUS_OK;
         both->rounds++;
@@ -340,10 +342,12 @@ static enum status find_both(struct curved_flow *both, const struct phases *phas
             status = newton_step(both, phases, losses, reason);
         if (status) return status;
     }
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "kelvin: after %d rounds what %d menisci evaporate is %.3g off what "
-                  "flows to them, of the rate into the air",
-                  MOST_ROUNDS, both->n, apart / curved->rate);
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "kelvin: what %d menisci evaporate is %.3g off what flows to them, of "
+        "the rate into the air; the widest are driven by %.2g of what flat "
+        "ones would be",
+        both->n, apart / curved->rate, curved_drive(curved));
 }
 
 // A full throat that loses no more than the rate is agreed to loses nothing.
