@@ -200,6 +200,21 @@ with scratch() as folder:
                                    and "1/drying" not in name),
        "another run is made anew", end.stderr.decode())
 
+    # What is not of such a run is not touched, and what cannot be meant is not run.
+    def refusal(status, word, folder, portions, *settings):
+        end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), portions, *settings, at(f"{folder}/course.tsv")],
+                             env=os.environ | {"BIN": BIN}, capture_output=True, text=True)
+        return (end.returncode, end.stderr.count("\n"), word in end.stderr) == (status, 1, True)
+
+    os.makedirs(at("other/7"))
+    with open(at("other/7/precious"), "w", encoding="utf-8"):
+        pass
+    refused = [refusal(64, "portions", "none", word) for word in ("0", "0+0", "3+", "+3", "-1", "1+x")]
+    refused += [refusal(64, word, "none", "2", word) for word in ("demreplay.cycles=2", "dry=3")]
+    refused += [refusal(73, "other/7", "other", "2")]
+    ok(all(refused) and os.path.exists(at("other/7/precious")) and not os.path.exists(at("none")),
+       "refused in a line, and nothing lost", refused)
+
     still = {"engine": "quasi-static"}
     loop("equilibria", "samples/stiff-5x5x10.json",
          {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 30}, "dem-replay": still}, False)
