@@ -137,5 +137,8 @@ double equilibrium_unbalanced_ratio(const struct equilibrium *e)
         carrying++;
     }
     if (!(left > 0)) return 0;
+    // Of loads that are gone there may be rounding left on grains and in joints alike.
+    const double nothing = e->setup.tolerance * e->largest_load;
+    if (largest_left(e) <= nothing && carried <= carrying * nothing) return 0;
     return carrying > 0 ? left / moving / (carried / carrying) : 1; // all is unbalanced
 }

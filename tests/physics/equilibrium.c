@@ -178,6 +178,28 @@ static void forces_balance(void **state)
     packing_free(&packing);
 }
 
+// What rounding leaves when the load is gone is not measured by what it leaves in
+// joints.
+static void nothing_is_settled(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    const struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct equilibrium *equilibrium = make(&setup);
+    struct vector force[BLOCK];
+    load_block(force, 1e-9);
+    find(equilibrium, force);
+    const double loaded = equilibrium_unbalanced_ratio(equilibrium);
+    assert_true(loaded > 0 && loaded < 1e-8);
+    load_block(force, 0);
+    find(equilibrium, force);
+    assert_true(equilibrium_unbalanced_ratio(equilibrium) == 0);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
 // Of bonds in a row the one at its strength breaks, and no other: what it held leaves.
 static void one_bond_breaks(void **state)
 {
@@ -400,6 +422,7 @@ int main(void)
         cmocka_unit_test(a_row_as_its_hinges_say),
         cmocka_unit_test(a_block_as_the_discrete_elements),
         cmocka_unit_test(forces_balance),
+        cmocka_unit_test(nothing_is_settled),
         cmocka_unit_test(the_whole_balances),
         cmocka_unit_test(a_turned_block_answers_turned),
         cmocka_unit_test(one_bond_breaks),
