@@ -356,6 +356,10 @@ static enum status repeat_earlier(struct run *run, struct reason *reason)
 
 static enum status go_on_from_earlier(struct run *run, struct reason *reason)
 {
+    if (is_explicit(run) == saved_by_equilibria(run->settings->begin))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "was kept by engine=%s, which alone can go on from it",
+                      is_explicit(run) ? "quasi-static" : "explicit");
     if (!is_explicit(run)) return repeat_earlier(run, reason);
     const struct array_list *engine = run->settings->begin;
     const enum status status =

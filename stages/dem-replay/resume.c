@@ -124,6 +124,11 @@ struct array_list save_loads(const struct array_list *earlier, const struct load
 
 // ---- in -----------------------------------------------------------------------------
 
+bool saved_by_equilibria(const struct array_list *list)
+{
+    return dem_find_array(list->array, list->count, loads_name) != NULL;
+}
+
 const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,
                                  struct reason *reason)

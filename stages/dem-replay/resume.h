@@ -22,6 +22,9 @@ struct array_list save_response(const struct response *response,
 struct array_list save_loads(const struct array_list *earlier, const struct load *load,
                              const struct packing *packing);
 
+// Whether it was kept by equilibria (save_loads), not by cycles.
+bool saved_by_equilibria(const struct array_list *list);
+
 // (*n_load * n_particle) N, of such a LIST, which owns them; NULL with the reason.
 const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,

@@ -124,7 +124,9 @@ with scratch() as folder:
             ("of other grains", ["--set", "friction=0.1", "--set", "support=wall", at("late"),
                                  at("response-early")], b"this scene has"),
             ("by the other engine", ["--set", "bond.kind=parallel", "--set", "engine=quasi-static",
-                                     at("late"), at("response-early")], b"load_force: must be")]:
+                                     at("late"), at("response-early")], b"was kept by engine=explicit"),
+            ("cycles from equilibria", ["--set", "bond.kind=parallel", at("late"), at("early-still")],
+             b"was kept by engine=quasi-static")]:
         refused = subprocess.run([f"{BIN}/dem-replay", "-p", SOFT, *words], capture_output=True)
         ok(refused.returncode == 65 and says in refused.stderr, f"refused: {title}", refused.stderr.decode())
 
