@@ -23,7 +23,8 @@ const struct parameter dry_table[] = {
     {"viscosity", PARAMETER_NUMBER, "m2 s-1", "1e-6", BOUND_ABOVE, 0, 0, NULL,
      "kinematic, of viscous liquid [K Table 3.1]", AT(conditions.viscosity)},
     {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
-     "of the liquid; of no effect in inviscid liquid without gravity [K Table 3.1]",
+     "of the liquid; of no effect in inviscid liquid without gravity or kelvin [K "
+     "Table 3.1]",
      AT(conditions.surface_tension)},
     {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
      "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) / r",
