@@ -10,6 +10,16 @@
 // print throats, seconds, throats a second and what rounding leaves of the balances
 // (and write saturation, time and rate of each step to the file STEPS); or throats,
 // seconds, throats invaded, and those when gas first reaches the far side.
+//
+//     bench_dry shifts NX NY NZ inviscid|immobile EVERY
+//
+// prints throats and, of each EVERY-th event where it changes the vapour: in the mean,
+// how many nodes evaporate, how many of these evaporate otherwise by more than 1e-6
+// afterwards, and how many would have to be told of it if smaller changes were put off
+// until they are 1e-6 together.
+#include "dry/boundary_layer.h"
+#include "dry/clocks.h"
+#include "dry/conditions.h"
 #include "dry/drying.h"
 #include "network/invasion.h"
 
@@ -151,18 +161,83 @@ static int invade_lattice(const int n[3], bool trapping)
     return status;
 }
 
+static void begin_drying(const struct network *network,
+                         const struct drying_conditions *c, struct phases *phases)
+{
+    const struct drying_scale scale = drying_scale(network, c);
+    const struct phases_form form = {.length = scale.length,
+                                     .gas_parts = c->liquid != LIQUID_IMMOBILE};
+    struct boundary_layer layer;
+    struct reason reason;
+    if (boundary_layers_make(network, c->open_walls, scale.length, scale.boundary_layer,
+                             &(struct boundary_form){.layers = 0}, &layer, &reason) ||
+        phases_make(network, c->open_walls, &form, layer, phases, &reason)) {
+        fprintf(stderr, "bench_dry: %s\n", reason.text);
+        exit(STATUS_INTERNAL);
+    }
+}
+
+struct shifts {
+    double evaporating, changed, told;
+    int n_event;
+};
+
+static void count_shifts(const struct phases *phases, const double *before,
+                         struct shifts *shifts)
+{
+    for (int k = 0; k < phases->n_wet; k++) {
+        const int node = phases->wet[k];
+        const double now = vapour_evaporation(&phases->vapour, node);
+        if (!(now > 0 && before[node] > 0)) continue;
+        const double shift = fabs(now / before[node] - 1);
+        shifts->evaporating++;
+        shifts->changed += shift > 1e-6;
+        shifts->told += fmin(1, shift / 1e-6);
+    }
+    shifts->n_event++;
+}
+
+static int follow_shifts(const int n[3], const struct drying_conditions c, int every)
+{
+    struct network network = lattice(n);
+    struct phases phases;
+    begin_drying(&network, &c, &phases);
+    struct clocks clocks = clocks_make(&phases, c.liquid == LIQUID_IMMOBILE);
+    double *before = NEW_ARRAY(double, network.n_node);
+    struct shifts shifts = {0};
+    for (int event = 0; phases.n_full > 0; event++) {
+        const double rate = vapour_rate(&phases.vapour);
+        for (int k = 0; event % every == 0 && k < phases.n_wet; k++)
+            before[phases.wet[k]] = vapour_evaporation(&phases.vapour, phases.wet[k]);
+        if (clocks_advance(&clocks) < 0) break;
+        clocks_empty_ended(&clocks);
+        if (event % every == 0 && vapour_rate(&phases.vapour) != rate)
+            count_shifts(&phases, before, &shifts);
+    }
+    printf("%d %.0f %.0f %.0f\n", network.n_throat, shifts.evaporating / shifts.n_event,
+           shifts.changed / shifts.n_event, shifts.told / shifts.n_event);
+    free(before);
+    clocks_free(&clocks);
+    phases_free(&phases);
+    network_free(&network);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     if (argc < 6) {
         fprintf(stderr, "bench_dry dry NX NY NZ inviscid|immobile [TOLERANCE [STEPS]]\n"
                         "bench_dry kelvin NX NY NZ inviscid|immobile LOWERED [STEPS]\n"
-                        "bench_dry invade NX NY NZ pure|trapping\n");
+                        "bench_dry invade NX NY NZ pure|trapping\n"
+                        "bench_dry shifts NX NY NZ inviscid|immobile EVERY\n");
         return STATUS_USAGE;
     }
     const int n[3] = {atoi(argv[2]), atoi(argv[3]), atoi(argv[4])};
     if (strcmp(argv[1], "invade") == 0)
         return invade_lattice(n, strcmp(argv[5], "trapping") == 0);
     const double number = argc > 6 ? strtod(argv[6], NULL) : 0;
+    if (strcmp(argv[1], "shifts") == 0)
+        return follow_shifts(n, conditions(argv[5], 0), number >= 1 ? (int)number : 1);
     if (strcmp(argv[1], "kelvin") == 0)
         return dry(n, with_kelvin(argv[5], number), argc > 7 ? argv[7] : NULL);
     return dry(n, conditions(argv[5], number), argc > 7 ? argv[7] : NULL);

@@ -3,15 +3,7 @@
 // quasi_static.large_displacements) against chains integrated here, the Euler load of a
 // chain in closed form, turned scenes, energy, and discrete elements brought to rest.
 #include "dem-replay/equilibrium_state.h"
-#include "dem_scene.h"
-
-static const double bond_stiffness = 8e14; // N/m3
-static const double radius_fraction = 0.5858;
-
-static double bond_area(void)
-{
-    return M_PI * pow(radius_fraction * RADIUS, 2);
-}
+#include "equilibrium_scene.h"
 
 static double bending_stiffness(void) // k^n I
 {
@@ -19,34 +11,14 @@ static double bending_stiffness(void) // k^n I
 }
 
 // Without contacts, so that rows resist alike pushed and pulled.
-static struct equilibrium_setup setup_of(const struct packing *packing,
-                                         const uint8_t *fixed)
+static struct equilibrium_setup row_setup(const struct packing *packing,
+                                          const uint8_t *fixed)
 {
-    return (struct equilibrium_setup){.packing = packing,
-                                      .fixed = fixed,
-                                      .bond = {.normal_stiffness = bond_stiffness,
-                                               .shear_stiffness = bond_stiffness,
-                                               .normal_strength = INFINITY,
-                                               .shear_strength = INFINITY,
-                                               .radius_fraction = radius_fraction},
-                                      .tolerance = 1e-10,
-                                      .most_iterations = 40,
-                                      .large_displacements = true,
-                                      .increment = 0.02};
-}
-
-static struct equilibrium *make(const struct equilibrium_setup *setup)
-{
-    struct equilibrium *equilibrium;
-    struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
-    return equilibrium;
-}
-
-static void find(struct equilibrium *equilibrium, const struct vector *force)
-{
-    struct reason reason = {""};
-    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+    struct equilibrium_setup setup = setup_of(packing, fixed);
+    setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
+    setup.large_displacements = true;
+    setup.increment = 0.02;
+    return setup;
 }
 
 // ---- a row bent far -----------------------------------------------------------------
@@ -168,7 +140,7 @@ static double row_error(double force, double angle, double increment)
     const struct row row = bent_row(force, angle, 400);
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct equilibrium_setup setup = row_setup(&packing, fixed);
     setup.increment = increment;
     struct equilibrium *equilibrium = make(&setup);
     struct vector pull[ROW] = {{0, 0, 0}}, moved[ROW];
@@ -222,7 +194,7 @@ static void a_row_buckles(void **state)
     (void)state;
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
-    const struct equilibrium_setup setup = setup_of(&packing, fixed);
+    const struct equilibrium_setup setup = row_setup(&packing, fixed);
     struct equilibrium *equilibrium = make(&setup);
     const double load = buckling_load();
     struct vector push[ROW] = {{0, 0, 0}};
@@ -240,26 +212,14 @@ static void a_row_buckles(void **state)
 
 // ---- beside discrete elements -------------------------------------------------------
 
-enum { SIDE = 3, HIGH = 4, BLOCK = SIDE * SIDE * HIGH };
-
-// Squeezed from the sides, pulled up unevenly and twisted, SIZE N at most.
-static void load_block(struct vector force[BLOCK], double size)
+// As load_block, and twisted.
+static void twist_block(struct vector force[BLOCK], double size)
 {
     for (int i = 0; i < BLOCK; i++) {
         const int x = i % SIDE - 1, y = i / SIDE % SIDE - 1;
         force[i] = (struct vector){size * (-x - 0.5 * y), size * (0.3 * x - 0.7 * y),
                                    0.1 * size * (1 + (i * 7) % 5)};
     }
-}
-
-static double apart(const struct vector *a, const struct vector *b)
-{
-    double most = 0, size = 0;
-    for (int i = 0; i < BLOCK; i++) {
-        most = fmax(most, distance(a[i], b[i]));
-        size = fmax(size, norm(a[i]));
-    }
-    return most / size;
 }
 
 static double largest_turn(const struct equilibrium *equilibrium)
@@ -270,16 +230,10 @@ static double largest_turn(const struct equilibrium *equilibrium)
     return most;
 }
 
-static void hold_bottom(uint8_t fixed[BLOCK])
-{
-    for (int i = 0; i < BLOCK; i++)
-        fixed[i] = i < SIDE * SIDE;
-}
-
 static struct equilibrium_setup block_setup(const struct packing *packing,
                                             const uint8_t *fixed)
 {
-    struct equilibrium_setup setup = setup_of(packing, fixed);
+    struct equilibrium_setup setup = row_setup(packing, fixed);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
     return setup;
 }
@@ -321,7 +275,7 @@ static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
                            int steps, struct vector still[BLOCK])
 {
     struct vector full[BLOCK];
-    load_block(full, size);
+    twist_block(full, size);
     grow_to_rest(setup, full, steps, still);
 }
 
@@ -341,7 +295,7 @@ static void a_block_as_the_discrete_elements(void **state)
     for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
         struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
         struct equilibrium *equilibrium = make(&setup);
-        load_block(force, run[k].size);
+        twist_block(force, run[k].size);
         find(equilibrium, force);
         equilibrium_displacements(equilibrium, moved);
         assert_true(fabs(largest_turn(equilibrium) / run[k].turn - 1) < 0.01);
@@ -368,7 +322,7 @@ static void contact_bonds_as_the_discrete_elements(void **state)
     setup.bond.kind = DEM_CONTACT_BOND;
     struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
     cycles_to_rest(&setup, 2e-9, 4000, still);
-    load_block(force, 2e-9);
+    twist_block(force, 2e-9);
     for (int k = 0; k < 4; k++) {
         setup.rolling = k % 2 ? 1e-5 : 1e-3;
         setup.large_displacements = k < 2;
@@ -399,7 +353,7 @@ static void grains_that_come_to_touch(void **state)
         add(packing.position[LONG - 1], (struct vector){0.3 * RADIUS, 2.5 * RADIUS, 0});
     packing.upper.y += 3 * RADIUS;
     const uint8_t fixed[N] = {[0] = 1, [LONG] = 1};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct equilibrium_setup setup = row_setup(&packing, fixed);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
     setup.increment = 0.005;
     struct equilibrium *equilibrium = make(&setup);
@@ -442,7 +396,7 @@ static void find_block(const struct packing *packing, bool is_turned, double fri
     struct equilibrium *equilibrium = make(&setup);
     struct vector force[BLOCK];
     for (int step = 1; step <= 4; step++) {
-        load_block(force, step * 3e-7);
+        twist_block(force, step * 3e-7);
         for (int i = 0; i < BLOCK && is_turned; i++)
             force[i] = turned(force[i]);
         find(equilibrium, force);
@@ -493,11 +447,11 @@ static double work_not_stored(int steps, double *energy)
     uint8_t fixed[BLOCK];
     hold_bottom(fixed);
     struct equilibrium_setup setup =
-        setup_of(&packing, fixed); // bonds alone are smooth
+        row_setup(&packing, fixed); // bonds alone are smooth
     setup.increment = 0.1;
     struct equilibrium *equilibrium = make(&setup);
     struct vector full[BLOCK], force[BLOCK], moved[BLOCK];
-    load_block(full, 1.2e-6);
+    twist_block(full, 1.2e-6);
     double work = 0;
     for (int step = 1; step <= steps; step++) {
         for (int i = 0; i < BLOCK; i++)
