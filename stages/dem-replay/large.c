@@ -249,17 +249,17 @@ static bool let_go_of(struct equilibrium *e, int fragment)
     return true;
 }
 
-// Where the stiffness is not positive, a bond that is at its strength there breaks, or
-// a fragment that nothing holds leaves. Whether there was one: if not, SOFTEST gave
-// way.
+// Where the stiffness is not positive, a fragment that nothing holds leaves if it is
+// what gives way, or else a bond that is at its strength there breaks. Whether there
+// was one: if not, SOFTEST gave way. In this order: a loose grain would else break one
+// bond after the other, none of which had been relieved by the last.
 static bool give_way(struct equilibrium *e, double reached, int *softest)
 {
     e->large->share = reached;
     go_back(e);
     resist(e);
-    if (break_one(e)) return true;
     *softest = softest_grain(e);
-    return let_go_of(e, e->fragments.of[*softest]);
+    return let_go_of(e, e->fragments.of[*softest]) || break_one(e);
 }
 
 static enum status refuse_end(double balanced, int softest, struct reason *reason)

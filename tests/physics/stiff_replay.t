@@ -98,4 +98,12 @@ with scratch() as folder:
     share = lambda stats: stats["cracks"]["normal"] / stats["cracks"]["total"]
     ok(share(weak) > share(strong), "normal cracks gain on shear cracks as bonds weaken, as K",
        f"{share(weak)} {share(strong)}")
+
+    # Without friction grains that have come loose slip away, and take no bonds along.
+    small, large = (h5py.File(replay("immobile", 1, "engine=quasi-static", "friction=0",
+                                     f"quasi_static.large_displacements={word}"))["summary"].attrs
+                    for word in ("false", "true"))
+    ok(small["gone"] == 0 and large["gone"] <= 40 and large["cracks"] < 1.5 * small["cracks"],
+       "equilibria on the geometry as it is: loose grains leave, the aggregate stays whole",
+       (small["cracks"], large["gone"], large["cracks"]))
 done()
