@@ -19,13 +19,6 @@ static const double spacing = 1e-7;
 static const enum liquid_limit limits[] = {LIQUID_INVISCID, LIQUID_IMMOBILE,
                                            LIQUID_VISCOUS};
 
-static struct drying_conditions kelvin_conditions(enum liquid_limit liquid)
-{
-    struct drying_conditions conditions = kharaghani_conditions(liquid);
-    conditions.kelvin = true;
-    return conditions;
-}
-
 // kg/s through a unit of area over length, from a meniscus of that radius into the air.
 static double drive(const struct drying_conditions *conditions, double radius)
 {
@@ -194,11 +187,7 @@ static struct drying_history dry_pair(const struct pair *pair, enum liquid_limit
 {
     struct drying_conditions conditions = kelvin_conditions(liquid);
     conditions.start = pair->start;
-    struct drying_history history;
-    struct reason reason = {""};
-    if (dry_network(&pair->network, &conditions, NULL, &history, &reason))
-        fail_msg("%s", reason.text);
-    return history;
+    return dry_or_fail(&pair->network, &conditions);
 }
 
 static void free_pair(struct pair *pair)
@@ -292,16 +281,6 @@ static void test_gravity(void **state)
     network_free(&network);
 }
 
-static struct drying_history dry(const struct network *network,
-                                 const struct drying_conditions *conditions)
-{
-    struct drying_history history;
-    struct reason reason = {""};
-    if (dry_network(network, conditions, NULL, &history, &reason))
-        fail_msg("%s", reason.text);
-    return history;
-}
-
 // How far each throat that has filled again had emptied: not by rounding.
 static void check_refills(const struct drying_history *history, int n_throat)
 {
@@ -332,7 +311,7 @@ static void check_condensation(enum liquid_limit liquid)
     struct network network = lattice_network(5, 5, 6, spacing);
     randomise_radii(&network, spacing, 0.9, 12);
     const struct drying_conditions conditions = kelvin_conditions(liquid);
-    struct drying_history history = dry(&network, &conditions);
+    struct drying_history history = dry_or_fail(&network, &conditions);
     assert_true(fabs(history.evaporated / history.initial_liquid - 1) < 1e-12);
     assert_true(history.vapour_residual < 1e-9);
     assert_true(history.saturation[history.n_step - 1] == 0);
@@ -387,7 +366,7 @@ static void test_no_tension_is_no_effect(void **state)
         double late[2];
         for (int k = 0; k < 2; k++) {
             conditions.surface_tension = k == 0 ? 1e-9 : 1e-6;
-            struct drying_history with = dry(&network, &conditions);
+            struct drying_history with = dry_or_fail(&network, &conditions);
             if (k == 0) check_same_order(&with, &without);
             late[k] = with.time[with.n_step - 1] / without.time[without.n_step - 1] - 1;
             drying_history_free(&with);
@@ -409,11 +388,11 @@ static void test_unit_of_length_does_not_matter(void **state)
         struct network network = lattice_network(4, 4, 5, spacing);
         randomise_radii(&network, spacing, 0.9, 17);
         struct drying_conditions conditions = kelvin_conditions(limits[l]);
-        struct drying_history small = dry(&network, &conditions);
+        struct drying_history small = dry_or_fail(&network, &conditions);
         enlarge(&network, factor);
         conditions.mass_transfer /= factor;
         conditions.surface_tension *= factor;
-        struct drying_history large = dry(&network, &conditions);
+        struct drying_history large = dry_or_fail(&network, &conditions);
         assert_int_equal(small.n_step, large.n_step);
         for (int k = 0; k < small.n_step; k++) {
             assert_true(large.time[k] == small.time[k] * factor * factor);

@@ -19,23 +19,6 @@
 
 static const double spacing = 1e-7;
 
-static struct drying_conditions kelvin_conditions(enum liquid_limit liquid)
-{
-    struct drying_conditions conditions = kharaghani_conditions(liquid);
-    conditions.kelvin = true;
-    return conditions;
-}
-
-static struct drying_history dry(const struct network *network,
-                                 const struct drying_conditions *conditions)
-{
-    struct drying_history history;
-    struct reason reason = {""};
-    if (dry_network(network, conditions, NULL, &history, &reason))
-        fail_msg("%s", reason.text);
-    return history;
-}
-
 // p_c M / (rho R T) of a capillary pressure.
 static double exponent(const struct drying_conditions *conditions, double pressure)
 {
@@ -147,7 +130,7 @@ static void test_pair_at_first(void **state)
     (void)state;
     for (int k = -4; k <= 0; k++) {
         struct pair pair = make_pair(middle_viscosity * pow(10, k));
-        struct drying_history history = dry(&pair.network, &pair.conditions);
+        struct drying_history history = dry_or_fail(&pair.network, &pair.conditions);
         const double flat =
             pair.area * 2 *
             drive(&pair.conditions, suction(&pair.conditions, pair.radius[0]));
@@ -174,7 +157,7 @@ static void test_pair_in_time(void **state)
     exact *= pair.conditions.liquid_density * throat_volume(&pair.network, pair.wide);
     for (int k = 3; k < 9; k++) {
         pair.conditions.saturation_step = pow(2, -k);
-        struct drying_history history = dry(&pair.network, &pair.conditions);
+        struct drying_history history = dry_or_fail(&pair.network, &pair.conditions);
         assert_int_equal(history.event_throat[0], pair.wide);
         const double off = history.event_time[0] / exact - 1;
         assert_true(fabs(off) > 1e-7);
@@ -204,7 +187,7 @@ static struct network make_network(const int n[3], double spread)
 static double *times_of(const struct network *network,
                         const struct drying_conditions *conditions)
 {
-    struct drying_history history = dry(network, conditions);
+    struct drying_history history = dry_or_fail(network, conditions);
     double *time = NEW_ARRAY(double, network->n_throat);
     for (int k = 0; k < history.n_event; k++)
         time[history.event_throat[k]] =
@@ -293,7 +276,7 @@ static void test_balances(void **state)
     for (int decade = -12; decade <= 6; decade += 3) {
         struct drying_conditions conditions = kelvin_conditions(LIQUID_VISCOUS);
         conditions.viscosity = pow(10, decade);
-        struct drying_history history = dry(&network, &conditions);
+        struct drying_history history = dry_or_fail(&network, &conditions);
         assert_true(fabs(history.evaporated / history.initial_liquid - 1) < 1e-12);
         assert_true(history.vapour_residual < 1e-11 && history.liquid_residual < 1e-11);
         assert_true(history.saturation[history.n_step - 1] == 0);
@@ -325,7 +308,7 @@ static void test_equilibrium(void **state)
     for (int k = 0; k < 4; k++) {
         const double less = pow(10, -2 - 2 * k);
         conditions.air_vapour_pressure = humid * (1 - less);
-        struct drying_history history = dry(&network, &conditions);
+        struct drying_history history = dry_or_fail(&network, &conditions);
         assert_true(k == 0 || fabs(before / history.rate[0] / 100 - 1) < 1e-2);
         assert_true(fabs(history.evaporated / history.initial_liquid - 1) < 1e-12);
         before = history.rate[0];
@@ -377,12 +360,12 @@ static void test_unit_of_length_does_not_matter(void **state)
     const double factor = 0x1p30;
     struct network network = make_network((int[]){4, 4, 4}, 0.9);
     struct drying_conditions conditions = kelvin_conditions(LIQUID_VISCOUS);
-    struct drying_history small = dry(&network, &conditions);
+    struct drying_history small = dry_or_fail(&network, &conditions);
     enlarge(&network, factor);
     conditions.mass_transfer /= factor;
     conditions.surface_tension *= factor;
     conditions.viscosity *= factor * factor;
-    struct drying_history large = dry(&network, &conditions);
+    struct drying_history large = dry_or_fail(&network, &conditions);
     assert_int_equal(small.n_step, large.n_step);
     for (int k = 0; k < small.n_step; k++) {
         assert_true(large.time[k] == small.time[k] * factor * factor);

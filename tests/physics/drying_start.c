@@ -25,10 +25,7 @@ static struct drying_history dry_from(const struct network *network,
 {
     struct drying_conditions from = *conditions;
     from.start = start;
-    struct drying_history history;
-    struct reason reason = {""};
-    if (dry_network(network, &from, NULL, &history, &reason))
-        fail_msg("%s", reason.text);
+    struct drying_history history = dry_or_fail(network, &from);
     assert_true(fabs(history.evaporated / history.initial_liquid - 1) < 1e-12);
     assert_true(history.vapour_residual < 1e-12);
     assert_true(history.saturation[history.n_step - 1] == 0);

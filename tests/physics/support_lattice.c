@@ -175,6 +175,13 @@ struct drying_conditions kharaghani_conditions(enum liquid_limit liquid)
                                       .first_period_rate_fraction = 0.9};
 }
 
+struct drying_conditions kelvin_conditions(enum liquid_limit liquid)
+{
+    struct drying_conditions conditions = kharaghani_conditions(liquid);
+    conditions.kelvin = true;
+    return conditions;
+}
+
 // Every throat that takes part goes from 1 to 0, never up but in viscous liquid, in the
 // changes and the events.
 static void check_changes(const struct network *network,
@@ -217,14 +224,21 @@ static void check_changes(const struct network *network,
     free(saturation);
 }
 
-struct drying_history dry_and_check(const struct network *network,
-                                    const struct drying_conditions *conditions)
+struct drying_history dry_or_fail(const struct network *network,
+                                  const struct drying_conditions *conditions)
 {
     struct drying_history history;
     struct reason reason = {""};
     const enum status status =
         dry_network(network, conditions, NULL, &history, &reason);
     if (status) fail_msg("%s", reason.text);
+    return history;
+}
+
+struct drying_history dry_and_check(const struct network *network,
+                                    const struct drying_conditions *conditions)
+{
+    struct drying_history history = dry_or_fail(network, conditions);
     int n = 0;
     double liquid = 0;
     for (int t = 0; t < network->n_throat; t++)

@@ -26,11 +26,17 @@ int lattice_throat(const struct network *network, int node, int axis);
 
 // The conditions of [K Table 3.1] and 5.4, z upper open.
 struct drying_conditions kharaghani_conditions(enum liquid_limit liquid);
+// And with the Kelvin effect.
+struct drying_conditions kelvin_conditions(enum liquid_limit liquid);
 
 // Evenly distributed in [0,1); advances STATE (splitmix64).
 double next_random(uint64_t *state);
 
-// Dries NETWORK and checks what holds for every run: balances, bounds, order, the end.
+// Dries NETWORK, or the test fails.
+struct drying_history dry_or_fail(const struct network *network,
+                                  const struct drying_conditions *conditions);
+
+// The same, and checks what holds for every run: balances, bounds, order, the end.
 struct drying_history dry_and_check(const struct network *network,
                                     const struct drying_conditions *conditions);
 
