@@ -59,7 +59,7 @@ static struct network lattice(const int n[3])
                               .throat_radius = NEW_ARRAY(double, most),
                               .throat_length = NEW_ARRAY(double, most),
                               .throat_kind = NEW_ARRAY(uint8_t, most)};
-    network.packing.upper = (struct vector){n[0] - 1, n[1] - 1, n[2] - 1};
+    network.packing.upper = (struct vector){n[0] - 1, n[1] > 1 ? n[1] - 1 : 1, n[2] - 1};
     uint64_t random = 1;
     for (int node = 0; node < n_node; node++) {
         const int at[3] = {node % n[0], node / n[0] % n[1], node / n[0] / n[1]};
