@@ -237,7 +237,7 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 .PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
-	bench-viscous bench-flow bench-dry bench-replay \
+	bench-viscous bench-flow bench-dry bench-replay speed-vs-error \
 	sanitize check-c
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -271,6 +271,8 @@ bench-replay: all $(BENCHES) ## error of both engines of the replay against time
 	@tests/bench/replay
 bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (ten minutes)
 	@tests/bench/dry
+speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minutes)
+	@tests/bench/speed-vs-error
 bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
 	@tests/bench/network
 bench-flow: all ## measure time and memory of the flow, next to Yade
