@@ -238,7 +238,7 @@ static bool approach(struct equilibrium *e)
     resist(e);
     e->enough = e->setup.tolerance * e->largest_load;
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
-    const double well = (e->damping > 0 ? 1 : 1e-3) * e->enough;
+    const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
     if (largest_left(e) <= well) return true; // foreseen
     bool is_fresh = e->factors == 0 ||
                     corrections_work(e->corrections) > 4 * stiffness_work(e->matrix);

@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A bond is at its strength from here on: what rounding and the tolerance leave open.
-static const double strong = 1 - 1e-9;
-
 // ---- begin and end ------------------------------------------------------------------
 
 static void find_units(struct equilibrium *e)
@@ -203,8 +200,12 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
                              struct reason *reason)
 {
     e->force = force;
+    foresight_check(e->foresight, force);
+    if (foreseen(e)) {
+        foresight_go_on(e->foresight);
+        return STATUS_OK;
+    }
     load_grains(e);
-    foresight_check(e->foresight, e->n, force);
     for (int i = 0; i < e->n; i++)
         e->largest_load = fmax(e->largest_load, norm(e->load[i].shift));
     do {

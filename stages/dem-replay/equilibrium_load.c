@@ -34,6 +34,7 @@ void load_grains(struct equilibrium *e)
 
 struct net_load equilibrium_load(const struct equilibrium *e, struct vector *force)
 {
+    realise(e->foresight);
     for (int i = 0; i < e->n; i++)
         force[i] = scale(e->stiffness * e->length, e->load[i].shift);
     return e->taken_off;

@@ -24,6 +24,12 @@ struct factored {
 // Mean radii, and as much of a turn: further is not small.
 static const double furthest = 0.1;
 
+// A bond is at its strength from here on: what rounding and the tolerance leave open.
+static const double strong = 1 - 1e-9;
+
+// Forces on many grains add up: where it comes easily, less is left than may be.
+static const double well_below = 1e-3;
+
 static inline double size_of(struct displacement a)
 {
     return fmax(norm(a.shift), norm(a.turn));
@@ -99,5 +105,13 @@ bool improve(struct equilibrium *equilibrium, bool *is_fresh);
 void let_go(struct equilibrium *equilibrium, const bool *leaves);
 void keep_history(struct equilibrium *equilibrium);
 void go_back(struct equilibrium *equilibrium);
+
+// [K 4.20] of sums over grains and joints.
+struct unbalanced {
+    double left, largest_left, carried;
+    int moving, carrying; // grains, joints
+};
+double unbalanced_ratio(const struct equilibrium *equilibrium,
+                        const struct unbalanced *sum);
 
 #endif

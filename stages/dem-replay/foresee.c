@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All joints go on from the last equilibrium as they resist in the factor; those that
 // in some lane do not are rows of the corrections, which settle_lane.h finds.
-#include "equilibrium_state.h"
+#include "foresee_state.h"
 
 #include "basics/memory.h"
-#include "joint_lanes.h"
-#include "settle_lane.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,40 +12,22 @@
 // many multiplications of the ones take the time of one of the other.
 static const double row_speed = 2;
 
-struct foresight {
-    int n_grain;
-    int n_expected; // loads
-    const struct vector *force;
-    int found, used; // lanes that are known, and of them those that were asked for
-    int sight; // lanes to look at: one after a crack, then twice as many each time
-    bool has_looked; // since the load, cracks or grains that left changed
-    int n_crack, n_gone;
-    int factors;               // that there were then
-    struct vector *load;       // (n)
-    double *applied;           // (n * GRAIN) loads
-    double *left;              // (n * GRAIN) to begin with, by the law of the factor
-    double *moved, *step;      // (n * GRAIN)
-    struct displacement *from; // (n) the last equilibrium when these began
-    int n_row, row_capacity;
-    struct lane_row *row;
-    bool *touches;        // (row_capacity * LANES)
-    double *given, *more; // (row_capacity * LANES)
-    struct settler *settler;
-};
-
 // ---- what is expected ---------------------------------------------------------------
 
-struct foresight *foresight_new(const struct equilibrium *e)
+struct foresight *foresight_new(struct equilibrium *e)
 {
     for (int j = 0; j < e->n_joint; j++)
         if (e->joint[j].contact_across > 0 || e->joint[j].is_point) return NULL;
     if (e->setup.large_displacements) return NULL;
     struct foresight *f = NEW_ARRAY(struct foresight, 1);
+    f->of = e;
+    f->present = -1;
     f->load = NEW_ARRAY(struct vector, e->n);
     double **const of_grains[] = {&f->applied, &f->left, &f->moved, &f->step};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
         *of_grains[k] = allocate_aligned((size_t)e->n, GRAIN * sizeof **of_grains[k]);
     f->from = NEW_ARRAY(struct displacement, e->n);
+    f->touches_now = NEW_ARRAY(uint8_t, e->n_joint);
     f->settler = settler_new();
     return f;
 }
@@ -56,8 +36,9 @@ void foresight_free(struct foresight *f)
 {
     if (!f) return;
     settler_free(f->settler);
-    void *const owned[] = {f->load, f->applied, f->left,  f->moved, f->step,
-                           f->row,  f->touches, f->given, f->more,  f->from};
+    void *const owned[] = {f->load, f->applied, f->left,       f->moved,
+                           f->step, f->row,     f->touches,    f->given,
+                           f->more, f->from,    f->touches_now};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(f);
@@ -66,6 +47,7 @@ void foresight_free(struct foresight *f)
 void foresight_expect(struct foresight *f, int count, const struct vector *force)
 {
     if (!f) return;
+    realise(f);
     f->n_expected = count;
     f->force = force;
     f->found = f->used = 0;
@@ -73,11 +55,10 @@ void foresight_expect(struct foresight *f, int count, const struct vector *force
     f->has_looked = false;
 }
 
-void foresight_check(struct foresight *f, int n, const struct vector *force)
+void foresight_check(struct foresight *f, const struct vector *force)
 {
     if (!f || f->n_expected == 0) return;
-    f->n_grain = n;
-    if (memcmp(f->force, force, (size_t)n * sizeof *force) != 0)
+    if (memcmp(f->force, force, (size_t)f->of->n * sizeof *force) != 0)
         foresight_expect(f, 0, NULL);
 }
 
@@ -85,7 +66,7 @@ void foresight_go_on(struct foresight *f)
 {
     if (!f || f->n_expected == 0) return;
     f->n_expected--;
-    f->force += f->n_grain;
+    f->force += f->of->n;
     f->used++;
     if (f->used < f->found) return;
     f->has_looked = false;
@@ -102,15 +83,18 @@ static bool holds(const struct joint *joint)
 static void apply_loads(struct equilibrium *e, int count)
 {
     struct foresight *f = e->foresight;
+    double largest = e->largest_load;
     memset(f->applied, 0, (size_t)e->n * GRAIN * sizeof *f->applied);
     for (int l = 0; l < count; l++) {
-        loads_of(e, f->force + (long)l * e->n, f->load);
+        f->taken_off[l] = loads_of(e, f->force + (long)l * e->n, f->load);
         for (int i = 0; i < e->n; i++) {
             double *to = f->applied + (long)i * GRAIN + l;
             to[0] = f->load[i].x;
             to[LANES] = f->load[i].y;
             to[2 * LANES] = f->load[i].z;
+            largest = fmax(largest, norm(f->load[i]));
         }
+        f->largest_load[l] = largest;
     }
 }
 
@@ -222,24 +206,19 @@ static int settle_lanes(struct equilibrium *e, int count, bool may_change,
 // Joints without a row that are not as factored in one of LANES. COUNT of them in each.
 static int list_unlike(struct equilibrium *e, int n_lane, int in_lane[LANES])
 {
+    const struct foresight *f = e->foresight;
+    const int all = (1 << n_lane) - 1;
     int count = 0;
     memset(in_lane, 0, LANES * sizeof *in_lane);
+    lane_kernels()->touch(e->n_joint, e->joint, f->moved, f->touches_now);
     for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        if (!(joint->contact_along > 0) || joint->is_gone ||
+        const int unlike = (f->touches_now[j] ^ (e->factored[j].touch ? all : 0)) & all;
+        if (!unlike || !(e->joint[j].contact_along > 0) || e->joint[j].is_gone ||
             corrections_of(e->corrections, j) > 0)
             continue;
-        lanes more;
-        joint_lengthen_lanes(joint, e->foresight->moved, &more);
-        const double closed_to = joint->overlap - joint->strain[STRAIN_ALONG];
-        const bool touched = e->factored[j].touch;
-        int unlike = 0;
-        for (int l = 0; l < LANES; l++) {
-            const bool is_unlike = l < n_lane && (more[l] <= closed_to) != touched;
-            in_lane[l] += is_unlike;
-            unlike += is_unlike;
-        }
-        if (unlike) e->unlike[count++] = (struct correction){j, 1};
+        for (int l = 0; l < n_lane; l++)
+            in_lane[l] += unlike >> l & 1;
+        e->unlike[count++] = (struct correction){j, 1};
     }
     return count;
 }
@@ -256,43 +235,12 @@ static int list_broken(struct equilibrium *e)
     return count;
 }
 
-static bool is_small(const struct equilibrium *e, int lane)
-{
-    for (int i = 0; i < e->n; i++)
-        for (int k = 0; k < DEGREES; k++) {
-            const double to = e->foresight->moved[(long)i * GRAIN + k * LANES + lane];
-            if (!(fabs(to) < furthest)) return false;
-        }
-    return true;
-}
-
 static bool factor_anew(struct equilibrium *e)
 {
     settler_forget(e->foresight->settler);
     if (factor(e)) return true;
     corrections_count_work(e->corrections, INFINITY); // another is due
     return false;
-}
-
-// What is left where the grains have MOVED, in LEFT; the most in any of COUNT lanes.
-static double find_left(struct equilibrium *e, int count)
-{
-    struct foresight *f = e->foresight;
-    memcpy(f->left, f->applied, (size_t)e->n * GRAIN * sizeof *f->left);
-    for (int j = 0; j < e->n_joint; j++) {
-        lanes more[STRAINS];
-        joint_strains_lanes(&e->joint[j], f->moved, more);
-        joint_resist_lanes(&e->joint[j], more, f->left);
-    }
-    double most = 0;
-    for (int i = 0; i < e->n; i++) {
-        double *left = f->left + (long)i * GRAIN;
-        if (!is_free(e, i)) memset(left, 0, GRAIN * sizeof *left);
-        for (int k = 0; k < DEGREES; k++)
-            for (int l = 0; l < count; l++)
-                most = fmax(most, fabs(left[k * LANES + l]));
-    }
-    return most;
 }
 
 // One round more for what rounding left.
@@ -310,12 +258,10 @@ static void polish(struct equilibrium *e, int count)
 static bool factor_first_lane(struct equilibrium *e)
 {
     const struct foresight *f = e->foresight;
+    lane_kernels()->touch(e->n_joint, e->joint, f->moved, f->touches_now);
     for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        lanes more;
-        joint_lengthen_lanes(joint, f->moved, &more);
-        const bool touches = joint->contact_along > 0 && !joint->is_gone &&
-                             joint->strain[STRAIN_ALONG] + more[0] <= joint->overlap;
+        const bool touches = e->joint[j].contact_along > 0 && !e->joint[j].is_gone &&
+                             (f->touches_now[j] & 1);
         e->resistance[j].contact.touch = touches ? TOUCH_STICKS : TOUCH_NONE;
     }
     return factor_anew(e);
@@ -360,6 +306,7 @@ static int correct_lanes(struct equilibrium *e, int count)
 static int look(struct equilibrium *e, int count)
 {
     enum { FACTORS = 8 };
+    const struct foresight *f = e->foresight;
     apply_loads(e, count);
     int found = 0;
     for (int factors = 0; found == 0 && factors < FACTORS; factors++) {
@@ -367,49 +314,48 @@ static int look(struct equilibrium *e, int count)
         begin_lanes(e);
         found = correct_lanes(e, count);
     }
-    if (find_left(e, found) > 1e-3 * e->setup.tolerance * e->largest_load)
+    if (found > 0 &&
+        find_left_lanes(e, found) > well_below * e->setup.tolerance * e->largest_load) {
         polish(e, found);
+        find_left_lanes(e, found);
+    }
     for (int l = 0; l < found; l++)
-        if (!is_small(e, l)) return l;
+        if (!(f->sums.furthest[l] <= furthest)) return l;
     return found;
 }
 
-static int look_ahead(struct equilibrium *e)
+void look_ahead(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
     const int count = f->n_expected < f->sight ? f->n_expected : f->sight;
+    f->used = f->found = 0;
+    f->has_looked = true;
+    f->n_crack = e->n_crack;
+    f->n_gone = e->n_gone;
     if (f->factors != e->factors) settler_forget(f->settler);
+    bool has_factor = true;
     if (e->factors == 0 ||
         corrections_work(e->corrections) > row_speed * stiffness_work(e->matrix)) {
         resist(e);
-        if (!factor_anew(e)) return 0;
+        has_factor = factor_anew(e);
     }
     memcpy(f->from, e->before, (size_t)e->n * sizeof *f->from);
-    return look(e, count);
+    if (has_factor) f->found = look(e, count);
+    f->factors = e->factors;
+}
+
+bool has_looked(const struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    if (f->n_crack == e->n_crack && f->n_gone == e->n_gone) return f->has_looked;
+    f->sight = 1;
+    return false;
 }
 
 void foresee(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
     if (!f || f->n_expected == 0) return;
-    const bool is_other = f->n_crack != e->n_crack || f->n_gone != e->n_gone;
-    if (!f->has_looked || is_other) {
-        if (is_other) f->sight = 1;
-        f->found = look_ahead(e);
-        f->used = 0;
-        f->has_looked = true;
-        f->n_crack = e->n_crack;
-        f->n_gone = e->n_gone;
-        f->factors = e->factors;
-    }
-    if (f->used >= f->found) return;
-    for (int i = 0; i < e->n; i++) {
-        double number[DEGREES];
-        for (int k = 0; k < DEGREES; k++)
-            number[k] = f->moved[(long)i * GRAIN + k * LANES + f->used];
-        struct displacement more;
-        memcpy(&more, number, sizeof more);
-        e->trial[i].shift = add(f->from[i].shift, more.shift);
-        e->trial[i].turn = add(f->from[i].turn, more.turn);
-    }
+    if (!has_looked(e)) look_ahead(e);
+    if (f->used < f->found) go_to_lane(e, f->used);
 }

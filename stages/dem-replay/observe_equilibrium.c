@@ -42,6 +42,7 @@ int equilibrium_restless(const struct equilibrium *e, int *last)
 
 void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
 {
+    realise(e->foresight);
     for (int i = 0; i < e->n; i++)
         displacement[i] = scale(e->length, e->trial[i].shift);
 }
@@ -82,6 +83,7 @@ struct dem_contact *equilibrium_contacts(const struct equilibrium *e, int *count
 {
     struct dem_contact *contact = NEW_ARRAY(struct dem_contact, e->n_joint);
     *count = 0;
+    realise(e->foresight);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         if (joint->is_gone || !(joint->is_bonded || joint->contact.touch)) continue;
@@ -100,45 +102,65 @@ static struct vector loaded_at(const struct equilibrium *e, const struct joint *
                scale(e->length * joint->arm[0], joint->axis[0]));
 }
 
+// Adds what is LOADED at PLACE, about ABOUT.
+static void add_reaction(const struct equilibrium *e, struct displacement load,
+                         struct vector place, struct vector about, struct vector *force,
+                         struct vector *moment)
+{
+    const double unit = e->stiffness * e->length;
+    const struct vector pull = scale(unit, load.shift);
+    const struct vector turn = scale(unit * e->length, load.turn);
+    *force = add(*force, pull);
+    *moment = add(*moment, add(cross(subtract(place, about), pull), turn));
+}
+
 void equilibrium_reaction(const struct equilibrium *e, struct vector about,
                           struct vector *force, struct vector *moment)
 {
-    const double unit = e->stiffness * e->length;
     *force = *moment = (struct vector){0, 0, 0};
+    if (e->setup.has_wall) realise(e->foresight);
+    if (is_foreseen(e)) {
+        for (int i = 0; i < e->n; i++)
+            if (e->setup.fixed[i])
+                add_reaction(e, foreseen_pull(e, i), e->packing->position[i], about,
+                             force, moment);
+        return;
+    }
     for (int j = 0; j < e->n_joint; j++)
         for (int end = 0; end < 2 && !e->joint[j].is_gone; end++) {
             const int grain = e->joint[j].grain[end];
             if (grain >= 0 && !e->setup.fixed[grain]) continue;
-            const struct displacement load =
-                joint_loads(&e->joint[j], end, e->resistance[j].load);
-            const struct vector pull = scale(unit, load.shift);
-            const struct vector from = subtract(loaded_at(e, &e->joint[j], end), about);
-            const struct vector turn = scale(unit * e->length, load.turn);
-            *force = add(*force, pull);
-            *moment = add(*moment, add(cross(from, pull), turn));
+            add_reaction(e, joint_loads(&e->joint[j], end, e->resistance[j].load),
+                         loaded_at(e, &e->joint[j], end), about, force, moment);
         }
 }
 
-// [K 4.20].
+double unbalanced_ratio(const struct equilibrium *e, const struct unbalanced *sum)
+{
+    if (!(sum->left > 0)) return 0;
+    // Of loads that are gone there may be rounding left on grains and in joints alike.
+    const double nothing = e->setup.tolerance * e->largest_load;
+    if (sum->largest_left <= nothing && sum->carried <= sum->carrying * nothing)
+        return 0;
+    return sum->carrying > 0 ? sum->left / sum->moving / (sum->carried / sum->carrying)
+                             : 1; // all is unbalanced
+}
+
 double equilibrium_unbalanced_ratio(const struct equilibrium *e)
 {
-    double left = 0, carried = 0;
-    int moving = 0, carrying = 0;
+    if (is_foreseen(e)) return foreseen_unbalanced_ratio(e);
+    struct unbalanced sum = {.largest_left = largest_left(e)};
     for (int i = 0; i < e->n; i++) {
         if (e->setup.fixed[i] || e->is_gone[i]) continue;
-        left += norm(e->left[i].shift);
-        moving++;
+        sum.left += norm(e->left[i].shift);
+        sum.moving++;
     }
     for (int j = 0; j < e->n_joint; j++) {
         const double *load = e->resistance[j].load; // along axes that are perpendicular
         const double force = norm((struct vector){load[0], load[1], load[2]});
         if (!(force > 0)) continue;
-        carried += force;
-        carrying++;
+        sum.carried += force;
+        sum.carrying++;
     }
-    if (!(left > 0)) return 0;
-    // Of loads that are gone there may be rounding left on grains and in joints alike.
-    const double nothing = e->setup.tolerance * e->largest_load;
-    if (largest_left(e) <= nothing && carried <= carrying * nothing) return 0;
-    return carrying > 0 ? left / moving / (carried / carrying) : 1; // all is unbalanced
+    return unbalanced_ratio(e, &sum);
 }

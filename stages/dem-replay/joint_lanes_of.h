@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Once for processors with vectors of eight numbers, once for those without: each
+// number has the same digits in both. NAMED(x) is the name of x.
+#include "joint_lanes.h"
+
+#include <math.h>
+#include <string.h>
+#if defined __AVX512F__
+#include <immintrin.h>
+#endif
+
+#define INLINE static inline __attribute__((always_inline))
+
+// Not returned by functions: how that is done depends on the machine.
+typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
+typedef int64_t whole __attribute__((vector_size(LANES * sizeof(int64_t)), aligned(8)));
+
+static const double unmoved[GRAIN] = {0};
+
+#define AT(grain, degree) (*(const lanes *)((grain) + (degree)*LANES))
+#define ALONG(axis, a) ((axis).x * (a)[0] + (axis).y * (a)[1] + (axis).z * (a)[2])
+
+// ---- numbers ------------------------------------------------------------------------
+
+INLINE void take_root(lanes *a)
+{
+#if defined __AVX512F__
+    *a = (lanes)_mm512_sqrt_pd((__m512d)*a);
+#else
+    for (int l = 0; l < LANES; l++)
+        (*a)[l] = sqrt((*a)[l]);
+#endif
+}
+
+INLINE void take_larger(const lanes *a, lanes *most)
+{
+    const whole is_larger = *a > *most;
+    *most = (lanes)((is_larger & (whole)*a) | (~is_larger & (whole)*most));
+}
+
+INLINE uint8_t at_most(const lanes *a, double limit)
+{
+#if defined __AVX512F__
+    return (uint8_t)_mm512_cmp_pd_mask((__m512d)*a, _mm512_set1_pd(limit), _CMP_LE_OQ);
+#else
+    int bits = 0;
+    for (int l = 0; l < LANES; l++)
+        bits |= ((*a)[l] <= limit) << l;
+    return (uint8_t)bits;
+#endif
+}
+
+// ---- strains ------------------------------------------------------------------------
+
+INLINE const double *end_of(const struct joint *joint, int end, const double *moved)
+{
+    return joint->grain[end] < 0 ? unmoved : moved + (long)joint->grain[end] * GRAIN;
+}
+
+static void touch(int n_joint, const struct joint *joint, const double *moved,
+                  uint8_t *touches)
+{
+    for (; n_joint-- > 0; joint++, touches++) {
+        const double *i = end_of(joint, 0, moved), *j = end_of(joint, 1, moved);
+        const lanes shift[3] = {AT(j, 0) - AT(i, 0), AT(j, 1) - AT(i, 1),
+                                AT(j, 2) - AT(i, 2)};
+        const lanes longer = ALONG(joint->axis[0], shift);
+        *touches = at_most(&longer, joint->overlap - joint->strain[STRAIN_ALONG]);
+    }
+}
+
+INLINE void find_strains(const struct joint *joint, const double *moved,
+                         lanes strain[STRAINS])
+{
+    const double *i = end_of(joint, 0, moved), *j = end_of(joint, 1, moved);
+    const struct vector *axis = joint->axis;
+    lanes shift[3], turn[3], rolling[3];
+    for (int k = 0; k < 3; k++) {
+        shift[k] = AT(j, k) - AT(i, k);
+        turn[k] = AT(j, 3 + k) - AT(i, 3 + k);
+        rolling[k] = joint->arm[0] * AT(i, 3 + k) + joint->arm[1] * AT(j, 3 + k);
+    }
+    strain[STRAIN_ALONG] = ALONG(axis[0], shift);
+    strain[STRAIN_ACROSS] = ALONG(axis[1], shift) - ALONG(axis[2], rolling);
+    strain[STRAIN_ACROSS + 1] = ALONG(axis[2], shift) + ALONG(axis[1], rolling);
+    for (int k = 0; k < 3; k++)
+        strain[STRAIN_TWIST + k] = ALONG(axis[k], turn);
+    for (int k = 0; k < STRAINS; k++)
+        strain[k] += joint->strain[k];
+}
+
+// ---- loads --------------------------------------------------------------------------
+
+INLINE void pull(const struct joint *joint, int end, const lanes load[STRAINS],
+                 double *left)
+{
+    if (joint->grain[end] < 0) return;
+    lanes *of = (lanes *)(left + (long)joint->grain[end] * GRAIN);
+    const double *n = &joint->axis[0].x, *s = &joint->axis[1].x, *t = &joint->axis[2].x;
+    const double sign = end ? 1 : -1, arm = joint->arm[end];
+    for (int k = 0; k < 3; k++) {
+        of[k] -= sign * (n[k] * load[0] + s[k] * load[1] + t[k] * load[2]);
+        of[3 + k] -= arm * (s[k] * load[2] - t[k] * load[1]) +
+                     sign * (n[k] * load[3] + s[k] * load[4] + t[k] * load[5]);
+    }
+}
+
+INLINE void size_of_two(const lanes a[2], lanes *size)
+{
+    *size = a[0] * a[0] + a[1] * a[1];
+    take_root(size);
+}
+
+// [K 4.41, 4.42], of the LOAD of a parallel bond, as joint_overload.
+INLINE void find_overload(const struct joint *joint,
+                          const struct bond_strength *strength,
+                          const lanes load[STRAINS], lanes *most)
+{
+    const double radius = joint->bond_radius, area = M_PI * radius * radius;
+    const double share = strength->relative ? strength->relative[joint->bond] : 1;
+    const double normal = 1 / (area * strength->normal * share);
+    const double tangential = 1 / (area * strength->shear * share);
+    lanes bending, shear;
+    size_of_two(load + STRAIN_BEND, &bending);
+    size_of_two(load + STRAIN_ACROSS, &shear);
+    const lanes minus = -load[STRAIN_TWIST];
+    lanes twisting = load[STRAIN_TWIST];
+    take_larger(&minus, &twisting);
+    const lanes tension = normal * (load[STRAIN_ALONG] + 4 / radius * bending);
+    const lanes sliding = tangential * (shear + 2 / radius * twisting);
+    take_larger(&tension, most);
+    take_larger(&sliding, most);
+}
+
+static void resist(int n_joint, const struct joint *joint,
+                   const struct bond_strength *strength, const double *moved,
+                   double *left, struct lane_sums *sums)
+{
+    lanes carried = {0}, carrying = {0}, overload = {0};
+    for (; n_joint-- > 0; joint++) {
+        if (joint->is_gone) continue;
+        lanes load[STRAINS];
+        find_strains(joint, moved, load);
+        const lanes overlap = joint->overlap - load[STRAIN_ALONG];
+        for (int k = 0; k < STRAINS; k++)
+            load[k] *= joint->is_bonded ? joint->bond_stiffness[k] : 0;
+        if (joint->is_bonded) find_overload(joint, strength, load, &overload);
+        const lanes push = joint->contact_along * overlap;
+        load[STRAIN_ALONG] -= (lanes)((whole)push & (overlap >= 0));
+        pull(joint, 0, load, left);
+        pull(joint, 1, load, left);
+        lanes force = load[0] * load[0] + load[1] * load[1] + load[2] * load[2];
+        take_root(&force);
+        carried += force;
+        carrying -= __builtin_convertvector(force > 0, lanes);
+    }
+    memcpy(sums->carried, &carried, sizeof carried);
+    memcpy(sums->carrying, &carrying, sizeof carrying);
+    memcpy(sums->overload, &overload, sizeof overload);
+}
+
+// ---- grains -------------------------------------------------------------------------
+
+INLINE void find_size(const lanes a[3], lanes *size)
+{
+    *size = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    take_root(size);
+}
+
+static void measure(int grain, const struct displacement *from, const double *moved,
+                    const double *left, struct lane_sums *sums)
+{
+    lanes to[DEGREES], of[DEGREES], size, most = {0}, furthest;
+    const double *began = &from->shift.x;
+    for (int k = 0; k < DEGREES; k++) {
+        to[k] = began[k] + AT(moved + (long)grain * GRAIN, k);
+        of[k] = AT(left + (long)grain * GRAIN, k);
+    }
+    memcpy(&furthest, sums->furthest, sizeof furthest);
+    memcpy(&most, sums->left, sizeof most);
+    for (int k = 0; k < DEGREES; k += 3) {
+        find_size(to + k, &size);
+        take_larger(&size, &furthest);
+        find_size(of + k, &size);
+        take_larger(&size, &most);
+        if (k > 0) continue;
+        for (int l = 0; l < LANES; l++)
+            sums->unbalanced[l] += size[l];
+    }
+    memcpy(sums->furthest, &furthest, sizeof furthest);
+    memcpy(sums->left, &most, sizeof most);
+}
+
+const struct lane_kernels NAMED(lane_kernels) = {
+    .touch = touch, .resist = resist, .measure = measure};
