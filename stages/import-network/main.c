@@ -32,6 +32,7 @@ static const struct stage stage = {
     .writes = "network",
     .most_inputs = 1,
     .parameters = table,
+    .transcribes = true,
     .notes = "What `inspect --openpnm` wrote comes back as it was; other files give a "
              "network "
              "without grains and faces, and those of statoil always do."};

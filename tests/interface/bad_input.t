@@ -45,7 +45,7 @@ def result(title, problems, skip=None):
 
 def run(command, **options):
     """Runs a program of ours, or any other; what it must not touch is put back first."""
-    command = [str(word) for word in command]
+    command = [word if isinstance(word, bytes) else str(word) for word in command]
     if os.path.exists(f"{BIN}/{command[0]}"):
         command[0] = f"{BIN}/{command[0]}"
     shutil.rmtree("out")
@@ -296,6 +296,9 @@ damage("a bond of a grain with itself is refused", "packing",
 damage("a box upside down is refused", "packing",
        value("domain/lower", 2, 1),
        r"/domain/lower: row 2: must be < /domain/upper = 1\.\d+e-06, got 1")
+damage("a box too thin for its area to be a number is refused", "packing",
+       lambda file: [value("domain/lower", 0, 0)(file), value("domain/upper", 0, 5e-324)(file)],
+       "/domain/lower: row 0: must be 1e-150 or more below /domain/upper")
 damage("a flag that is neither 0 nor 1 is refused", "packing", value("domain/periodic", 1, 2),
        "/domain/periodic: row 1: must be <= 1, got 2")
 damage("a negative overlap in the summary is refused", "packing",
@@ -384,6 +387,33 @@ damage("a link to nowhere counts as missing", "packing",
        lambda file: (file.__delitem__("particles/radius"),
                      file.__setitem__("particles/radius", h5py.SoftLink("/nowhere"))),
        "/particles/radius: is missing")
+
+
+def borrowed(how):
+    """The radii stand in another file."""
+
+    def change(file):
+        shape = file["particles/radius"].shape
+        del file["particles/radius"]
+        how(file, shape)
+
+    return change
+
+
+def virtual(file, shape):
+    layout = h5py.VirtualLayout(shape, "f8")
+    layout[:] = h5py.VirtualSource("packing", "particles/radius", shape=shape)
+    file.create_virtual_dataset("particles/radius", layout)
+
+
+for way, how in {
+        "an external link": lambda file, shape: file.__setitem__(
+            "particles/radius", h5py.ExternalLink("packing", "/particles/radius")),
+        "external storage": lambda file, shape: file.create_dataset(
+            "particles/radius", shape, "f8", external=[("packing", 0, h5py.h5f.UNLIMITED)]),
+        "a virtual dataset": virtual}.items():
+    damage(f"{way} is refused", "packing", borrowed(how),
+           "/particles/radius: lies in another file")
 damage("a group where a dataset belongs counts as missing", "packing",
        lambda file: (file.__delitem__("particles/radius"),
                      file.create_group("particles/radius")),
@@ -648,6 +678,8 @@ parameters("null where a number belongs is refused", "pack", {"radius": None},
            "pack.radius: must be a number, got null")
 parameters("a fraction where an integer belongs is refused", "force-protocol",
            {"steps": 5.5}, r"force-protocol.steps: must be an integer, got 5\.5")
+parameters("an integer's range is said to its last digit", "pack", {"seed": 2**32},
+           "pack.seed: must be from 1 to 4294967295, got 4294967296")
 parameters("a number where true or false belongs is refused", "dem-replay",
            {"allow_unstable": 1}, "dem-replay.allow_unstable: must be true or false, got 1")
 parameters("an unknown choice lists the known ones", "dry", {"liquid": "solid"},
@@ -695,6 +727,8 @@ def setting(title, status, assignment, *lines, program=("pack",)):
 
 setting("--set needs an equals sign", USAGE, "radius", "--set radius: must be KEY=VALUE")
 setting("--set needs a key", USAGE, "=1", "--set =1: must be KEY=VALUE")
+setting("--set refuses a value that is not UTF-8", USAGE, b"radius=\xff", r"--set radius=\S+: is not UTF-8")
+setting("--set refuses a key that is not UTF-8", USAGE, b"\xff=1", r"--set \S+=1: is not UTF-8")
 setting("--set refuses an unknown key", BAD_DATA, "radiuss=1",
         "pack.radiuss: unknown key; the nearest known one is radius")
 setting("--set refuses a wrong type", BAD_DATA, "radius=wide",
@@ -939,7 +973,7 @@ for program, name, changes in [
     refused(f"{program} refuses results that overflow: {name}", BAD_DATA,
             [program, *(word for change in changes for word in ("--set", change)),
              "packing" if program == "flow" else "network"],
-            f"the results overflow: /{name}: row 0: must be at most 1e150 in size, got .*")
+            f"the results are out of range: /{name}: row 0: must be at most 1e150 in size, got .*")
 
 # ---- the command line -------------------------------------------------------------------
 
@@ -1000,6 +1034,9 @@ for program, source in [("pack", ""), ("tessellate", "packing"), ("merge-nodes",
     refused_in_shell(f"{program} reports a full disk on standard output", IO,
                      f"$BIN/{program} {source} >/dev/full",
                      f"{program}: standard output: No space left on device")
+for option in ["--help", "--version", "--schema", "--parameters"]:
+    refused_in_shell(f"pack {option} reports a full disk", IO, f"$BIN/pack {option} >/dev/full",
+                     "pack: standard output: No space left on device")
 refused_in_shell("inspect reports a full disk", IO, "$BIN/inspect packing >/dev/full",
                  "inspect: standard output: No space left on device")
 refused("a directory as output is refused", CANNOT_CREATE, ["pack"], "out: is a directory",

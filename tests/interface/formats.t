@@ -128,8 +128,20 @@ with scratch() as folder:
             document=changed(lambda graph: graph["edges"][0].update(target="7")))
     refused("a throat from a node to itself is refused", "both ends are node 1",
             document=changed(lambda graph: graph["edges"][0].update(target="1")))
-    refused("a negative length is refused", "its length must be >= 0, is -5",
+    refused("a negative length is refused", "its length must be from 0 to 1e150, is -5",
             document=changed(lambda graph: graph["edges"][0]["metadata"].update(link_length=-5)))
+    refused("a node that is there twice is refused", "node 1: must have a place",
+            document=changed(lambda graph: graph["nodes"][0].update(id="0")))
+
+    def flatten(axis, value):
+        return changed(lambda graph: [node["metadata"]["node_coordinates"].update({axis: value})
+                                      for node in graph["nodes"]])
+
+    refused("a plane too far away for its throats is refused, as bad input",
+            "standard input: gives no network: /domain/lower: row 2", document=flatten("z", 1e30))
+    thin = flatten("x", 0)
+    thin["graph"]["nodes"][0]["metadata"]["node_coordinates"]["x"] = 5e-324
+    refused("a box too thin for an area is refused", "must be 1e-150 or more below", document=thin)
     refused("a place that is no number is refused", "graph.nodes[0].metadata",
             document=changed(lambda graph: graph["nodes"][0]["metadata"].clear()))
     full = json.loads(read(at("graph.json")))

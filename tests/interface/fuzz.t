@@ -36,7 +36,7 @@ def make(name, *command):
     subprocess.run([f"{BIN}/{command[0]}", *command[1:], "-o", name], check=True)
 
 
-REPLAY = ["--set", "time_step_safety=0.02", "--set", "cycles=20"]
+REPLAY = ["-q", "--set", "time_step_safety=0.02", "--set", "cycles=20"]
 make("packing", "pack", "--set", "counts=[2,2,3]")
 make("degenerate", "tessellate", "packing")
 make("network", "merge-nodes", "degenerate")
@@ -68,7 +68,7 @@ READERS = {
                ["dem-replay", *REPLAY, "--set", "bond.kind=contact",
                 "--set", "bridges.volume=1e-22", "--set", "bridges.shared=true"]],
     "response": [["crackstats"], ["deform", "--set", "on_change=keep", "drying"],
-                 ["dem-replay", "-q", *REPLAY, "forces"]],
+                 ["dem-replay", *REPLAY, "forces"]],
     "invasion": [],
     "flow": [],
 }

@@ -134,7 +134,7 @@ def follow(seed, folder):
         return True
 
     grains = [word for each in chance.choice(PACKINGS) for word in ("--set", each)]
-    stage("pack", "packing", words=[*grains, "--set", f"seed={seed}"])
+    stage("pack", "packing", words=[*grains, "--set", f"seed={seed % 2**32}"])
     if chance.random() < 0.5:
         stage("flow", "flow", "packing")
     if not (stage("tessellate", "raw", "packing") and stage("merge-nodes", "network", "raw")):

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, read, run, scratch
+from tap import BIN, SCENE, done, ok, read, run, scratch
 
 STAGES = ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
           "crackstats"]
@@ -57,4 +57,9 @@ with scratch() as one, scratch() as two:
         json.dump(dict(reversed(section.items())), file)
     ok(run("dry", "-p", own, input=first[2]) == first[3],
        "a section of its own, keys in another order, gives the same bytes")
+    with open(own, "w") as file:
+        json.dump({program: {} for program in os.listdir(BIN) if program != "inspect"}, file)
+    ok(run("pack", "-p", own) == run("pack"), "a scene has room for a section of every program")
+    ok(run("pack", "--set", "seed=2e0", "--set", "radius=1") ==
+       run("pack", "--set", "seed=2", "--set", "radius=1.0"), "so do numbers written otherwise")
 done()

@@ -9,8 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Squares of what is larger would overflow, and so would distances.
-static const double largest_size = 1e150;
+// Squares of what is larger would overflow, and so would distances; of what is smaller,
+// vanish, and so would areas.
+static const double largest_size = 1e150, least_edge = 1e-150;
 
 enum { MOST_SYMBOLS = 24, MOST_RANK = 3, BLOCK_VALUES = 1 << 15 };
 
@@ -327,11 +328,16 @@ static enum status check_less_than(hid_t file, const struct subject *subject,
                 low) >= 0;
     H5Dclose(upper);
     if (!read) return refuse(reason, STATUS_BAD_DATA, "%s: must have 3 values", other);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; axis++) {
         if (!(low[axis] < high[axis]))
             return refuse(reason, STATUS_BAD_DATA,
                           "%s: row %d: must be < %s = %.17g, got %.17g", subject->name,
                           axis, other, high[axis], low[axis]);
+        if (high[axis] - low[axis] < least_edge)
+            return refuse(reason, STATUS_NO,
+                          "%s: row %d: must be 1e-150 or more below %s", subject->name,
+                          axis, other);
+    }
     return STATUS_OK;
 }
 
@@ -341,6 +347,19 @@ static enum status check_less_than(hid_t file, const struct subject *subject,
 static bool is_left_out(hid_t file, const json_t *rules)
 {
     return json_is_true(json_object_get(rules, "optional")) && !has_entry(file, rules);
+}
+
+// Links and storage may lead to other files, which no digest of this one vouches for.
+static bool lies_elsewhere(hid_t file, hid_t dataset)
+{
+    H5O_info_t root, own;
+    const hid_t list = H5Dget_create_plist(dataset);
+    const bool elsewhere =
+        H5Oget_info_by_name(file, "/", &root, H5P_DEFAULT) < 0 ||
+        H5Oget_info(dataset, &own) < 0 || own.fileno != root.fileno ||
+        H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
+    H5Pclose(list);
+    return elsewhere;
 }
 
 static enum status check_dataset(hid_t file, const json_t *rules,
@@ -354,6 +373,9 @@ static enum status check_dataset(hid_t file, const json_t *rules,
     if (subject.dataset < 0)
         return refuse(reason, STATUS_BAD_DATA, "%s: is missing", subject.name);
     enum status status = check_class(&subject, reason);
+    if (!status && lies_elsewhere(file, subject.dataset))
+        status =
+            refuse(reason, STATUS_BAD_DATA, "%s: lies in another file", subject.name);
     if (!status) status = check_shape(&subject, symbols, reason);
     if (!status) status = check_size(&subject, image_size, reason);
     if (!status) status = check_values(&subject, symbols, reason);

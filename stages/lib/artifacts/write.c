@@ -362,8 +362,12 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
     struct reason reason;
     const enum status status =
         check_file(artifact->file, artifact->schema, size, &reason);
-    if (status == STATUS_NO) // of sizes given, none by itself too large
-        die(STATUS_BAD_DATA, "the results overflow: %s", reason.text);
+    if (status && invocation->stage->transcribes)
+        die(STATUS_BAD_DATA, "%s: gives no %s: %s",
+            input_name(invocation->n_input ? invocation->inputs[0] : "-"),
+            artifact->schema->name, reason.text);
+    if (status == STATUS_NO) // of sizes given, none by itself too large or small
+        die(STATUS_BAD_DATA, "the results are out of range: %s", reason.text);
     if (status)
         die(STATUS_INTERNAL, "would write a %s that breaks its own schema: %s",
             artifact->schema->name, reason.text);

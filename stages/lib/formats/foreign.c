@@ -52,7 +52,7 @@ enum status check_network(struct network *network, struct reason *reason)
         for (int axis = 0; axis < 3; axis++)
             if (!(fabs(component(network->node_position[i], axis)) <= largest_size))
                 return refuse(reason, STATUS_BAD_DATA,
-                              "node %d: its place must be finite", i);
+                              "node %d: must have a place, within 1e150 m", i);
     for (int t = 0; t < network->n_throat; t++) {
         const enum status status = check_ends(network, t, reason);
         if (status) return status;
@@ -60,9 +60,10 @@ enum status check_network(struct network *network, struct reason *reason)
                                throat_volume(network, t)};
         for (int k = 0; k < 3; k++)
             if (!(size[k] >= 0 && size[k] <= largest_size))
-                return refuse(
-                    reason, STATUS_BAD_DATA, "throat %d: its %s must be >= 0, is %g", t,
-                    (const char *[]){"radius", "length", "volume"}[k], size[k]);
+                return refuse(reason, STATUS_BAD_DATA,
+                              "throat %d: its %s must be from 0 to 1e150, is %g", t,
+                              (const char *[]){"radius", "length", "volume"}[k],
+                              size[k]);
     }
     return STATUS_OK;
 }

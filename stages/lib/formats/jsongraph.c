@@ -337,6 +337,8 @@ static enum status read_graph(json_t *graph, struct network *network,
     size_t k;
     json_t *item;
     enum status status = STATUS_OK;
+    for (int i = 0; i < network->n_node; i++)
+        network->node_position[i].x = NAN; // where an id is there twice, one stays so
     json_array_foreach(json_object_get(graph, "nodes"), k, item)
     {
         if (!status) status = read_node(item, (int)k, network, reason);

@@ -59,18 +59,28 @@ static int choice_index(const char *choices, const char *name)
     }
 }
 
+// As short as it can be without losing a digit.
+static const char *number_text(double value, char text[24])
+{
+    snprintf(text, 24, "%g", value);
+    if (strtod(text, NULL) != value) snprintf(text, 24, "%.10g", value);
+    return text;
+}
+
 static const char *bound_text(const struct parameter *parameter, char text[80])
 {
+    char low[24], high[24];
+    number_text(parameter->low, low);
+    number_text(parameter->high, high);
     const char *unit = strcmp(parameter->unit, "1") ? parameter->unit : "";
     const char *space = *unit ? " " : "";
     text[0] = 0;
     if (parameter->bound == BOUND_MINIMUM)
-        snprintf(text, 80, ">= %g%s%s", parameter->low, space, unit);
+        snprintf(text, 80, ">= %s%s%s", low, space, unit);
     if (parameter->bound == BOUND_ABOVE)
-        snprintf(text, 80, "> %g%s%s", parameter->low, space, unit);
+        snprintf(text, 80, "> %s%s%s", low, space, unit);
     if (parameter->bound == BOUND_BETWEEN)
-        snprintf(text, 80, "from %g to %g%s%s", parameter->low, parameter->high, space,
-                 unit);
+        snprintf(text, 80, "from %s to %s%s%s", low, high, space, unit);
     return text;
 }
 
@@ -293,6 +303,19 @@ static void check_keys(struct filling *filling, json_t *object, const char *pref
     }
 }
 
+// 1 and 1.0 are the same number, 1e6 is an integer, and both must leave the same
+// provenance. A new reference.
+static json_t *as_typed(const struct parameter *parameter, json_t *value)
+{
+    const double number = json_number_value(value);
+    if (parameter->type == PARAMETER_NUMBER && json_is_integer(value))
+        return json_real(number);
+    if (parameter->type == PARAMETER_INTEGER && json_is_real(value) &&
+        fabs(number) <= 0x1p53 && number == rint(number))
+        return json_integer((json_int_t)number);
+    return json_incref(value);
+}
+
 static void take(struct filling *filling, const struct parameter *parameter,
                  const json_t *section, json_t *effective, void *parameters)
 {
@@ -306,11 +329,12 @@ static void take(struct filling *filling, const struct parameter *parameter,
     if (!value)
         die(STATUS_INTERNAL, "%s: the default is not JSON: %s", parameter->key,
             parameter->fallback);
+    json_t *typed = as_typed(parameter, value);
     const bool left_out = json_is_null(value) && parameter->fallback &&
                           !strcmp(parameter->fallback, "null");
-    if (left_out || has_type(parameter, value)) {
+    if (left_out || has_type(parameter, typed)) {
         if (!left_out) check_bounds(filling, parameter, value);
-        store(filling, parameter, value, parameters);
+        store(filling, parameter, typed, parameters);
     } else {
         char rule[400];
         snprintf(rule, sizeof rule, "%s%s%s", type_names[parameter->type],
@@ -318,13 +342,8 @@ static void take(struct filling *filling, const struct parameter *parameter,
                  parameter->choices ? parameter->choices : "");
         complain(filling, parameter->key, rule, value);
     }
-    // 1 and 1.0 are the same number and must leave the same provenance
-    if (parameter->type == PARAMETER_NUMBER && json_is_integer(value)) {
-        const double number = json_number_value(value);
-        json_decref(value);
-        value = json_real(number);
-    }
-    put(effective, parameter->key, value);
+    put(effective, parameter->key, typed);
+    json_decref(typed);
     json_decref(value);
 }
 
@@ -351,7 +370,9 @@ void parameters_set(json_t *section, const char *assignment)
     json_t *value =
         json_loads(equals + 1, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL);
     if (!value) value = json_string(equals + 1);
-    if (!value) die(STATUS_USAGE, "--set %s: the value is not UTF-8", assignment);
+    json_t *name = json_string(key); // NULL where it is not UTF-8
+    if (!value || !name) die(STATUS_USAGE, "--set %s: is not UTF-8", assignment);
+    json_decref(name);
     put(section, key, value);
     json_decref(value);
     free(key);
@@ -377,13 +398,28 @@ static void print_wrapped(FILE *stream, const char *text, int indent)
     fprintf(stream, "\n");
 }
 
+// [one|another], on the line that COLUMN characters stand on, or on lines of its own.
+static void print_choices(FILE *stream, const char *choices, int column)
+{
+    const bool fits = column + (int)strlen(choices) + 4 <= HELP_WIDTH;
+    column = fprintf(stream, fits ? "  [" : "\n        [");
+    for (const char *end; *choices; choices = end + (*end == '|')) {
+        end = strchrnul(choices, '|');
+        const int length = (int)(end - choices) + 1; // with the bar or bracket behind
+        if (!fits && column + length > HELP_WIDTH)
+            column = fprintf(stream, "\n%9s", "");
+        column += fprintf(stream, "%.*s%c", length - 1, choices, *end ? '|' : ']');
+    }
+}
+
 void parameters_print(const struct parameter *table, FILE *stream)
 {
     for (const struct parameter *p = table; p->key; p++) {
         char bound[80];
-        fprintf(stream, "  %s=%s", p->key, p->fallback ? p->fallback : "(required)");
-        if (strcmp(p->unit, "1")) fprintf(stream, " %s", p->unit);
-        if (p->choices) fprintf(stream, "  [%s]", p->choices);
+        int column = fprintf(stream, "  %s=%s", p->key,
+                             p->fallback ? p->fallback : "(required)");
+        if (strcmp(p->unit, "1")) column += fprintf(stream, " %s", p->unit);
+        if (p->choices) print_choices(stream, p->choices, column);
         if (p->bound) fprintf(stream, "  [%s]", bound_text(p, bound));
         fprintf(stream, "\n");
         print_wrapped(stream, p->text, 8);

@@ -7,6 +7,7 @@
 
 #include <argp.h>
 #include <assert.h>
+#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +15,9 @@
 
 // Sections a scene may hold: the stages, whether this one or another.
 static const char *const sections[] = {
-    "pack",       "tessellate",     "merge-nodes", "dry",       "force-protocol",
-    "dem-replay", "crackstats",     "bridge",      "dem-shear", "shearstats",
-    "flow",       "import-network", "invade",      NULL};
+    "pack",   "tessellate", "merge-nodes",    "dry",    "force-protocol", "dem-replay",
+    "deform", "crackstats", "import-network", "invade", "bridge",         "flow",
+    NULL};
 
 enum {
     KEY_THREADS = 256,
@@ -30,7 +31,7 @@ enum {
 enum { MOST_OPTIONS = 16 };
 
 static const struct argp_option options[] = {
-    {"params", 'p', "FILE", 0, "Parameters: this stage's section, or a whole scene", 0},
+    {"params", 'p', "FILE", 0, "Parameters: a scene, or just this stage's section", 0},
     {"set", 's', "KEY=VALUE", 0,
      "Override one parameter; VALUE is JSON, or a word; may be repeated", 0},
     {"output", 'o', "FILE", 0, "Write there; '-', or nothing: standard output", 0},
@@ -58,6 +59,14 @@ const char *stage_program(const struct stage *stage, char text[64])
 {
     snprintf(text, 64, "%s %d", stage->name, stage->version);
     return text;
+}
+
+// What --help and the like print is lost on a full disk; nobody else looks.
+static void flush_standard_output(void)
+{
+    if (!fflush(stdout) && !ferror(stdout)) return;
+    report("standard output: %s", strerror(errno));
+    _exit(STATUS_IO);
 }
 
 static void print_schema(const struct stage *stage)
@@ -316,6 +325,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               .args_doc = stage->most_inputs ? "[INPUT...]" : "",
                               .doc = stage->summary,
                               .help_filter = help_filter};
+    atexit(flush_standard_output);
     if (argp_parse(&argp, argc, argv, 0, NULL, &line)) exit(STATUS_USAGE);
     fill(&line, parameters);
     free(line.set);

@@ -21,6 +21,7 @@ struct stage {
     const char *notes;   // more for --help; may be NULL
     const char *reports; // what --report FILE writes; NULL: there is no such option
     bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
+    bool transcribes;    // it writes what it read: what is wrong is wrong in the input
 };
 
 // What the user asked for on this call.
