@@ -65,24 +65,33 @@ static struct invasion invaded(const struct network *network,
     return invasion;
 }
 
-// Nodes on a lattice of which one axis may be one node wide; x and y repeat.
+// Nodes on a lattice of which one axis may be one node wide; x and y repeat. Places and
+// sizes of throats decide between two that happen to be as easy.
 static struct network lattice(const int n[3])
 {
     const int n_node = n[0] * n[1] * n[2], stride[3] = {1, n[0], n[0] * n[1]};
     const size_t most = 3 * (size_t)n_node;
-    struct network network = {.n_node = n_node,
+    struct network network = {.packing = {.upper = {n[0], n[1], n[2]},
+                                          .periodic = {1, 1, 0}},
+                              .n_node = n_node,
+                              .node_position = NEW_ARRAY(struct vector, n_node),
                               .node_walls = NEW_ARRAY(uint8_t, n_node),
                               .throat_nodes =
                                   allocate(most, sizeof *network.throat_nodes),
+                              .throat_radius = NEW_ARRAY(double, most),
+                              .throat_length = NEW_ARRAY(double, most),
                               .throat_kind = NEW_ARRAY(uint8_t, most)};
     for (int node = 0; node < n_node; node++) {
         const int at[3] = {node % n[0], node / n[0] % n[1], node / n[0] / n[1]};
+        network.node_position[node] = (struct vector){at[0], at[1], at[2]};
         if (at[2] == 0) network.node_walls[node] |= OUTLET;
         if (at[2] == n[2] - 1) network.node_walls[node] |= INLET;
         for (int axis = 0; axis < 3; axis++) {
             const bool last = at[axis] == n[axis] - 1;
             if (n[axis] == 1 || (last && axis == 2)) continue;
             const int other = node + (last ? 1 - n[axis] : 1) * stride[axis];
+            network.throat_radius[network.n_throat] = 0.1;
+            network.throat_length[network.n_throat] = 1;
             int32_t *ends = network.throat_nodes[network.n_throat++];
             ends[0] = node < other ? node : other;
             ends[1] = node < other ? other : node;
