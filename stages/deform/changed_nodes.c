@@ -62,32 +62,110 @@ static bool is_overtaken(const struct state *state, int node, int other,
     return false;
 }
 
+static bool is_on_hole(const struct state *state, int node)
+{
+    return state->around->walls[node] >> WALL_INNER & 1;
+}
+
+// Beyond the walls, or beyond the edge of the hole whose surface it is on.
 static bool is_outside(const struct state *state, int node)
 {
     const struct packing *packing = &state->network->packing;
     const double slack = negligible * state->diameter;
+    const struct vector at = state->network->node_position[node];
     for (int wall = 0; wall < WALL_COUNT; wall++) {
-        const double beyond = component(state->network->node_position[node], wall / 2) -
-                              wall_position(packing, wall);
+        const double beyond = component(at, wall / 2) - wall_position(packing, wall);
         if (!packing->periodic[wall / 2] && (wall % 2 ? beyond : -beyond) > slack)
             return true;
     }
     for (int k = 0; k < packing->n_body; k++) {
-        const struct vector at = state->network->node_position[node];
         const struct body body = body_near(packing, k, at);
-        if (!body_holds(&body, at) && distance(body_nearest(&body, at), at) > slack)
+        if (body_holds(&body, at) != body.within &&
+            distance(body_nearest(&body, at), at) > slack)
+            return true;
+    }
+    return is_on_hole(state, node) &&
+           distance(nearest_on_wall(packing, WALL_INNER, at), at) > slack;
+}
+
+// The repetition of GRAIN that is nearest to FROM.
+static struct image nearest_image_of(const struct packing *packing, struct vector from,
+                                     int grain)
+{
+    const struct vector to = subtract(packing->position[grain], from);
+    struct image image = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        const double edge =
+            component(packing->upper, axis) - component(packing->lower, axis);
+        if (packing->periodic[axis])
+            image.along[axis] = (int8_t)-nearbyint(component(to, axis) / edge);
+    }
+    return image;
+}
+
+// ---- holes --------------------------------------------------------------------------
+
+// A throat through a hole, other than along its surface.
+static bool is_interrupted(const struct state *state, int t)
+{
+    const struct network *network = state->network;
+    const int32_t *end = network->throat_nodes[t];
+    if (is_on_hole(state, end[0]) && is_on_hole(state, end[1])) return false;
+    const struct vector from = network->node_position[end[0]],
+                        along = along_throat(network, t);
+    for (int k = 0; k < network->packing.n_body; k++) {
+        const struct body body =
+            body_near(&network->packing, k, add(from, scale(0.5, along)));
+        double span[2];
+        if (!body.within && body_span(&body, from, add(from, along), span) &&
+            (fmin(span[1], 1) - fmax(span[0], 0)) * norm(along) >
+                negligible * state->diameter)
             return true;
     }
     return false;
 }
+
+// (n_particle) Grains around the nodes on holes; their cells may reach through these to
+// any other such node. The caller frees it.
+static bool *grains_at_holes(const struct state *state)
+{
+    bool *at_hole = NEW_ARRAY(bool, state->network->packing.n_particle);
+    for (int i = 0; i < state->network->n_node; i++)
+        for (int64_t k = state->around->offset[i];
+             k < state->around->offset[i + 1] && is_on_hole(state, i); k++)
+            at_hole[state->around->at[k].grain] = true;
+    return at_hole;
+}
+
+static bool is_overtaken_through_hole(const struct state *state, int node,
+                                      const bool *at_hole)
+{
+    const struct network *network = state->network;
+    if (!is_on_hole(state, node)) return false;
+    const double own =
+        largest_own_power(state, node) - negligible * state->diameter * state->diameter;
+    for (int i = 0; i < network->packing.n_particle; i++) {
+        if (!at_hole[i]) continue;
+        const struct grain_beside beside = {
+            i, nearest_image_of(&network->packing, network->node_position[node], i)};
+        if (power(&network->packing, beside, network->node_position[node]) < own &&
+            !is_around(state->around, node, beside))
+            return true;
+    }
+    return false;
+}
+
+// -------------------------------------------------------------------------------------
 
 // (n_node) The caller frees it.
 static bool *find_amiss(const struct state *state)
 {
     const struct network *network = state->network;
     bool *amiss = NEW_ARRAY(bool, network->n_node);
+    bool *at_hole = grains_at_holes(state);
     for (int i = 0; i < network->n_node; i++)
-        amiss[i] = is_outside(state, i);
+        amiss[i] = is_outside(state, i) || is_overtaken_through_hole(state, i, at_hole);
+    free(at_hole);
     for (int t = 0; t < network->n_throat; t++) {
         const int32_t *end = network->throat_nodes[t];
         const struct image image =
@@ -95,6 +173,7 @@ static bool *find_amiss(const struct state *state)
         amiss[end[0]] = amiss[end[0]] || is_overtaken(state, end[0], end[1], image);
         amiss[end[1]] =
             amiss[end[1]] || is_overtaken(state, end[1], end[0], image_opposite(image));
+        if (is_interrupted(state, t)) amiss[end[0]] = amiss[end[1]] = true;
     }
     return amiss;
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "basics/memory.h"
 #include "move.h"
+#include "turn.h"
 
 #include <stdlib.h>
-
-// ---- the box ------------------------------------------------------------------------
+#include <string.h>
 
 // ---- flat walls ---------------------------------------------------------------------
 
@@ -52,67 +52,139 @@ static void move_walls(const struct packing *before, double diameter,
     }
 }
 
-// ---- round walls --------------------------------------------------------------------
+// ---- bodies -------------------------------------------------------------------------
 
-static double depth_below(const struct body *body, struct vector x)
+// In a box that repeats, seen from the repetition of the body that is nearest.
+static struct vector to_nearest_body(const struct packing *packing,
+                                     const struct body *body, struct vector x)
 {
-    return dot(subtract(body_nearest(body, x), x), body_outward(body, x));
+    for (int axis = 0; axis < 3; axis++) {
+        if (!packing->periodic[axis]) continue;
+        const double edge =
+            wall_position(packing, 2 * axis + 1) - wall_position(packing, 2 * axis);
+        const double middle =
+            (component(body->lower, axis) + component(body->upper, axis)) / 2;
+        const double boxes = nearbyint((component(x, axis) - middle) / edge);
+        set_component(&x, axis, component(x, axis) - boxes * edge);
+    }
+    return x;
 }
 
-// Shift and stretch that take grains to where they are now, by least squares.
-struct similarity {
-    struct vector from, to; // means
-    double stretch;
+// (n_particle) The caller frees it.
+static bool *grains_beside(const struct packing *packing, int k, double reach)
+{
+    bool *beside = NEW_ARRAY(bool, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++) {
+        const struct vector at = packing->position[i];
+        const struct body body = body_near(packing, k, at);
+        beside[i] = distance(body_nearest(&body, at), at) <= reach;
+    }
+    return beside;
+}
+
+// What grains beside a body have done.
+struct grains {
+    int count;
+    struct vector *was, *is; // (count) off their means, m
+    struct vector from, to;  // these means
 };
 
-static struct similarity find_similarity(const struct packing *before,
-                                         const struct packing *after, const bool *which,
-                                         const struct body *body)
+static struct grains look_beside(const struct packing *before,
+                                 const struct packing *after, int k, double reach)
 {
-    struct similarity found = {.stretch = 1};
-    int count = 0;
-    for (int i = 0; i < before->n_particle; i++)
-        count += which[i];
+    bool *beside = grains_beside(before, k, reach);
+    struct grains grains = {.was = NEW_ARRAY(struct vector, before->n_particle),
+                            .is = NEW_ARRAY(struct vector, before->n_particle)};
     for (int i = 0; i < before->n_particle; i++) {
-        if (!which[i]) continue;
-        found.from = add(found.from, scale(1.0 / count, before->position[i]));
-        found.to = add(found.to, scale(1.0 / count, after->position[i]));
+        if (!beside[i]) continue;
+        const struct vector was =
+            to_nearest_body(before, &before->body[k], before->position[i]);
+        const struct vector step = subtract(after->position[i], before->position[i]);
+        grains.was[grains.count] = was;
+        grains.is[grains.count++] = add(was, step);
     }
-    double spread = 0, grown = 0;
-    for (int i = 0; i < before->n_particle; i++)
-        for (int axis = 0; axis < 3 && which[i]; axis++) {
-            if (!body_is_round(body, axis)) continue;
-            const double was =
-                component(subtract(before->position[i], found.from), axis);
-            const double is = component(subtract(after->position[i], found.to), axis);
-            spread += was * was;
-            grown += was * (is - was);
-        }
-    if (spread > 0) found.stretch += grown / spread;
-    return found;
-}
-
-static void move_round(const struct packing *before, double diameter,
-                       const struct packing *after, struct body *body)
-{
-    bool *beside = NEW_ARRAY(bool, before->n_particle);
-    for (int i = 0; i < before->n_particle; i++)
-        beside[i] = depth_below(body, before->position[i]) <= diameter;
-    const struct similarity found = find_similarity(before, after, beside, body);
-    for (int side = 0; side < WALL_COUNT; side++) {
-        const int axis = side / 2;
-        struct vector *corner = side % 2 ? &body->upper : &body->lower;
-        const double at = component(*corner, axis), from = component(found.from, axis);
-        const double moved = component(found.to, axis) - from;
-        if (body_is_round(body, axis))
-            set_component(corner, axis,
-                          at + (moved + (found.stretch - 1) * (at - from)));
+    for (int i = 0; i < grains.count; i++) {
+        grains.from = add(grains.from, scale(1.0 / grains.count, grains.was[i]));
+        grains.to = add(grains.to, scale(1.0 / grains.count, grains.is[i]));
+    }
+    for (int i = 0; i < grains.count; i++) {
+        grains.was[i] = subtract(grains.was[i], grains.from);
+        grains.is[i] = subtract(grains.is[i], grains.to);
     }
     free(beside);
+    return grains;
 }
 
-// Where a side of the box is that of the body, it goes with its round wall, and flat
-// ends of the body with the box.
+// Along AXIS, in which the body is flat: shift and stretch by least squares.
+static void move_flat(const struct grains *grains, int axis, double least,
+                      struct body *body)
+{
+    double was = 0, both = 0;
+    for (int i = 0; i < grains->count; i++) {
+        const double at = component(grains->was[i], axis);
+        was += at * at;
+        both += at * component(grains->is[i], axis);
+    }
+    const double stretch = was > least ? both / was : 1;
+    const double from = component(grains->from, axis);
+    for (int side = 0; side < 2; side++) {
+        struct vector *corner = side ? &body->upper : &body->lower;
+        const double at = component(*corner, axis);
+        set_component(
+            corner, axis,
+            at + (component(grains->to, axis) - from + (stretch - 1) * (at - from)));
+    }
+}
+
+static struct vector round_part(const struct body *body, struct vector x)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (!body_is_round(body, axis)) set_component(&x, axis, 0);
+    return x;
+}
+
+// In the plane or space in which it is round: shift, turn and stretch.
+static void move_round(const struct grains *grains, double least, struct body *body)
+{
+    double was = 0;
+    struct products products = {0};
+    for (int i = 0; i < grains->count; i++) {
+        const struct vector at = round_part(body, grains->was[i]);
+        was += dot(at, at);
+        add_products(&products, at, round_part(body, grains->is[i]));
+    }
+    struct turn turn = {.cosine = 1, .along = was};
+    if (was > least) turn = find_turn(&products);
+    const double stretch = was > least ? turn.along / was : 1;
+    const struct vector half = scale(0.5, subtract(body->upper, body->lower));
+    const struct vector off = subtract(add(body->lower, half), grains->from);
+    const struct vector centre =
+        add(grains->to, scale(stretch, turned(&turn, round_part(body, off))));
+    for (int axis = 0; axis < 3; axis++) {
+        if (!body_is_round(body, axis)) continue;
+        const double at = component(centre, axis);
+        const double reach = stretch * component(half, axis);
+        set_component(&body->lower, axis, at - reach);
+        set_component(&body->upper, axis, at + reach);
+    }
+}
+
+// Grains that hardly spread tell nothing of how they stretch.
+static void move_body(const struct packing *before, double diameter, int k,
+                      struct packing *after)
+{
+    struct body *body = &after->body[k];
+    struct grains grains = look_beside(before, after, k, diameter);
+    const double least = grains.count * diameter * diameter / 16;
+    for (int axis = 0; axis < 3 && grains.count; axis++)
+        if (!body_is_round(body, axis)) move_flat(&grains, axis, least, body);
+    if (grains.count && body->shape != BODY_BOX) move_round(&grains, least, body);
+    free(grains.was);
+    free(grains.is);
+}
+
+// Where a side of the box is that of a round body around the grains, it goes with that;
+// flat sides of a body that are sides of the box stay so.
 static void join_sides(const struct packing *before, int k, struct packing *after)
 {
     const struct body *was = &before->body[k];
@@ -123,21 +195,24 @@ static void join_sides(const struct packing *before, int k, struct packing *afte
         struct vector *to = side % 2 ? &is->upper : &is->lower;
         struct vector *corner = side % 2 ? &after->upper : &after->lower;
         if (component(*from, axis) != wall_position(before, side)) continue;
-        if (body_is_round(was, axis))
-            set_component(corner, axis, component(*to, axis));
-        else
+        if (!body_is_round(was, axis))
             set_component(to, axis, component(*corner, axis));
+        else if (was->within)
+            set_component(corner, axis, component(*to, axis));
     }
 }
 
 void move_box(const struct packing *before, struct packing *after)
 {
+    if (!memcmp(before->position, after->position,
+                (size_t)before->n_particle * sizeof *before->position))
+        return; // to the bit
     double diameter = 0;
     for (int i = 0; i < before->n_particle; i++)
         diameter += 2 * before->radius[i] / before->n_particle;
     move_walls(before, diameter, after);
     for (int k = 0; k < after->n_body; k++) {
-        move_round(before, diameter, after, &after->body[k]);
+        move_body(before, diameter, k, after);
         join_sides(before, k, after);
     }
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "basics/memory.h"
 #include "move.h"
+#include "sides.h"
+#include "turn.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { ROUND = 1u << WALL_OUTER };
 
 // ---- one node -----------------------------------------------------------------------
 
@@ -79,30 +79,30 @@ static struct vector solve(const struct view *view, const double *wanted,
     return step;
 }
 
-// How far a wall has moved.
-static double wall_step(const struct packing *before, const struct packing *after,
-                        int wall)
-{
-    return wall_position(after, wall) - wall_position(before, wall);
-}
-
-// The grains' mean, or that of the wall along the axes of flat WALLS.
+// The grains' mean, or that of a flat surface along its axis.
 static struct vector first_guess(const struct packing *before,
                                  const struct packing *after,
                                  const struct grain_beside *beside, int n,
-                                 unsigned walls)
+                                 const struct sides *sides)
 {
     struct vector step = {0};
     for (int k = 0; k < n; k++)
         step = add(step, scale(1.0 / n, subtract(after->position[beside[k].grain],
                                                  before->position[beside[k].grain])));
-    for (int axis = 0; axis < 3; axis++) {
-        const unsigned here = walls >> (2 * axis) & 3;
-        if (here)
-            set_component(&step, axis,
-                          wall_step(before, after, 2 * axis + !(here & 1)));
-    }
+    for (int axis = 0; axis < 3; axis++)
+        if (sides->held[axis]) set_component(&step, axis, sides->step[axis]);
     return step;
+}
+
+// What the turn of the grains around a node, both times seen from it, adds to that.
+static struct vector turn_around(const struct view view[2])
+{
+    struct products products = {0};
+    for (int k = 0; k < view[0].n; k++)
+        add_products(&products, subtract(view[0].to[k], view[0].mean),
+                     subtract(view[1].to[k], view[1].mean));
+    const struct turn turn = find_turn(&products);
+    return subtract(view[0].mean, turned(&turn, view[0].mean));
 }
 
 static bool same_bodies(const struct packing *a, const struct packing *b)
@@ -110,31 +110,29 @@ static bool same_bodies(const struct packing *a, const struct packing *b)
     return !memcmp(a->body, b->body, (size_t)a->n_body * sizeof *a->body);
 }
 
-// Which way out of the round wall it is at AT.
-static struct vector outward(const struct packing *packing, struct vector at)
+static struct vector onto_round(const struct packing *packing, int k, struct vector at)
 {
-    for (int k = 0; k < packing->n_body; k++) {
-        const struct body body = body_near(packing, k, at);
-        if (body_wall(&body) == WALL_OUTER) return body_outward(&body, at);
-    }
-    return (struct vector){0};
+    const struct body body = body_near(packing, k, at);
+    return body_nearest_round(&body, at);
 }
 
-// Of a node AT in WALLS: along them.
-static struct ways find_ways(const struct packing *packing, unsigned walls,
+// Of a node AT on these surfaces: along them.
+static struct ways find_ways(const struct packing *packing, const struct sides *sides,
                              struct vector at)
 {
     struct ways ways = {0};
     for (int axis = 0; axis < 3; axis++) {
-        if (walls >> (2 * axis) & 3) continue;
+        if (sides->held[axis]) continue;
         struct vector way = {0};
         set_component(&way, axis, 1);
         ways.way[ways.n++] = way;
     }
-    if (!(walls & ROUND) || !ways.n) return ways;
-    struct vector out = {0}; // within the flat walls
+    if (sides->round < 0 || !ways.n) return ways;
+    const struct body body = body_near(packing, sides->round, at);
+    const struct vector outward = body_outward(&body, at);
+    struct vector out = {0}; // within the flat surfaces
     for (int c = 0; c < ways.n; c++)
-        out = add(out, scale(dot(outward(packing, at), ways.way[c]), ways.way[c]));
+        out = add(out, scale(dot(outward, ways.way[c]), ways.way[c]));
     if (!(norm(out) > 0)) return ways;
     out = scale(1 / norm(out), out);
     int steepest = 0;
@@ -169,7 +167,7 @@ static struct vector step_to(const struct view *before, struct view *now,
     return moves ? solve(now, wanted, along) : (struct vector){0};
 }
 
-// False where no place in its round wall is found.
+// False where no place on its round surface is found.
 static bool move_node(const struct network *before, const struct surroundings *around,
                       int node, struct view view[2], struct network *after)
 {
@@ -177,28 +175,32 @@ static bool move_node(const struct network *before, const struct surroundings *a
     static const double rest = 1e-13; // of how far the grains spread
     const struct grain_beside *beside = around->at + around->offset[node];
     const int n = (int)(around->offset[node + 1] - around->offset[node]);
-    const unsigned walls = around->walls[node];
     const struct packing *packing = &after->packing;
     const struct vector from = before->node_position[node];
+    const struct sides sides =
+        find_sides(&before->packing, packing, around->walls[node], from);
     const struct vector guess =
-        first_guess(&before->packing, packing, beside, n, walls);
+        first_guess(&before->packing, packing, beside, n, &sides);
     struct vector at = add(from, guess);
-    const bool is_round = walls & ROUND;
-    if (is_round && (norm(guess) > 0 || !same_bodies(&before->packing, packing)))
-        at = nearest_on_wall(packing, WALL_OUTER, at);
-    after->node_position[node] = at;
-    struct ways ways = find_ways(packing, walls, at);
-    if (n < 2 || ways.n == 0) return true;
+    const bool is_round = sides.round >= 0;
     view[0].n = view[1].n = n;
     look(&before->packing, beside, from, &view[0]);
+    if (is_round && (norm(guess) > 0 || !same_bodies(&before->packing, packing))) {
+        look(packing, beside, from, &view[1]);
+        at = add(at, turn_around(view));
+        at = onto_round(packing, sides.round, at);
+    }
+    after->node_position[node] = at;
+    struct ways ways = find_ways(packing, &sides, at);
+    if (n < 2 || ways.n == 0) return true;
     for (int k = 0; k < MOST_STEPS; k++) {
         look(packing, beside, at, &view[1]);
         const struct vector step = step_to(&view[0], &view[1], &ways);
         at = after->node_position[node] = add(at, step);
         if (!is_round || norm(step) == 0) return true;
-        at = after->node_position[node] = nearest_on_wall(packing, WALL_OUTER, at);
+        at = after->node_position[node] = onto_round(packing, sides.round, at);
         if (norm(step) <= rest * sqrt(view[1].spread)) return true;
-        ways = find_ways(packing, walls, at);
+        ways = find_ways(packing, &sides, at);
     }
     return false;
 }

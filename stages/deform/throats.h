@@ -36,7 +36,7 @@ enum status move_throats(const struct network *before, enum clearance how,
 enum status move_volumes(const struct network *before, bool changed,
                          struct network *after, struct reason *reason);
 
-// Of the box, or of the round body within it, m3.
+// Of the box, or of the body within it, less what is cut out, m3.
 double room_of(const struct packing *packing);
 
 // Throats of kind THROAT_NETWORK that have a radius or volume of 0 in AFTER only.

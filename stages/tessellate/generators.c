@@ -180,7 +180,7 @@ static void add_round_reflections(struct generators *generators, double grid)
     for (int i = 0; i < generators->n_particle && generators->is_round; i++) {
         const struct vector at = generators->point[i].at;
         const struct vector out = body_outward(&generators->round, at);
-        const double far = distance(at, body_nearest(&generators->round, at));
+        const double far = distance(at, body_nearest_round(&generators->round, at));
         if (far > generators->reach) continue;
         const int added = add_like(generators, i);
         const struct vector image = add(at, scale(2 * (far + round_clearance), out));

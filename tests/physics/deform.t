@@ -16,6 +16,7 @@ SOFT = "samples/soft-10x5x5.json"
 DATASETS = ["nodes/position", "nodes/kind", "throats/nodes", "throats/radius", "throats/length",
             "throats/volume", "faces/offset", "faces/nodes", "faces/particles", "domain/lower",
             "domain/upper", "particles/position", "throats/image", "faces/node_image"]
+BODIES = ["domain/bodies/lower", "domain/bodies/upper"]
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
@@ -229,6 +230,17 @@ with scratch() as folder:
            and abs(has.mean() / had.mean() - 1) < 0.02 and abs(has.std() / had.std() - 1) < 0.05,
            f"drawn radii go along, {title}", (has.mean() / had.mean(), has.std() / had.std(), len(had), len(has)))
 
+    def as_anew_but_for_numbers(moved, anew, most):
+        place, other = moved["nodes/position"][:], anew["nodes/position"][:]
+        if place.shape != other.shape or moved["throats/nodes"].shape != anew["throats/nodes"].shape:
+            return False
+        number = np.linalg.norm(place[:, None] - other, axis=2).argmin(axis=1)
+        rows = lambda n, ends: np.column_stack([np.sort(ends, axis=1), n["throats/length"][:], n["throats/radius"][:]])
+        ours, theirs = rows(moved, number[moved["throats/nodes"][:]]), rows(anew, anew["throats/nodes"][:])
+        ours, theirs = (r[np.lexsort((np.round(r[:, 2] / most / 100), r[:, 1], r[:, 0]))] for r in (ours, theirs))
+        return len(set(number)) == len(other) and np.abs(place - other[number]).max() < most \
+            and (ours[:, :2] == theirs[:, :2]).all() and np.abs(ours - theirs).max() < most
+
     def moved_at_random(title, sizes, *words, way=(1, 1, 1)):
         """Each grain its own way: as tessellated anew (by WORDS), while that holds."""
         with h5py.File(at("network")) as network:
@@ -241,10 +253,9 @@ with scratch() as folder:
             changed = moved["summary"].attrs["changed_nodes"]
             held += changed == 0
             lost += changed > 0
-            if (changed == 0) != same_diagram(moved, anew) or changed == 0 and not all(
-                    same(moved, anew, e, unit, 1e-10) for e in ("nodes/position", "throats/length", "throats/radius")):
+            if (changed == 0) != as_anew_but_for_numbers(moved, anew, 1e-10 * unit):
                 wrong.append((seed, changed))
-        ok(held > 3 and lost > 3 and not wrong, f"{title} moved at random: as anew, or said to be another diagram",
+        ok(held > 2 and lost > 2 and not wrong, f"{title} moved at random: as anew, or said to be another diagram",
            (held, lost, wrong))
 
     def answer(*settings):
@@ -263,9 +274,21 @@ with scratch() as folder:
     moved_at_random("a layer", 10 ** np.linspace(-4.5, -0.7, 14), *layer, way=(1, 0, 1))
     cylinder = ["--set", "domain.shape=cylinder", "--set", "domain.height=5e-6"]
     sphere = ["--set", "domain.shape=sphere"]
-    for title, shape, plane in ("a cylinder", cylinder, []), ("a sphere", sphere, []), ("a disc", sphere, layer):
-        run("pack", "-q", *"--set method=random_sequential --set count=60 --set domain.radius=2.5e-6".split(),
-            *shape, *plane, *sizes, "-o", at("packing"))
+    wide, cube = ["--set", "domain.radius=2.5e-6"], "upper=[5e-6,5e-6,5e-6]"
+    words = lambda text: [w for word in text.split() for w in ("--set", word)]
+    bodies = [
+        ("a cylinder", wide + cylinder, []), ("a sphere", wide + sphere, []), ("a disc", wide + sphere, layer),
+        ("a ring", words("domain.shape=ring domain.radius=3e-6 domain.inner_radius=1.2e-6 domain.height=4e-6"), []),
+        ("a hollow sphere", words("domain.shape=sphere domain.radius=3e-6 domain.cut.shape=sphere domain.cut.radius=1.3e-6"), []),
+        ("a disc with a hole", words("domain.shape=sphere domain.radius=4e-6 domain.cut.shape=sphere domain.cut.radius=1.5e-6"), layer),
+        ("a box with a corner cut out", words(f"{cube} domain.cut.shape=box domain.cut.lower=[2e-6,0,0] domain.cut.upper=[5e-6,3.2e-6,2.3e-6]"), []),
+        ("a box with a hole from the top", words(f"{cube} domain.cut.shape=cylinder domain.cut.radius=1.3e-6 domain.cut.lower=[0,0,1.5e-6]"), []),
+        ("a box that repeats with a hole", words(f"{cube} periodic=[true,true,false] domain.cut.shape=sphere domain.cut.radius=1.3e-6"), [])]
+    turn_z = lambda a: np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    turn_x = lambda a: np.roll(turn_z(a), (1, 1), (0, 1))
+    turns = {"a ring": turn_z(0.7), "a hollow sphere": turn_z(0.7) @ turn_x(-1.1)}
+    for title, shape, plane in bodies:
+        run("pack", "-q", *"--set method=random_sequential --set count=60".split(), *shape, *plane, *sizes, "-o", at("packing"))
         run("tessellate", *plane, at("packing"), "-o", at("network"))
         with h5py.File(at("packing"), "r+") as packing:
             packing.copy("domain/bodies", "kept")
@@ -273,12 +296,25 @@ with scratch() as folder:
         answer(*plane)
         with h5py.File(at("packing"), "r+") as packing:
             packing.move("kept", "domain/bodies")
-        moved_at_random(title, 10 ** np.linspace(-5, -0.6, 12), *plane, way=(1, 0, 1) if plane else (1, 1, 1))
-    run("pack", "-q", *"--set method=random_sequential --set count=60 --set domain.radius=2.5e-6".split(),
-        *"--set domain.shape=ring --set domain.inner_radius=1e-6 --set domain.height=5e-6".split(), *sizes,
-        "-o", at("packing"))
-    run("tessellate", at("packing"), "-o", at("network"))
-    status, says = deform("network")
-    ok(status == 65 and "/domain/bodies: row 1: round walls around grains move with them" in says,
-       "a hole is refused", says)
+        with h5py.File(at("network")) as network:
+            began = {entry: network[entry][:] for entry in DATASETS + BODIES if entry in network}
+        place, way = began["particles/position"], np.array((1, 0, 1) if plane else (1, 1, 1))
+        lay(0)
+        _, moved = deform("network")
+        ok(all(moved[entry][:].tobytes() == began[entry].tobytes() for entry in began), f"{title}: nothing moves, nothing changes")
+        if "repeats" not in title:
+            centre = began["domain/bodies/lower"][0]
+            lay((0.99 - 1) * (place - centre) * way)
+            _, moved = deform("network", "--set", "on_change=keep")
+            ok(all(np.abs(way * (moved[entry][:] - centre - 0.99 * (began[entry] - centre))).max() < 1e-12 * 5e-6
+                   for entry in BODIES + ["domain/lower", "domain/upper"]), f"{title} drawn together: so are its surfaces")
+        if title in turns: # about its centre: the network turns
+            turn, centre = turns[title], (began["domain/bodies/lower"][0] + began["domain/bodies/upper"][0]) / 2
+            lay((place - centre) @ turn.T + centre - place)
+            status, moved = deform("network")
+            unit = began["throats/length"].mean()
+            ok(status == 0 and np.abs(moved["nodes/position"][:] - centre - (began["nodes/position"] - centre) @ turn.T).max() < 1e-10 * unit
+               and all(np.abs(moved[entry][:] - began[entry]).max() < 1e-10 * unit for entry in BODIES + ["throats/length", "throats/radius"]),
+               f"{title} turned: only places change", moved if status else "")
+        moved_at_random(title, 10 ** np.linspace(-5, -0.8, 12), *plane, way=way)
 done()

@@ -120,10 +120,28 @@ struct vector body_outward(const struct body *body, struct vector x)
     return away > 0 ? scale(1 / away, out) : (struct vector){1, 0, 0}; // any will do
 }
 
-struct vector body_nearest(const struct body *body, struct vector x)
+struct vector body_nearest_round(const struct body *body, struct vector x)
 {
     if (body->shape == BODY_BOX) return nearest_on_box(body, x);
     const struct vector out = round_part(body, subtract(x, centre_of(body)));
     const struct vector middle = subtract(x, out); // on the axis, or the centre
     return add(middle, scale(radius_of(body), body_outward(body, x)));
+}
+
+struct vector body_nearest(const struct body *body, struct vector x)
+{
+    const struct vector round = body_nearest_round(body, x);
+    if (body->shape == BODY_BOX || body->shape == BODY_SPHERE) return round;
+    const int axis = body->shape == BODY_CYLINDER ? 2 : 1;
+    const double at = component(x, axis), low = component(body->lower, axis),
+                 high = component(body->upper, axis);
+    const double end = at - low < high - at ? low : high;
+    const double out = norm(round_part(body, subtract(x, centre_of(body))));
+    const bool beyond = at < low || at > high;
+    if (out > radius_of(body) || (!beyond && radius_of(body) - out <= fabs(end - at)))
+        x = round;
+    else
+        set_component(&x, axis, end);
+    if (beyond) set_component(&x, axis, end);
+    return x;
 }

@@ -39,7 +39,11 @@ bool body_span(const struct body *body, struct vector from, struct vector to,
 // Away from its axis or centre through X; of a box along its z.
 struct vector body_outward(const struct body *body, struct vector x);
 
-// The point of its surface nearest to X; of a cylinder or disc of its round side.
+// The point of its surface nearest to X.
 struct vector body_nearest(const struct body *body, struct vector x);
+
+// Of its round side, which goes on beyond the ends of a cylinder or disc; of a box of
+// its surface.
+struct vector body_nearest_round(const struct body *body, struct vector x);
 
 #endif
