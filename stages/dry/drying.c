@@ -13,7 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-double network_saturation(const struct run *run)
+// From 1 at the start to exactly 0 at the end.
+static double network_saturation(const struct run *run)
 {
     if (run->phases.n_full == 0) return 0;
     const double liquid = compensated_value(run->phases.total_liquid);

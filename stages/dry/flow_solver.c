@@ -12,7 +12,8 @@ bool throat_is_full(const struct phases *phases, int throat)
     return !(phases_saturation(phases, throat) < 1);
 }
 
-bool passes_on(const struct phases *phases, int node)
+// Whether liquid goes from throat to throat at NODE.
+static bool passes_on(const struct phases *phases, int node)
 {
     return phases->clusters.joins[node] && phases->liquid_beside[node] > 1;
 }

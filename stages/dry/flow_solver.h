@@ -65,9 +65,7 @@ void flow_solver_forget(struct flow_solver *solver, const struct phases *phases)
 void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
                         int throat);
 
-// Whether a throat is full; whether liquid goes from throat to throat at NODE.
 bool throat_is_full(const struct phases *phases, int throat);
-bool passes_on(const struct phases *phases, int node);
 
 // The nodes at a throat's liquid ends; returns how many there are.
 int liquid_ends(const struct liquid_flow *flow, int throat, int end[2]);

@@ -39,9 +39,6 @@ struct run {
     double *saturation; // (n_throat) at that step
 };
 
-// From 1 at the start to exactly 0 at the end.
-double network_saturation(const struct run *run);
-
 // Into the drying air, scaled; 0 when all is dry.
 double rate_now(const struct run *run);
 

@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct vector buoyancy(const struct flow *flow, int i)
+// Force of the weight of the fluid on grain I [C 12]: what a sphere of fluid weighs, N.
+static struct vector buoyancy(const struct flow *flow, int i)
 {
     const double radius = flow->packing->radius[i];
     return scale(-4 * M_PI / 3 * radius * radius * radius, flow->weight);
@@ -17,7 +18,8 @@ static struct vector newtons(const struct flow *flow, struct vector force)
     return scale(flow->grains->unit * flow->grains->unit, force);
 }
 
-struct vector total_force(const struct flow *flow, int i)
+// Everything on grain I, N [C 19].
+static struct vector total_force(const struct flow *flow, int i)
 {
     return add(newtons(flow, add(flow->forces->viscous[i], flow->forces->pressure[i])),
                buoyancy(flow, i));

@@ -22,12 +22,6 @@ struct flow {
     const struct pore_stress *stress; // NULL: not asked for
 };
 
-// Force of the weight of the fluid on grain I [C 12]: what a sphere of fluid weighs, N.
-struct vector buoyancy(const struct flow *flow, int i);
-
-// Everything on grain I, N [C 19].
-struct vector total_force(const struct flow *flow, int i);
-
 // All of FLOW into an artifact of schema flow; the caller finishes it.
 void put_flow(struct artifact *artifact, const struct flow *flow);
 

@@ -31,7 +31,9 @@ static double mean_diameter(const struct packing *packing)
     return sum / packing->n_particle;
 }
 
-double unit_of_length(const struct packing *packing)
+// The unit of length, m: the mean grain diameter, or the edge of a grain's share of the
+// box where that is larger. Far larger or smaller ones would cost digits.
+static double unit_of_length(const struct packing *packing)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
     const double diameter = mean_diameter(packing);

@@ -90,8 +90,4 @@ static inline int compare_generators(const struct generators *generators, int32_
            image_number(generators->origin[b].image);
 }
 
-// The unit of length, m: the mean grain diameter, or the edge of a grain's share of the
-// box where that is larger. Far larger or smaller ones would cost digits.
-double unit_of_length(const struct packing *packing);
-
 #endif

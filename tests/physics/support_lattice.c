@@ -19,7 +19,7 @@ double next_random(uint64_t *state)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-int lattice_node(int nx, int ny, int i, int j, int k)
+static int lattice_node(int nx, int ny, int i, int j, int k)
 {
     return (k * ny + j) * nx + i;
 }

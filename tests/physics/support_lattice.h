@@ -19,9 +19,7 @@ void randomise_radii(struct network *network, double spacing, double spread,
 // All lengths times FACTOR; the lower corner is the origin.
 void enlarge(struct network *network, double factor);
 
-// Node, and throat from it in the direction of AXIS, of a lattice of NX by NY by NZ
-// nodes.
-int lattice_node(int nx, int ny, int i, int j, int k);
+// The throat from NODE in the direction of AXIS.
 int lattice_throat(const struct network *network, int node, int axis);
 
 // The conditions of [K Table 3.1] and 5.4, z upper open.
