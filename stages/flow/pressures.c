@@ -3,7 +3,7 @@
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
-#include "linear_solver.h"
+#include "sparse/linear_solver.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -193,61 +193,27 @@ static enum status find_pockets(struct balance *balance, struct pressures *press
 
 static void arrange(struct balance *balance, const struct pressures *pressures)
 {
-    struct matrix *matrix = &balance->matrix;
     const int n_node = pressures->n_node;
+    int n = 0, n_link = 0;
+    for (int i = 0; i < n_node; i++)
+        n += !balance->known[i];
     balance->unknown = NEW_ARRAY(int32_t, n_node);
-    *matrix = (struct matrix){.n_all = n_node};
-    for (int i = 0; i < n_node; i++)
-        matrix->n += !balance->known[i];
-    for (int i = 0, next = 0, given = matrix->n; i < n_node; i++)
+    for (int i = 0, next = 0, given = n; i < n_node; i++)
         balance->unknown[i] = balance->known[i] ? given++ : next++;
-    const int n = matrix->n;
-    matrix->offset = NEW_ARRAY(int, n_node + 2);
-    for (int t = 0; t < balance->throats->n; t++) {
-        int32_t node[2];
-        if (!nodes_of(pressures, &balance->throats->throat[t], node)) continue;
-        for (int end = 0; end < 2; end++)
-            matrix->offset[balance->unknown[node[end]] + 2]++;
-    }
-    for (int i = 0; i < n_node; i++)
-        matrix->offset[i + 2] += matrix->offset[i + 1];
-    const int n_entry = matrix->offset[n + 1];
-    matrix->column = NEW_ARRAY(int, n_entry);
-    matrix->value = NEW_ARRAY(double, n_entry);
-    matrix->diagonal = NEW_ARRAY(double, n);
+    struct link *link = NEW_ARRAY(struct link, balance->throats->n);
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
-        if (!nodes_of(pressures, throat, node)) continue;
-        for (int end = 0; end < 2; end++) {
-            const int row = balance->unknown[node[end]];
-            if (row >= n) continue;
-            const int k = matrix->offset[row + 1]++;
-            matrix->column[k] = balance->unknown[node[1 - end]];
-            matrix->value[k] = throat->conductance;
-            matrix->diagonal[row] += throat->conductance;
-        }
+        if (nodes_of(pressures, throat, node))
+            link[n_link++] =
+                (struct link){{balance->unknown[node[0]], balance->unknown[node[1]]},
+                              throat->conductance};
     }
+    balance->matrix = matrix_of_links(n, n_node, n_link, link);
+    free(link);
 }
 
 // ---- solution -----------------------------------------------------------------------
-
-// What each unknown balance still lacks: B (n). X (n_all) are the pressures in the
-// order of the matrix.
-static void find_lack(const struct matrix *matrix, const double *given,
-                      const struct compensated *x, double *b)
-{
-#pragma omp parallel for schedule(static) if (matrix->n > 20000)
-    for (int i = 0; i < matrix->n; i++) {
-        double sum = given[i];
-        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
-            const struct compensated there = x[matrix->column[k]];
-            sum += matrix->value[k] *
-                   ((there.value - x[i].value) + (there.lost - x[i].lost));
-        }
-        b[i] = sum;
-    }
-}
 
 double pressure_drop(const struct pressures *pressures, const struct grains *grains,
                      const struct cells *cells, const struct throat *throat)
@@ -255,7 +221,7 @@ double pressure_drop(const struct pressures *pressures, const struct grains *gra
     const struct compensated *value = pressures->value;
     const struct compensated a = value[pressures->node_of_cell[throat->cell[0]]];
     const struct compensated b = value[pressures->node_of_cell[throat->cell[1]]];
-    const double drop = (a.value - b.value) + (a.lost - b.lost);
+    const double drop = compensated_difference(a, b);
     if (!grains_repeat(grains)) return drop;
     return drop - dot(pressures->gradient, throat_step(grains, cells, throat));
 }
@@ -312,27 +278,23 @@ static enum status close_balances(const struct balance *balance,
     const struct matrix *matrix = &balance->matrix;
     const int n = matrix->n;
     struct compensated *x = NEW_ARRAY(struct compensated, matrix->n_all);
-    double *lack = NEW_ARRAY(double, n), *correction = NEW_ARRAY(double, n);
-    double *given = NEW_ARRAY(double, matrix->n_all);
+    double *lack = NEW_ARRAY(double, n), *given = NEW_ARRAY(double, matrix->n_all);
     for (int i = 0; i < matrix->n_all; i++)
         given[balance->unknown[i]] = balance->given[i];
     reorder(balance, pressures, x, false);
     struct linear_solver solver;
     enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
     pressures->direct = solver.cholesky;
-    find_lack(matrix, given, x, lack);
+    matrix_lack(matrix, given, x, lack);
     double best = pressures->imbalance = INFINITY;
     for (int round = 0; !status && round < CORRECTIONS; round++) {
         const double reduction = round == 0
                                      ? first_reduction
                                      : fmax(first_reduction, 0.02 * solving->tolerance /
                                                                  pressures->imbalance);
-        status = linear_solve(&solver, lack, correction, reduction,
-                              &pressures->iterations, reason);
+        status = linear_correct(&solver, given, x, lack, reduction,
+                                &pressures->iterations, reason);
         if (status) break;
-        for (int i = 0; i < n; i++)
-            compensated_add(&x[i], correction[i]);
-        find_lack(matrix, given, x, lack);
         if (!(pressures->imbalance < settled)) {
             reorder(balance, pressures, x, true);
             pressures->throughput = find_throughput(balance, pressures);
@@ -349,7 +311,6 @@ static enum status close_balances(const struct balance *balance,
     linear_solver_free(&solver);
     free(x);
     free(lack);
-    free(correction);
     free(given);
     if (!status && !(pressures->imbalance <= solving->tolerance))
         return refuse(reason, STATUS_NOT_CONVERGED,

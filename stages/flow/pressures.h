@@ -5,7 +5,7 @@
 
 #include "basics/compensated.h"
 #include "basics/status.h"
-#include "linear_solver.h"
+#include "sparse/linear_solver.h"
 #include "throats.h"
 
 // In units of length, for a viscosity of 1: a flux is then in unit^3 Pa.

@@ -3,13 +3,14 @@
 
 #include "basics/memory.h"
 #include "sparse/kron.h"
-#include "sparse/potential.h"
+#include "sparse/linear_solver.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 // Of what passes.
 static const double TOLERANCE = 1e-10;
+static const double REDUCTION = 1e-8; // of what the balances lack, in one round
 
 enum { MOST_ROUNDS = 6, MOST_ELIMINATED = 20000, MOST_STATES = 11 };
 
@@ -19,8 +20,8 @@ struct passage {
     unsigned inlet, outlet;
     double length, radius; // m, the largest: units
     double *conductance;   // (n_throat) scaled; 0: lets nothing through
-    int *site;             // (n_node) balances; 0: the outlet; -1: not reached
-    int n_site, *queue;    // (n_node)
+    int *site;             // (n_node) balances, the outlet, the inlet; -1: not reached
+    int n_balance, *queue; // (n_node)
     bool reached;          // the outlet
 };
 
@@ -47,21 +48,20 @@ static void look_around(struct passage *passage, int node, int *n_queue)
             is_inlet(passage, other))
             continue;
         if (is_outlet(passage, other)) {
-            passage->site[other] = 0;
             passage->reached = true;
         } else if (passage->site[other] < 0) {
-            passage->site[other] = passage->n_site++;
+            passage->site[other] = passage->n_balance++;
             passage->queue[(*n_queue)++] = other;
         }
     }
 }
 
-// Numbers the nodes that something leads to from the inlet.
+// Numbers the nodes that something leads to from the inlet, then outlet and inlet.
 static void find_sites(struct passage *passage)
 {
     const int n_node = passage->network->n_node;
     int n_queue = 0;
-    passage->n_site = 1;
+    passage->n_balance = 0;
     passage->reached = false;
     for (int i = 0; i < n_node; i++) {
         passage->site[i] = -1;
@@ -69,49 +69,69 @@ static void find_sites(struct passage *passage)
     }
     for (int k = 0; k < n_queue; k++)
         look_around(passage, passage->queue[k], &n_queue);
+    for (int i = 0; i < n_node; i++) {
+        if (is_outlet(passage, i)) passage->site[i] = passage->n_balance;
+        if (is_inlet(passage, i)) passage->site[i] = passage->n_balance + 1;
+    }
 }
 
-// Links between sites; INFLOW (n_site) what leads to each from the inlet. Returns how
-// many.
-static int link_sites(const struct passage *passage, struct link *link, double *inflow)
+// Links between sites. Returns how many.
+static int link_sites(const struct passage *passage, struct link *link)
 {
     int n = 0;
     for (int t = 0; t < passage->network->n_throat; t++) {
         const int32_t *ends = passage->network->throat_nodes[t];
         const int a = passage->site[ends[0]], b = passage->site[ends[1]];
-        if (!(passage->conductance[t] > 0) || a == b) continue;
-        if (a >= 0 && b >= 0)
+        if (passage->conductance[t] > 0 && a >= 0 && b >= 0 && a != b)
             link[n++] = (struct link){{a, b}, passage->conductance[t]};
-        else if (is_inlet(passage, ends[0]) || is_inlet(passage, ends[1]))
-            inflow[a >= 0 ? a : b] += passage->conductance[t];
     }
     return n;
 }
 
-// Until what the balances lack is a small part of what passes.
-static bool balance(struct potential *potential)
+// What passes, in second order: of all potentials X those that balance lose the least.
+static double flow_of(int n_link, const struct link *link, const struct compensated *x)
 {
-    double least = 0;
-    for (int i = 0; i < potential->n_site; i++)
-        least += TOLERANCE * potential->air[i];
-    for (int round = 0; round < MOST_ROUNDS; round++) {
-        if (!potential_solve(potential, least)) return false;
-        if (least <= TOLERANCE * potential->rate) return true;
-        least = TOLERANCE / 2 * potential->rate;
+    struct compensated sum = {0};
+    for (int k = 0; k < n_link; k++) {
+        const double fall =
+            compensated_difference(x[link[k].site[0]], x[link[k].site[1]]);
+        compensated_add(&sum, link[k].conductance * fall * fall);
     }
-    return false;
+    return compensated_value(sum);
 }
 
-static bool iterate(const struct passage *passage, int n_link, const struct link *link,
-                    const double *inflow, double *conductance)
+static double sum_of_sizes(const double *x, int n)
 {
-    struct potential potential = potential_make(passage->n_site, n_link, link, inflow);
-    for (int i = 1; i < passage->n_site; i++)
-        potential_free_site(&potential, i);
-    const bool good = n_link == 0 || balance(&potential);
-    *conductance = potential.rate;
-    potential_free(&potential);
-    return good;
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += fabs(x[i]);
+    return sum;
+}
+
+// Until what the balances lack is a small part of what passes. Each unit of it ends at
+// the inlet or the outlet, as a random walk does, so its sum of sizes bounds the error.
+static enum status iterate(int n, int n_link, const struct link *link,
+                           double *conductance, struct reason *reason)
+{
+    struct compensated *x = NEW_ARRAY(struct compensated, n + 2);
+    double *lack = NEW_ARRAY(double, n);
+    x[n + 1].value = 1; // at the inlet
+    struct matrix matrix = matrix_of_links(n, n + 2, n_link, link);
+    struct linear_solver solver;
+    enum status status = linear_solver_make(&matrix, SOLVER_AUTO, &solver, reason);
+    matrix_lack(&matrix, NULL, x, lack);
+    bool closed = false;
+    for (int round = 0, iterations = 0; !status && !closed && round < MOST_ROUNDS;
+         round++) {
+        status = linear_correct(&solver, NULL, x, lack, REDUCTION, &iterations, reason);
+        *conductance = flow_of(n_link, link, x);
+        closed = sum_of_sizes(lack, n) <= TOLERANCE * *conductance;
+    }
+    linear_solver_free(&solver);
+    matrix_free(&matrix);
+    free(x);
+    free(lack);
+    return status || closed ? status : STATUS_NOT_CONVERGED;
 }
 
 static double fall_of_one(const void *context, int b, int a)
@@ -121,18 +141,12 @@ static double fall_of_one(const void *context, int b, int a)
 }
 
 // Loses no digits, however far apart conductances are.
-static double eliminate(const struct passage *passage, int n_link,
-                        const struct link *link, const double *inflow)
+static double eliminate(int n, int n_link, const struct link *link)
 {
-    const int n = passage->n_site - 1, outlet = n, inlet = n + 1;
     struct kron kron = {0};
     kron_begin(&kron, n, 2);
-    for (int k = 0; k < n_link; k++) {
-        const int a = link[k].site[0], b = link[k].site[1];
-        kron_link(&kron, a ? a - 1 : outlet, b ? b - 1 : outlet, link[k].conductance);
-    }
-    for (int i = 1; i <= n; i++)
-        if (inflow[i] > 0) kron_link(&kron, i - 1, inlet, inflow[i]);
+    for (int k = 0; k < n_link; k++)
+        kron_link(&kron, link[k].site[0], link[k].site[1], link[k].conductance);
     kron_eliminate(&kron);
     const double flow = kron_flow(&kron, 0, fall_of_one, NULL);
     kron_free(&kron);
@@ -146,24 +160,19 @@ static enum status find_conductance(struct passage *passage, double *conductance
     find_sites(passage);
     if (!passage->reached) return STATUS_OK;
     struct link *link = NEW_ARRAY(struct link, passage->network->n_throat);
-    double *inflow = NEW_ARRAY(double, passage->n_site);
-    const int n_link = link_sites(passage, link, inflow);
-    const double direct = inflow[0];
-    inflow[0] = 0;
-    bool good = iterate(passage, n_link, link, inflow, conductance);
-    if (!good && passage->n_site <= MOST_ELIMINATED) {
-        *conductance = eliminate(passage, n_link, link, inflow);
-        good = true;
+    const int n = passage->n_balance, n_link = link_sites(passage, link);
+    enum status status = iterate(n, n_link, link, conductance, reason);
+    if (status == STATUS_NOT_CONVERGED && n < MOST_ELIMINATED) {
+        *conductance = eliminate(n, n_link, link);
+        status = STATUS_OK;
     }
-    *conductance += direct;
     free(link);
-    free(inflow);
-    if (good) return STATUS_OK;
-    return refuse(reason, STATUS_NOT_CONVERGED,
+    if (status != STATUS_NOT_CONVERGED) return status;
+    return refuse(reason, status,
                   "transport: the balances of %d nodes cannot be closed to %g of what "
                   "passes, conductances are too far apart (throats of more even radii, "
                   "or fewer than %d nodes, would do)",
-                  passage->n_site - 1, TOLERANCE, MOST_ELIMINATED);
+                  n, TOLERANCE, MOST_ELIMINATED);
 }
 
 // --- states ------------------------------------------------------------------------

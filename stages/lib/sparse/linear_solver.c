@@ -25,7 +25,8 @@ static void precondition(void *context, const double *residual, double *z)
 enum status linear_solver_make(const struct matrix *matrix, enum solver solver,
                                struct linear_solver *linear, struct reason *reason)
 {
-    *linear = (struct linear_solver){.matrix = matrix};
+    *linear = (struct linear_solver){.matrix = matrix,
+                                     .correction = NEW_ARRAY(double, matrix->n)};
     if (solver == SOLVER_CHOLESKY ||
         (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
         return cholesky_make(matrix, &linear->cholesky, reason);
@@ -40,6 +41,7 @@ void linear_solver_free(struct linear_solver *linear)
 {
     sampled_factor_free(linear->factor);
     cholesky_free(linear->cholesky);
+    free(linear->correction);
     free(linear->residual);
     for (int k = 0; k < 3; k++)
         free(linear->work[k]);
@@ -67,13 +69,18 @@ static int iterate(struct linear_solver *linear, const double *b, double *x,
     return iterations;
 }
 
-enum status linear_solve(struct linear_solver *linear, const double *b, double *x,
-                         double reduction, int *iterations, struct reason *reason)
+enum status linear_correct(struct linear_solver *linear, const double *given,
+                           struct compensated *x, double *lack, double reduction,
+                           int *iterations, struct reason *reason)
 {
+    const int n = linear->matrix->n;
     if (linear->factor)
-        *iterations += iterate(linear, b, x, reduction);
-    else if (!cholesky_solve(linear->cholesky, b, x))
+        *iterations += iterate(linear, lack, linear->correction, reduction);
+    else if (!cholesky_solve(linear->cholesky, lack, linear->correction))
         return refuse(reason, STATUS_INTERNAL,
-                      "out of memory in the balances of %d pores", linear->matrix->n);
+                      "out of memory in the balances of %d pores", n);
+    for (int i = 0; i < n; i++)
+        compensated_add(&x[i], linear->correction[i]);
+    matrix_lack(linear->matrix, given, x, lack);
     return STATUS_OK;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is added to the pressures so that balances close: by Cholesky's factor, or by
 // conjugate gradients with a sampled factor.
-#ifndef CRAQUELURE_FLOW_LINEAR_SOLVER_H
-#define CRAQUELURE_FLOW_LINEAR_SOLVER_H
+#ifndef CRAQUELURE_LINEAR_SOLVER_H
+#define CRAQUELURE_LINEAR_SOLVER_H
 
 #include "cholesky.h"
 #include "matrix.h"
@@ -14,6 +14,7 @@ struct linear_solver {
     const struct matrix *matrix;
     struct cholesky *cholesky; // one of the two, the other NULL
     struct sampled_factor *factor;
+    double *correction;         // (n)
     double *residual, *work[3]; // (n) of conjugate gradients
 };
 
@@ -23,11 +24,12 @@ enum status linear_solver_make(const struct matrix *matrix, enum solver solver,
                                struct linear_solver *linear, struct reason *reason);
 void linear_solver_free(struct linear_solver *linear);
 
-// X (n) for the lacks B (n), in the units of the matrix. Conjugate gradients take the
-// residual down to REDUCTION of that of zero, or as far as they come, and add to
-// ITERATIONS; after the first call B is taken to be what the sum of the X still lacks.
-// STATUS_INTERNAL: no memory.
-enum status linear_solve(struct linear_solver *linear, const double *b, double *x,
-                         double reduction, int *iterations, struct reason *reason);
+// Corrects X (n_all) by what the balances LACK (n), as matrix_lack found with GIVEN,
+// and finds anew what they lack. Conjugate gradients take it down to REDUCTION of that
+// of no correction, or as far as they come, and add to ITERATIONS; after the first call
+// they go on from their last direction. STATUS_INTERNAL: no memory.
+enum status linear_correct(struct linear_solver *linear, const double *given,
+                           struct compensated *x, double *lack, double reduction,
+                           int *iterations, struct reason *reason);
 
 #endif

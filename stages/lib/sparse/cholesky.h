@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The balances by CHOLMOD.
-#ifndef CRAQUELURE_FLOW_CHOLESKY_H
-#define CRAQUELURE_FLOW_CHOLESKY_H
+#ifndef CRAQUELURE_CHOLESKY_H
+#define CRAQUELURE_CHOLESKY_H
 
 #include "basics/status.h"
 #include "matrix.h"
