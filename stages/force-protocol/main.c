@@ -17,7 +17,8 @@
 enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
 
 struct force_parameters {
-    double surface_tension, contact_angle, force_scale, largest_change, ring_volume;
+    double surface_tension, contact_angle, force_scale, largest_change, ring_volume,
+        most_bytes;
     int open_surface, form, suction, rings;
     bool balanced;
     int64_t steps;
@@ -70,6 +71,9 @@ static const struct parameter table[] = {
      "change "
      "by more than this from one to the next, of the largest force",
      AT(largest_change)},
+    {"most_bytes", PARAMETER_NUMBER, "1", "4e9", BOUND_ABOVE, 0, 0, NULL,
+     "largest forces to write, 24 bytes a grain and time: more are refused at once",
+     AT(most_bytes)},
     {"rings.left", PARAMETER_CHOICE, "1", "\"none\"", BOUND_NONE, 0, 0,
      "none|volume|suction",
      "liquid that stays at contacts as throats empty: none, a given volume, or as much "
@@ -174,21 +178,30 @@ static enum status find_action(struct wedges *wedges,
     return status;
 }
 
+static void refuse_size(const struct force_parameters *parameters, double times,
+                        double grains)
+{
+    const bool adaptive = parameters->largest_change > 0;
+    die(STATUS_BAD_DATA,
+        "force-protocol.%s: %g takes %.3g times, which are %.3g bytes of forces on %g "
+        "grains: more than force-protocol.most_bytes = %g",
+        adaptive ? "largest_change" : "steps",
+        adaptive ? parameters->largest_change : times, times, times * grains * 24,
+        grains, parameters->most_bytes);
+}
+
 static struct protocol find_protocol(const struct process *process,
                                      const struct force_parameters *parameters)
 {
-    static const int most = 10000000;
-    int count = (int)parameters->steps;
-    double *times;
+    const double grains = process->network->packing.n_particle;
+    const int most = (int)fmin(1e9, parameters->most_bytes / fmax(24, 24 * grains));
+    double count = (double)parameters->steps, *times = NULL;
     if (parameters->largest_change > 0)
         times = adaptive_times(process, parameters->largest_change, most, &count);
-    else
-        times = uniform_times(process->record, count);
-    if (!times)
-        die(STATUS_BAD_DATA,
-            "force-protocol.largest_change: %g takes more than %d times",
-            parameters->largest_change, most);
-    return make_protocol(process, times, count);
+    else if (count <= most)
+        times = uniform_times(process->record, (int)count);
+    if (!times) refuse_size(parameters, count, grains);
+    return make_protocol(process, times, (int)count);
 }
 
 // What is said of the forces.

@@ -26,14 +26,16 @@ struct choice {
     double bound;        // N
     struct vector *last; // (n_particle) forces at the last time
     double moved;        // largest change of a force since
-    double *time;
+    double *time;        // (n) but no more than MOST
     int n, capacity, most;
+    double wanted; // how many it takes
 };
 
 static void choose(struct choice *choice, double time)
 {
-    if (choice->n > choice->most) return; // too many already
     if (choice->n > 0 && !(time > choice->time[choice->n - 1])) return;
+    choice->wanted++;
+    if (choice->n == choice->most) return;
     GROW_ARRAY(choice->time, choice->n, choice->capacity);
     choice->time[choice->n++] = time;
 }
@@ -74,9 +76,11 @@ static void follow(struct choice *choice, double from, double to)
     remember_former(choice);
     choice->moved = movement(choice);
     if (choice->moved <= choice->bound) return;
-    const double parts = fmin(ceil(choice->moved / choice->bound), choice->most);
-    for (int p = 1; p < parts; p++)
+    const double parts = ceil(choice->moved / choice->bound);
+    const double too_many = choice->wanted + parts > choice->most ? parts : 0;
+    for (int p = 1; p < parts && !too_many; p++)
         choose(choice, from + (to - from) * (p / parts));
+    choice->wanted += fmax(0, too_many - 1);
     choose(choice, to);
     remember(choice);
 }
@@ -96,7 +100,7 @@ static double largest_at_steps(const struct process *process)
 }
 
 double *adaptive_times(const struct process *process, double bound, int most,
-                       int *count)
+                       double *count)
 {
     const struct drying_record *record = process->record;
     struct choice choice = {
@@ -111,8 +115,8 @@ double *adaptive_times(const struct process *process, double bound, int most,
     choose(&choice, end_of(record));
     walk_free(&choice.walk);
     free(choice.last);
-    *count = choice.n;
-    if (choice.n <= most) return choice.time;
+    *count = choice.wanted;
+    if (choice.wanted <= most) return choice.time;
     free(choice.time);
     return NULL;
 }

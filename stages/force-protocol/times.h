@@ -11,8 +11,9 @@ double *uniform_times(const struct drying_record *record, int count);
 // As few times as it takes for no force on a grain to change by more than BOUND, of the
 // largest force on any grain at any time, from one to the next. What changes at once,
 // where pressures jump or two times of the drying are equal, is one change whatever its
-// size. NULL: more than MOST. The caller frees them.
+// size. COUNT is how many it takes; NULL: that is more than MOST. The caller frees
+// them.
 double *adaptive_times(const struct process *process, double bound, int most,
-                       int *count);
+                       double *count);
 
 #endif

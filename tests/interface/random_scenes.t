@@ -26,7 +26,8 @@ ANSWERS = {0, 1, 3, 65}  # done, no, not converged, bad data
 STAGES = ["tessellate", "merge-nodes", "invade", "flow", "dry", "force-protocol", "dem-replay",
           "deform", "crackstats"]
 # What makes runs or files long when it is drawn from all that is allowed.
-GIVEN = {"force-protocol.steps": 5, "force-protocol.largest_change": 0, "dem-replay.cycles": 20,
+GIVEN = {"force-protocol.steps": 5, "force-protocol.largest_change": 0,
+         "force-protocol.most_bytes": 4e9, "dem-replay.cycles": 20,
          "dem-replay.most_cycles": 1000000, "dem-replay.tolerance": None,
          "dem-replay.quasi_static.tolerance": 1e-8, "dem-replay.bridges.model": "willett-full",
          "dry.saturation_step": 1, "dry.boundary_layer.layers": 0}

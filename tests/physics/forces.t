@@ -296,6 +296,15 @@ def times():
     ok(0.95 * said < found < 1.001 * said and said > 0.05,
        "uniform times: the error of interpolation as said", (found, said))
 
+    grains = len(radii)
+    for how in "steps=100", "largest_change=0.05":
+        count = len(forces("d", how)[1])
+        limits = [24 * grains * count, 24 * grains * count - 1]
+        ends = [subprocess.run([f"{BIN}/force-protocol", "--set", how, "--set", f"most_bytes={limit}", "d", "-o", "sized"],
+                               capture_output=True) for limit in limits]
+        ok([end.returncode for end in ends] == [0, 65] and f"takes {count:.3g} times, which are {limits[0]:.3g} bytes" in ends[1].stderr.decode(),
+           f"{how}: more than most_bytes is refused, and what it takes is said", ends[1].stderr)
+
     shutil.copy("d", "equal")
     with h5py.File("equal", "a") as file:
         old = file["history/time"][:]
