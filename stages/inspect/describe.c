@@ -7,30 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A dataset read whole, as doubles (indices up to 2^53 stay exact).
-struct values {
-    int rank;
-    hsize_t extent[8];
-    size_t count;
-    double *value;
-};
-
-static struct values read_values(hid_t file, const char *name)
-{
-    struct values values = {0};
-    const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
-    const hid_t space = H5Dget_space(dataset);
-    values.rank = H5Sget_simple_extent_dims(space, values.extent, NULL);
-    values.count = (size_t)H5Sget_simple_extent_npoints(space);
-    values.value = NEW_ARRAY(double, values.count);
-    if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                values.value) < 0)
-        die(STATUS_BAD_DATA, "%s: cannot be read", name);
-    H5Sclose(space);
-    H5Dclose(dataset);
-    return values;
-}
-
 static json_t *number(double value, const json_t *entry)
 {
     return strcmp(json_string_value(json_object_get(entry, "type")), "float64")
@@ -60,7 +36,7 @@ static void put_digest(json_t *description, const struct artifact *artifact,
     H5Dclose(dataset);
 }
 
-static void put_extremes(json_t *description, const struct values *values,
+static void put_extremes(json_t *description, const struct dataset_values *values,
                          const json_t *entry)
 {
     if (!values->count) return;
@@ -76,7 +52,7 @@ static void put_extremes(json_t *description, const struct values *values,
 static json_t *describe_dataset(const struct artifact *artifact, const json_t *entry)
 {
     const char *name = json_string_value(json_object_get(entry, "name"));
-    struct values values = read_values(artifact->file, name);
+    struct dataset_values values = artifact_get_values(artifact, name);
     json_t *shape = json_array();
     for (int axis = 0; axis < values.rank; axis++)
         json_array_append_new(shape, json_integer((json_int_t)values.extent[axis]));
@@ -149,7 +125,7 @@ json_t *describe_artifact(const struct artifact *artifact)
     return description;
 }
 
-static json_t *nested(const struct values *values, int axis, size_t *at,
+static json_t *nested(const struct dataset_values *values, int axis, size_t *at,
                       const json_t *entry)
 {
     if (axis == values->rank) return number(values->value[(*at)++], entry);
@@ -170,7 +146,7 @@ json_t *dataset_json(const struct artifact *artifact, const char *name)
     if (!has_entry(artifact->file, entry))
         die(STATUS_BAD_DATA, "%s: has no dataset %s: it was left out",
             input_name(artifact->path), name);
-    struct values values = read_values(artifact->file, absolute);
+    struct dataset_values values = artifact_get_values(artifact, absolute);
     size_t at = 0;
     json_t *list = nested(&values, 0, &at, entry);
     free(values.value);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // inspect: any artifact as JSON, or as a series for ParaView.
 #include "artifacts/artifact.h"
-#include "artifacts/check.h"
+#include "artifacts/document.h"
 #include "basics/status.h"
 #include "describe.h"
 #include "export.h"
 #include "series.h"
 
 #include <argp.h>
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,40 +78,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     }
 }
 
-// A JSON artifact describes itself.
-static bool is_json(const struct bytes *bytes)
-{
-    size_t k = 0;
-    while (k < bytes->size && isspace(bytes->data[k]))
-        k++;
-    return k < bytes->size && bytes->data[k] == '{';
-}
-
-static json_t *json_artifact(const struct options *options, const struct bytes *bytes)
-{
-    json_error_t error;
-    json_t *document = json_loadb((const char *)bytes->data, bytes->size,
-                                  JSON_REJECT_DUPLICATES, &error);
-    if (!document)
-        die(STATUS_BAD_DATA, "%s: line %d: %s", input_name(options->input), error.line,
-            error.text);
-    const char *id = json_string_value(json_object_get(document, "schema"));
-    if (!id)
-        die(STATUS_BAD_DATA, "%s: is not an artifact: it has no schema",
-            input_name(options->input));
-    struct schema *schema = schema_find(id);
-    if (!schema || strcmp(schema->id, id))
-        die(STATUS_BAD_DATA, "%s: schema %s is unknown", input_name(options->input),
-            id);
-    struct reason reason;
-    if (check_document(document, schema, &reason))
-        die(STATUS_BAD_DATA, "%s: %s", input_name(options->input), reason.text);
-    schema_free(schema);
-    if (options->data || options->vtk || options->openpnm || options->statoil)
-        die(STATUS_USAGE, "%s: is JSON: read it with jq", input_name(options->input));
-    return document;
-}
-
 static void print(json_t *json)
 {
     char *text = json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
@@ -135,8 +100,11 @@ int main(int argc, char **argv)
     if (argp_parse(&argp, argc, argv, 0, NULL, &options)) exit(STATUS_USAGE);
 
     struct bytes bytes = read_whole(options.input);
-    if (is_json(&bytes)) {
-        print(json_artifact(&options, &bytes));
+    if (is_document(&bytes)) { // describes itself
+        if (options.data || options.vtk || options.openpnm || options.statoil)
+            die(STATUS_USAGE, "%s: is JSON: read it with jq",
+                input_name(options.input));
+        print(document_of(options.input, &bytes));
         free(bytes.data);
         return STATUS_OK;
     }

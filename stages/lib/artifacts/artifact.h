@@ -44,6 +44,17 @@ struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
 // The caller frees it.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
 
+// A whole dataset as doubles, whatever its type: whole numbers up to 2^53 are exact. The
+// caller frees VALUE.
+struct dataset_values {
+    int rank;
+    hsize_t extent[8];
+    size_t count;
+    double *value;
+};
+struct dataset_values artifact_get_values(const struct artifact *artifact,
+                                          const char *name);
+
 // Whether an optional dataset is there.
 bool artifact_has_dataset(const struct artifact *artifact, const char *name);
 

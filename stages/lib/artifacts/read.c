@@ -168,6 +168,24 @@ static bool artifact_has(const struct artifact *artifact, const json_t *entry)
     return entry && has_entry(artifact->file, entry);
 }
 
+struct dataset_values artifact_get_values(const struct artifact *artifact,
+                                          const char *name)
+{
+    struct dataset_values values = {0};
+    const hid_t dataset = H5Dopen2(artifact->file, name, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(dataset);
+    values.rank = H5Sget_simple_extent_dims(space, values.extent, NULL);
+    values.count = (size_t)H5Sget_simple_extent_npoints(space);
+    values.value = NEW_ARRAY(double, values.count);
+    if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                values.value) < 0)
+        die(STATUS_BAD_DATA, "%s: %s: cannot be read", input_name(artifact->path),
+            name);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    return values;
+}
+
 bool artifact_has_dataset(const struct artifact *artifact, const char *name)
 {
     return artifact_has(artifact, schema_dataset(artifact->schema, name));

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// artdiff: in what two artifacts differ, with a tolerance.
+#include "artifacts/document.h"
+#include "basics/status.h"
+#include "compare.h"
+
+#include <argp.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct options {
+    const char *input[2];
+    double tolerance;
+    bool quiet;
+};
+
+static const struct argp_option option_table[] = {
+    {"tolerance", 't', "T", 0,
+     "Largest difference, of the largest value of a dataset, or of a number that "
+     "stands "
+     "alone, of 1 where that has no unit and is less [0]; whole numbers must be equal",
+     0},
+    {"quiet", 'q', NULL, 0, "Only the exit status", 0},
+    {"version", 'V', NULL, 0, "Print program version", -1},
+    {0}};
+
+static double parse_tolerance(const char *text)
+{
+    char *end;
+    const double tolerance = strtod(text, &end);
+    if (*end || end == text || !(tolerance >= 0 && tolerance <= 1))
+        die(STATUS_USAGE, "--tolerance: must be from 0 to 1, got %s", text);
+    return tolerance;
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state)
+{
+    struct options *options = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->err_stream = NULL; // one line, getopt's own, is enough
+        return 0;
+    case 't':
+        options->tolerance = parse_tolerance(argument);
+        return 0;
+    case 'q':
+        options->quiet = true;
+        return 0;
+    case 'V':
+        printf("artdiff (craquelure %s) stage version %d\n", CRAQUELURE_VERSION,
+               STAGE_VERSION);
+        exit(STATUS_OK);
+    case ARGP_KEY_ARG:
+        if (state->arg_num > 1) die(STATUS_USAGE, "%s: two artifacts only", argument);
+        options->input[state->arg_num] = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (state->arg_num < 2) die(STATUS_USAGE, "two artifacts are needed");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void compare_hdf5(struct comparison *comparison, struct bytes bytes[2])
+{
+    struct artifact *artifact[2];
+    for (int k = 0; k < 2; k++)
+        artifact[k] = artifact_open_bytes(comparison->names[k], bytes[k], NULL);
+    compare_artifacts(comparison, artifact[0], artifact[1]);
+    for (int k = 0; k < 2; k++)
+        artifact_close(artifact[k]);
+}
+
+static void compare_json(struct comparison *comparison, struct bytes bytes[2])
+{
+    json_t *document[2];
+    for (int k = 0; k < 2; k++) {
+        document[k] = document_of(comparison->names[k], &bytes[k]);
+        free(bytes[k].data);
+    }
+    compare_documents(comparison, document[0], document[1]);
+    for (int k = 0; k < 2; k++)
+        json_decref(document[k]);
+}
+
+static void compare_files(struct comparison *comparison)
+{
+    struct bytes bytes[2];
+    for (int k = 0; k < 2; k++)
+        bytes[k] = read_whole(comparison->names[k]);
+    const bool json = is_document(&bytes[0]);
+    if (json != is_document(&bytes[1]))
+        die(STATUS_BAD_DATA, "%s is %s, %s is %s", input_name(comparison->names[0]),
+            json ? "JSON" : "not JSON", input_name(comparison->names[1]),
+            json ? "not" : "JSON");
+    if (json)
+        compare_json(comparison, bytes);
+    else
+        compare_hdf5(comparison, bytes);
+}
+
+int main(int argc, char **argv)
+{
+    struct options options = {0};
+    const struct argp argp = {
+        .options = option_table,
+        .parser = parse_option,
+        .args_doc = "ARTIFACT ARTIFACT",
+        .doc =
+            "artdiff -- in what two artifacts differ, with a tolerance\v"
+            "A line for each dataset or number that does. What programs and parameters "
+            "made them is not compared: for every byte use cmp.\n\n"
+            "Exit status:\n"
+            "  0 none does; 1 some do; 64 command line; 65 bad input;\n"
+            "  66 no such input; 70 our fault; 74 failed I/O"};
+    if (argp_parse(&argp, argc, argv, 0, NULL, &options)) exit(STATUS_USAGE);
+
+    char *lines = NULL;
+    size_t size = 0;
+    struct comparison comparison = {.tolerance = options.tolerance,
+                                    .names = {options.input[0], options.input[1]},
+                                    .lines = open_memstream(&lines, &size)};
+    compare_files(&comparison);
+    fclose(comparison.lines);
+    if (!options.quiet && size) write_whole("-", lines, size);
+    free(lines);
+    return comparison.n_different ? STATUS_NO : STATUS_OK;
+}
