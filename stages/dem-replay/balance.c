@@ -30,6 +30,11 @@ static void strain_joints(const struct equilibrium *e, const struct displacement
     }
 }
 
+void strain_trial(struct equilibrium *e)
+{
+    strain_joints(e, e->trial, e->strain);
+}
+
 // What is left of the load at the trial.
 void resist(struct equilibrium *e)
 {
@@ -40,7 +45,7 @@ void resist(struct equilibrium *e)
     if (e->large)
         large_strain_joints(e);
     else
-        strain_joints(e, e->trial, e->strain);
+        strain_trial(e);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         e->resistance[j] = joint_resistance(joint, e->strain[j]);

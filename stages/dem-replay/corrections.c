@@ -167,18 +167,29 @@ const double *corrections_compliance(const struct corrections *c, int row)
     return compliance_of(c, row);
 }
 
-void corrections_strain_lanes(const struct corrections *c, double *strain)
+void corrections_strain_lanes(const struct corrections *c, int count, double *strain)
 {
     for (int k = 0; k < c->n_addition; k++)
-        stiffness_strain_lanes(c->stiffness, &c->addition[k].halves,
-                               strain + (long)c->addition[k].first * LANES);
+        if (c->addition[k].first >= count)
+            stiffness_strain_lanes(c->stiffness, &c->addition[k].halves,
+                                   strain + (long)c->addition[k].first * LANES);
+}
+
+static bool any(int count, const double *value)
+{
+    for (int k = 0; k < count; k++)
+        if (value[k] != 0) return true;
+    return false;
 }
 
 void corrections_take_off_lanes(const struct corrections *c, const double *load)
 {
-    for (int k = 0; k < c->n_addition; k++)
-        stiffness_take_off_lanes(c->stiffness, &c->addition[k].halves,
-                                 load + (long)c->addition[k].first * LANES);
+    for (int k = 0; k < c->n_addition; k++) {
+        const struct halves *halves = &c->addition[k].halves;
+        const double *of = load + (long)c->addition[k].first * LANES;
+        if (any(halves->columns * LANES, of))
+            stiffness_take_off_lanes(c->stiffness, halves, of);
+    }
 }
 
 // ---- the way ------------------------------------------------------------------------

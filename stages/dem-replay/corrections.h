@@ -38,8 +38,10 @@ struct unit_load corrections_row(const struct corrections *corrections, int row)
 int corrections_of(const struct corrections *corrections, int joint);
 const double *corrections_compliance(const struct corrections *corrections, int row);
 
-// As stiffness_strain_lanes and stiffness_take_off_lanes, for all rows (count * LANES).
-void corrections_strain_lanes(const struct corrections *corrections, double *strain);
+// As stiffness_strain_lanes, for the rows that came after the first COUNT, and
+// stiffness_take_off_lanes, for all (count * LANES).
+void corrections_strain_lanes(const struct corrections *corrections, int count,
+                              double *strain);
 void corrections_take_off_lanes(const struct corrections *corrections,
                                 const double *load);
 

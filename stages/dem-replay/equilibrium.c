@@ -137,30 +137,41 @@ static void record_crack(struct equilibrium *e, struct joint *joint, int mode)
     joint_break(joint, e->strain[joint - e->joint]);
 }
 
-bool break_one(struct equilibrium *e)
+static struct overload overload_of(const struct equilibrium *e, int j)
 {
+    const struct joint *joint = &e->joint[j];
     const double unit = e->setup.bond.kind == DEM_CONTACT_BOND // of strengths
                             ? e->stiffness * e->length
                             : e->stiffness / e->length;
-    struct joint *worst = NULL;
-    double most = strong;
-    int mode = DEM_CRACK_NORMAL;
+    const double share =
+        e->setup.relative_strength ? e->setup.relative_strength[joint->bond] : 1;
+    return joint_overload(joint, e->strain[j],
+                          share * e->setup.bond.normal_strength / unit,
+                          share * e->setup.bond.shear_strength / unit);
+}
+
+// The first of those that are as much overloaded as any, as far as rounding leaves
+// open.
+bool break_one(struct equilibrium *e)
+{
+    const double equal = 1 - 1e-8;
+    double *larger = NEW_ARRAY(double, e->n_joint), most = 0;
     for (int j = 0; j < e->n_joint; j++) {
-        struct joint *joint = &e->joint[j];
-        if (!joint->is_bonded || joint->is_gone) continue;
-        const struct overload overload =
-            joint_overload(joint, e->strain[j], e->setup.bond.normal_strength / unit,
-                           e->setup.bond.shear_strength / unit);
-        const double *relative = e->setup.relative_strength;
-        const double larger = fmax(overload.normal, overload.shear) /
-                              (relative ? relative[joint->bond] : 1);
-        if (!(larger >= most) || (worst && larger == most)) continue;
-        most = larger;
-        worst = joint;
-        mode = overload.normal >= overload.shear ? DEM_CRACK_NORMAL : DEM_CRACK_SHEAR;
+        if (!e->joint[j].is_bonded || e->joint[j].is_gone) continue;
+        const struct overload overload = overload_of(e, j);
+        larger[j] = fmax(overload.normal, overload.shear);
+        most = fmax(most, larger[j]);
     }
-    if (worst) record_crack(e, worst, mode);
-    return worst;
+    int worst = 0;
+    while (most >= strong && larger[worst] < equal * most)
+        worst++;
+    free(larger);
+    if (!(most >= strong)) return false;
+    const struct overload overload = overload_of(e, worst);
+    record_crack(e, &e->joint[worst],
+                 overload.normal >= overload.shear ? DEM_CRACK_NORMAL
+                                                   : DEM_CRACK_SHEAR);
+    return true;
 }
 
 static enum status refuse_numbers(int grain, struct reason *reason)

@@ -94,9 +94,10 @@ void balance(struct equilibrium *equilibrium);
 // The most overloaded bond breaks, if one is at its strength. Whether one was.
 bool break_one(struct equilibrium *equilibrium);
 
-// Steps on the way [balance.c]: what is left at the trial; a factor as all is there, if
-// there is one; a better trial; the trial becomes the last equilibrium, and the
-// reverse.
+// Steps on the way [balance.c]: strains at the trial, and what is left there; a factor
+// as all is there, if there is one; a better trial; the trial becomes the last
+// equilibrium, and the reverse.
+void strain_trial(struct equilibrium *equilibrium);
 void resist(struct equilibrium *equilibrium);
 double largest_left(const struct equilibrium *equilibrium);
 bool factor(struct equilibrium *equilibrium);

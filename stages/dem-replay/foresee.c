@@ -27,6 +27,7 @@ struct foresight *foresight_new(struct equilibrium *e)
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
         *of_grains[k] = allocate_aligned((size_t)e->n, GRAIN * sizeof **of_grains[k]);
     f->from = NEW_ARRAY(struct displacement, e->n);
+    f->strain = allocate((size_t)e->n_joint, sizeof *f->strain);
     f->touches_now = NEW_ARRAY(uint8_t, e->n_joint);
     f->settler = settler_new();
     return f;
@@ -36,9 +37,9 @@ void foresight_free(struct foresight *f)
 {
     if (!f) return;
     settler_free(f->settler);
-    void *const owned[] = {f->load, f->applied, f->left,       f->moved,
-                           f->step, f->row,     f->touches,    f->given,
-                           f->more, f->from,    f->touches_now};
+    void *const owned[] = {f->load, f->applied, f->left,        f->moved,
+                           f->step, f->row,     f->touches,     f->given,
+                           f->more, f->from,    f->touches_now, f->strain};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(f);
@@ -50,9 +51,7 @@ void foresight_expect(struct foresight *f, int count, const struct vector *force
     realise(f);
     f->n_expected = count;
     f->force = force;
-    f->found = f->used = 0;
-    f->sight = LANES;
-    f->has_looked = false;
+    f->n_lane = f->found = f->used = 0;
 }
 
 void foresight_check(struct foresight *f, const struct vector *force)
@@ -67,10 +66,7 @@ void foresight_go_on(struct foresight *f)
     if (!f || f->n_expected == 0) return;
     f->n_expected--;
     f->force += f->of->n;
-    f->used++;
-    if (f->used < f->found) return;
-    f->has_looked = false;
-    f->sight = 2 * f->sight < LANES ? 2 * f->sight : LANES;
+    if (f->used < f->n_lane) f->used++;
 }
 
 // ---- the last equilibrium, as factored ----------------------------------------------
@@ -98,18 +94,19 @@ static void apply_loads(struct equilibrium *e, int count)
     }
 }
 
-// What joints resisted with at the last equilibrium if all were as in the factor.
+// What joints resisted with when these lanes began if all were as in the factor.
 static void resist_as_factored(const struct equilibrium *e, struct displacement *sum)
 {
     memset(sum, 0, (size_t)e->n * sizeof *sum);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
+        const double *strain = e->foresight->strain[j];
         double load[STRAINS] = {0};
         for (int k = 0; k < STRAINS && e->factored[j].is_bonded; k++)
-            load[k] = joint->bond_stiffness[k] * joint->strain[k];
+            load[k] = joint->bond_stiffness[k] * strain[k];
         if (e->factored[j].touch)
             load[STRAIN_ALONG] -=
-                joint->contact_along * (joint->overlap - joint->strain[STRAIN_ALONG]);
+                joint->contact_along * (joint->overlap - strain[STRAIN_ALONG]);
         for (int end = 0; end < 2; end++) {
             if (joint->grain[end] < 0) continue;
             const struct displacement part = joint_loads(joint, end, load);
@@ -137,7 +134,8 @@ static void begin_lanes(struct equilibrium *e)
                 is_free(e, i) ? f->applied[(long)i * GRAIN + k] - number[k / LANES] : 0;
     }
     stiffness_begin_lanes(e->matrix, f->left);
-    memset(f->moved, 0, (size_t)e->n * GRAIN * sizeof *f->moved);
+    f->n_given = 0;
+    f->has_begun = true;
 }
 
 // ---- rows ---------------------------------------------------------------------------
@@ -156,67 +154,76 @@ static struct lane_row row_of(const struct equilibrium *e, struct unit_load whic
 {
     const struct joint *joint = &e->joint[which.joint];
     const struct factored *factored = &e->factored[which.joint];
+    const double *strain = e->foresight->strain[which.joint];
     const double bond = joint->bond_stiffness[which.strain];
     const bool is_along = which.strain == STRAIN_ALONG;
     return (struct lane_row){
-        .strain = joint->strain[which.strain],
+        .strain = strain[which.strain],
         .bond = (holds(joint) - factored->is_bonded) * bond,
         .contact = is_along ? joint->contact_along : 0,
-        .closed_to =
-            joint->is_gone ? -INFINITY : joint->overlap - joint->strain[STRAIN_ALONG],
+        .closed_to = joint->is_gone ? -INFINITY : joint->overlap - strain[STRAIN_ALONG],
         .touched = is_along && factored->touch};
 }
 
-// Of all rows of the corrections; those from FIRST on begin as they were.
-static void describe_rows(struct equilibrium *e, int first)
+// Of all rows of the corrections; new ones begin where the grains have MOVED.
+static void describe_rows(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
+    const int before = f->n_row;
     f->n_row = corrections_count(e->corrections);
     make_room(f, f->n_row);
-    for (int k = first; k < f->n_row; k++) {
+    for (int k = 0; k < f->n_row; k++) {
         const struct unit_load which = corrections_row(e->corrections, k);
         f->row[k] = row_of(e, which);
-        for (int l = 0; l < LANES; l++)
+        for (int l = 0; l < LANES && k >= before; l++)
             f->touches[(long)k * LANES + l] =
-                f->row[k].contact > 0 && e->joint[which.joint].contact.touch;
+                f->row[k].contact > 0 && (f->touches_now[which.joint] >> l & 1);
     }
 }
 
-// How many of COUNT lanes were settled, from the first on; whether contacts MAY CHANGE,
-// or go on as they are; where it IS FIRST each begins as the one before ended.
-static int settle_lanes(struct equilibrium *e, int count, bool may_change,
-                        bool is_first)
+// The first lane, from FIRST to END - 1, that was not settled, or END; whether contacts
+// MAY CHANGE, or go on as they are; where it IS FRESH each begins as the one before
+// ended.
+static int settle_lanes(struct equilibrium *e, int first, int end, bool may_change,
+                        bool is_fresh)
 {
     struct foresight *f = e->foresight;
-    corrections_strain_lanes(e->corrections, f->given);
+    corrections_strain_lanes(e->corrections, f->n_given, f->given);
+    f->n_given = f->n_row;
     memset(f->more, 0, (size_t)f->n_row * LANES * sizeof *f->more);
-    for (int l = 0; l < count; l++) {
+    for (int l = first; l < end; l++) {
         if (!settle_lane(f->settler, e->corrections, f->row, may_change, f->given + l,
                          f->touches + l, f->more + l))
-            count = l;
-        for (int k = 0; k < f->n_row && is_first && l + 1 < count; k++)
+            end = l;
+        for (int k = 0; k < f->n_row && is_fresh && l + 1 < end; k++)
             f->touches[(long)k * LANES + l + 1] = f->touches[(long)k * LANES + l];
     }
     corrections_take_off_lanes(e->corrections, f->more);
-    return count;
+    return end;
 }
 
 // ---- rounds -------------------------------------------------------------------------
 
-// Joints without a row that are not as factored in one of LANES. COUNT of them in each.
-static int list_unlike(struct equilibrium *e, int n_lane, int in_lane[LANES])
+static void find_touching(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    lane_kernels()->touch(e->n_joint, e->joint, f->strain, f->moved, f->touches_now);
+}
+
+// Joints without a row that are not as factored in a lane from FIRST to END - 1. COUNT
+// of them in each.
+static int list_unlike(struct equilibrium *e, int first, int end, int in_lane[LANES])
 {
     const struct foresight *f = e->foresight;
-    const int all = (1 << n_lane) - 1;
+    const int all = (1 << end) - (1 << first);
     int count = 0;
     memset(in_lane, 0, LANES * sizeof *in_lane);
-    lane_kernels()->touch(e->n_joint, e->joint, f->moved, f->touches_now);
     for (int j = 0; j < e->n_joint; j++) {
         const int unlike = (f->touches_now[j] ^ (e->factored[j].touch ? all : 0)) & all;
         if (!unlike || !(e->joint[j].contact_along > 0) || e->joint[j].is_gone ||
             corrections_of(e->corrections, j) > 0)
             continue;
-        for (int l = 0; l < n_lane; l++)
+        for (int l = first; l < end; l++)
             in_lane[l] += unlike >> l & 1;
         e->unlike[count++] = (struct correction){j, 1};
     }
@@ -235,127 +242,118 @@ static int list_broken(struct equilibrium *e)
     return count;
 }
 
-static bool factor_anew(struct equilibrium *e)
+// As the joints are in LANE where the grains have MOVED.
+static bool factor_lane(struct equilibrium *e, int lane)
 {
-    settler_forget(e->foresight->settler);
+    const struct foresight *f = e->foresight;
+    find_touching(e);
+    for (int j = 0; j < e->n_joint; j++) {
+        const bool touches = e->joint[j].contact_along > 0 && !e->joint[j].is_gone &&
+                             (f->touches_now[j] >> lane & 1);
+        e->resistance[j].contact.touch = touches ? TOUCH_STICKS : TOUCH_NONE;
+    }
     if (factor(e)) return true;
     corrections_count_work(e->corrections, INFINITY); // another is due
     return false;
 }
 
 // One round more for what rounding left.
-static void polish(struct equilibrium *e, int count)
+static void polish(struct equilibrium *e, int first, int end)
 {
     struct foresight *f = e->foresight;
     stiffness_begin_lanes(e->matrix, f->left);
-    if (settle_lanes(e, count, false, false) < count) return;
+    f->n_given = 0;
+    f->has_begun = false;
+    if (settle_lanes(e, first, end, false, false) < end) return;
     stiffness_finish_lanes(e->matrix, f->step);
     for (long k = 0; k < (long)e->n * GRAIN; k++)
         f->moved[k] += f->step[k];
+    find_left_lanes(e, first, end);
 }
 
-// As the joints are in the first lane.
-static bool factor_first_lane(struct equilibrium *e)
-{
-    const struct foresight *f = e->foresight;
-    lane_kernels()->touch(e->n_joint, e->joint, f->moved, f->touches_now);
-    for (int j = 0; j < e->n_joint; j++) {
-        const bool touches = e->joint[j].contact_along > 0 && !e->joint[j].is_gone &&
-                             (f->touches_now[j] & 1);
-        e->resistance[j].contact.touch = touches ? TOUCH_STICKS : TOUCH_NONE;
-    }
-    return factor_anew(e);
-}
-
-// Of COUNT lanes those, from the first on, in which few are unlike, so that a row of
-// corrections for each costs less than a factor.
-static int lanes_with_few(const struct equilibrium *e, int count,
-                          const int in_lane[LANES])
+// The first lane from FIRST to END - 1 in which so many are unlike that a factor costs
+// less than a row of corrections for each.
+static int first_with_many(const struct equilibrium *e, int first, int end,
+                           const int in_lane[LANES])
 {
     const double most =
         row_speed * stiffness_work(e->matrix) / stiffness_numbers(e->matrix);
-    for (int l = 0; l < count; l++)
+    for (int l = first; l < end; l++)
         if (in_lane[l] > most) return l;
-    return count;
+    return end;
 }
 
-// Corrects what is not as factored in some of COUNT lanes until nothing else is. How
-// many are left, none if they begin with so much that a new factor is better.
-static int correct_lanes(struct equilibrium *e, int count)
+// Corrects what is not as factored in lanes from FIRST to END - 1 until nothing else
+// is. Where those end that are found; none if they begin with so much that a new factor
+// is better.
+static int correct_lanes(struct equilibrium *e, int first, int end)
 {
     enum { ROUNDS = 10 };
     struct foresight *f = e->foresight;
-    if (!corrections_add(e->corrections, list_broken(e), e->unlike)) return 0;
-    describe_rows(e, 0);
+    if (!corrections_add(e->corrections, list_broken(e), e->unlike)) return first;
     for (int round = 0; round < ROUNDS; round++) {
-        count = settle_lanes(e, count, true, round == 0);
-        if (count == 0) return 0;
+        describe_rows(e);
+        end = settle_lanes(e, first, end, true, round == 0);
+        if (end == first) return first;
         stiffness_finish_lanes(e->matrix, f->moved);
-        int in_lane[LANES], unlike = list_unlike(e, count, in_lane);
-        if (unlike == 0) return count;
-        const int few = lanes_with_few(e, count, in_lane);
-        if (few == 0) return 0;
-        if (few < count) unlike = list_unlike(e, count = few, in_lane);
-        if (!corrections_add(e->corrections, unlike, e->unlike)) return 0;
-        describe_rows(e, f->n_row);
+        find_touching(e);
+        int in_lane[LANES], unlike = list_unlike(e, first, end, in_lane);
+        if (unlike == 0) return end;
+        const int few = first_with_many(e, first, end, in_lane);
+        if (few == first) return first;
+        if (few < end) unlike = list_unlike(e, first, end = few, in_lane);
+        if (!corrections_add(e->corrections, unlike, e->unlike)) return first;
     }
-    return 0;
+    return first;
 }
 
-// Lanes that were found of those begun with.
-static int look(struct equilibrium *e, int count)
+static bool is_factor_due(const struct equilibrium *e)
 {
-    enum { FACTORS = 8 };
-    const struct foresight *f = e->foresight;
-    apply_loads(e, count);
-    int found = 0;
-    for (int factors = 0; found == 0 && factors < FACTORS; factors++) {
-        if (factors > 0 && !factor_first_lane(e)) return 0;
-        begin_lanes(e);
-        found = correct_lanes(e, count);
-    }
-    if (found > 0 &&
-        find_left_lanes(e, found) > well_below * e->setup.tolerance * e->largest_load) {
-        polish(e, found);
-        find_left_lanes(e, found);
-    }
-    for (int l = 0; l < found; l++)
-        if (!(f->sums.furthest[l] <= furthest)) return l;
-    return found;
+    return e->factors == 0 ||
+           corrections_work(e->corrections) > row_speed * stiffness_work(e->matrix);
 }
 
-void look_ahead(struct equilibrium *e)
+// What belongs to the factor, if that has been made anew, and to the loads.
+static void begin_as_factored(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
-    const int count = f->n_expected < f->sight ? f->n_expected : f->sight;
-    f->used = f->found = 0;
-    f->has_looked = true;
-    f->n_crack = e->n_crack;
-    f->n_gone = e->n_gone;
-    if (f->factors != e->factors) settler_forget(f->settler);
-    bool has_factor = true;
-    if (e->factors == 0 ||
-        corrections_work(e->corrections) > row_speed * stiffness_work(e->matrix)) {
-        resist(e);
-        has_factor = factor_anew(e);
+    if (f->factors != e->factors) {
+        settler_forget(f->settler);
+        f->n_row = 0;
+        find_touching(e);
     }
-    memcpy(f->from, e->before, (size_t)e->n * sizeof *f->from);
-    if (has_factor) f->found = look(e, count);
+    if (f->factors != e->factors || !f->has_begun) begin_lanes(e);
     f->factors = e->factors;
 }
 
-bool has_looked(const struct equilibrium *e)
+int look(struct equilibrium *e, int first, int end)
 {
-    struct foresight *f = e->foresight;
-    if (f->n_crack == e->n_crack && f->n_gone == e->n_gone) return f->has_looked;
-    f->sight = 1;
-    return false;
+    enum { FACTORS = 8 };
+    const struct foresight *f = e->foresight;
+    int found = first;
+    for (int factors = 0; found == first && factors < FACTORS; factors++) {
+        const bool is_due = factors > 0 || is_factor_due(e);
+        if (is_due && !factor_lane(e, first)) return first;
+        begin_as_factored(e);
+        found = correct_lanes(e, first, end);
+    }
+    if (found > first && find_left_lanes(e, first, found) >
+                             well_below * e->setup.tolerance * f->largest_load[first])
+        polish(e, first, found);
+    return found;
 }
 
-void foresee(struct equilibrium *e)
+void begin_lanes_anew(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
-    if (!f || f->n_expected == 0) return;
-    if (!has_looked(e)) look_ahead(e);
-    if (f->used < f->found) go_to_lane(e, f->used);
+    f->n_lane = f->n_expected < LANES ? f->n_expected : LANES;
+    f->used = f->found = 0;
+    f->n_crack = e->n_crack;
+    f->n_gone = e->n_gone;
+    f->has_begun = false;
+    memcpy(f->from, e->before, (size_t)e->n * sizeof *f->from);
+    for (int j = 0; j < e->n_joint; j++)
+        memcpy(f->strain[j], e->joint[j].strain, sizeof f->strain[j]);
+    memset(f->moved, 0, (size_t)e->n * GRAIN * sizeof *f->moved);
+    apply_loads(e, f->n_lane);
 }

@@ -11,11 +11,12 @@ struct foresight {
     struct equilibrium *of;
     int n_expected; // loads
     const struct vector *force;
-    int found, used; // lanes that are known, and of them those that were asked for
-    int present;     // lane that the joints have not come to yet, or -1 [foreseen.c]
-    int sight; // lanes to look at: one after a crack, then twice as many each time
-    bool has_looked; // with as many cracks, grains that left and factors
-    int n_crack, n_gone, factors;
+    int n_lane, found, used; // loads side by side, where those end that are known, and
+                             // how many were asked for
+    int present;   // lane that the joints have not come to yet, or -1 [foreseen.c]
+    bool has_hint; // the next lane leads near its equilibrium
+    int n_crack, n_gone, factors;     // that there were when these were
+    bool has_begun;                   // the way through the factor
     struct vector *load;              // (n)
     struct net_load taken_off[LANES]; // of the loads
     double largest_load[LANES];       // up to and with each
@@ -23,10 +24,11 @@ struct foresight {
     double *left;         // (n * GRAIN) to begin with, by the law of the factor; then
                           // what is left, and what joints do to held grains
     double *moved, *step; // (n * GRAIN)
-    struct displacement *from; // (n) the last equilibrium when these began
-    struct lane_sums sums;     // where they moved
-    uint8_t *touches_now;      // (n_joint) a bit a lane
-    int n_row, row_capacity;
+    struct displacement *from;        // (n) the last equilibrium when these began
+    double (*strain)[STRAINS];        // (n_joint) there
+    struct lane_sums sums;            // where they moved
+    uint8_t *touches_now;             // (n_joint) a bit a lane
+    int n_row, row_capacity, n_given; // rows whose strains are given
     struct lane_row *row;
     bool *touches;        // (row_capacity * LANES)
     double *given, *more; // (row_capacity * LANES)
@@ -34,13 +36,12 @@ struct foresight {
 };
 
 // What is left where the grains have MOVED, in LEFT, and the SUMS; the most left in any
-// of COUNT lanes.
-double find_left_lanes(struct equilibrium *equilibrium, int count);
+// lane from FIRST to END - 1.
+double find_left_lanes(struct equilibrium *equilibrium, int first, int end);
 
-// Whether the next lanes have been looked at as bonds are, and are looked at. The trial
-// goes to where LANE has led.
-bool has_looked(const struct equilibrium *equilibrium);
-void look_ahead(struct equilibrium *equilibrium);
-void go_to_lane(struct equilibrium *equilibrium, int lane);
+// The next loads, from the last equilibrium on. Then lanes from FIRST to END - 1 are
+// looked at: where those end that were found.
+void begin_lanes_anew(struct equilibrium *equilibrium);
+int look(struct equilibrium *equilibrium, int first, int end);
 
 #endif

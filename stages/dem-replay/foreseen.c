@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equilibria that were found side by side and under which no bond breaks are not worked
-// out joint by joint: what is asked of each, its lane says. The joints come to it when
-// one is wanted that has to be found from there, or when something of them is asked.
+// Equilibria that were found side by side are not worked out joint by joint: what is
+// asked of each, its lane says. The joints come to it when the next loads are begun
+// with from there, or when something of them is asked.
 #include "foresee_state.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@ static bool is_free(const struct equilibrium *e, int grain)
     return !e->setup.fixed[grain] && !e->is_gone[grain];
 }
 
-double find_left_lanes(struct equilibrium *e, int count)
+double find_left_lanes(struct equilibrium *e, int first, int end)
 {
     struct foresight *f = e->foresight;
     const struct lane_kernels *kernels = lane_kernels();
@@ -22,49 +22,15 @@ double find_left_lanes(struct equilibrium *e, int count)
                                            e->setup.relative_strength};
     memcpy(f->left, f->applied, (size_t)e->n * GRAIN * sizeof *f->left);
     f->sums = (struct lane_sums){.carried = {0}};
-    kernels->resist(e->n_joint, e->joint, &strength, f->moved, f->left, &f->sums);
+    kernels->resist(e->n_joint, e->joint, f->strain, &strength, f->moved, f->left,
+                    &f->sums);
     for (int i = 0; i < e->n; i++)
         if (is_free(e, i))
             kernels->measure(i, &f->from[i], f->moved, f->left, &f->sums);
     double most = 0;
-    for (int l = 0; l < count; l++)
+    for (int l = first; l < end; l++)
         most = fmax(most, f->sums.left[l]);
     return most;
-}
-
-// Whether what was found in LANE is balanced as well as balance.c would have it, no
-// bond breaks and all displacements are small.
-static bool is_settled(const struct equilibrium *e, int lane)
-{
-    const struct lane_sums *sums = &e->foresight->sums;
-    const double enough = e->setup.tolerance * e->foresight->largest_load[lane];
-    return sums->left[lane] <= well_below * enough && sums->overload[lane] < strong &&
-           sums->furthest[lane] <= furthest && isfinite(sums->unbalanced[lane]) &&
-           isfinite(sums->carried[lane]);
-}
-
-bool foreseen(struct equilibrium *e)
-{
-    struct foresight *f = e->foresight;
-    if (!f || f->n_expected == 0) return false;
-    if (!has_looked(e)) {
-        realise(f);
-        e->damping = 0;
-        go_back(e);
-        look_ahead(e);
-    }
-    if (f->used >= f->found || !is_settled(e, f->used)) {
-        realise(f);
-        return false;
-    }
-    f->present = f->used;
-    e->largest_load = f->largest_load[f->used];
-    return true;
-}
-
-bool is_foreseen(const struct equilibrium *e)
-{
-    return e->foresight && e->foresight->present >= 0;
 }
 
 static struct displacement in_lane(const double *numbers, int grain, int lane)
@@ -77,7 +43,7 @@ static struct displacement in_lane(const double *numbers, int grain, int lane)
     return displacement;
 }
 
-void go_to_lane(struct equilibrium *e, int lane)
+static void go_to_lane(struct equilibrium *e, int lane)
 {
     const struct foresight *f = e->foresight;
     for (int i = 0; i < e->n; i++) {
@@ -85,6 +51,86 @@ void go_to_lane(struct equilibrium *e, int lane)
         e->trial[i].shift = add(f->from[i].shift, more.shift);
         e->trial[i].turn = add(f->from[i].turn, more.turn);
     }
+}
+
+// Whether what was found in LANE is balanced as well as balance.c would have it, and
+// all displacements are small.
+static bool is_balanced(const struct equilibrium *e, int lane)
+{
+    const struct lane_sums *sums = &e->foresight->sums;
+    const double enough = e->setup.tolerance * e->foresight->largest_load[lane];
+    return sums->left[lane] <= well_below * enough &&
+           sums->furthest[lane] <= furthest && isfinite(sums->unbalanced[lane]) &&
+           isfinite(sums->carried[lane]);
+}
+
+// The most overloaded bond, if one is. The way through the factor that these loads have
+// begun with serves on.
+static bool break_in_lane(struct equilibrium *e, int lane)
+{
+    struct foresight *f = e->foresight;
+    if (!(f->sums.overload[lane] >= strong)) return false;
+    go_to_lane(e, lane);
+    strain_trial(e);
+    if (!break_one(e)) return false;
+    f->found = lane;
+    return true;
+}
+
+// The next lane, and after a bond has broken again that one alone. Whether it is found.
+static bool find_next(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    for (int end = f->n_lane;; end = f->used + 1) {
+        if (f->used >= f->found) {
+            realise(f);
+            f->found = look(e, f->used, end);
+        }
+        f->has_hint = f->used < f->found;
+        if (!f->has_hint || !is_balanced(e, f->used)) return false;
+        if (!break_in_lane(e, f->used)) return true;
+    }
+}
+
+static bool is_as_begun(const struct equilibrium *e)
+{
+    const struct foresight *f = e->foresight;
+    return f->used < f->n_lane && f->n_crack == e->n_crack && f->n_gone == e->n_gone;
+}
+
+bool foreseen(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    if (!f || f->n_expected == 0) return false;
+    if (!is_as_begun(e)) {
+        realise(f);
+        begin_lanes_anew(e);
+    }
+    const bool is_found = find_next(e);
+    if (is_found) {
+        f->present = f->used;
+        e->largest_load = f->largest_load[f->used];
+    } else
+        realise(f);
+    return is_found;
+}
+
+void foresee(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    if (!f || f->n_expected == 0) return;
+    if (f->n_lane == 0) {
+        begin_lanes_anew(e);
+        f->found = look(e, 0, 1);
+        f->has_hint = f->found > 0;
+    }
+    if (f->has_hint) go_to_lane(e, f->used);
+    f->n_lane = f->found = f->used = 0;
+}
+
+bool is_foreseen(const struct equilibrium *e)
+{
+    return e->foresight && e->foresight->present >= 0;
 }
 
 void realise(struct foresight *f)

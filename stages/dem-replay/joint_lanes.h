@@ -25,13 +25,13 @@ struct lane_sums {
 
 struct lane_kernels {
     // In which lanes each of N_JOINT joints touches, a bit for each (n_joint), where
-    // the grains MOVED (n * GRAIN) since the last equilibrium.
-    void (*touch)(int n_joint, const struct joint *joint, const double *moved,
-                  uint8_t *touches);
+    // the grains MOVED (n * GRAIN) since strains were those FROM (n_joint).
+    void (*touch)(int n_joint, const struct joint *joint, const double (*from)[STRAINS],
+                  const double *moved, uint8_t *touches);
     // Takes what they resist with there off LEFT (n * GRAIN).
     void (*resist)(int n_joint, const struct joint *joint,
-                   const struct bond_strength *strength, const double *moved,
-                   double *left, struct lane_sums *sums);
+                   const double (*from)[STRAINS], const struct bond_strength *strength,
+                   const double *moved, double *left, struct lane_sums *sums);
     // What grain GRAIN has LEFT, and where it is, FROM where it was.
     void (*measure)(int grain, const struct displacement *from, const double *moved,
                     const double *left, struct lane_sums *sums);

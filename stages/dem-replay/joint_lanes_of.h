@@ -57,20 +57,20 @@ INLINE const double *end_of(const struct joint *joint, int end, const double *mo
     return joint->grain[end] < 0 ? unmoved : moved + (long)joint->grain[end] * GRAIN;
 }
 
-static void touch(int n_joint, const struct joint *joint, const double *moved,
-                  uint8_t *touches)
+static void touch(int n_joint, const struct joint *joint, const double (*from)[STRAINS],
+                  const double *moved, uint8_t *touches)
 {
-    for (; n_joint-- > 0; joint++, touches++) {
+    for (; n_joint-- > 0; joint++, from++, touches++) {
         const double *i = end_of(joint, 0, moved), *j = end_of(joint, 1, moved);
         const lanes shift[3] = {AT(j, 0) - AT(i, 0), AT(j, 1) - AT(i, 1),
                                 AT(j, 2) - AT(i, 2)};
         const lanes longer = ALONG(joint->axis[0], shift);
-        *touches = at_most(&longer, joint->overlap - joint->strain[STRAIN_ALONG]);
+        *touches = at_most(&longer, joint->overlap - (*from)[STRAIN_ALONG]);
     }
 }
 
-INLINE void find_strains(const struct joint *joint, const double *moved,
-                         lanes strain[STRAINS])
+INLINE void find_strains(const struct joint *joint, const double from[STRAINS],
+                         const double *moved, lanes strain[STRAINS])
 {
     const double *i = end_of(joint, 0, moved), *j = end_of(joint, 1, moved);
     const struct vector *axis = joint->axis;
@@ -86,7 +86,7 @@ INLINE void find_strains(const struct joint *joint, const double *moved,
     for (int k = 0; k < 3; k++)
         strain[STRAIN_TWIST + k] = ALONG(axis[k], turn);
     for (int k = 0; k < STRAINS; k++)
-        strain[k] += joint->strain[k];
+        strain[k] += from[k];
 }
 
 // ---- loads --------------------------------------------------------------------------
@@ -133,14 +133,14 @@ INLINE void find_overload(const struct joint *joint,
 }
 
 static void resist(int n_joint, const struct joint *joint,
-                   const struct bond_strength *strength, const double *moved,
-                   double *left, struct lane_sums *sums)
+                   const double (*from)[STRAINS], const struct bond_strength *strength,
+                   const double *moved, double *left, struct lane_sums *sums)
 {
     lanes carried = {0}, carrying = {0}, overload = {0};
-    for (; n_joint-- > 0; joint++) {
+    for (; n_joint-- > 0; joint++, from++) {
         if (joint->is_gone) continue;
         lanes load[STRAINS];
-        find_strains(joint, moved, load);
+        find_strains(joint, *from, moved, load);
         const lanes overlap = joint->overlap - load[STRAIN_ALONG];
         for (int k = 0; k < STRAINS; k++)
             load[k] *= joint->is_bonded ? joint->bond_stiffness[k] : 0;

@@ -5,6 +5,7 @@
 #include "vector_kernels.h"
 
 #include <math.h>
+#include <string.h>
 #if defined __x86_64__ && defined __FMA__
 #include <immintrin.h>
 #endif
@@ -52,13 +53,16 @@ INLINE double *lanes_of(const struct supernode *super, int i, int parts, double 
     return x + (long)super->row[i] * NUMBERS * parts;
 }
 
+// Columns of a grain lie together: six at a time, then what is left.
+enum { MOST = 6 };
+
 // WIDE columns from FIRST on.
 INLINE void forward_columns(const struct supernode *super, int first, int wide,
                             int parts, double *x)
 {
     const int rows = super->rows;
     const double *panel = super->panel + (long)first * rows;
-    vector own[4][PARTS];
+    vector own[MOST][PARTS];
     for (int j = 0; j < wide; j++) {
         double *at = lanes_of(super, first + j, parts, x);
         for (int q = 0; q < parts; q++) {
@@ -66,7 +70,7 @@ INLINE void forward_columns(const struct supernode *super, int first, int wide,
             for (int l = 0; l < j; l++)
                 own[j][q] = fused(all_of(-panel[(long)l * rows + first + j]), own[l][q],
                                   own[j][q]);
-            own[j][q] /= all_of(panel[(long)j * rows + first + j]);
+            own[j][q] *= all_of(1 / panel[(long)j * rows + first + j]);
             store(at + NUMBERS * q, own[j][q]);
         }
     }
@@ -86,7 +90,7 @@ INLINE void backward_columns(const struct supernode *super, int first, int wide,
 {
     const int rows = super->rows;
     const double *panel = super->panel + (long)first * rows;
-    vector left[4][PARTS];
+    vector left[MOST][PARTS];
     for (int j = 0; j < wide; j++)
         for (int q = 0; q < parts; q++)
             left[j][q] = load(lanes_of(super, first + j, parts, x) + NUMBERS * q);
@@ -102,7 +106,7 @@ INLINE void backward_columns(const struct supernode *super, int first, int wide,
             for (int l = j + 1; l < wide; l++)
                 left[j][q] = fused(all_of(-panel[(long)j * rows + first + l]),
                                    left[l][q], left[j][q]);
-            left[j][q] /= all_of(panel[(long)j * rows + first + j]);
+            left[j][q] *= all_of(1 / panel[(long)j * rows + first + j]);
             store(lanes_of(super, first + j, parts, x) + NUMBERS * q, left[j][q]);
         }
 }
@@ -111,22 +115,21 @@ INLINE void forward(const struct supernode *super, int parts, double *x)
 {
     const int columns = super->columns;
     int first = 0;
-    for (; first + 4 <= columns; first += 4)
-        forward_columns(super, first, 4, parts, x);
-    if (columns - first >= 2) {
+    for (; first + MOST <= columns; first += MOST)
+        forward_columns(super, first, MOST, parts, x);
+    for (; first + 2 <= columns; first += 2)
         forward_columns(super, first, 2, parts, x);
-        first += 2;
-    }
     if (first < columns) forward_columns(super, first, 1, parts, x);
 }
 
 INLINE void backward(const struct supernode *super, int parts, double *x)
 {
     int end = super->columns;
-    if (end % 2) backward_columns(super, --end, 1, parts, x);
-    if (end % 4) backward_columns(super, end -= 2, 2, parts, x);
+    if (end % MOST % 2) backward_columns(super, --end, 1, parts, x);
+    while (end % MOST)
+        backward_columns(super, end -= 2, 2, parts, x);
     while (end > 0)
-        backward_columns(super, end -= 4, 4, parts, x);
+        backward_columns(super, end -= MOST, MOST, parts, x);
 }
 
 #if BYTES == 32
@@ -153,7 +156,7 @@ static void backward_eight(const struct supernode *super, double *x)
 INLINE void add_tile(int n, const double *a, int a_lanes, const double *b, int tile,
                      int parts, double *sum)
 {
-    vector part[4][PARTS];
+    vector part[8][PARTS];
     for (int i = 0; i < tile; i++)
         for (int q = 0; q < parts; q++)
             part[i][q] = load(sum + i * LANES + NUMBERS * q);
@@ -180,6 +183,9 @@ static void add_product_of_eight(int n, const double *a, int a_lanes, const doub
                                  double sum[LANES][LANES])
 {
     if (a_lanes == 1) return add_tile(n, a, 1, b, 1, PARTS, sum[0]);
+#if BYTES == 64
+    if (a_lanes == 8) return add_tile(n, a, 8, b, 8, PARTS, sum[0]);
+#endif
     for (int i = 0; i < a_lanes; i += 4)
         add_tile(n, a + i, a_lanes, b, 4, PARTS, sum[i]);
 }
@@ -210,16 +216,25 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
 {
     for (int j = 0; j < n; j += WIDE) {
         const int columns = n - j < WIDE ? n - j : WIDE;
-        for (int p = 0; p < k; p++)
-            for (int l = 0; l < WIDE; l++)
-                work[WIDE * p + l] = l < columns ? b[(long)p * b_stride + j + l] : 0;
+        for (int p = 0; p < k; p++) {
+            const double *row = b + (long)p * b_stride + j;
+            if (columns == WIDE)
+                store(work + WIDE * p, load(row));
+            else
+                for (int l = 0; l < WIDE; l++)
+                    work[WIDE * p + l] = l < columns ? row[l] : 0;
+        }
         for (int i = lower ? j : 0; i < m; i += HIGH) {
             const int rows = m - i < HIGH ? m - i : HIGH;
             double tile[WIDE][HIGH];
             multiply_tile(k, a + i, a_stride, work, tile);
-            for (int l = 0; l < columns; l++)
-                for (int r = 0; r < rows; r++)
-                    c[(long)(j + l) * c_stride + i + r] = tile[l][r];
+            for (int l = 0; l < columns; l++) {
+                double *to = c + (long)(j + l) * c_stride + i;
+                if (rows == HIGH)
+                    memcpy(to, tile[l], sizeof tile[l]);
+                else
+                    memcpy(to, tile[l], (size_t)rows * sizeof *to);
+            }
         }
     }
 }
