@@ -17,6 +17,10 @@ FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
 DEM_REPLAY ?= $(BUILD)/bin/dem-replay
 CRACKSTATS ?= $(BUILD)/bin/crackstats
 
+ifneq ($(word 2,$(SCENE)),)
+$(error SCENE=$(SCENE): make takes no blanks in names of files)
+endif
+
 pipeline_goals += demo run
 
 # packing, tessellation and network of scene $2 in folder $1.
