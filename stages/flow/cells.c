@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cells.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "geometry/triangulation_in_walls.h"
 
@@ -321,17 +322,11 @@ static void settle_flat_cells(const struct grains *grains, struct cells *cells,
     }
 }
 
-static int32_t root(struct cells *cells, int32_t c)
-{
-    while (cells->cell[c].pore != c)
-        c = cells->cell[c].pore = cells->cell[cells->cell[c].pore].pore;
-    return c;
-}
-
 static void unite_pores(const struct grains *grains, struct cells *cells)
 {
+    int *set = NEW_ARRAY(int, cells->n);
     for (int c = 0; c < cells->n; c++)
-        cells->cell[c].pore = c;
+        set[c] = c;
     for (int c = 0; c < cells->n; c++)
         for (int k = 0; k < 4; k++) {
             const struct pore_cell *cell = &cells->cell[c];
@@ -339,17 +334,14 @@ static void unite_pores(const struct grains *grains, struct cells *cells)
             if (other < 0) continue;
             const struct vector there =
                 in_image(grains, cells->cell[other].centre, cell->neighbour_image[k]);
-            if (distance(cell->centre, there) > coincide) continue;
-            const int32_t a = root(cells, c), b = root(cells, other);
-            cells->cell[a > b ? a : b].pore = a > b ? b : a;
+            if (distance(cell->centre, there) <= coincide) unite_sets(set, c, other);
         }
-    // The root comes before its members, so that they find its number in place of it.
-    for (int c = 0; c < cells->n; c++)
-        cells->cell[c].pore = root(cells, c);
+    // The root comes before its members.
     for (int c = 0; c < cells->n; c++) {
-        const int32_t first = cells->cell[c].pore;
-        cells->cell[c].pore = first == c ? cells->n_pore++ : cells->cell[first].pore;
+        const int root = set_root(set, c);
+        cells->cell[c].pore = root == c ? cells->n_pore++ : cells->cell[root].pore;
     }
+    free(set);
 }
 
 static int count_hidden(const struct grains *grains, const struct cells *cells)

@@ -10,7 +10,6 @@
 #include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct options {
     const char *input, *data, *vtk, *openpnm, *statoil;
@@ -78,17 +77,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     }
 }
 
-static void print(json_t *json)
-{
-    char *text = json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    char *lines = NULL;
-    if (asprintf(&lines, "%s\n", text) < 0) die(STATUS_INTERNAL, "out of memory");
-    write_whole("-", lines, strlen(lines));
-    free(lines);
-    free(text);
-    json_decref(json);
-}
-
 int main(int argc, char **argv)
 {
     struct options options = {.input = "-", .frames = 11};
@@ -104,7 +92,7 @@ int main(int argc, char **argv)
         if (options.data || options.vtk || options.openpnm || options.statoil)
             die(STATUS_USAGE, "%s: is JSON: read it with jq",
                 input_name(options.input));
-        print(document_of(options.input, &bytes));
+        write_json("-", document_of(options.input, &bytes));
         free(bytes.data);
         return STATUS_OK;
     }
@@ -114,8 +102,8 @@ int main(int argc, char **argv)
     else if (options.vtk)
         write_series(artifact, options.vtk, options.frames);
     else
-        print(options.data ? dataset_json(artifact, options.data)
-                           : describe_artifact(artifact));
+        write_json("-", options.data ? dataset_json(artifact, options.data)
+                                     : describe_artifact(artifact));
     artifact_close(artifact);
     return STATUS_OK;
 }

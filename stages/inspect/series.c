@@ -121,6 +121,26 @@ struct crack_view {
     double *state; // (n_contact)
 };
 
+static struct crack_view crack_view_of(const struct artifact *artifact)
+{
+    struct crack_view view = {0};
+    view.contact = artifact_get(artifact, "/contacts/particles", &view.n_contact);
+    view.crack_bond = artifact_get(artifact, "/cracks/bond", &view.n_crack);
+    view.crack_mode = artifact_get(artifact, "/cracks/mode", NULL);
+    view.crack_time = artifact_get(artifact, "/cracks/time", NULL);
+    view.state = NEW_ARRAY(double, view.n_contact);
+    return view;
+}
+
+static void crack_view_free(struct crack_view *view)
+{
+    free(view->contact);
+    free(view->crack_bond);
+    free(view->crack_mode);
+    free(view->crack_time);
+    free(view->state);
+}
+
 static int contact_of_bond(const struct crack_view *view, const int32_t bond[2])
 {
     if (!view->n_contact) return -1;
@@ -157,12 +177,7 @@ static void response_series(const struct artifact *artifact, struct series *seri
     struct vector *force = artifact_get(artifact, "/snapshots/force", NULL);
     struct vector *contact_force =
         artifact_get(artifact, "/snapshots/contact_force", NULL);
-    struct crack_view view = {0};
-    view.contact = artifact_get(artifact, "/contacts/particles", &view.n_contact);
-    view.crack_bond = artifact_get(artifact, "/cracks/bond", &view.n_crack);
-    view.crack_mode = artifact_get(artifact, "/cracks/mode", NULL);
-    view.crack_time = artifact_get(artifact, "/cracks/time", NULL);
-    view.state = NEW_ARRAY(double, view.n_contact);
+    struct crack_view view = crack_view_of(artifact);
     struct vector *moved = NEW_ARRAY(struct vector, n);
     for (int s = 0; s < n_snapshot; s++) {
         const size_t at = (size_t)s * n;
@@ -189,12 +204,8 @@ static void response_series(const struct artifact *artifact, struct series *seri
     free(displacement);
     free(force);
     free(contact_force);
-    free(view.contact);
-    free(view.crack_bond);
-    free(view.crack_mode);
-    free(view.crack_time);
-    free(view.state);
     free(moved);
+    crack_view_free(&view);
     packing_free(&packing);
 }
 

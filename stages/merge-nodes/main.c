@@ -9,7 +9,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum volumes { VOLUMES_AS_GIVEN, VOLUMES_CONSERVED };
 
@@ -56,17 +55,6 @@ static void give_volumes(struct network *network)
     network->throat_volume = volume;
 }
 
-static void write_report(const char *path, json_t *document)
-{
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    char *line = allocate(strlen(text) + 2, 1);
-    sprintf(line, "%s\n", text);
-    write_whole(path, line, strlen(line));
-    free(line);
-    free(text);
-    json_decref(document);
-}
-
 static void merge(struct network *network, const struct merge_parameters *parameters,
                   const char *path, struct merge_report *report)
 {
@@ -77,7 +65,7 @@ static void merge(struct network *network, const struct merge_parameters *parame
                 report);
     if (!path) return;
     struct census after = take_census(network);
-    write_report(path, merging_json(report, &before, &after));
+    write_json(path, merging_json(report, &before, &after));
     census_free(&before);
     census_free(&after);
 }

@@ -348,11 +348,10 @@ struct vector domain_wrap(const struct domain *domain, struct vector point)
     return point;
 }
 
-// From the cut's centre to the nearest image of POINT. Every cut is symmetric about its
-// centre, so no other image lies nearer to it.
-static struct vector from_cut(const struct domain *domain, struct vector point)
+struct vector nearest_apart(const struct domain *domain, struct vector from,
+                            struct vector to)
 {
-    struct vector apart = subtract(point, domain->cut_centre);
+    struct vector apart = subtract(to, from);
     for (int axis = 0; axis < 3; axis++) {
         if (!domain->periodic[axis]) continue;
         const double edge =
@@ -360,6 +359,14 @@ static struct vector from_cut(const struct domain *domain, struct vector point)
         const double along = component(apart, axis);
         set_component(&apart, axis, along - edge * round(along / edge));
     }
+    return apart;
+}
+
+// Every cut is symmetric about its centre, so no other image of POINT lies nearer to
+// it.
+static struct vector from_cut(const struct domain *domain, struct vector point)
+{
+    struct vector apart = nearest_apart(domain, domain->cut_centre, point);
     if (domain->dimensions == 2) apart.y = 0;
     return apart;
 }

@@ -79,6 +79,10 @@ bool domain_random_point(const struct domain *domain, double radius, gsl_rng *ra
 // Puts POINT back into the box along the axes that repeat.
 struct vector domain_wrap(const struct domain *domain, struct vector point);
 
+// From FROM to the nearest image of TO where the box repeats, m.
+struct vector nearest_apart(const struct domain *domain, struct vector from,
+                            struct vector to);
+
 // STATUS_BAD_DATA when N grains of these radii have more volume than MOST_SHARE of the
 // domain (in two dimensions: area).
 enum status domain_check_filling(const struct domain *domain, const double *radius,

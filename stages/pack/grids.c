@@ -138,20 +138,6 @@ void grids_add(struct grids *grids, struct vector centre, double radius)
     *head = grids->n++;
 }
 
-static double distance_by_image(const struct domain *domain, struct vector a,
-                                struct vector b)
-{
-    struct vector apart = subtract(b, a);
-    for (int axis = 0; axis < 3; axis++) {
-        if (!domain->periodic[axis]) continue;
-        const double edge =
-            component(domain->upper, axis) - component(domain->lower, axis);
-        const double along = component(apart, axis);
-        set_component(&apart, axis, along - edge * round(along / edge));
-    }
-    return norm(apart);
-}
-
 static int near_in_level(const struct grids *grids, const struct level *level,
                          struct vector centre, double to_surface, int *found, int most)
 {
@@ -169,7 +155,7 @@ static int near_in_level(const struct grids *grids, const struct level *level,
                 cell < 0 || cell >= cells ? (cell % cells + cells) % cells : cell;
         }
         for (int i = level->first[cell_of(level, at)]; i >= 0; i = grids->next[i]) {
-            if (distance_by_image(grids->domain, centre, grids->centre[i]) >=
+            if (norm(nearest_apart(grids->domain, centre, grids->centre[i])) >=
                 to_surface + grids->radius[i])
                 continue;
             if (count == most) return count;

@@ -387,12 +387,6 @@ void report_write(const struct packing_report *report, const char *path,
         set_path(document, said->name, json_said(said, is_integer(schema, said)));
     }
     json_object_set_new(document, "reached", reached ? reached : json_null());
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    char *line = allocate(strlen(text) + 2, 1);
-    sprintf(line, "%s\n", text);
-    write_whole(path, line, strlen(line));
-    free(line);
-    free(text);
-    json_decref(document);
+    write_json(path, document);
     schema_free(schema);
 }

@@ -44,8 +44,8 @@ struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
 // The caller frees it.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
 
-// A whole dataset as doubles, whatever its type: whole numbers up to 2^53 are exact. The
-// caller frees VALUE.
+// A whole dataset as doubles, whatever its type: whole numbers up to 2^53 are exact.
+// The caller frees VALUE.
 struct dataset_values {
     int rank;
     hsize_t extent[8];
@@ -114,5 +114,9 @@ json_t *one_input(const struct artifact *input);
 // digests are INPUTS (taken over), writes it, and frees it.
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
                  const char *model);
+
+// Writes DOCUMENT to PATH, whole or not at all, with a line for every value, and frees
+// it.
+void write_json(const char *path, json_t *document);
 
 #endif

@@ -377,6 +377,17 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
     free(artifact);
 }
 
+void write_json(const char *path, json_t *document)
+{
+    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    char *line = allocate(strlen(text) + 2, 1);
+    sprintf(line, "%s\n", text);
+    write_whole(path, line, strlen(line));
+    free(line);
+    free(text);
+    json_decref(document);
+}
+
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
                  const char *model)
 {
@@ -390,11 +401,5 @@ void finish_json(json_t *document, const struct invocation *invocation, json_t *
         die(STATUS_INTERNAL, "would write a %s that breaks its own schema: %s",
             schema->name, reason.text);
     schema_free(schema);
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    json_decref(document);
-    char *line = allocate(strlen(text) + 2, 1);
-    sprintf(line, "%s\n", text);
-    write_whole(invocation->output, line, strlen(line));
-    free(line);
-    free(text);
+    write_json(invocation->output, document);
 }

@@ -19,7 +19,7 @@ struct spheres {
 // All near pairs, each once, lower index first, sorted. Linked cells, one grid for each
 // halving of the reach, so that it is O(count) for spheres of any sizes. *COUNT gets
 // their number; the caller frees the array. The same for any number of threads.
-int32_t (*near_pairs(const struct spheres *spheres, int *count))[2];
+int32_t (*near_pairs(const struct spheres *all, int *count))[2];
 
 // All pairs of grains whose surfaces are at most GAP times the sum of their radii apart
 // (overlapping ones too); otherwise as above.

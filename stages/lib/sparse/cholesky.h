@@ -12,7 +12,7 @@ struct cholesky;
 
 // Factorises. STATUS_NOT_CONVERGED: it has no factor to rounding; STATUS_INTERNAL: out
 // of memory. The caller frees with cholesky_free, also after a failure.
-enum status cholesky_make(const struct matrix *matrix, struct cholesky **cholesky,
+enum status cholesky_make(const struct matrix *matrix, struct cholesky **made,
                           struct reason *reason);
 void cholesky_free(struct cholesky *cholesky);
 
