@@ -57,6 +57,7 @@ struct reading {
     int next;
     struct artifact *ahead; // opened already: not the drying of the last run
     json_t *digests;
+    json_t *seen; // by digest: the path it was first read from
 };
 
 static struct artifact *open_next(struct reading *reading, const char *name)
@@ -65,6 +66,18 @@ static struct artifact *open_next(struct reading *reading, const char *name)
         artifact_open(reading->invocation->inputs[reading->next++], name);
     json_array_append_new(reading->digests, input_digest(artifact));
     return artifact;
+}
+
+// Equal runs are one run counted twice: they make means look surer than they are.
+static void note_repeated(struct reading *reading, const struct artifact *input)
+{
+    const json_t *first = json_object_get(reading->seen, input->sha256);
+    if (first)
+        report("%s: is the same run as %s; both count", input_name(input->path),
+               json_string_value(first));
+    else
+        json_object_set_new(reading->seen, input->sha256,
+                            json_string(input_name(input->path)));
 }
 
 // The next run; false when there are no more.
@@ -77,6 +90,7 @@ static bool next_run(struct reading *reading, struct run *run, const char **path
     if (strcmp(input->schema->name, "response"))
         die(STATUS_BAD_DATA, "%s: must be a response, is a %s", input_name(input->path),
             input->schema->name);
+    note_repeated(reading, input);
     *run = read_run(input);
     *path = input_name(input->path);
     artifact_close(input);
@@ -132,7 +146,8 @@ static struct study read_study(const struct invocation *invocation, json_t *dige
     struct study study =
         study_new(invocation->n_input, (struct classes){(int)parameters->slices,
                                                         (int)parameters->intervals});
-    struct reading reading = {.invocation = invocation, .digests = digests};
+    struct reading reading = {
+        .invocation = invocation, .digests = digests, .seen = json_object()};
     struct run run;
     const char *path;
     while (next_run(&reading, &run, &path)) {
@@ -143,6 +158,7 @@ static struct study read_study(const struct invocation *invocation, json_t *dige
         if (known) liquid_free(&liquid);
         run_free(&run);
     }
+    json_decref(reading.seen);
     if (parameters->first_group && parameters->first_group >= study.n_run)
         die(STATUS_BAD_DATA,
             "crackstats.first_group: must leave runs to test against, got %d of %d",

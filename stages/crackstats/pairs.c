@@ -28,8 +28,7 @@ struct paired_t paired_t_test(struct sample a, struct sample b)
     if (a.n < 2 || isnan(test.mean)) return (struct paired_t){NAN, NAN, NAN, NAN, NAN};
     const double error = test.sd / sqrt(a.n);
     test.t = test.mean == 0 ? 0 : test.mean / error;
-    test.p =
-        isinf(test.t) ? 0 : fmin(1, 2 * gsl_cdf_tdist_Q(fabs(test.t), test.degrees));
+    test.p = isinf(test.t) ? 0 : student_p(test.t, test.degrees);
     return test;
 }
 

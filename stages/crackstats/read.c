@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "read.h"
 
+#include "basics/memory.h"
 #include "basics/status.h"
 
 #include <stdlib.h>
@@ -14,6 +15,23 @@ static double end_of_drying(const struct artifact *response)
     return end;
 }
 
+// Bonds never heal, and nothing breaks after the end.
+static void check_cracks(const struct run *run, const char *path)
+{
+    uint8_t *broke = NEW_ARRAY(uint8_t, run->packing.n_bond);
+    for (int k = 0; k < run->n_crack; k++) {
+        if (broke[run->bond[k]]++)
+            die(STATUS_BAD_DATA, "%s: /cracks/bond: row %d: bond %d has broken before",
+                input_name(path), k, run->bond[k]);
+        if (run->time[k] > run->end)
+            die(STATUS_BAD_DATA,
+                "%s: /cracks/time: row %d: must not be after the end of /history/time, "
+                "%g s, got %g",
+                input_name(path), k, run->end, run->time[k]);
+    }
+    free(broke);
+}
+
 struct run read_run(const struct artifact *response)
 {
     struct run run = {.packing = artifact_get_packing(response)};
@@ -24,6 +42,7 @@ struct run read_run(const struct artifact *response)
     run.first_period_end =
         artifact_get_number(response, "/summary/first_period_end_time");
     run.end = end_of_drying(response);
+    check_cracks(&run, response->path);
     run.snapshot_saturation =
         artifact_get(response, "/snapshots/saturation", &run.n_snapshot);
     run.displacement = artifact_get(response, "/snapshots/displacement", NULL);

@@ -142,7 +142,7 @@ static json_t *deformation(const struct study *study)
             json_object_set_new(strain, names[k], json_value(sum->strain[k] / runs));
         json_array_append_new(
             list, json_pack("{s:f,s:o,s:o}", "saturation",
-                            study->snapshot_saturation[s], "shrinkage",
+                            study->snapshot_saturation[s] / runs, "shrinkage",
                             json_value(sum->shrinkage / runs), "strain", strain));
     }
     return list;

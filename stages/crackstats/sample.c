@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_randist.h>
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,11 +19,23 @@ double sample_deviation(struct sample sample)
     return sample.n < 2 ? NAN : gsl_stats_sd(sample.value, 1, (size_t)sample.n);
 }
 
+double student_p(double t, double degrees)
+{
+    return gsl_cdf_beta_P(degrees / (degrees + t * t), degrees / 2, 0.5);
+}
+
+// That of GSL and one step of Newton.
+static double student_quantile(double p, double degrees)
+{
+    const double t = gsl_cdf_tdist_Qinv(p / 2, degrees);
+    return t + (student_p(t, degrees) - p) / 2 / gsl_ran_tdist_pdf(t, degrees);
+}
+
 double half_width(struct sample sample, double confidence)
 {
     if (sample.n < 2) return NAN;
-    return gsl_cdf_tdist_Qinv((1 - confidence) / 2, sample.n - 1) *
-           sample_deviation(sample) / sqrt(sample.n);
+    return student_quantile(1 - confidence, sample.n - 1) * sample_deviation(sample) /
+           sqrt(sample.n);
 }
 
 // ---- Welch --------------------------------------------------------------------------
@@ -42,7 +55,7 @@ struct welch welch_test(struct sample a, struct sample b)
     const double degrees =
         square * square /
         (square_a * square_a / (a.n - 1) + square_b * square_b / (b.n - 1));
-    return (struct welch){t, degrees, 2 * gsl_cdf_tdist_Q(fabs(t), degrees)};
+    return (struct welch){t, degrees, student_p(t, degrees)};
 }
 
 // ---- Mann and Whitney ---------------------------------------------------------------

@@ -108,8 +108,7 @@ static void note_front(double *value, const struct run *run,
 static void begin_snapshots(struct study *study, const struct run *run)
 {
     study->n_snapshot = run->n_snapshot;
-    study->snapshot_saturation =
-        duplicate(run->snapshot_saturation, (size_t)run->n_snapshot, sizeof(double));
+    study->snapshot_saturation = NEW_ARRAY(double, run->n_snapshot);
     study->deformation = NEW_ARRAY(struct deformation, run->n_snapshot);
 }
 
@@ -123,6 +122,8 @@ void study_add(struct study *study, const struct run *run, const struct liquid *
     note_clusters(value, run, &study->clusters);
     note_pieces(value, run, &study->fragments);
     note_deformation(value, run, study->deformation);
+    for (int s = 0; s < run->n_snapshot; s++)
+        study->snapshot_saturation[s] += run->snapshot_saturation[s];
     note_front(value, run, liquid, counts.place, study);
     counts_free(&counts);
     count_cracks(&study->counts, run, study->classes);

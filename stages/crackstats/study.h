@@ -19,7 +19,7 @@ struct study {
     struct sizes clusters, fragments;
     struct orientation orientation;
     int n_snapshot;
-    double *snapshot_saturation;
+    double *snapshot_saturation;     // (n_snapshot)
     struct deformation *deformation; // (n_snapshot)
     int n_liquid;                    // runs whose drying is known
     struct front front;

@@ -187,6 +187,34 @@ static void test_exact_ranks_by_counting(void **state)
     }
 }
 
+// Of even degrees the chance is a finite sum [Abramowitz and Stegun 26.7.4].
+static void test_student_in_closed_form(void **state)
+{
+    (void)state;
+    for (int degrees = 2; degrees <= 400; degrees += 2)
+        for (double t = 0; t < 4; t += 0.37) {
+            const double angle = atan(t / sqrt(degrees)), square = pow(cos(angle), 2);
+            double term = 1, sum = 1;
+            for (int k = 2; k < degrees; k += 2)
+                sum += term *= square * (k - 1) / k;
+            assert_close(student_p(t, degrees), 1 - sin(angle) * sum, 1e-12);
+        }
+}
+
+// Half the interval of 1, -1, 1 ...: Student's quantile over the root of n - 1. So many
+// digits of it by 30-digit arithmetic.
+static void test_interval_of_many(void **state)
+{
+    (void)state;
+    double value[42];
+    for (int k = 0; k < 42; k++)
+        value[k] = k % 2 ? -1 : 1;
+    const double forty = half_width((struct sample){value, 40}, 0.95) * sqrt(39);
+    const double few = half_width((struct sample){value, 2}, 0.95); // tan(0.95 pi/2)
+    assert_digits(forty, 2.02269092003676, 1e-14);
+    assert_close(few, tan(0.475 * M_PI), 1e-12);
+}
+
 static void test_what_tells_nothing(void **state)
 {
     (void)state;
@@ -216,6 +244,8 @@ int main(void)
         cmocka_unit_test(test_ranks_of_hollander_and_wolfe),
         cmocka_unit_test(test_ranks_of_the_manual_of_scipy),
         cmocka_unit_test(test_exact_ranks_by_counting),
+        cmocka_unit_test(test_student_in_closed_form),
+        cmocka_unit_test(test_interval_of_many),
         cmocka_unit_test(test_what_tells_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,6 +92,18 @@ with scratch() as folder:
     ok(stats["sd"] is None and stats["confidence_interval"] is None and stats["test"] is None,
        "one run has no scatter")
 
+    # ---- none, one, all -------------------------------------------------------------
+    everything = list(range(len(bonds)))
+    for title, broken, share, clusters, fragments in [
+            ("no crack", [], 0, (0, 0), 1), ("one crack", chosen[:1], 1 / len(bonds), (1, 1), 1),
+            ("every bond at once", everything, 1, (1, len(bonds)), len(position))]:
+        shutil.copy(at("response"), at("odd"))
+        by_hand(at("odd"), broken, [end] * len(broken), [0] * len(broken), [0] * len(broken))
+        mean = crackstats(at("odd"), at("drying"))["mean"]
+        ok(mean["cracks"]["share"] == share and (mean["clusters"]["count"], mean["clusters"]["largest"]) == clusters
+           and mean["fragments"]["count"] == fragments and mean["cracks"]["total"] == len(broken)
+           and (mean["front"]["saturation"] is None) == (not broken), f"{title} of {len(bonds)}", mean)
+
     # ---- many runs ------------------------------------------------------------------
     # Hours of sleep (Student 1908), ten times as many and 20 more, as numbers of cracks: t
     # and the ranks are those of R's sleep data.
@@ -174,6 +186,24 @@ with scratch() as folder:
     ok(crackstats(at("wet"), at("drying"), at("wet"))["front"] is None
        and crackstats(at("wet"), at("drying"), at("wet"), at("drying"))["runs"] == 2,
        "the drying may be left out of some runs")
+
+    # ---- what is no study -----------------------------------------------------------
+    for title, says, broken, times in [
+            ("a bond that breaks twice", "/cracks/bond: row 1: bond 3 has broken before", [3, 3], [end, end]),
+            ("a crack after the end", "/cracks/time: row 0: must not be after the end", [3], [1.01 * end])]:
+        shutil.copy(at("response"), at("odd"))
+        by_hand(at("odd"), broken, times, [0] * len(broken), [0] * len(broken))
+        ok(refused(says, at("odd")), f"{title} is refused")
+    shutil.copy(at("wet"), at("again"))
+    tried = subprocess.run([f"{BIN}/crackstats", at("hand"), at("wet"), at("again")], capture_output=True)
+    ok(tried.returncode == 0 and json.loads(tried.stdout)["runs"] == 3 and tried.stderr.decode().count("\n") == 1
+       and f"again: is the same run as {at('wet')}; both count" in tried.stderr.decode(), "a run given twice is said", tried.stderr)
+    shutil.copy(at("hand"), at("odd"))
+    with h5py.File(at("odd"), "r+") as file:
+        levels = file["snapshots/saturation"][:]
+        file["snapshots/saturation"][...] = levels / 2
+    ok(np.allclose([s["saturation"] for s in crackstats(at("hand"), at("odd"))["deformation"]], 0.75 * levels),
+       "snapshots are at the mean saturation of the runs")
 
     # ---- refusals -------------------------------------------------------------------
     ok(refused("drying: is not the drying of the response before it", at("hand"), at("drying")),
