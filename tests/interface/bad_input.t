@@ -702,6 +702,8 @@ parameters("a number whose square overflows is refused among parameters", "pack"
            {"radius": 1e200}, r"pack.radius: must be at most 1e150 in size, got \S+")
 parameters("a count of zero is refused", "pack", {"counts": [5, 0, 5]},
            r"pack.counts: must be from 1 to 1e\+06, got \[5,0,5\]")
+parameters("a number is repeated as it was written", "pack", {"radius": -0.1},
+           "pack.radius: must be > 0 m, got -0.1")
 parameters("a negative temperature is refused", "dry", {"temperature": -1},
            "dry.temperature: must be > 0 K, got -1")
 parameters("no slices are refused", "crackstats", {"slices": 0},

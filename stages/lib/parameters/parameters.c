@@ -35,10 +35,26 @@ char *json_canonical(const json_t *json)
                                 JSON_ENCODE_ANY);
 }
 
+// As the user wrote it: numbers with no more digits than they need.
+static char *as_written(const json_t *value)
+{
+    for (int digits = 6; digits < 17; digits++) {
+        char *text =
+            json_dumps(value, JSON_SORT_KEYS | JSON_COMPACT |
+                                  JSON_REAL_PRECISION(digits) | JSON_ENCODE_ANY);
+        json_t *back = json_loads(text, JSON_DECODE_ANY, NULL);
+        const bool same = json_equal(back, value);
+        json_decref(back);
+        if (same) return text;
+        free(text);
+    }
+    return json_canonical(value);
+}
+
 static void complain(struct filling *filling, const char *key, const char *rule,
                      const json_t *got)
 {
-    char *value = got ? json_canonical(got) : NULL;
+    char *value = got ? as_written(got) : NULL;
     report("%s.%s: must be %s%s%s", filling->where, key, rule, value ? ", got " : "",
            value ? value : "");
     free(value);
