@@ -75,31 +75,6 @@ static int choice_index(const char *choices, const char *name)
     }
 }
 
-// As short as it can be without losing a digit.
-static const char *number_text(double value, char text[24])
-{
-    snprintf(text, 24, "%g", value);
-    if (strtod(text, NULL) != value) snprintf(text, 24, "%.10g", value);
-    return text;
-}
-
-static const char *bound_text(const struct parameter *parameter, char text[80])
-{
-    char low[24], high[24];
-    number_text(parameter->low, low);
-    number_text(parameter->high, high);
-    const char *unit = strcmp(parameter->unit, "1") ? parameter->unit : "";
-    const char *space = *unit ? " " : "";
-    text[0] = 0;
-    if (parameter->bound == BOUND_MINIMUM)
-        snprintf(text, 80, ">= %s%s%s", low, space, unit);
-    if (parameter->bound == BOUND_ABOVE)
-        snprintf(text, 80, "> %s%s%s", low, space, unit);
-    if (parameter->bound == BOUND_BETWEEN)
-        snprintf(text, 80, "from %s to %s%s%s", low, high, space, unit);
-    return text;
-}
-
 static bool within_bounds(const struct parameter *parameter, double value)
 {
     switch (parameter->bound) {
@@ -165,7 +140,7 @@ static void check_bounds(struct filling *filling, const struct parameter *parame
         if (!json_is_number(entry)) continue;
         const double number = json_number_value(entry);
         if (!within_bounds(parameter, number))
-            complain(filling, parameter->key, bound_text(parameter, text), value);
+            complain(filling, parameter->key, parameter_rule(parameter, text), value);
         else if (fabs(number) > largest_number)
             complain(filling, parameter->key, "at most 1e150 in size", value);
     }
@@ -183,16 +158,19 @@ static int checked_choice(struct filling *filling, const struct parameter *param
     return 0;
 }
 
+static double number_or_nan(const json_t *value)
+{
+    return json_is_null(value) ? (double)NAN : json_number_value(value);
+}
+
 static void store(struct filling *filling, const struct parameter *parameter,
                   const json_t *value, void *parameters)
 {
     void *target = (char *)parameters + parameter->offset;
-    size_t k;
-    json_t *entry;
+    struct number_list *list = target;
     switch (parameter->type) {
     case PARAMETER_NUMBER:
-        *(double *)target =
-            json_is_null(value) ? (double)NAN : json_number_value(value);
+        *(double *)target = number_or_nan(value);
         break;
     case PARAMETER_INTEGER:
         *(int64_t *)target = json_integer_value(value);
@@ -205,31 +183,30 @@ static void store(struct filling *filling, const struct parameter *parameter,
         break;
     case PARAMETER_CHOICES:
         *(unsigned *)target = 0;
-        json_array_foreach((json_t *)(uintptr_t)value, k, entry) * (unsigned *)target |=
-            1u << checked_choice(filling, parameter, entry);
+        for (size_t k = 0; k < json_array_size(value); k++)
+            *(unsigned *)target |=
+                1u << checked_choice(filling, parameter, json_array_get(value, k));
         break;
     case PARAMETER_TEXT:
         *(const char **)target = json_string_value(value);
         break;
     case PARAMETER_COUNTS:
-        for (k = 0; k < 3; k++)
+        for (size_t k = 0; k < 3; k++)
             ((int64_t *)target)[k] = json_integer_value(json_array_get(value, k));
         break;
     case PARAMETER_FLAGS:
-        for (k = 0; k < 3; k++)
+        for (size_t k = 0; k < 3; k++)
             ((bool *)target)[k] = json_is_true(json_array_get(value, k));
         break;
-    case PARAMETER_LIST:
-        ((struct number_list *)target)->count = (int)json_array_size(value);
-        json_array_foreach((json_t *)(uintptr_t)value, k,
-                           entry)((struct number_list *)target)
-            ->value[k] = json_number_value(entry);
-        break;
     case PARAMETER_POINT:
-        for (k = 0; k < 3; k++)
-            ((double *)target)[k] = json_is_null(value)
-                                        ? (double)NAN
-                                        : json_number_value(json_array_get(value, k));
+        for (size_t k = 0; k < 3; k++)
+            ((double *)target)[k] =
+                number_or_nan(json_is_null(value) ? value : json_array_get(value, k));
+        break;
+    case PARAMETER_LIST:
+        list->count = (int)json_array_size(value);
+        for (size_t k = 0; k < json_array_size(value); k++)
+            list->value[k] = json_number_value(json_array_get(value, k));
         break;
     }
 }
@@ -392,151 +369,4 @@ void parameters_set(json_t *section, const char *assignment)
     put(section, key, value);
     json_decref(value);
     free(key);
-}
-
-// ---- what the table tells the user --------------------------------------------------
-
-enum { HELP_WIDTH = 78 }; // argp wraps at 79, without our indent
-
-// Words of TEXT, wrapped, each line behind INDENT blanks.
-static void print_wrapped(FILE *stream, const char *text, int indent)
-{
-    int column = fprintf(stream, "%*s", indent, "");
-    while (*text) {
-        const int length = (int)strcspn(text, " ");
-        if (column > indent && column + 1 + length > HELP_WIDTH)
-            column = fprintf(stream, "\n%*s", indent, "") - 1;
-        if (column > indent) column += fprintf(stream, " ");
-        column += fprintf(stream, "%.*s", length, text);
-        text += length;
-        text += strspn(text, " ");
-    }
-    fprintf(stream, "\n");
-}
-
-// [one|another], on the line that COLUMN characters stand on, or on lines of its own.
-static void print_choices(FILE *stream, const char *choices, int column)
-{
-    const bool fits = column + (int)strlen(choices) + 4 <= HELP_WIDTH;
-    column = fprintf(stream, fits ? "  [" : "\n        [");
-    for (const char *end; *choices; choices = end + (*end == '|')) {
-        end = strchrnul(choices, '|');
-        const int length = (int)(end - choices) + 1; // with the bar or bracket behind
-        if (!fits && column + length > HELP_WIDTH)
-            column = fprintf(stream, "\n%9s", "");
-        column += fprintf(stream, "%.*s%c", length - 1, choices, *end ? '|' : ']');
-    }
-}
-
-void parameters_print(const struct parameter *table, FILE *stream)
-{
-    for (const struct parameter *p = table; p->key; p++) {
-        char bound[80];
-        int column = fprintf(stream, "  %s=%s", p->key,
-                             p->fallback ? p->fallback : "(required)");
-        if (strcmp(p->unit, "1")) column += fprintf(stream, " %s", p->unit);
-        if (p->choices) print_choices(stream, p->choices, column);
-        if (p->bound) fprintf(stream, "  [%s]", bound_text(p, bound));
-        fprintf(stream, "\n");
-        print_wrapped(stream, p->text, 8);
-    }
-}
-
-static json_t *split_choices(const char *choices)
-{
-    json_t *names = json_array();
-    for (const char *end;; choices = end + 1) {
-        end = strchrnul(choices, '|');
-        json_array_append_new(names, json_stringn(choices, (size_t)(end - choices)));
-        if (!*end) return names;
-    }
-}
-
-static json_t *bounded(const struct parameter *parameter, const char *type)
-{
-    json_t *schema = json_pack("{s:s}", "type", type);
-    if (parameter->bound == BOUND_ABOVE)
-        json_object_set_new(schema, "exclusiveMinimum", json_real(parameter->low));
-    if (parameter->bound == BOUND_MINIMUM || parameter->bound == BOUND_BETWEEN)
-        json_object_set_new(schema, "minimum", json_real(parameter->low));
-    if (parameter->bound == BOUND_BETWEEN)
-        json_object_set_new(schema, "maximum", json_real(parameter->high));
-    return schema;
-}
-
-static json_t *three_of(json_t *items)
-{
-    return json_pack("{s:s,s:o,s:i,s:i}", "type", "array", "items", items, "minItems",
-                     3, "maxItems", 3);
-}
-
-static json_t *value_schema(const struct parameter *parameter)
-{
-    switch (parameter->type) {
-    case PARAMETER_NUMBER:
-        return bounded(parameter, "number");
-    case PARAMETER_INTEGER:
-        return bounded(parameter, "integer");
-    case PARAMETER_BOOLEAN:
-        return json_pack("{s:s}", "type", "boolean");
-    case PARAMETER_TEXT:
-        return json_pack("{s:s}", "type", "string");
-    case PARAMETER_CHOICE:
-        return json_pack("{s:o}", "enum", split_choices(parameter->choices));
-    case PARAMETER_CHOICES:
-        return json_pack("{s:s,s:{s:o}}", "type", "array", "items", "enum",
-                         split_choices(parameter->choices));
-    case PARAMETER_LIST:
-        return json_pack("{s:s,s:o,s:i}", "type", "array", "items",
-                         bounded(parameter, "number"), "maxItems", LIST_MOST);
-    case PARAMETER_COUNTS:
-        return three_of(bounded(parameter, "integer"));
-    case PARAMETER_FLAGS:
-        return three_of(json_pack("{s:s}", "type", "boolean"));
-    case PARAMETER_POINT:
-        return three_of(bounded(parameter, "number"));
-    }
-    return NULL;
-}
-
-static json_t *open_object(void)
-{
-    return json_pack("{s:s,s:b,s:{s:{}}}", "type", "object", "additionalProperties", 0,
-                     "properties", "comment");
-}
-
-static json_t *nested_properties(json_t *schema, const char **key)
-{
-    char part[128];
-    for (const char *end; *(end = strchrnul(*key, '.')); *key = end + 1) {
-        snprintf(part, sizeof part, "%.*s", (int)(end - *key), *key);
-        json_t *properties = json_object_get(schema, "properties");
-        if (!json_object_get(properties, part))
-            json_object_set_new(properties, part, open_object());
-        schema = json_object_get(properties, part);
-    }
-    return json_object_get(schema, "properties");
-}
-
-json_t *parameters_schema(const struct parameter *table, const char *stage)
-{
-    json_t *schema = open_object();
-    json_object_set_new(schema, "$schema",
-                        json_string("https://json-schema.org/draft/2020-12/schema"));
-    json_object_set_new(schema, "title", json_string(stage));
-    for (const struct parameter *p = table; p->key; p++) {
-        json_t *value = value_schema(p);
-        if (p->fallback && !strcmp(p->fallback, "null"))
-            value = json_pack("{s:[o,{s:s}]}", "anyOf", value, "type", "null");
-        json_object_set_new(value, "description", json_string(p->text));
-        if (strcmp(p->unit, "1"))
-            json_object_set_new(value, "units", json_string(p->unit));
-        if (p->fallback)
-            json_object_set_new(value, "default",
-                                json_loads(p->fallback, JSON_DECODE_ANY, NULL));
-        const char *key = p->key;
-        json_t *properties = nested_properties(schema, &key);
-        json_object_set_new(properties, key, value);
-    }
-    return schema;
 }

@@ -59,6 +59,9 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
 // Exits 64 when there is no "=" or no key.
 void parameters_set(json_t *section, const char *assignment);
 
+// What the bound asks for, "> 0 m", in TEXT; nothing where there is none.
+const char *parameter_rule(const struct parameter *parameter, char text[80]);
+
 // The JSON Schema (2020-12) of a table; the caller owns it.
 json_t *parameters_schema(const struct parameter *table, const char *stage);
 
