@@ -236,9 +236,8 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-.PHONY: check hard bench bench-dem bench-impact bench-bridge bench-network bench-walls \
-	bench-viscous bench-flow bench-dry bench-replay speed-vs-error \
-	sanitize check-c
+BENCH_STUDIES := $(addprefix bench-,dem impact walls bridge viscous replay dry network flow)
+.PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) speed-vs-error
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
 	@tests/hard/run
@@ -257,26 +256,19 @@ hard: all ## run the hard cases and print a table
 	@tests/hard/run
 bench: all $(BENCHES) ## measure speeds, as ratios within one run
 	@tests/bench/run
-bench-dem: all $(BENCHES) ## the discrete elements beside LAMMPS, LIGGGHTS and Yade (an hour)
-	@tests/bench/dem
-bench-impact: all $(BENCHES) ## error of the contact laws against cost, over time steps
-	@tests/bench/impact
-bench-walls: all ## the tessellation in a cylinder and of grains on a sphere, next to voro++
-	@tests/bench/walls
-bench-bridge: all $(BENCHES) ## error of the capillary bridge models against cost
-	@tests/bench/bridge
-bench-viscous: all ## time to dryness with viscous liquid, next to none
-	@tests/bench/viscous
-bench-replay: all $(BENCHES) ## error of both engines of the replay against time, and time against time
-	@tests/bench/replay
-bench-dry: all $(BENCHES) ## time of drying and of invasion percolation against size (ten minutes)
-	@tests/bench/dry
+$(BENCH_STUDIES): bench-%: all $(BENCHES)
+	@tests/bench/$*
+bench-dem: ## the discrete elements beside LAMMPS, LIGGGHTS and Yade (an hour)
+bench-impact: ## error of the contact laws against cost, over time steps
+bench-walls: ## the tessellation in a cylinder and of grains on a sphere, next to voro++
+bench-bridge: ## error of the capillary bridge models against cost
+bench-viscous: ## time to dryness with viscous liquid, next to none
+bench-replay: ## error of both engines of the replay against time, and time against time
+bench-dry: ## time of drying and of invasion percolation against size (ten minutes)
+bench-network: ## measure time and memory of the tessellation, next to voro++
+bench-flow: ## measure time and memory of the flow, next to Yade
 speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minutes)
 	@tests/bench/speed-vs-error
-bench-network: all $(BENCHES) ## measure time and memory of the tessellation, next to voro++
-	@tests/bench/network
-bench-flow: all ## measure time and memory of the flow, next to Yade
-	@tests/bench/flow
 
 # --- house ----------------------------------------------------------------------------
 
