@@ -269,57 +269,62 @@ static void reorder(const struct balance *balance, struct pressures *pressures,
             x[balance->unknown[i]] = pressures->value[i];
 }
 
-// Corrects the pressures until the balances close. The first correction is nearly the
-// whole solution.
+// Until the balances close, or rounding ends it. The first correction is nearly the
+// whole solution. X, GIVEN and what they LACK are in the order of the matrix.
+static enum status correct(const struct balance *balance, const struct solving *solving,
+                           struct linear_solver *solver, const double *given,
+                           struct compensated *x, double *lack,
+                           struct pressures *pressures, struct reason *reason)
+{
+    const double tolerance = solving->tolerance;
+    double best = INFINITY, reduction = first_reduction;
+    for (int round = 0; round < CORRECTIONS; round++) {
+        const enum status status = linear_correct(solver, given, x, lack, reduction,
+                                                  &pressures->iterations, reason);
+        if (status) return status;
+        if (!(pressures->imbalance < settled)) {
+            reorder(balance, pressures, x, true);
+            pressures->throughput = find_throughput(balance, pressures);
+        }
+        const double absolute = imbalance(lack, balance->matrix.n);
+        const double left = absolute > 0 ? absolute / pressures->throughput : 0;
+        pressures->imbalance = left;
+        if (left < 0.1 * tolerance || (left < tolerance && left > 0.5 * best)) break;
+        best = fmin(best, left);
+        reduction = fmax(first_reduction, 0.02 * tolerance / left);
+    }
+    return STATUS_OK;
+}
+
 static enum status close_balances(const struct balance *balance,
                                   const struct solving *solving,
                                   struct pressures *pressures, struct reason *reason)
 {
     const struct matrix *matrix = &balance->matrix;
-    const int n = matrix->n;
     struct compensated *x = NEW_ARRAY(struct compensated, matrix->n_all);
-    double *lack = NEW_ARRAY(double, n), *given = NEW_ARRAY(double, matrix->n_all);
+    double *lack = NEW_ARRAY(double, matrix->n);
+    double *given = NEW_ARRAY(double, matrix->n_all);
     for (int i = 0; i < matrix->n_all; i++)
         given[balance->unknown[i]] = balance->given[i];
     reorder(balance, pressures, x, false);
+    matrix_lack(matrix, given, x, lack);
+    pressures->imbalance = INFINITY;
     struct linear_solver solver;
     enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
     pressures->direct = solver.cholesky;
-    matrix_lack(matrix, given, x, lack);
-    double best = pressures->imbalance = INFINITY;
-    for (int round = 0; !status && round < CORRECTIONS; round++) {
-        const double reduction = round == 0
-                                     ? first_reduction
-                                     : fmax(first_reduction, 0.02 * solving->tolerance /
-                                                                 pressures->imbalance);
-        status = linear_correct(&solver, given, x, lack, reduction,
-                                &pressures->iterations, reason);
-        if (status) break;
-        if (!(pressures->imbalance < settled)) {
-            reorder(balance, pressures, x, true);
-            pressures->throughput = find_throughput(balance, pressures);
-        }
-        const double absolute = imbalance(lack, n);
-        pressures->imbalance = absolute > 0 ? absolute / pressures->throughput : 0;
-        if (pressures->imbalance < 0.1 * solving->tolerance) break;
-        if (pressures->imbalance < solving->tolerance &&
-            pressures->imbalance > 0.5 * best)
-            break;
-        best = fmin(best, pressures->imbalance);
-    }
+    if (!status)
+        status = correct(balance, solving, &solver, given, x, lack, pressures, reason);
     reorder(balance, pressures, x, true);
     linear_solver_free(&solver);
     free(x);
     free(lack);
     free(given);
-    if (!status && !(pressures->imbalance <= solving->tolerance))
-        return refuse(reason, STATUS_NOT_CONVERGED,
-                      "the balances of %d pores close to %.3g of the flux only, needed "
-                      "is %g after %d iterations; try solver=cholesky, or a larger "
-                      "tolerance",
-                      n, pressures->imbalance, solving->tolerance,
-                      pressures->iterations);
-    return status;
+    if (status || pressures->imbalance <= solving->tolerance) return status;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "the balances of %d pores close to %.3g of the flux only, needed is "
+                  "%g after %d iterations; try solver=cholesky, or a larger tolerance",
+                  matrix->n, pressures->imbalance, solving->tolerance,
+                  pressures->iterations);
 }
 
 // ---- what follows -------------------------------------------------------------------

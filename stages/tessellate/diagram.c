@@ -137,6 +137,23 @@ static int count_closed(const struct network *network)
     return closed;
 }
 
+// The network of the packing that NETWORK has.
+static void assemble(const struct generators *generators,
+                     const struct triangulation *triangulation, struct nodes *nodes,
+                     enum clearance clearance, struct network *network)
+{
+    double *radius = NEW_ARRAY(double, generators->n);
+    for (int i = 0; i < generators->n; i++)
+        radius[i] =
+            network->packing.radius[generators->origin[i].particle] / generators->unit;
+    const struct assembly assembly = {generators, triangulation, nodes, radius,
+                                      clearance};
+    assemble_throats(&assembly, network);
+    assemble_faces(&assembly, network);
+    move_nodes(nodes, generators, network);
+    free(radius);
+}
+
 enum status tessellate(const struct packing *packing, const struct tessellation *how,
                        struct network *network, struct tessellation_report *report,
                        struct reason *reason)
@@ -155,17 +172,8 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     if (!status) report->hidden = count_hidden(&generators, &triangulation);
     if (!status && report->hidden) status = check_distinct(&generators, reason);
     if (!status) {
-        double *radius = NEW_ARRAY(double, generators.n);
-        for (int i = 0; i < generators.n; i++)
-            radius[i] =
-                packing->radius[generators.origin[i].particle] / generators.unit;
-        const struct assembly assembly = {&generators, &triangulation, &nodes, radius,
-                                          how->clearance};
         copy_packing(packing, &network->packing);
-        assemble_throats(&assembly, network);
-        assemble_faces(&assembly, network);
-        move_nodes(&nodes, &generators, network);
-        free(radius);
+        assemble(&generators, &triangulation, &nodes, how->clearance, network);
     }
     nodes_free(&nodes);
     triangulation_free(&triangulation);
