@@ -672,6 +672,8 @@ parameters("a section that is no object is refused", "pack", {"pack": 3},
            "pack: must be an object")
 parameters("a number where a group belongs is refused", "dem-replay", {"bond": 3},
            "dem-replay.bond: must be an object, got 3")
+parameters("a key with a dot is refused, not ignored", "pack", {"sizes.by": "mass"},
+           r'pack.sizes.by: must be nested, {"a": {"b": ...}}: dots are for --set')
 parameters("text where a number belongs is refused", "pack", {"radius": "1"},
            'pack.radius: must be a number, got "1"')
 parameters("null where a number belongs is refused", "pack", {"radius": None},

@@ -286,6 +286,11 @@ static void check_keys(struct filling *filling, json_t *object, const char *pref
         if (!strcmp(key, "comment")) continue;
         char path[256];
         snprintf(path, sizeof path, "%s%s%s", prefix, *prefix ? "." : "", key);
+        if (strchr(key, '.')) {
+            complain(filling, path, "nested, {\"a\": {\"b\": ...}}: dots are for --set",
+                     NULL);
+            continue;
+        }
         if (is_key(filling->table, path)) continue;
         if (!is_prefix(filling->table, path))
             report_unknown(filling, path);
