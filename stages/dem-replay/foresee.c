@@ -257,8 +257,7 @@ static bool factor_lane(struct equilibrium *e, int lane)
     return false;
 }
 
-// One round more for what rounding left.
-static void polish(struct equilibrium *e, int first, int end)
+void polish(struct equilibrium *e, int first, int end)
 {
     struct foresight *f = e->foresight;
     stiffness_begin_lanes(e->matrix, f->left);
@@ -268,7 +267,7 @@ static void polish(struct equilibrium *e, int first, int end)
     stiffness_finish_lanes(e->matrix, f->step);
     for (long k = 0; k < (long)e->n * GRAIN; k++)
         f->moved[k] += f->step[k];
-    find_left_lanes(e, first, end);
+    find_left_lanes(e);
 }
 
 // The first lane from FIRST to END - 1 in which so many are unlike that a factor costs
@@ -329,7 +328,6 @@ static void begin_as_factored(struct equilibrium *e)
 int look(struct equilibrium *e, int first, int end)
 {
     enum { FACTORS = 8 };
-    const struct foresight *f = e->foresight;
     int found = first;
     for (int factors = 0; found == first && factors < FACTORS; factors++) {
         const bool is_due = factors > 0 || is_factor_due(e);
@@ -337,9 +335,7 @@ int look(struct equilibrium *e, int first, int end)
         begin_as_factored(e);
         found = correct_lanes(e, first, end);
     }
-    if (found > first && find_left_lanes(e, first, found) >
-                             well_below * e->setup.tolerance * f->largest_load[first])
-        polish(e, first, found);
+    find_left_lanes(e);
     return found;
 }
 

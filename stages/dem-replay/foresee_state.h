@@ -35,13 +35,13 @@ struct foresight {
     struct settler *settler;
 };
 
-// What is left where the grains have MOVED, in LEFT, and the SUMS; the most left in any
-// lane from FIRST to END - 1.
-double find_left_lanes(struct equilibrium *equilibrium, int first, int end);
+// What is left where the grains have MOVED, in LEFT, and the SUMS.
+void find_left_lanes(struct equilibrium *equilibrium);
 
 // The next loads, from the last equilibrium on. Then lanes from FIRST to END - 1 are
-// looked at: where those end that were found.
+// looked at: where those end that were found. One round more for what rounding left.
 void begin_lanes_anew(struct equilibrium *equilibrium);
 int look(struct equilibrium *equilibrium, int first, int end);
+void polish(struct equilibrium *equilibrium, int first, int end);
 
 #endif

@@ -12,7 +12,7 @@ static bool is_free(const struct equilibrium *e, int grain)
     return !e->setup.fixed[grain] && !e->is_gone[grain];
 }
 
-double find_left_lanes(struct equilibrium *e, int first, int end)
+void find_left_lanes(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
     const struct lane_kernels *kernels = lane_kernels();
@@ -27,10 +27,6 @@ double find_left_lanes(struct equilibrium *e, int first, int end)
     for (int i = 0; i < e->n; i++)
         if (is_free(e, i))
             kernels->measure(i, &f->from[i], f->moved, f->left, &f->sums);
-    double most = 0;
-    for (int l = first; l < end; l++)
-        most = fmax(most, f->sums.left[l]);
-    return most;
 }
 
 static struct displacement in_lane(const double *numbers, int grain, int lane)
@@ -53,15 +49,14 @@ static void go_to_lane(struct equilibrium *e, int lane)
     }
 }
 
-// Whether what was found in LANE is balanced as well as balance.c would have it, and
-// all displacements are small.
-static bool is_balanced(const struct equilibrium *e, int lane)
+// Whether what was found in LANE is balanced to SHARE of the tolerance, and all
+// displacements are small.
+static bool is_balanced(const struct equilibrium *e, int lane, double share)
 {
     const struct lane_sums *sums = &e->foresight->sums;
     const double enough = e->setup.tolerance * e->foresight->largest_load[lane];
-    return sums->left[lane] <= well_below * enough &&
-           sums->furthest[lane] <= furthest && isfinite(sums->unbalanced[lane]) &&
-           isfinite(sums->carried[lane]);
+    return sums->left[lane] <= share * enough && sums->furthest[lane] <= furthest &&
+           isfinite(sums->unbalanced[lane]) && isfinite(sums->carried[lane]);
 }
 
 // The most overloaded bond, if one is. The way through the factor that these loads have
@@ -77,7 +72,8 @@ static bool break_in_lane(struct equilibrium *e, int lane)
     return true;
 }
 
-// The next lane, and after a bond has broken again that one alone. Whether it is found.
+// The next lane, and after a bond has broken again that one alone. Whether it is found:
+// as well as balance.c would have it, where no other bond breaks.
 static bool find_next(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
@@ -87,8 +83,11 @@ static bool find_next(struct equilibrium *e)
             f->found = look(e, f->used, end);
         }
         f->has_hint = f->used < f->found;
-        if (!f->has_hint || !is_balanced(e, f->used)) return false;
-        if (!break_in_lane(e, f->used)) return true;
+        if (!f->has_hint || !is_balanced(e, f->used, 1)) return false;
+        if (break_in_lane(e, f->used)) continue;
+        if (is_balanced(e, f->used, well_below)) return true;
+        polish(e, f->used, f->found);
+        if (!is_balanced(e, f->used, well_below)) return false;
     }
 }
 

@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "dense_kernels.h"
 #include "plain_cholmod.h"
+#include "vector_kernels.h"
 
 #include <float.h>
 #include <math.h>
@@ -142,14 +143,15 @@ static bool factor_columns(const struct supernode *super, int first, int end,
         const double pivot = sqrt(fmax(column[j], DBL_EPSILON * diagonal[j - first]));
         if (!(pivot > 0 && isfinite(pivot))) return false;
         column[j] = pivot;
-        for (int i = j + 1; i < super->rows; i++)
+        for (int i = j + 1; i < end; i++)
             column[i] /= pivot;
         for (int l = j + 1; l < end; l++) {
             double *other = super->panel + (long)l * super->rows;
-            for (int i = l; i < super->rows; i++)
+            for (int i = l; i < end; i++)
                 other[i] = fma(-column[l], column[i], other[i]);
         }
     }
+    vector_kernels()->finish_columns(super, first, end);
     return true;
 }
 

@@ -45,6 +45,13 @@ INLINE vector fused(vector a, vector b, vector c)
 #endif
 }
 
+// A over B, whose INVERSE is known: as well rounded as a division, and much sooner done.
+INLINE vector divided(vector a, double b, double inverse)
+{
+    const vector nearly = a * all_of(inverse);
+    return fused(fused(-nearly, all_of(b), a), all_of(inverse), nearly);
+}
+
 // ---- lanes through a supernode ------------------------------------------------------
 
 // Of the row that SUPER's Ith is.
@@ -65,12 +72,13 @@ INLINE void forward_columns(const struct supernode *super, int first, int wide,
     vector own[MOST][PARTS];
     for (int j = 0; j < wide; j++) {
         double *at = lanes_of(super, first + j, parts, x);
+        const double pivot = panel[(long)j * rows + first + j];
         for (int q = 0; q < parts; q++) {
             own[j][q] = load(at + NUMBERS * q);
             for (int l = 0; l < j; l++)
                 own[j][q] = fused(all_of(-panel[(long)l * rows + first + j]), own[l][q],
                                   own[j][q]);
-            own[j][q] *= all_of(1 / panel[(long)j * rows + first + j]);
+            own[j][q] = divided(own[j][q], pivot, 1 / pivot);
             store(at + NUMBERS * q, own[j][q]);
         }
     }
@@ -101,14 +109,16 @@ INLINE void backward_columns(const struct supernode *super, int first, int wide,
                 left[j][q] = fused(all_of(-panel[(long)j * rows + i]),
                                    load(at + NUMBERS * q), left[j][q]);
     }
-    for (int j = wide - 1; j >= 0; j--)
+    for (int j = wide - 1; j >= 0; j--) {
+        const double pivot = panel[(long)j * rows + first + j];
         for (int q = 0; q < parts; q++) {
             for (int l = j + 1; l < wide; l++)
                 left[j][q] = fused(all_of(-panel[(long)j * rows + first + l]),
                                    left[l][q], left[j][q]);
-            left[j][q] *= all_of(1 / panel[(long)j * rows + first + j]);
+            left[j][q] = divided(left[j][q], pivot, 1 / pivot);
             store(lanes_of(super, first + j, parts, x) + NUMBERS * q, left[j][q]);
         }
+    }
 }
 
 INLINE void forward(const struct supernode *super, int parts, double *x)
@@ -147,6 +157,49 @@ static void forward_eight(const struct supernode *super, double *x)
 static void backward_eight(const struct supernode *super, double *x)
 {
     backward(super, PARTS, x);
+}
+
+// ---- the factor ---------------------------------------------------------------------
+
+INLINE void finish_rows(double *panel, int rows, int own, int wide, int at)
+{
+    vector x[8];
+    for (int j = 0; j < wide; j++) {
+        const double pivot = panel[(long)j * rows + own + j];
+        x[j] = load(panel + (long)j * rows + at);
+        for (int l = 0; l < j; l++)
+            x[j] = fused(all_of(-panel[(long)l * rows + own + j]), x[l], x[j]);
+        x[j] = divided(x[j], pivot, 1 / pivot);
+        store(panel + (long)j * rows + at, x[j]);
+    }
+}
+
+// As finish_rows, one.
+INLINE void finish_row(double *panel, int rows, int own, int wide, int at)
+{
+    for (int j = 0; j < wide; j++) {
+        const double pivot = panel[(long)j * rows + own + j], inverse = 1 / pivot;
+        double x = panel[(long)j * rows + at];
+        for (int l = 0; l < j; l++)
+            x = fma(-panel[(long)l * rows + own + j], panel[(long)l * rows + at], x);
+        const double nearly = x * inverse;
+        panel[(long)j * rows + at] = fma(fma(-nearly, pivot, x), inverse, nearly);
+    }
+}
+
+static void finish_columns(const struct supernode *super, int first, int end)
+{
+    const int rows = super->rows, wide = end - first;
+    double *panel = super->panel + (long)first * rows;
+    int i = end;
+    if (wide == 8)
+        for (; i + NUMBERS <= rows; i += NUMBERS)
+            finish_rows(panel, rows, first, 8, i);
+    else if (wide == 6)
+        for (; i + NUMBERS <= rows; i += NUMBERS)
+            finish_rows(panel, rows, first, 6, i);
+    for (; i < rows; i++)
+        finish_row(panel, rows, first, wide, i);
 }
 
 // ---- products -----------------------------------------------------------------------
@@ -242,6 +295,7 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
 const struct vector_kernels NAMED(vector_kernels) = {
     .forward_eight = forward_eight,
     .backward_eight = backward_eight,
+    .finish_columns = finish_columns,
     .add_product_of_eight = add_product_of_eight,
     .multiply_transposed = multiply,
 };
