@@ -192,6 +192,18 @@ void corrections_take_off_lanes(const struct corrections *c, const double *load)
     }
 }
 
+void corrections_take_off_lane(const struct corrections *c, int lane,
+                               const double *load)
+{
+    for (int k = 0; k < c->n_addition; k++) {
+        const struct halves *halves = &c->addition[k].halves;
+        double of[LANES];
+        for (int l = 0; l < halves->columns; l++)
+            of[l] = load[((long)c->addition[k].first + l) * LANES + lane];
+        if (any(halves->columns, of)) stiffness_take_off(c->stiffness, halves, of);
+    }
+}
+
 // ---- the way ------------------------------------------------------------------------
 
 // Springs pull as they did where an earlier GUESS has led, else as they do.

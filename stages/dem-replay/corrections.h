@@ -44,6 +44,9 @@ void corrections_strain_lanes(const struct corrections *corrections, int count,
                               double *strain);
 void corrections_take_off_lanes(const struct corrections *corrections,
                                 const double *load);
+// Of one LANE, which the stiffness has taken.
+void corrections_take_off_lane(const struct corrections *corrections, int lane,
+                               const double *load);
 
 // Multiplications spent on dense systems since there were no corrections.
 double corrections_work(const struct corrections *corrections);

@@ -198,8 +198,21 @@ static int settle_lanes(struct equilibrium *e, int first, int end, bool may_chan
         for (int k = 0; k < f->n_row && is_fresh && l + 1 < end; k++)
             f->touches[(long)k * LANES + l + 1] = f->touches[(long)k * LANES + l];
     }
-    corrections_take_off_lanes(e->corrections, f->more);
     return end;
+}
+
+// What then MOVES (n * GRAIN) in those lanes.
+static void finish_lanes(struct equilibrium *e, int first, int end, double *moves)
+{
+    const struct foresight *f = e->foresight;
+    if (end - first > 1) {
+        corrections_take_off_lanes(e->corrections, f->more);
+        stiffness_finish_lanes(e->matrix, moves);
+    } else {
+        stiffness_take_lane(e->matrix, first);
+        corrections_take_off_lane(e->corrections, first, f->more);
+        stiffness_finish_lane(e->matrix, first, moves);
+    }
 }
 
 // ---- rounds -------------------------------------------------------------------------
@@ -264,7 +277,8 @@ void polish(struct equilibrium *e, int first, int end)
     f->n_given = 0;
     f->has_begun = false;
     if (settle_lanes(e, first, end, false, false) < end) return;
-    stiffness_finish_lanes(e->matrix, f->step);
+    memset(f->step, 0, (size_t)e->n * GRAIN * sizeof *f->step);
+    finish_lanes(e, first, end, f->step);
     for (long k = 0; k < (long)e->n * GRAIN; k++)
         f->moved[k] += f->step[k];
     find_left_lanes(e);
@@ -294,7 +308,7 @@ static int correct_lanes(struct equilibrium *e, int first, int end)
         describe_rows(e);
         end = settle_lanes(e, first, end, true, round == 0);
         if (end == first) return first;
-        stiffness_finish_lanes(e->matrix, f->moved);
+        finish_lanes(e, first, end, f->moved);
         find_touching(e);
         int in_lane[LANES], unlike = list_unlike(e, first, end, in_lane);
         if (unlike == 0) return end;

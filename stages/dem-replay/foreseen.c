@@ -72,22 +72,25 @@ static bool break_in_lane(struct equilibrium *e, int lane)
     return true;
 }
 
-// The next lane, and after a bond has broken again that one alone. Whether it is found:
-// as well as balance.c would have it, where no other bond breaks.
+// The next lane, and after a bond has broken again that one alone. Whether it is found;
+// where no other bond breaks, with one round more if that is what it takes to be well
+// below the tolerance.
 static bool find_next(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
+    bool is_polished = false;
     for (int end = f->n_lane;; end = f->used + 1) {
         if (f->used >= f->found) {
             realise(f);
             f->found = look(e, f->used, end);
+            is_polished = false;
         }
         f->has_hint = f->used < f->found;
         if (!f->has_hint || !is_balanced(e, f->used, 1)) return false;
         if (break_in_lane(e, f->used)) continue;
-        if (is_balanced(e, f->used, well_below)) return true;
+        if (is_polished || is_balanced(e, f->used, well_below)) return true;
         polish(e, f->used, f->found);
-        if (!is_balanced(e, f->used, well_below)) return false;
+        is_polished = true;
     }
 }
 

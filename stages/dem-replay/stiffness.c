@@ -343,6 +343,22 @@ void stiffness_take_off_lanes(struct stiffness *s, const struct halves *halves,
     halves_take_off_lanes(s->factor, halves, load, s->left_lanes);
 }
 
+void stiffness_take_lane(struct stiffness *s, int lane)
+{
+    for (long k = 0; k < (long)s->n_moving * DEGREES; k++)
+        s->left[k] = s->begun_lanes[k * LANES + lane];
+}
+
+void stiffness_finish_lane(struct stiffness *s, int lane, double *answer)
+{
+    if (s->n_moving == 0) return;
+    supernodal_backward(s->factor, s->left, s->load);
+    for (int i = 0; i < s->n; i++)
+        for (int k = 0; k < DEGREES && s->number[i] >= 0; k++)
+            answer[(long)i * GRAIN_LANES + k * LANES + lane] =
+                s->load[s->number[i] * DEGREES + k];
+}
+
 double stiffness_work(const struct stiffness *s)
 {
     return s->factor ? supernodal_work(s->factor) : 0;

@@ -58,6 +58,11 @@ void stiffness_strain_lanes(const struct stiffness *stiffness,
 void stiffness_take_off_lanes(struct stiffness *stiffness, const struct halves *halves,
                               const double *load);
 
+// Of one LANE alone: from here on loads are taken off that by stiffness_take_off, and
+// it is finished into its place in ANSWER (n * 6 * LANES).
+void stiffness_take_lane(struct stiffness *stiffness, int lane);
+void stiffness_finish_lane(struct stiffness *stiffness, int lane, double *answer);
+
 // Multiplications that a factor takes, and numbers in it.
 double stiffness_work(const struct stiffness *stiffness);
 double stiffness_numbers(const struct stiffness *stiffness);

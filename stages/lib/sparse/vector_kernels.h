@@ -13,8 +13,8 @@ struct vector_kernels {
     // L^-1 X, or L^-T X.
     void (*forward_eight)(const struct supernode *super, double *x);
     void (*backward_eight)(const struct supernode *super, double *x);
-    // The rows below END of the columns FIRST to END - 1, eight at most, of a panel that
-    // is done with so far.
+    // The rows below END of the columns FIRST to END - 1, eight at most, of a panel
+    // that is done with so far.
     void (*finish_columns)(const struct supernode *super, int first, int end);
     // SUM grows by A^T B, (n) rows of lanes, one, four or eight of A, eight of B.
     void (*add_product_of_eight)(int n, const double *a, int a_lanes, const double *b,

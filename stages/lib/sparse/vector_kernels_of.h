@@ -45,7 +45,8 @@ INLINE vector fused(vector a, vector b, vector c)
 #endif
 }
 
-// A over B, whose INVERSE is known: as well rounded as a division, and much sooner done.
+// A over B, whose INVERSE is known: as well rounded as a division, and much sooner
+// done.
 INLINE vector divided(vector a, double b, double inverse)
 {
     const vector nearly = a * all_of(inverse);
