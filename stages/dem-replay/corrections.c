@@ -2,6 +2,7 @@
 #include "corrections_state.h"
 
 #include "basics/memory.h"
+#include "sparse/dense_system.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -37,11 +38,11 @@ void corrections_free(struct corrections *c)
 {
     if (!c) return;
     corrections_clear(c);
-    void *const owned[] = {
-        c->entry,  c->of,         c->addition,      c->entry_of, c->strain_of,
-        c->matrix, c->order,      c->acting,        c->factored, c->strain,
-        c->linear, c->more,       c->left,          c->step,     c->right,
-        c->answer, c->compliance, c->factored_slope};
+    void *const owned[] = {c->entry,      c->of,         c->addition,      c->entry_of,
+                           c->strain_of,  c->matrix,     c->order,         c->acting,
+                           c->factored,   c->strain,     c->linear,        c->more,
+                           c->left,       c->step,       c->right,         c->answer,
+                           c->work_space, c->compliance, c->factored_slope};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(c);
@@ -74,6 +75,7 @@ static void make_room(struct corrections *c)
     free(c->compliance);
     c->compliance = compliance;
     c->matrix = reallocate(c->matrix, after * (after + 16), sizeof *c->matrix);
+    c->work_space = reallocate(c->work_space, after * DENSE_PANEL, sizeof(double));
     c->n_factored = 0;
     int **const whole[] = {&c->entry_of, &c->strain_of, &c->order, &c->acting,
                            &c->factored};

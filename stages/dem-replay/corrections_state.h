@@ -41,6 +41,7 @@ struct corrections {
     int count, capacity;            // rows
     int *entry_of, *strain_of;      // (count)
     double *compliance;             // W
+    double *work_space;             // (CAPACITY * DENSE_PANEL)
     double *matrix;                 // 1 + dq/de W of those that act, factored
     int *order;                     // of the matrix's rows, as pivots chose
     int n_acting, *acting;          // rows

@@ -170,7 +170,8 @@ static bool factor(struct corrections *c)
     c->work += n * n * n / 3;
     fill_matrix(c);
     c->n_factored = 0;
-    if (!dense_factor(c->n_acting, c->matrix, stride_of(c), c->order)) return false;
+    if (!dense_factor(c->n_acting, c->matrix, stride_of(c), c->order, c->work_space))
+        return false;
     c->n_factored = c->n_acting;
     memcpy(c->factored, c->acting, (size_t)c->n_acting * sizeof *c->acting);
     for (int a = 0; a < c->n_acting; a++)

@@ -5,9 +5,11 @@
 
 #include <stdbool.h>
 
+enum { DENSE_PANEL = 16 };
+
 // Factors MATRIX (n by n, rows STRIDE apart) in place; ROW (n) becomes the order of its
-// rows. False: it is singular.
-bool dense_factor(int n, double *matrix, int stride, int *row);
+// rows. WORK (n * DENSE_PANEL). False: it is singular.
+bool dense_factor(int n, double *matrix, int stride, int *row, double *work);
 
 // ANSWER (n), which is not RIGHT (n).
 void dense_substitute(int n, const double *matrix, int stride, const int *row,

@@ -23,6 +23,8 @@ struct vector_kernels {
     void (*multiply_transposed)(int m, int n, int k, const double *a, int a_stride,
                                 const double *b, int b_stride, double *c, int c_stride,
                                 bool lower, double *work);
+    // As dense_system.h says of dense_factor.
+    bool (*factor_dense)(int n, double *matrix, int stride, int *row, double *work);
 };
 extern const struct vector_kernels vector_kernels_narrow, vector_kernels_wide;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What most of the work on factors is done by, once for vectors of four numbers, once
 // of eight (BYTES): each number has the same digits in both. NAMED(x) is the name of x.
+#include "dense_system.h"
 #include "supernodal_state.h"
 #include "vector_kernels.h"
 
@@ -293,10 +294,13 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
     }
 }
 
+#include "dense_system_of.h"
+
 const struct vector_kernels NAMED(vector_kernels) = {
     .forward_eight = forward_eight,
     .backward_eight = backward_eight,
     .finish_columns = finish_columns,
     .add_product_of_eight = add_product_of_eight,
     .multiply_transposed = multiply,
+    .factor_dense = factor_dense,
 };
