@@ -74,14 +74,39 @@ void add_answer(const struct corrections *c, int row, double more, double *restr
         sum[k] += c->share * more * compliance[k];
 }
 
+// The same of COUNT rows (all: NULL) at once.
+static void add_answers(const struct corrections *c, int count, const int *row,
+                        const double *more, double sign, double *restrict sum)
+{
+    enum { TOGETHER = 4 };
+    for (int first = 0; first < count;) {
+        const double *w[TOGETHER];
+        double share[TOGETHER] = {0};
+        int n = 0;
+        for (; n < TOGETHER && first < count; first++) {
+            if (more[first] == 0) continue;
+            w[n] = compliance_of(c, row ? row[first] : first);
+            share[n++] = sign * c->share * more[first];
+        }
+        if (n == 0) break;
+        while (n < TOGETHER)
+            w[n++] = w[0];
+        const double *const restrict a = w[0], *const restrict b = w[1],
+                                     *const restrict d = w[2], *const restrict e = w[3];
+        for (int k = 0; k < c->count; k++)
+            sum[k] = fma(
+                share[3], e[k],
+                fma(share[2], d[k], fma(share[1], b[k], fma(share[0], a[k], sum[k]))));
+    }
+}
+
 double find_left(struct corrections *c)
 {
     double most = 0;
     for (int k = 0; k < c->count; k++)
         c->left[k] = c->strain[k] - c->linear[k];
     c->work += (double)c->count * c->n_acting;
-    for (int k = 0; k < c->count; k++)
-        add_answer(c, k, c->more[k], c->left);
+    add_answers(c, c->count, NULL, c->more, 1, c->left);
     for (int k = 0; k < c->count; k++)
         most = fmax(most, fabs(c->left[k]));
     return most;
@@ -199,8 +224,7 @@ static bool find_step(struct corrections *c)
                      c->answer);
     for (int row = 0; row < c->count; row++)
         c->step[row] = -c->left[row];
-    for (int a = 0; a < c->n_acting; a++)
-        add_answer(c, c->acting[a], -c->answer[a], c->step);
+    add_answers(c, c->n_acting, c->acting, c->answer, -1, c->step);
     return true;
 }
 
