@@ -246,7 +246,7 @@ static bool approach(struct equilibrium *e)
     const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
     if (largest_left(e) <= well) return true; // foreseen
     bool is_fresh = e->factors == 0 ||
-                    corrections_work(e->corrections) > 4 * stiffness_work(e->matrix);
+                    corrections_work(e->corrections) > 16 * stiffness_work(e->matrix);
     if (is_fresh && !factor(e)) return false;
     double before = INFINITY;
     for (int round = 0; round < ROUNDS; round++) {
