@@ -204,16 +204,17 @@ static void a_pivot_of_rounding_stays_a_number(void **state)
 static void dense_systems(void **state)
 {
     (void)state;
-    enum { MOST = 30 };
+    enum { MOST = 70 };
     for (int n = 2; n <= MOST; n++) {
-        double whole[MOST][MOST], matrix[MOST][MOST], right[MOST], answer[MOST];
+        static double whole[MOST][MOST], matrix[MOST][MOST];
+        double right[MOST], answer[MOST], work[MOST * DENSE_PANEL];
         int order[MOST];
         for (int i = 0; i < n; i++) {
             right[i] = cos(i);
             for (int j = 0; j < n; j++)
                 whole[i][j] = matrix[i][j] = i == j ? 0 : sin(3 * i + 7 * j * j);
         }
-        assert_true(dense_factor(n, matrix[0], MOST, order));
+        assert_true(dense_factor(n, matrix[0], MOST, order, work));
         dense_substitute(n, matrix[0], MOST, order, right, answer);
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++)
@@ -221,19 +222,21 @@ static void dense_systems(void **state)
             assert_true(fabs(right[i]) < 1e-9);
         }
     }
-    double none[4] = {1, 2, 2, 4};
+    double none[4] = {1, 2, 2, 4}, work[2 * DENSE_PANEL];
     int order[2];
-    assert_false(dense_factor(2, none, 2, order));
+    assert_false(dense_factor(2, none, 2, order, work));
 }
 
 // Vectors of four numbers or of eight: the same digits.
 static void vectors_of_any_width(void **state)
 {
     (void)state;
-    enum { M = 21, COLUMNS = 13, K = 17 };
+    enum { M = 51, COLUMNS = 13, K = 17 };
     if (!has_wide_vectors()) skip();
     double a[M * K + 8], sum[2][LANES][LANES] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
-    double work[8 * K];
+    double work[M * DENSE_PANEL];
+    double matrix[2][M * M];
+    int order[2][M];
     for (int k = 0; k < M * K + 8; k++)
         a[k] = sin(k * k);
     const struct vector_kernels *const both[] = {&vector_kernels_narrow,
@@ -242,7 +245,12 @@ static void vectors_of_any_width(void **state)
         both[wide]->multiply_transposed(M, COLUMNS, K, a, M, a + 5, M, c[wide], M,
                                         false, work);
         both[wide]->add_product_of_eight(K, a, 8, a + 9, sum[wide]);
+        for (int k = 0; k < M * M; k++)
+            matrix[wide][k] = sin(k * k);
+        assert_true(both[wide]->factor_dense(M, matrix[wide], M, order[wide], work));
     }
+    assert_memory_equal(matrix[0], matrix[1], sizeof matrix[0]);
+    assert_memory_equal(order[0], order[1], sizeof order[0]);
     assert_memory_equal(c[0], c[1], sizeof c[0]);
     assert_memory_equal(sum[0], sum[1], sizeof sum[0]);
     for (int i = 0; i < M; i++)
