@@ -68,8 +68,8 @@ static bool factor_panel(double *panel, int height, int width, int *row)
 
 // What the first WIDTH of ROW are in COLUMNS columns from LAST on, below the panel's
 // triangle in columns FIRST on; and its opposite in TILE.
-static void finish_rows(double *matrix, int stride, const int *row, int width,
-                        int first, int last, int columns, double tile[][SIDE])
+static void finish_pivots(double *matrix, int stride, const int *row, int width,
+                          int first, int last, int columns, double tile[][SIDE])
 {
     for (int p = 0; p < width; p++) {
         double *to = matrix + (long)row[p] * stride;
@@ -89,8 +89,8 @@ static void finish_rows(double *matrix, int stride, const int *row, int width,
 }
 
 // ROWS rows of numbers TO grow by WIDTH of SHARE times the rows of TILE.
-INLINE void add_rows(int rows, int width, double *const share[], double *const to[],
-                     double tile[][SIDE])
+INLINE void add_tile_rows(int rows, int width, double *const share[],
+                          double *const to[], double tile[][SIDE])
 {
     vector sum[HEIGHT][2];
     for (int r = 0; r < rows; r++)
@@ -122,7 +122,7 @@ static void take_off_rows(double *matrix, int stride, const int *row, int count,
             if (columns < SIDE && r < rows)
                 memcpy(edge[r], at + last, (size_t)columns * sizeof *at);
         }
-        add_rows(HEIGHT, width, share, to, tile);
+        add_tile_rows(HEIGHT, width, share, to, tile);
         for (int r = 0; r < rows && columns < SIDE; r++)
             memcpy(share[r] - first + last, edge[r], (size_t)columns * sizeof **edge);
     }
@@ -147,7 +147,8 @@ static bool factor_dense(int n, double *matrix, int stride, int *row, double *wo
         for (int last = end; last < n; last += SIDE) {
             const int columns = n - last < SIDE ? n - last : SIDE;
             double tile[DENSE_PANEL][SIDE];
-            finish_rows(matrix, stride, row + first, width, first, last, columns, tile);
+            finish_pivots(matrix, stride, row + first, width, first, last, columns,
+                          tile);
             take_off_rows(matrix, stride, row + end, n - end, width, first, last,
                           columns, tile);
         }
