@@ -72,7 +72,7 @@ static void test_catenoid(void **state)
             if (fabs(is.half_filling_angle[0] - filling) > 1e-3) continue;
             close_to(is.force, 2 * M_PI * c * 0.05, 1e-10, "force of a catenoid");
             close_to(is.neck_radius, c, 1e-10, "neck of a catenoid");
-            assert_true(fabs(is.suction) < 1e-9 * 0.05 / c);
+            assert_true(fabs(is.suction) < 1e-12 * 0.05 / c);
         }
 }
 
@@ -109,7 +109,7 @@ static void test_sphere(void **state)
             between(radius, filling, M_PI / 2 - filling + slope, revolved);
         if (!(bridge.volume > 0) || gap < 0) continue;
         const struct bridge_state is = solved(&bridge, gap);
-        assert_true(fabs(is.force) < 1e-10 * 0.05 * radius);
+        assert_true(fabs(is.force) < 1e-12 * 0.05 * radius);
         close_to(is.suction, -2 * 0.05 / ball, 1e-10, "suction of a ball");
     }
 }

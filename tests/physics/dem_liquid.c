@@ -219,17 +219,17 @@ static void test_same_bytes_whoever_computes(void **state)
     liquid.shared = true;
     struct dem *one = thrown(&packing, &liquid, 1, 0.02);
     const int began = bridges_in(one);
-    run(one, 1000);
+    run(one, 400);
     assert_true(bridges_in(one) != began && bridges_in(one) > MANY);
     for (int threads = 2; threads < 4; threads++) {
         struct dem *more = thrown(&packing, &liquid, threads, 0.02);
-        run(more, 400);
+        run(more, 160);
         int count; // stop, and go on in another
         struct dem_array *kept = dem_save(more, &count);
         struct dem *again = thrown(&packing, &liquid, threads, 0.02);
         struct reason reason = {""};
         if (dem_restore(again, kept, count, &reason)) fail_msg("%s", reason.text);
-        run(again, 600);
+        run(again, 240);
         assert_same(one, again);
         dem_free_arrays(kept, count);
         dem_free(more);
@@ -262,11 +262,11 @@ static void test_conserves(void **state)
         const double began = dem_energy(dem).kinetic;
         const struct vector before = dem_momentum(dem).linear;
         norm_of_momentum(dem, &began_all);
-        run(dem, (int64_t)(10 / safety));
+        run(dem, (int64_t)(5 / safety));
         const struct dem_energy now = dem_energy(dem);
         norm_of_momentum(dem, &all);
         assert_true(norm(subtract(dem_momentum(dem).linear, before)) <
-                    1e-11 * began_all);
+                    1e-13 * began_all);
         missing[fine] =
             fabs(now.kinetic + now.elastic + now.dashpots + now.bridges - began) /
             began;

@@ -59,11 +59,11 @@ static void test_each_face_alike(void **state)
         struct drying_history history = dry_and_check(&network, &conditions);
         assert_int_equal(history.n_step, first.n_step);
         for (int k = 0; k < first.n_step; k++) {
-            assert_true(fabs(history.saturation[k] - first.saturation[k]) < 1e-11);
-            assert_true(fabs(history.rate[k] - first.rate[k]) < 1e-9 * first.rate[0]);
+            assert_true(fabs(history.saturation[k] - first.saturation[k]) < 1e-12);
+            assert_true(fabs(history.rate[k] - first.rate[k]) < 1e-12 * first.rate[0]);
         }
         assert_true(fabs(history.breakthrough_saturation -
-                         first.breakthrough_saturation) < 1e-11);
+                         first.breakthrough_saturation) < 1e-12);
         drying_history_free(&history);
     }
     drying_history_free(&first);

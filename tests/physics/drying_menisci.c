@@ -194,11 +194,11 @@ static int compare(const struct phases *phases,
         n_wait += slope[b] > 0 && field.potential[b] < field.own[b] * (1 - 1e-9L);
     for (int k = 0; k < losses->n; k++) {
         const int body = body_of(&field, losses->loss[k].throat);
-        assert_true(fabsl(losses->loss[k].rate - gain[body]) < 1e-10L * rate);
+        assert_true(fabsl(losses->loss[k].rate - gain[body]) < 1e-12L * rate);
         gain[body] = 0;
     }
     for (int b = 0; b < n; b++)
-        assert_true(fabsl(gain[b]) < 1e-10L * rate);
+        assert_true(fabsl(gain[b]) < 1e-12L * rate);
     free(gain);
     free(slope);
     free_field(&field);

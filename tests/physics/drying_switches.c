@@ -40,7 +40,7 @@ static void test_gravity_levels_equal_tubes(void **state)
     struct drying_history history = dry_and_check(&network, &conditions);
     for (int k = 0; k < 5 * n_column; k++) {
         const double height = middle_height(&network, history.event_throat[k]);
-        assert_true(fabs(height / spacing - (5.5 - k / n_column)) < 1e-9);
+        assert_true(fabs(height / spacing - (5.5 - k / n_column)) < 1e-12);
     }
     drying_history_free(&history);
     network_free(&network);

@@ -78,7 +78,7 @@ static void test_tube_dries_with_the_square_of_its_length(void **state)
     struct drying_history history = dry_and_check(&network, &conditions);
     for (int k = 4; k <= n / 2; k *= 2) {
         const double ratio = (double)(2 * k * (2 * k - 1)) / (k * (k - 1));
-        assert_true(fabs(history.time[2 * k] / history.time[k] / ratio - 1) < 1e-6);
+        assert_true(fabs(history.time[2 * k] / history.time[k] / ratio - 1) < 1e-8);
     }
     drying_history_free(&history);
     network_free(&network);

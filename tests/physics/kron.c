@@ -252,7 +252,7 @@ static void test_graph_finds_the_same(void **state)
         solve_by_graph(&sample, flow);
         const double largest = largest_of(exact_flow, ENDS);
         for (int e = 0; e < ENDS; e++)
-            assert_true(fabs(flow[e] - exact_flow[e]) < 1e-11 * largest);
+            assert_true(fabs(flow[e] - exact_flow[e]) < 1e-13 * largest);
     }
 }
 

@@ -219,7 +219,7 @@ static void dense_systems(void **state)
         for (int i = 0; i < n; i++) {
             for (int j = 0; j < n; j++)
                 right[i] -= whole[i][j] * answer[j];
-            assert_true(fabs(right[i]) < 1e-9);
+            assert_true(fabs(right[i]) < 1e-11);
         }
     }
     double none[4] = {1, 2, 2, 4}, work[2 * DENSE_PANEL];
