@@ -142,6 +142,8 @@ with scratch() as folder:
     thin = flatten("x", 0)
     thin["graph"]["nodes"][0]["metadata"]["node_coordinates"]["x"] = 5e-324
     refused("a box too thin for an area is refused", "must be 1e-150 or more below", document=thin)
+    refused("nodes all in one place are refused", "graph.nodes: all lie in one place",
+            document=changed(lambda graph: graph["nodes"][0]["metadata"]["node_coordinates"].update(x=0, y=0)))
     refused("a place that is no number is refused", "graph.nodes[0].metadata",
             document=changed(lambda graph: graph["nodes"][0]["metadata"].clear()))
     full = json.loads(read(at("graph.json")))

@@ -331,6 +331,15 @@ static enum status read_rest(json_t *rest, struct network *network,
     return read_faces(rest, network, reason);
 }
 
+// What OpenPNM's own writer makes of a network in metres: it keeps whole numbers.
+static bool all_in_one_place(const struct network *network)
+{
+    for (int i = 1; i < network->n_node; i++)
+        if (distance(network->node_position[i], network->node_position[0]) > 0)
+            return false;
+    return network->n_throat > 0;
+}
+
 static enum status read_graph(json_t *graph, struct network *network,
                               struct reason *reason)
 {
@@ -352,6 +361,10 @@ static enum status read_graph(json_t *graph, struct network *network,
     drop_cylinder_volumes(network);
     json_t *rest = json_object_get(json_object_get(graph, "metadata"), "craquelure");
     if (rest) return read_rest(rest, network, reason);
+    if (all_in_one_place(network))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.nodes: all lie in one place (OpenPNM's writer cuts "
+                      "coordinates to whole numbers: docs/reference.md has another)");
     box_around_nodes(network);
     find_walls(network);
     return STATUS_OK;
