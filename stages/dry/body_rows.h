@@ -25,6 +25,8 @@ struct body_rows {
     double *link; // (n_site) 0 between calls
 };
 
+// For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
+// with body_rows_free.
 struct body_rows body_rows_make(int n_throat, int n_site);
 
 // Bodies have been listed.

@@ -23,6 +23,7 @@ static inline int account_of(const struct clocks *clocks, int throat)
 void charge_by_node(struct clocks *clocks, int node);
 void charge_by_ends(struct clocks *clocks, int throat);
 
+// The rate of CLOCK is to be set anew.
 void touch_clock(struct clocks *clocks, int clock);
 
 // Sets the rate of a touched clock from its sum.

@@ -64,6 +64,7 @@ struct curved {
     double *level, *flow;     // (n_site) room
 };
 
+// For PHASES before any throat has emptied. The caller frees it with curved_free.
 struct curved curved_make(struct phases *phases,
                           const struct drying_conditions *conditions);
 

@@ -30,13 +30,17 @@ struct drained {
     double *conductance;     // (n_site) 0 between calls
 };
 
+// For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
+// with drained_free.
 struct drained drained_make(int n_throat, int n_site, bool by_throat);
 
 // THROAT is about to be emptied; it has been.
 void drained_note_before(struct drained *drained, struct phases *phases, int throat);
 void drained_note_after(struct drained *drained, const struct phases *phases);
 
+// Forgets what has drained.
 void drained_clear(struct drained *drained);
+
 void drained_free(struct drained *drained);
 
 #endif

@@ -12,6 +12,8 @@
 
 struct floating;
 
+// For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
+// with floating_free.
 struct floating *floating_make(int n_throat, int n_site, bool by_throat);
 
 // Empties THROAT, as phases_empty_throat, and keeps what it changes.

@@ -55,6 +55,7 @@ struct piece {
     double flow;               // scale of the flows in it
 };
 
+// Keeps PHASES, which must live as long. The caller frees it with flow_solver_free.
 struct flow_solver *flow_solver_make(const struct phases *phases);
 void flow_solver_free(struct flow_solver *solver);
 
@@ -65,6 +66,7 @@ void flow_solver_forget(struct flow_solver *solver, const struct phases *phases)
 void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
                         int throat);
 
+// Whether a throat holds all it can.
 bool throat_is_full(const struct phases *phases, int throat);
 
 // The nodes at a throat's liquid ends; returns how many there are.

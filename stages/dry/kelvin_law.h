@@ -16,6 +16,7 @@ struct kelvin_law {
     double steepness;             // rise of the exponent a metre upwards, 1/m
 };
 
+// Of the liquid, the gas and the temperature of CONDITIONS.
 struct kelvin_law kelvin_law(const struct drying_conditions *conditions);
 
 // Above a meniscus, how it rises with the exponent, and at which exponent it is so.

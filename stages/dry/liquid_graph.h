@@ -51,6 +51,7 @@ struct liquid_graph *liquid_graph_make(cholmod_common *common, int n, int n_link
                                        const struct graph_link *link, int *row,
                                        int *entry);
 
+// Gives the link at ENTRY another conductance.
 void liquid_graph_set(struct liquid_graph *graph, int entry, double conductance);
 
 // The node of ROW has left: to another cluster, with those it is still linked to; or

@@ -21,6 +21,7 @@ struct losses {
     int *charged; // (n_charged) throats
 };
 
+// Room for N_THROAT throats. The caller frees it with losses_free.
 struct losses losses_make(int n_throat);
 
 // Shares what the wet nodes evaporate among the throats with liquid beside them, in

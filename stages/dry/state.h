@@ -22,6 +22,9 @@ struct state {
     struct state_stream number, integer, byte;
 };
 
+// What a run goes on from, kept or restored by the same calls: NAME_state(..., STATE)
+// writes what NAME has, or reads it. The caller frees with state_free; LIST must live
+// as long.
 struct state state_to_keep(void);
 struct state state_to_restore(const struct array_list *list);
 

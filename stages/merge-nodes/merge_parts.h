@@ -38,6 +38,7 @@ struct merging {
     int removed;
 };
 
+// All throats of NETWORK in the queue; merging_finish gives it back.
 struct merging merging_begin(struct network *network);
 
 // The two nodes that a throat joins now, and where the box repeats the second as seen
@@ -57,6 +58,7 @@ struct vector merging_along(const struct merging *merging, struct merging_ends e
 // Takes the shortest throat left off the queue. False when none is left.
 bool merging_shortest(struct merging *merging, int *throat, double *length);
 
+// From now on the throat is gone.
 void merging_remove(struct merging *merging, int throat);
 
 // Hands the VOLUME of a throat that is gone to those at ROOT, in proportion to what

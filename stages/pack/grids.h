@@ -17,6 +17,7 @@ void grids_free(struct grids *grids);
 // Adds the next grain: the first is 0.
 void grids_add(struct grids *grids, struct vector centre, double radius);
 
+// What has been added, m.
 int grids_count(const struct grids *grids);
 struct vector grids_centre(const struct grids *grids, int grain);
 double grids_radius(const struct grids *grids, int grain);

@@ -184,34 +184,11 @@ static void test_ties_do_not_hang_on_numbers(void **state)
     check_irregular(LIQUID_VISCOUS);
 }
 
-// 2^30 is about 1e9: from nanometres to metres. Rates go with the length, times with
-// its square; everything else is the same bits.
 static void check_scaled(enum liquid_limit liquid)
 {
     struct network network = lattice_network(5, 5, 6, spacing);
     randomise_radii(&network, spacing, 0.2, 17);
-    struct drying_conditions conditions = kharaghani_conditions(liquid);
-    struct drying_history small = dry_and_check(&network, &conditions);
-
-    const double factor = 0x1p30;
-    enlarge(&network, factor);
-    conditions.mass_transfer /= factor;
-    struct drying_history large = dry_and_check(&network, &conditions);
-
-    assert_int_equal(small.n_step, large.n_step);
-    for (int k = 0; k < small.n_step; k++) {
-        assert_true(large.time[k] == small.time[k] * factor * factor);
-        assert_true(large.rate[k] == small.rate[k] * factor);
-        assert_true(large.saturation[k] == small.saturation[k]);
-        assert_int_equal(large.clusters[k], small.clusters[k]);
-    }
-    for (int k = 0; k < small.n_event; k++)
-        assert_int_equal(large.event_throat[k], small.event_throat[k]);
-    for (int64_t c = 0; c < small.change_offset[small.n_step]; c++)
-        assert_true(large.change_saturation[c] == small.change_saturation[c]);
-    assert_true(large.breakthrough_saturation == small.breakthrough_saturation);
-    drying_history_free(&small);
-    drying_history_free(&large);
+    check_dries_alike_enlarged(&network, kharaghani_conditions(liquid));
     network_free(&network);
 }
 

@@ -143,7 +143,8 @@ void randomise_radii(struct network *network, double spacing, double spread,
             0.2 * spacing * (1 + spread * (2 * next_random(&seed) - 1));
 }
 
-void enlarge(struct network *network, double factor)
+// All lengths times FACTOR; the lower corner is the origin.
+static void enlarge(struct network *network, double factor)
 {
     for (int i = 0; i < network->n_node; i++)
         network->node_position[i] = scale(factor, network->node_position[i]);
@@ -273,4 +274,33 @@ struct drying_history dry_and_check(const struct network *network,
     check_changes(network, &history,
                   conditions->liquid == LIQUID_VISCOUS || conditions->kelvin);
     return history;
+}
+
+void check_dries_alike_enlarged(struct network *network,
+                                struct drying_conditions conditions)
+{
+    const double factor = 0x1p30;
+    struct drying_history small = dry_or_fail(network, &conditions);
+    enlarge(network, factor);
+    conditions.mass_transfer /= factor;
+    if (conditions.kelvin) {
+        conditions.surface_tension *= factor;
+        conditions.viscosity *= factor * factor;
+    }
+    struct drying_history large = dry_or_fail(network, &conditions);
+    assert_int_equal(small.n_step, large.n_step);
+    for (int k = 0; k < small.n_step; k++) {
+        assert_true(large.time[k] == small.time[k] * factor * factor);
+        assert_true(large.rate[k] == small.rate[k] * factor);
+        assert_true(large.saturation[k] == small.saturation[k]);
+        assert_int_equal(large.clusters[k], small.clusters[k]);
+    }
+    assert_int_equal(small.n_event, large.n_event);
+    for (int k = 0; k < small.n_event; k++)
+        assert_int_equal(large.event_throat[k], small.event_throat[k]);
+    for (int64_t c = 0; c < small.change_offset[small.n_step]; c++)
+        assert_true(large.change_saturation[c] == small.change_saturation[c]);
+    assert_true(large.breakthrough_saturation == small.breakthrough_saturation);
+    drying_history_free(&small);
+    drying_history_free(&large);
 }

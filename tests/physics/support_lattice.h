@@ -16,9 +16,6 @@ struct network lattice_column(int n, double spacing);
 void randomise_radii(struct network *network, double spacing, double spread,
                      uint64_t seed);
 
-// All lengths times FACTOR; the lower corner is the origin.
-void enlarge(struct network *network, double factor);
-
 // The throat from NODE in the direction of AXIS.
 int lattice_throat(const struct network *network, int node, int axis);
 
@@ -37,5 +34,12 @@ struct drying_history dry_or_fail(const struct network *network,
 // The same, and checks what holds for every run: balances, bounds, order, the end.
 struct drying_history dry_and_check(const struct network *network,
                                     const struct drying_conditions *conditions);
+
+// NETWORK dries, and again when it is enlarged to 2^30 times its size, about 1e9: from
+// nanometres to metres. Rates go with the length, times with its square; everything
+// else is the same bits. With the Kelvin effect, in a liquid whose menisci then have
+// the same vapour and whose pressures are the same.
+void check_dries_alike_enlarged(struct network *network,
+                                struct drying_conditions conditions);
 
 #endif

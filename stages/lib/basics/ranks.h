@@ -19,6 +19,7 @@ struct rank_queue {
     uint64_t *level[6]; // the last has one word
 };
 
+// An empty one. The caller frees it with rank_queue_free.
 struct rank_queue rank_queue_make(int n);
 void rank_queue_add(struct rank_queue *queue, int rank);
 

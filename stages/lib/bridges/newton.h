@@ -36,11 +36,13 @@ struct system {
     double waist_slope[ARC_NUMBERS];
 };
 
+// The equations of PROBLEM at UNKNOWNS.
 struct system system_at(const struct problem *problem, const struct unknowns *unknowns);
 
 // Gauss' elimination: RIGHT becomes the solution. Returns the determinant; 0: singular.
 double eliminate(double matrix[ARC_NUMBERS][ARC_NUMBERS], double right[ARC_NUMBERS]);
 
+// FROM and a SHARE of STEP.
 struct unknowns moved(const struct unknowns *from, const double step[ARC_NUMBERS],
                       double share);
 

@@ -31,6 +31,7 @@ struct corner_between {
     double sign, plane;
 };
 
+// Whether three points lie on one line.
 bool exact_collinear(const struct vector *a, const struct vector *b,
                      const struct vector *c);
 
