@@ -206,6 +206,7 @@ static void finish_lanes(struct equilibrium *e, int first, int end, double *move
 {
     const struct foresight *f = e->foresight;
     if (end - first > 1) {
+        stiffness_take_lanes(e->matrix);
         corrections_take_off_lanes(e->corrections, f->more);
         stiffness_finish_lanes(e->matrix, moves);
     } else {
@@ -341,7 +342,7 @@ static void begin_as_factored(struct equilibrium *e)
 
 int look(struct equilibrium *e, int first, int end)
 {
-    enum { FACTORS = 8 };
+    enum { FACTORS = 30 };
     int found = first;
     for (int factors = 0; found == first && factors < FACTORS; factors++) {
         const bool is_due = factors > 0 || is_factor_due(e);

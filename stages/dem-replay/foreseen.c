@@ -59,6 +59,24 @@ static bool is_balanced(const struct equilibrium *e, int lane, double share)
            isfinite(sums->unbalanced[lane]) && isfinite(sums->carried[lane]);
 }
 
+// The joints come to the present equilibrium as far as the next is found from there:
+// realise does besides what is asked of them.
+static void settle_joints(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    if (f->present < 0) return;
+    go_to_lane(e, f->present);
+    f->present = -1;
+    strain_trial(e);
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        const bool touches = e->strain[j][STRAIN_ALONG] <= joint->overlap;
+        e->resistance[j].contact.touch =
+            touches && !joint->is_gone ? TOUCH_STICKS : TOUCH_NONE;
+    }
+    keep_history(e);
+}
+
 // The most overloaded bond, if one is. The way through the factor that these loads have
 // begun with serves on.
 static bool break_in_lane(struct equilibrium *e, int lane)
@@ -81,7 +99,7 @@ static bool find_next(struct equilibrium *e)
     bool is_polished = false;
     for (int end = f->n_lane;; end = f->used + 1) {
         if (f->used >= f->found) {
-            realise(f);
+            settle_joints(e);
             f->found = look(e, f->used, end);
             is_polished = false;
         }
@@ -105,15 +123,16 @@ bool foreseen(struct equilibrium *e)
     struct foresight *f = e->foresight;
     if (!f || f->n_expected == 0) return false;
     if (!is_as_begun(e)) {
-        realise(f);
+        settle_joints(e);
         begin_lanes_anew(e);
     }
     const bool is_found = find_next(e);
     if (is_found) {
         f->present = f->used;
         e->largest_load = f->largest_load[f->used];
-    } else
-        realise(f);
+    } else {
+        settle_joints(e);
+    }
     return is_found;
 }
 

@@ -29,7 +29,8 @@ struct stiffness {
     struct supernodal *factor;
     double *load;                                  // (n_moving * DEGREES)
     double *begun, *left;                          // the same, halves of answers
-    double *load_lanes, *begun_lanes, *left_lanes; // of LANES of each; NULL: not yet
+    int *place;                        // (n_moving * DEGREES) of all degrees of freedom
+    double *begun_lanes, *left_lanes; // of LANES of each; NULL: not yet
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -122,7 +123,7 @@ void stiffness_free(struct stiffness *s)
     supernodal_free(s->factor);
     void *const owned[] = {s->number,    s->block, s->block_of,   s->diagonal,
                            s->start,     s->row,   s->value,      s->load,
-                           s->begun,     s->left,  s->load_lanes, s->begun_lanes,
+                           s->begun,     s->left,  s->place, s->begun_lanes,
                            s->left_lanes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
@@ -300,35 +301,38 @@ void stiffness_product(const struct stiffness *s, const struct halves *a,
 
 enum { GRAIN_LANES = DEGREES * LANES };
 
-void stiffness_begin_lanes(struct stiffness *s, const double *load)
+static void make_lanes(struct stiffness *s)
 {
     const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
-    if (s->n_moving == 0) return;
-    if (!s->begun_lanes) {
-        s->load_lanes = allocate_aligned(numbers, sizeof(double));
-        s->begun_lanes = allocate_aligned(numbers, sizeof(double));
-        s->left_lanes = allocate_aligned(numbers, sizeof(double));
-    }
+    s->begun_lanes = allocate_aligned(numbers, sizeof(double));
+    s->left_lanes = allocate_aligned(numbers, sizeof(double));
+    s->place = NEW_ARRAY(int, s->n_moving *DEGREES);
     for (int i = 0; i < s->n; i++)
-        if (s->number[i] >= 0)
-            memcpy(s->load_lanes + (long)s->number[i] * GRAIN_LANES,
-                   load + (long)i * GRAIN_LANES, GRAIN_LANES * sizeof *load);
-    supernodal_forward_lanes(s->factor, s->load_lanes, s->begun_lanes);
-    memcpy(s->left_lanes, s->begun_lanes, numbers * sizeof *s->left_lanes);
+        for (int k = 0; k < DEGREES && s->number[i] >= 0; k++)
+            s->place[s->number[i] * DEGREES + k] = i * DEGREES + k;
+}
+
+void stiffness_begin_lanes(struct stiffness *s, const double *load)
+{
+    if (s->n_moving == 0) return;
+    if (!s->begun_lanes) make_lanes(s);
+    supernodal_forward_lanes(s->factor, s->place, load, s->begun_lanes);
+}
+
+void stiffness_take_lanes(struct stiffness *s)
+{
+    if (s->n_moving == 0) return;
+    memcpy(s->left_lanes, s->begun_lanes,
+           (size_t)s->n_moving * GRAIN_LANES * sizeof *s->left_lanes);
 }
 
 void stiffness_finish_lanes(struct stiffness *s, double *answer)
 {
-    const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
-    memset(answer, 0, (size_t)s->n * GRAIN_LANES * sizeof *answer);
-    if (s->n_moving == 0) return;
-    supernodal_backward_lanes(s->factor, s->left_lanes, s->load_lanes);
-    memcpy(s->left_lanes, s->begun_lanes, numbers * sizeof *s->left_lanes);
     for (int i = 0; i < s->n; i++)
-        if (s->number[i] >= 0)
-            memcpy(answer + (long)i * GRAIN_LANES,
-                   s->load_lanes + (long)s->number[i] * GRAIN_LANES,
-                   GRAIN_LANES * sizeof *answer);
+        if (s->number[i] < 0)
+            memset(answer + (long)i * GRAIN_LANES, 0, GRAIN_LANES * sizeof *answer);
+    if (s->n_moving == 0) return;
+    supernodal_backward_lanes(s->factor, s->place, s->left_lanes, answer);
 }
 
 void stiffness_strain_lanes(const struct stiffness *s, const struct halves *halves,

@@ -50,16 +50,17 @@ void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves
                         const double *load);
 
 // The same of LANES loads side by side, LOAD and ANSWER (n * 6 * LANES), STRAIN and
-// LOAD of halves (columns * LANES).
+// LOAD of halves (columns * LANES). They are taken as they were begun, loads taken off
+// these, and finished.
 void stiffness_begin_lanes(struct stiffness *stiffness, const double *load);
+void stiffness_take_lanes(struct stiffness *stiffness);
 void stiffness_finish_lanes(struct stiffness *stiffness, double *answer);
 void stiffness_strain_lanes(const struct stiffness *stiffness,
                             const struct halves *halves, double *strain);
 void stiffness_take_off_lanes(struct stiffness *stiffness, const struct halves *halves,
                               const double *load);
 
-// Of one LANE alone: from here on loads are taken off that by stiffness_take_off, and
-// it is finished into its place in ANSWER (n * 6 * LANES).
+// The same of one LANE alone, off which stiffness_take_off takes loads.
 void stiffness_take_lane(struct stiffness *stiffness, int lane);
 void stiffness_finish_lane(struct stiffness *stiffness, int lane, double *answer);
 

@@ -145,13 +145,16 @@ static void lanes_are_answers_each(void **state)
     double one[N], single[2], alone[N];
     for (int k = 0; k < N * LANES; k++)
         x[k] = sin(k);
+    int place[N]; // of the rows of x and the answer: from the last to the first
+    for (int k = 0; k < N; k++)
+        place[k] = N - 1 - k;
     const int index[2] = {3, 500};
     struct halves halves = supernodal_halves(factor, 2, 1, index, (double[]){2, -1});
-    supernodal_forward_lanes(factor, x, half);
+    supernodal_forward_lanes(factor, place, x, half);
     halves_apply_lanes(factor, &halves, half, product);
     for (int l = 0; l < LANES; l++) {
         for (int i = 0; i < N; i++)
-            one[i] = x[i * LANES + l];
+            one[i] = x[place[i] * LANES + l];
         supernodal_forward(factor, one, alone);
         halves_apply(factor, &halves, alone, single);
         for (int k = 0; k < 2; k++)
@@ -161,19 +164,19 @@ static void lanes_are_answers_each(void **state)
     for (int l = 0; l < LANES; l++) {
         share[l] = l;
         share[LANES + l] = -l;
-        x[3 * LANES + l] -= 2 * l;
-        x[500 * LANES + l] -= l;
+        x[place[3] * LANES + l] -= 2 * l;
+        x[place[500] * LANES + l] -= l;
     }
     halves_take_off_lanes(factor, &halves, share, half);
     static double answer[N * LANES];
-    supernodal_backward_lanes(factor, half, answer);
+    supernodal_backward_lanes(factor, place, half, answer);
     for (int l = 0; l < LANES; l++) {
         double left[N];
         for (int i = 0; i < N; i++)
-            one[i] = answer[i * LANES + l];
+            one[i] = answer[place[i] * LANES + l];
         multiply(s, one, left);
         for (int i = 0; i < N; i++)
-            assert_true(fabs(left[i] - x[i * LANES + l]) < 1e-12);
+            assert_true(fabs(left[i] - x[place[i] * LANES + l]) < 1e-12);
     }
     halves_free(&halves);
     supernodal_free(factor);

@@ -32,13 +32,13 @@ double supernodal_numbers(const struct supernodal *factor);
 void supernodal_forward(struct supernodal *factor, const double *x, double *half);
 void supernodal_backward(struct supernodal *factor, const double *half, double *x);
 
-// The same of LANES right-hand sides side by side: X, HALF (n * LANES). What HALF was
-// is gone after the second.
+// The same of LANES right-hand sides side by side: HALF (n * LANES), X with row k at
+// PLACE[k] * LANES. What HALF was is gone after the second.
 enum { LANES = 8 };
-void supernodal_forward_lanes(const struct supernodal *factor, const double *x,
-                              double *half);
-void supernodal_backward_lanes(const struct supernodal *factor, double *half,
-                               double *x);
+void supernodal_forward_lanes(const struct supernodal *factor, const int *place,
+                              const double *x, double *half);
+void supernodal_backward_lanes(const struct supernodal *factor, const int *place,
+                               double *half, double *x);
 
 // L^-1 of sparse right-hand sides: not 0 only on the way from their rows to the root of
 // the elimination tree. Products of such halves are entries of B^T A^-1 B.
