@@ -265,33 +265,44 @@ static void vectors_of_any_width(void **state)
         }
 }
 
-// The first half of the pivots positive, the rest negative; one that is not is refused.
+// The first half of the pivots positive, the rest negative; at once, and from the
+// system of the first DONE on; one that is not is refused.
+static void check_symmetric_system(int n, int done)
+{
+    enum { MOST = 30, STRIDE = MOST + 3 };
+    double whole[MOST][MOST] = {{0}}, matrix[MOST * STRIDE + 8], work[24 * MOST];
+    double sign[MOST], x[MOST], right[MOST];
+    for (int i = 0; i < n; i++) {
+        sign[i] = i < n / 2 ? 1 : -1;
+        x[i] = right[i] = cos(i);
+        for (int j = 0; j <= i; j++)
+            whole[i][j] = whole[j][i] = i == j ? n * sign[i] : sin(3 * i + 7 * j);
+    }
+    for (int size = done, kept = 0;; size = n) {
+        for (int j = 0; j < size; j++)
+            for (int i = j < kept ? done : j; i < size; i++)
+                matrix[j * STRIDE + i] = whole[i][j];
+        assert_true(
+            dense_symmetric_factor(size, kept ? done : 0, matrix, STRIDE, sign, work));
+        kept = dense_symmetric_kept(done);
+        if (size == n) break;
+    }
+    dense_symmetric_solve(n, matrix, STRIDE, sign, x);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++)
+            right[i] -= whole[i][j] * x[j];
+        assert_true(fabs(right[i]) < 1e-12);
+    }
+}
+
 static void symmetric_systems(void **state)
 {
     (void)state;
-    enum { MOST = 30 };
-    for (int n = 1; n <= MOST; n++) {
-        double whole[MOST][MOST] = {{0}}, matrix[MOST * MOST + 8], work[24 * MOST];
-        double sign[MOST], x[MOST], right[MOST];
-        for (int i = 0; i < n; i++) {
-            sign[i] = i < n / 2 ? 1 : -1;
-            x[i] = right[i] = cos(i);
-            for (int j = 0; j <= i; j++)
-                whole[i][j] = whole[j][i] = i == j ? n * sign[i] : sin(3 * i + 7 * j);
-        }
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++)
-                matrix[j * n + i] = whole[i][j];
-        assert_true(dense_symmetric_factor(n, matrix, n, sign, work));
-        dense_symmetric_solve(n, matrix, n, sign, x);
-        for (int i = 0; i < n; i++) {
-            for (int j = 0; j < n; j++)
-                right[i] -= whole[i][j] * x[j];
-            assert_true(fabs(right[i]) < 1e-12);
-        }
-    }
+    for (int n = 1; n <= 30; n++)
+        for (int done = 0; done <= n; done += 3)
+            check_symmetric_system(n, done);
     double wrong[1 + 8] = {-1}, work[24];
-    assert_false(dense_symmetric_factor(1, wrong, 1, (double[]){1}, work));
+    assert_false(dense_symmetric_factor(1, 0, wrong, 1, (double[]){1}, work));
 }
 
 int main(void)

@@ -8,9 +8,12 @@
 
 // MATRIX (n by n, its lower triangle by columns STRIDE apart, eight numbers more at the
 // end) becomes L of L S L^T, S being the diagonal of SIGN (n), 1 or -1. WORK (24 n).
-// False: a pivot has not that sign.
-bool dense_symmetric_factor(int n, double *matrix, int stride, const double *sign,
-                            double *work);
+// False: a pivot has not that sign. The first DONE rows and columns are those of an
+// earlier one, of which the first dense_symmetric_kept(done) columns hold L in those
+// rows still, and the matrix in the others, as all other columns do.
+bool dense_symmetric_factor(int n, int done, double *matrix, int stride,
+                            const double *sign, double *work);
+int dense_symmetric_kept(int done);
 
 // The right-hand side X (n) becomes the answer.
 void dense_symmetric_solve(int n, const double *matrix, int stride, const double *sign,
