@@ -24,6 +24,9 @@
 #include <stddef.h>
 
 enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
+// Groups name grains and rows by so many times their number: processors find a record
+// of 32 or 64 bytes by that in one step.
+enum { NUMBER_STEP = 8 };
 
 // A grain may move half of this (in mean radii) before the pairs are sought again; at
 // the start, later tuned to how fast grains move (neighbours.c).
@@ -59,17 +62,18 @@ struct motion {
 // Eight pairs as the kernel takes them. Unused ones at the end pair the grain that is
 // not there (index n_particle) with itself, far apart.
 struct pair_group {
-    _Alignas(CACHE_LINE) int32_t first[PAIRS_IN_GROUP];
-    int32_t second[PAIRS_IN_GROUP];
+    _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
+    uint32_t second[PAIRS_IN_GROUP];
     double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
     double distance[PAIRS_IN_GROUP];      // |separation|
     double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance; 0 if that is at rest
+    double inverse_distance[PAIRS_IN_GROUP]; // for parallel bonds
 };
 
 // Where the loads on the two grains of each pair are added up: rows of dem->sum.
 struct sum_group {
-    _Alignas(CACHE_LINE) int32_t first[PAIRS_IN_GROUP];
-    int32_t second[PAIRS_IN_GROUP];
+    _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
+    uint32_t second[PAIRS_IN_GROUP];
 };
 
 // What the pairs of a group did in the last cycle, if that is kept. Force on the second
@@ -405,6 +409,22 @@ struct motion load_on_grain(const struct dem *dem, int particle);
 // The largest stable time step [stability.c]: of all pairs in the list, or if NOW only
 // of those that touch, at the overlaps they have.
 double stability_limit(const struct dem *dem, bool now);
+
+static inline int first_grain(const struct pair_group *group, int lane)
+{
+    return (int)(group->first[lane] / NUMBER_STEP);
+}
+
+static inline int second_grain(const struct pair_group *group, int lane)
+{
+    return (int)(group->second[lane] / NUMBER_STEP);
+}
+
+static inline void set_grains(struct pair_group *group, int lane, int first, int second)
+{
+    group->first[lane] = NUMBER_STEP * (uint32_t)first;
+    group->second[lane] = NUMBER_STEP * (uint32_t)second;
+}
 
 static inline int groups_in_share(const struct dem *dem)
 {

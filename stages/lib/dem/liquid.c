@@ -83,8 +83,9 @@ static void gaps_of(const struct dem *dem, const struct pair_group *group,
     for (int axis = 0; axis < 3; axis++)
         for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
             const double start = group->separation[axis][lane];
-            const double apart = dem->place[group->second[lane]].displacement[axis] -
-                                 dem->place[group->first[lane]].displacement[axis];
+            const double apart =
+                dem->place[second_grain(group, lane)].displacement[axis] -
+                dem->place[first_grain(group, lane)].displacement[axis];
             const double now = start + apart;
             square[lane] += now * now;
             grown[lane] += apart * (start + now);
@@ -103,7 +104,8 @@ static void keep_bridge(const struct dem *dem, int k, int lane, double gap,
 {
     struct liquid_group *liquid = &dem->pairs.liquid[k];
     const struct dem_liquid *is = &dem->liquid->is;
-    const int i = dem->pairs.group[k].first[lane], j = dem->pairs.group[k].second[lane];
+    const int i = first_grain(&dem->pairs.group[k], lane);
+    const int j = second_grain(&dem->pairs.group[k], lane);
     const bool were = liquid->volume[lane] > 0;
     const bool are = gap <= 0 || (were && gap <= liquid->rupture[lane]);
     if (are != were) count_bridge(dem->liquid, i, j, are - were);
@@ -180,8 +182,8 @@ void set_bridge_radius(const struct dem *dem, int pair)
 {
     const struct pair_group *group = &dem->pairs.group[pair / PAIRS_IN_GROUP];
     const int lane = pair % PAIRS_IN_GROUP;
-    const double a = dem->place[group->first[lane]].radius;
-    const double b = dem->place[group->second[lane]].radius;
+    const double a = dem->place[first_grain(group, lane)].radius;
+    const double b = dem->place[second_grain(group, lane)].radius;
     dem->pairs.liquid[pair / PAIRS_IN_GROUP].radius[lane] = 2 / (1 / a + 1 / b);
 }
 

@@ -115,7 +115,7 @@ static struct lane lane_of(int pair)
 
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
 {
-    const int i = group->first[lane], j = group->second[lane];
+    const int i = first_grain(group, lane), j = second_grain(group, lane);
     const struct vector now = subtract(position_now(dem, j), position_now(dem, i));
     const struct vector periods = subtract(separation_now(dem, i, j), now);
     const struct vector separation =
@@ -124,6 +124,7 @@ void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
         group->separation[axis][lane] = component(separation, axis);
     const double distance = norm(separation);
     group->distance[lane] = distance;
+    group->inverse_distance[lane] = 1 / distance;
     group->overlap[lane] =
         given_overlap(dem, dem->place[i].radius + dem->place[j].radius - distance);
 }
@@ -159,19 +160,22 @@ static void set_bond(struct dem *dem, struct lane to, int bond)
     bonds->normal_strength[to.at] = -1;
     bonds->shear_strength[to.at] = -1;
     bonds->crack[to.at] = -1;
-    if (bond < 0) return;
-    bonds->radius[to.at] = dem->bond_radius[bond];
-    bonds->normal_strength[to.at] = dem->bond_strength[DEM_CRACK_NORMAL][bond];
-    bonds->shear_strength[to.at] = dem->bond_strength[DEM_CRACK_SHEAR][bond];
+    if (bond < 0 || dem->bond_strength[DEM_CRACK_NORMAL][bond] < 0) return;
+    const double radius = dem->bond_radius[bond];
+    const double unit =
+        dem->features & FEATURE_PARALLEL_BOND ? M_PI * radius * radius * radius : 1;
+    bonds->radius[to.at] = radius;
+    bonds->normal_strength[to.at] = unit * dem->bond_strength[DEM_CRACK_NORMAL][bond];
+    bonds->shear_strength[to.at] = unit * dem->bond_strength[DEM_CRACK_SHEAR][bond];
 }
 
 void set_nobody(struct dem *dem, int pair)
 {
     const struct lane to = lane_of(pair);
     struct pair_group *group = &dem->pairs.group[to.group];
-    group->first[to.at] = group->second[to.at] = dem->n_particle;
+    set_grains(group, to.at, dem->n_particle, dem->n_particle);
     group->separation[0][to.at] = 1;
-    group->distance[to.at] = 1;
+    group->distance[to.at] = group->inverse_distance[to.at] = 1;
     group->overlap[to.at] = -1;
     if (dem->pairs.liquid) dem->pairs.liquid[to.group].radius[to.at] = 1;
     if (dem->pairs.bonds) set_bond(dem, to, -1);
@@ -197,6 +201,7 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
         bonds->twist[to.at] = were->twist[from.at];
     }
     group->distance[to.at] = was->distance[from.at];
+    group->inverse_distance[to.at] = was->inverse_distance[from.at];
     group->overlap[to.at] = was->overlap[from.at];
     if (!new->liquid) return;
     struct liquid_group *liquid = &new->liquid[to.group];
@@ -211,8 +216,7 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
     for (int p = 0; p < pairs->n_pair; p++) {
         const struct lane to = lane_of(p);
         struct pair_group *group = &pairs->group[to.group];
-        group->first[to.at] = pairs->particle[p][0];
-        group->second[to.at] = pairs->particle[p][1];
+        set_grains(group, to.at, pairs->particle[p][0], pairs->particle[p][1]);
         if (pairs->own) set_pair_law(dem, p);
         if (pairs->liquid) set_bridge_radius(dem, p);
         if (pairs->bonds) set_bond(dem, to, pairs->bond[p]);
@@ -290,8 +294,8 @@ static void assign_rows(struct dem *dem)
             for (int end = 0; end < 2; end++) {
                 const struct pair_group *group = &dem->pairs.group[k];
                 struct sum_group *sum = &dem->pairs.sum[k];
-                const int i = (end ? group->second : group->first)[at];
-                (end ? sum->second : sum->first)[at] = row[i];
+                const int i = end ? second_grain(group, at) : first_grain(group, at);
+                (end ? sum->second : sum->first)[at] = NUMBER_STEP * (uint32_t)row[i];
                 if (row[i] == i) continue;
                 dem->pairs.elsewhere[k] = true;
                 row[i]++;

@@ -81,7 +81,7 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
 {
     const struct pair_group *g = &dem->pairs.group[pair / PAIRS_IN_GROUP];
     const int lane = pair % PAIRS_IN_GROUP;
-    const int i = g->first[lane], j = g->second[lane];
+    const int i = first_grain(g, lane), j = second_grain(g, lane);
     const struct vector moved = subtract(as_vector(dem->place[j].displacement),
                                          as_vector(dem->place[i].displacement));
     const struct vector moving =

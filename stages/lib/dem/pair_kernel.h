@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The forces between LANES pairs at once; included by the files that define LANES (4 or
-// 8), FUSED (0 or 1) and SWEEP_NAME, the names of the functions made: one for each set
-// of features that a scene may need, all from the one source below, where FEATURES is a
-// constant. The arithmetic is that of each pair alone, in one order, fused where it
-// says so and nowhere else, so every width gives the same bytes.
+// 8) and SWEEP_NAME, the names of the functions made: one for each set of features that
+// a scene may need, all from the one source below, where FEATURES is a constant. The
+// arithmetic is that of each pair alone, in one order, fused where it says so and
+// nowhere else, so every width gives the same bytes.
 //
 // The overlap never is the difference of two large numbers. With s0 = x_j - x_i where
 // the grains began, d0 = |s0| and du = u_j - u_i what the displacements add,
@@ -37,7 +37,6 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef double lanes __attribute__((vector_size(8 * LANES)));
-typedef int64_t mask __attribute__((vector_size(8 * LANES)));
 typedef double quad __attribute__((vector_size(32)));
 
 struct lanes3 {
@@ -65,19 +64,13 @@ INLINE void store(double *p, lanes a)
     *(lanes *)p = a;
 }
 
-INLINE lanes only_where(mask m, lanes a)
-{
-    return (lanes)(m & (mask)a);
-}
-
-INLINE lanes choose(mask m, lanes a, lanes b)
-{
-    return (lanes)((m & (mask)a) | (~m & (mask)b));
-}
-
 INLINE lanes magnitude(lanes a)
 {
-    return (lanes)((mask)a & INT64_MAX);
+#if LANES == 8
+    return (lanes)_mm512_abs_pd((__m512d)a);
+#else
+    return (lanes)_mm256_andnot_pd(_mm256_set1_pd(-0.0), (__m256d)a);
+#endif
 }
 
 INLINE lanes square_root(lanes a)
@@ -89,13 +82,103 @@ INLINE lanes square_root(lanes a)
 #endif
 }
 
-INLINE int any(mask m)
-{
+// In which lanes something holds.
 #if LANES == 8
-    return _mm512_test_epi64_mask((__m512i)m, (__m512i)m) != 0;
+typedef __mmask8 mask;
+#define COMPARED(a, b, how) _mm512_cmp_pd_mask((__m512d)(a), (__m512d)(b), how)
+
+INLINE mask either(mask a, mask b)
+{
+    return _kor_mask8(a, b);
+}
+
+INLINE mask both(mask a, mask b)
+{
+    return _kand_mask8(a, b);
+}
+
+INLINE mask without(mask a, mask b)
+{
+    return _kandn_mask8(b, a);
+}
+
+INLINE bool any(mask m)
+{
+    return m != 0;
+}
+
+INLINE bool holds_in(mask m, int lane)
+{
+    return m >> lane & 1;
+}
+
+INLINE lanes only_where(mask m, lanes a)
+{
+    return (lanes)_mm512_maskz_mov_pd(m, (__m512d)a);
+}
+
+INLINE lanes choose(mask m, lanes a, lanes b)
+{
+    return (lanes)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
+}
 #else
+typedef int64_t mask __attribute__((vector_size(8 * LANES)));
+#define COMPARED(a, b, how) (mask) _mm256_cmp_pd((__m256d)(a), (__m256d)(b), how)
+
+INLINE mask either(mask a, mask b)
+{
+    return a | b;
+}
+
+INLINE mask both(mask a, mask b)
+{
+    return a & b;
+}
+
+INLINE mask without(mask a, mask b)
+{
+    return a & ~b;
+}
+
+INLINE bool any(mask m)
+{
     return _mm256_movemask_pd((__m256d)m) != 0;
+}
+
+INLINE bool holds_in(mask m, int lane)
+{
+    return m[lane] != 0;
+}
+
+INLINE lanes only_where(mask m, lanes a)
+{
+    return (lanes)(m & (mask)a);
+}
+
+INLINE lanes choose(mask m, lanes a, lanes b)
+{
+    return (lanes)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)m);
+}
 #endif
+
+INLINE mask above(lanes a, lanes b)
+{
+    return COMPARED(a, b, _CMP_GT_OQ);
+}
+
+INLINE mask at_least(lanes a, lanes b)
+{
+    return COMPARED(a, b, _CMP_GE_OQ);
+}
+
+INLINE mask unlike(lanes a, lanes b)
+{
+    return COMPARED(a, b, _CMP_NEQ_UQ);
+}
+
+INLINE mask not_within(lanes a, lanes b) // A > B, or a number is none
+{
+    return COMPARED(a, b, _CMP_NLE_UQ);
 }
 
 INLINE struct lanes3 load3(const double (*p)[PAIRS_IN_GROUP], int at)
@@ -125,13 +208,10 @@ INLINE struct lanes3 scale3(lanes s, struct lanes3 a)
     return (struct lanes3){s * a.x, s * a.y, s * a.z};
 }
 
-// A B + C. Kernels of parallel bonds round the product too: the numbers published for
-// bonded scenes are theirs. Written out, as compilers do not contract alike.
+// A B + C, rounded once. Written out, as compilers do not contract alike.
 INLINE lanes fused(lanes a, lanes b, lanes c)
 {
-#if !FUSED
-    return a * b + c;
-#elif LANES == 8
+#if LANES == 8
     return (lanes)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 #else
     return (lanes)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
@@ -146,9 +226,7 @@ INLINE struct lanes3 add_scaled3(struct lanes3 a, lanes s, struct lanes3 b)
 // A B - C and C - A B in the same way, without an instruction for the sign.
 INLINE lanes fused_less(lanes a, lanes b, lanes c)
 {
-#if !FUSED
-    return a * b - c;
-#elif LANES == 8
+#if LANES == 8
     return (lanes)_mm512_fmsub_pd((__m512d)a, (__m512d)b, (__m512d)c);
 #else
     return (lanes)_mm256_fmsub_pd((__m256d)a, (__m256d)b, (__m256d)c);
@@ -157,9 +235,7 @@ INLINE lanes fused_less(lanes a, lanes b, lanes c)
 
 INLINE lanes less_fused(lanes a, lanes b, lanes c)
 {
-#if !FUSED
-    return c - a * b;
-#elif LANES == 8
+#if LANES == 8
     return (lanes)_mm512_fnmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 #else
     return (lanes)_mm256_fnmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
@@ -189,19 +265,34 @@ INLINE struct lanes3 cross3(struct lanes3 a, struct lanes3 b)
                            fused_less(a.x, b.y, a.y * b.x)};
 }
 
+// A - B x C.
+INLINE struct lanes3 subtract_cross3(struct lanes3 a, struct lanes3 b, struct lanes3 c)
+{
+    return (struct lanes3){less_fused(b.y, c.z, fused(b.z, c.y, a.x)),
+                           less_fused(b.z, c.x, fused(b.x, c.z, a.y)),
+                           less_fused(b.x, c.y, fused(b.y, c.x, a.z))};
+}
+
 // Four numbers from each of LANES places, transposed to three vectors and a fourth.
 struct lanes4 {
     struct lanes3 xyz;
     lanes w;
 };
 
-INLINE quad load_quad(const double *base, size_t stride, int32_t index)
+// The record of STRIDE numbers, 4 or 8, that INDEX names.
+INLINE double *record(const double *base, size_t stride, uint32_t index)
 {
-    return *(const quad *)(base + stride * (size_t)index);
+    return (double *)((uintptr_t)base + stride * sizeof *base / NUMBER_STEP * index);
+}
+
+INLINE quad load_quad(const double *base, size_t stride, uint32_t index)
+{
+    return *(const quad *)record(base, stride, index);
 }
 
 #if LANES == 8
-#define PAIR_UP(a, b) __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7)
+#define PAIR_UP(a, b)                                                                  \
+    (lanes) _mm512_insertf64x4(_mm512_castpd256_pd512((__m256d)(a)), (__m256d)(b), 1)
 #define EVEN(a, b) __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
 #define ODD(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
 #define LOWER(a, b) __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
@@ -232,7 +323,7 @@ struct rows {
     lanes row[4];
 };
 
-INLINE struct rows fetch(const double *p, size_t stride, const int32_t *i)
+INLINE struct rows fetch(const double *p, size_t stride, const uint32_t *i)
 {
     return (struct rows){ROWS};
 }
@@ -307,10 +398,10 @@ INLINE struct lanes3 turn(struct turning by, struct lanes3 f)
     return add_scaled3(scale3(by.shrink, flat), by.spin, cross3(by.normal, flat));
 }
 
-// Whether both grains feel the same moment.
+// Whether the contact is as far from one grain's centre as from the other's.
 INLINE bool have_one_arm(unsigned features)
 {
-    return !(features & (FEATURE_OWN | FEATURE_PARALLEL_BOND));
+    return !(features & FEATURE_OWN);
 }
 
 // How pairs lie and move [K 4.7-4.9, 4.15, 4.17].
@@ -330,10 +421,12 @@ struct spinning {
 };
 
 INLINE struct spinning spins_of(const struct meeting *m, const double *spins,
-                                const int32_t *i, const int32_t *j, unsigned features)
+                                const uint32_t *i, const uint32_t *j, unsigned features)
 {
     const struct rows rows_i = fetch(spins, 8, i), rows_j = fetch(spins, 8, j);
     struct spinning s;
+    if (features & FEATURE_PARALLEL_BOND)
+        s.apart = transpose(subtract_rows(rows_j, rows_i)).xyz;
     if (have_one_arm(features)) {
         s.sum = transpose(add_rows(rows_i, rows_j)).xyz;
         s.rolling = scale3(m->first_arm, s.sum);
@@ -342,17 +435,19 @@ INLINE struct spinning spins_of(const struct meeting *m, const double *spins,
     const struct lanes3 spin_i = transpose(rows_i).xyz, spin_j = transpose(rows_j).xyz;
     s.sum = add3(spin_i, spin_j);
     s.rolling = add_scaled3(scale3(m->first_arm, spin_i), m->second_arm, spin_j);
-    s.apart = subtract3(spin_j, spin_i);
     return s;
 }
 
 // What only grains that turn need.
 INLINE void meet_turning(struct meeting *m, const struct spinning *spins,
-                         struct lanes3 velocity, lanes inverse, lanes time_step)
+                         struct lanes3 velocity, lanes inverse, lanes time_step,
+                         unsigned features)
 {
     const struct lanes3 n = m->turning.normal;
     const struct lanes3 sideways = subtract_scaled3(velocity, m->normal_velocity, n);
-    m->shear_velocity = subtract3(sideways, cross3(spins->rolling, n));
+    m->shear_velocity = features & FEATURE_PARALLEL_BOND
+                            ? subtract_cross3(sideways, spins->rolling, n)
+                            : subtract3(sideways, cross3(spins->rolling, n));
     m->turning_apart = spins->apart;
     m->turning.middle = subtract_scaled3(n, 0.5 * time_step * inverse, sideways);
     m->turning.spin = 0.5 * time_step * dot3(spins->sum, n);
@@ -381,7 +476,49 @@ struct lie {
     struct rows place_i, place_j;
 };
 
-INLINE struct lie look(const struct dem *dem, int k, int at)
+// Distances that changed little, as between bonded grains, need neither root nor
+// quotient, which keep their unit of the processor busy for longer than all else that
+// bonds need: with x = (d^2 - d0^2) / d0^2,
+//     1 / d = (1 + x)^(-1/2) / d0,  stretch = d0 x ((1 + x)^(1/2) - 1) / x,
+// by Taylor series to rounding while |x| is at most this.
+#define SMALL_CHANGE 0x1p-11
+
+INLINE lanes series(lanes x, double c0, double c1, double c2, double c3, double c4)
+{
+    lanes sum = fused(splat(c4), x, splat(c3));
+    sum = fused(sum, x, splat(c2));
+    sum = fused(sum, x, splat(c1));
+    return fused(sum, x, splat(c0));
+}
+
+INLINE void measure(struct lie *lie, lanes grown, lanes distance_at_start)
+{
+    const lanes distance = square_root(dot3(lie->separation, lie->separation));
+    const struct inverses inverses = invert(distance, distance_at_start);
+    lie->inverse = inverses.distance;
+    lie->stretch = grown * inverses.sum;
+}
+
+INLINE void measure_small(struct lie *lie, lanes grown, const struct pair_group *g,
+                          int at)
+{
+    const lanes inverse = load(g->inverse_distance + at);
+    const lanes by_distance = grown * inverse, x = by_distance * inverse;
+    const mask large = not_within(magnitude(x), splat(SMALL_CHANGE));
+    struct lie small = *lie;
+    small.inverse = inverse * series(x, 1, -1. / 2, 3. / 8, -5. / 16, 35. / 128);
+    small.stretch =
+        by_distance * series(x, 1. / 2, -1. / 8, 1. / 16, -5. / 128, 7. / 256);
+    if (any(large)) {
+        measure(lie, grown, load(g->distance + at));
+        small.inverse = choose(large, lie->inverse, small.inverse);
+        small.stretch = choose(large, lie->stretch, small.stretch);
+    }
+    lie->inverse = small.inverse;
+    lie->stretch = small.stretch;
+}
+
+INLINE struct lie look(const struct dem *dem, int k, int at, unsigned features)
 {
     const struct pair_group *g = dem->pairs.group + k;
     const double *places = (const double *)dem->place;
@@ -390,24 +527,20 @@ INLINE struct lie look(const struct dem *dem, int k, int at)
     const struct lanes3 apart = transpose(subtract_rows(lie.place_j, lie.place_i)).xyz;
     const struct lanes3 start = load3(g->separation, at);
     lie.separation = add3(start, apart);
-    const lanes distance = square_root(dot3(lie.separation, lie.separation));
-    const lanes distance_at_start = load(g->distance + at);
     const lanes grown = dot3(apart, add3(start, lie.separation)); // d^2 - d0^2
-    if (FUSED) {
-        const struct inverses inverses = invert(distance, distance_at_start);
-        lie.inverse = inverses.distance;
-        lie.stretch = grown * inverses.sum;
-    } else {
-        lie.inverse = 1.0 / (distance + 1e-300);
-        lie.stretch = grown / (distance + distance_at_start);
-    }
+    if (features & FEATURE_PARALLEL_BOND)
+        measure_small(&lie, grown, g, at);
+    else
+        measure(&lie, grown, load(g->distance + at));
     return lie;
 }
 
-INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, int at,
-                           const struct lie *lie, lanes time_step, unsigned features)
+INLINE struct meeting meet(const struct dem *dem, int k, int at, lanes time_step,
+                           unsigned features)
 {
-    const int32_t *i = g->first + at, *j = g->second + at;
+    const struct lie looked = look(dem, k, at, features), *lie = &looked;
+    const struct pair_group *g = dem->pairs.group + k;
+    const uint32_t *i = g->first + at, *j = g->second + at;
     const double *motions = (const double *)dem->motion;
     const struct lanes3 velocity =
         transpose(subtract_rows(fetch(motions, 8, j), fetch(motions, 8, i))).xyz;
@@ -423,11 +556,11 @@ INLINE struct meeting meet(const struct dem *dem, const struct pair_group *g, in
                                                load(g->distance + at) - m.stretch
                                          : m.overlap;
     m.first_arm = first_radius - 0.5 * shared;
-    m.second_arm = second_radius - 0.5 * shared;
+    m.second_arm = have_one_arm(features) ? m.first_arm : second_radius - 0.5 * shared;
     m.normal_velocity = dot3(velocity, m.turning.normal);
     if (!(features & FEATURE_TURN)) return m;
     const struct spinning spins = spins_of(&m, motions + 4, i, j, features);
-    meet_turning(&m, &spins, velocity, lie->inverse, time_step);
+    meet_turning(&m, &spins, velocity, lie->inverse, time_step, features);
     return m;
 }
 
@@ -464,14 +597,14 @@ INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meet
     const lanes overlap = only_where(touch, m->overlap);
     const lanes root = square_root(overlap), fourth = square_root(root);
     const lanes before = m->overlap + time_step * m->normal_velocity;
-    const mask was = before > 0.0;
+    const mask was = above(before, splat(0));
     law.spring = stiffness * overlap * root;
     law.shear_stiffness_before =
         law.shear_stiffness * square_root(only_where(was, before));
     law.shear_stiffness *= root;
     law.normal_damping *= fourth;
     law.shear_damping *= fourth;
-    const mask unloads = was & (overlap < before);
+    const mask unloads = both(was, above(before, overlap));
     law.forget =
         choose(unloads, square_root(overlap / choose(was, before, splat(1))), splat(1));
     return law;
@@ -495,12 +628,12 @@ INLINE lanes spring_loss(struct lanes3 before, lanes stiffness_before,
                          struct lanes3 after, lanes stiffness)
 {
     const lanes had =
-        only_where(stiffness_before > 0.0,
-                   dot3(before, before) /
-                       choose(stiffness_before > 0.0, stiffness_before, splat(1)));
-    const lanes has =
-        only_where(stiffness > 0.0,
-                   dot3(after, after) / choose(stiffness > 0.0, stiffness, splat(1)));
+        only_where(above(stiffness_before, splat(0)),
+                   dot3(before, before) / choose(above(stiffness_before, splat(0)),
+                                                 stiffness_before, splat(1)));
+    const lanes has = only_where(
+        above(stiffness, splat(0)),
+        dot3(after, after) / choose(above(stiffness, splat(0)), stiffness, splat(1)));
     return 0.5 * (had - has);
 }
 
@@ -512,9 +645,10 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
                                   unsigned features, mask *slips)
 {
     double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
-    const mask acts = features & FEATURE_CONTACT_BOND ? touch | held : touch;
+    const mask acts = features & FEATURE_CONTACT_BOND ? either(touch, held) : touch;
     const struct lanes3 turned = turn(m->turning, load3(history, at));
-    struct lanes3 kept = only_where3(acts, turned);
+    const bool forgets = features & FEATURE_HERTZ || dem->pairs.loss;
+    struct lanes3 kept = forgets ? only_where3(acts, turned) : turned;
     if (features & FEATURE_HERTZ) kept = scale3(law->forget, kept);
     const struct lanes3 trial =
         only_where3(acts, subtract_scaled3(kept, law->shear_stiffness * time_step,
@@ -522,9 +656,9 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
 
     const lanes limit = law->friction * law->spring;
     const lanes square = dot3(trial, trial);
+    *slips = above(square, limit * limit);
+    if (features & FEATURE_CONTACT_BOND) *slips = without(*slips, held);
     struct lanes3 shear = trial;
-    *slips = square > limit * limit;
-    if (features & FEATURE_CONTACT_BOND) *slips &= ~held;
     if (any(*slips)) {
         const lanes factor = limit / square_root(choose(*slips, square, splat(1)));
         shear = scale3(choose(*slips, factor, splat(1)), trial);
@@ -535,8 +669,9 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
         const lanes now = law->shear_stiffness, before = law->shear_stiffness_before;
         const lanes slip = dot3(add3(kept, shear), subtract3(trial, shear));
         const lanes taken =
-            only_where(now > 0.0, 0.5 * slip / choose(now > 0.0, now, splat(1)));
-        book(dem->pairs.loss[k].slip + at, acts | ~acts,
+            only_where(above(now, splat(0)),
+                       0.5 * slip / choose(above(now, splat(0)), now, splat(1)));
+        book(dem->pairs.loss[k].slip + at, at_least(splat(0), splat(0)),
              spring_loss(turned, before, kept, now) + taken);
     }
     return shear;
@@ -549,16 +684,17 @@ INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
                                      unsigned features)
 {
     const lanes dashpot = law->normal_damping * m->normal_velocity;
-    struct pair_load load = {.normal = law->spring - only_where(touch | held, dashpot)};
+    struct pair_load load = {.normal = law->spring -
+                                       only_where(either(touch, held), dashpot)};
     if (dem->pairs.loss)
-        book(dem->pairs.loss[k].dashpots + at, touch | held,
+        book(dem->pairs.loss[k].dashpots + at, either(touch, held),
              dashpot * m->normal_velocity * time_step);
     if (!(features & FEATURE_TURN)) return load;
 
     mask slips;
     const struct lanes3 shear =
         shear_spring(dem, k, at, m, law, touch, held, time_step, features, &slips);
-    const mask sticks = held | (touch & ~slips);
+    const mask sticks = either(held, without(touch, slips));
     const lanes damping = only_where(sticks, law->shear_damping);
     load.shear = subtract_scaled3(shear, damping, m->shear_velocity);
     if (dem->pairs.loss)
@@ -577,6 +713,7 @@ static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
         normal * b->shear_strength[lane] >= shear * b->normal_strength[lane];
     const bool cracks_in_shear = by_shear && !(by_normal && normal_leads);
     b->crack[lane] = cracks_in_shear ? DEM_CRACK_SHEAR : DEM_CRACK_NORMAL;
+    b->radius[lane] = 0;
     b->normal_strength[lane] = -1;
     b->shear_strength[lane] = -1;
 }
@@ -592,54 +729,52 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
     const double normal_stiffness = dem->bond_normal_stiffness;
     const double shear_stiffness = dem->bond_shear_stiffness;
     const struct lanes3 n = m->turning.normal;
-    const lanes radius = load(g->radius + at);
-    const lanes area = M_PI * radius * radius;                   // A
-    const lanes bending_inertia = 0.25 * area * radius * radius; // I, and J = 2 I
+    const lanes radius = load(g->radius + at), square = radius * radius;
+    const lanes area = M_PI * square, inertia = area * square; // A, and 4 I = 2 J
 
-    const lanes normal = -normal_stiffness * area * m->stretch;
+    lanes tension = normal_stiffness * area * m->stretch;
     struct lanes3 shear = turn(m->turning, load3(g->shear_force, at));
     shear =
-        subtract3(shear, scale3(shear_stiffness * time_step * area, m->shear_velocity));
+        subtract_scaled3(shear, shear_stiffness * time_step * area, m->shear_velocity);
 
     const lanes twisting = dot3(m->turning_apart, n);
     lanes twist = load(g->twist + at);
-    twist -= shear_stiffness * time_step * 2.0 * bending_inertia * twisting;
+    twist = less_fused(0.5 * shear_stiffness * time_step * inertia, twisting, twist);
     struct lanes3 bending = turn(m->turning, load3(g->bending, at));
-    bending =
-        subtract3(bending, scale3(normal_stiffness * time_step * bending_inertia,
-                                  subtract3(m->turning_apart, scale3(twisting, n))));
+    bending = subtract_scaled3(bending, 0.25 * normal_stiffness * time_step * inertia,
+                               subtract_scaled3(m->turning_apart, twisting, n));
 
-    const lanes normal_strength = load(g->normal_strength + at) * area * radius;
-    const lanes shear_strength = load(g->shear_strength + at) * area * radius;
-    const lanes tension = -normal * radius;
-    const lanes bending_left = normal_strength - tension;
+    const lanes bending_left =
+        less_fused(tension, radius, load(g->normal_strength + at));
     const lanes twist_size = magnitude(twist);
-    const lanes shear_left = shear_strength - 2.0 * twist_size;
+    const lanes shear_left = load(g->shear_strength + at) - 2.0 * twist_size;
     const lanes bending_square = 16.0 * dot3(bending, bending);
-    const lanes shear_square = radius * radius * dot3(shear, shear);
-    const mask by_normal = held & ((bending_left <= 0.0) |
-                                   (bending_square >= bending_left * bending_left));
+    const lanes shear_square = square * dot3(shear, shear);
+    const mask by_normal =
+        both(held, either(at_least(splat(0), bending_left),
+                          at_least(bending_square, bending_left * bending_left)));
     const mask by_shear =
-        held & ((shear_left <= 0.0) | (shear_square >= shear_left * shear_left));
+        both(held, either(at_least(splat(0), shear_left),
+                          at_least(shear_square, shear_left * shear_left)));
 
-    const mask broken = by_normal | by_shear;
+    const mask broken = either(by_normal, by_shear);
     int count = 0;
     if (any(broken)) {
-        const lanes normal_load = tension + square_root(bending_square);
+        const lanes normal_load = square_root(bending_square) + tension * radius;
         const lanes shear_load = 2.0 * twist_size + square_root(shear_square);
         for (int lane = 0; lane < LANES; lane++) {
-            if (!broken[lane]) continue;
-            break_bond(g, at + lane, by_normal[lane], by_shear[lane], normal_load[lane],
-                       shear_load[lane]);
+            if (!holds_in(broken, lane)) continue;
+            break_bond(g, at + lane, holds_in(by_normal, lane),
+                       holds_in(by_shear, lane), normal_load[lane], shear_load[lane]);
             count++;
         }
         if (dem->pairs.loss) {
             const lanes stretched = normal_stiffness * area;
             const lanes sheared = shear_stiffness * area;
-            const lanes bent = normal_stiffness * bending_inertia;
-            const lanes twisted = shear_stiffness * 2.0 * bending_inertia;
+            const lanes bent = 0.25 * normal_stiffness * inertia;
+            const lanes twisted = 0.5 * shear_stiffness * inertia;
             const struct lanes3 nothing = {zero, zero, zero};
-            const lanes energy = spring_loss((struct lanes3){normal, zero, zero},
+            const lanes energy = spring_loss((struct lanes3){tension, zero, zero},
                                              stretched, nothing, stretched) +
                                  spring_loss(shear, sheared, nothing, sheared) +
                                  spring_loss(bending, bent, nothing, bent) +
@@ -647,18 +782,19 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
                                              twisted, nothing, twisted);
             book(dem->pairs.loss[k].broken + at, broken, energy);
         }
-        held &= ~broken;
+        const mask whole = without(held, broken);
+        tension = only_where(whole, tension);
+        shear = only_where3(whole, shear);
+        bending = only_where3(whole, bending);
+        twist = only_where(whole, twist);
     }
 
-    shear = only_where3(held, shear);
-    bending = only_where3(held, bending);
-    twist = only_where(held, twist);
     store3(g->shear_force, at, shear);
     store3(g->bending, at, bending);
     store(g->twist + at, twist);
-    total->normal += only_where(held, normal);
+    total->normal -= tension;
     total->shear = add3(total->shear, shear);
-    total->moment = add3(bending, scale3(zero + twist, n));
+    total->moment = add_scaled3(bending, twist, n);
     return count;
 }
 
@@ -680,56 +816,58 @@ INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, in
     const lanes normal_strength = load(g->normal_strength + at);
     const lanes shear_strength = load(g->shear_strength + at);
     const lanes square = dot3(shear, shear);
-    const mask by_normal = *held & (-spring >= normal_strength);
-    const mask by_shear = *held & (square >= shear_strength * shear_strength);
-    const mask broken = by_normal | by_shear;
+    const mask by_normal = both(*held, at_least(-spring, normal_strength));
+    const mask by_shear =
+        both(*held, at_least(square, shear_strength * shear_strength));
+    const mask broken = either(by_normal, by_shear);
     int count = 0;
     if (any(broken)) {
         const lanes shear_load = square_root(square);
         for (int lane = 0; lane < LANES; lane++) {
-            if (!broken[lane]) continue;
-            break_bond(g, at + lane, by_normal[lane], by_shear[lane], -spring[lane],
-                       shear_load[lane]);
+            if (!holds_in(broken, lane)) continue;
+            break_bond(g, at + lane, holds_in(by_normal, lane),
+                       holds_in(by_shear, lane), -spring[lane], shear_load[lane]);
             count++;
         }
         // In tension all is lost; otherwise what slips from now on is slip's.
-        const mask apart = broken & ~touch;
+        const mask apart = without(broken, touch);
         double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
         const struct lanes3 was = load3(history, at);
-        store3(history, at, only_where3(~apart, was));
+        const mask all = at_least(zero, zero);
+        store3(history, at, only_where3(without(all, apart), was));
         if (dem->pairs.loss) {
             const struct lanes3 nothing = {zero, zero, zero};
             const lanes across = law->shear_stiffness;
             book(dem->pairs.loss[k].broken + at, apart,
                  0.5 * spring * m->overlap + spring_loss(was, across, nothing, across));
         }
-        *held &= ~broken;
+        *held = without(*held, broken);
     }
-    law->spring = only_where(touch | *held, spring);
+    law->spring = only_where(either(touch, *held), spring);
     return count;
 }
 
 // Takes ON_FIRST from the sums of the first grains and adds ON_SECOND to those of the
 // second. One pair after the other, as they may have grains in common.
-INLINE void add_four(double *sum, const int32_t *first, const int32_t *second,
+INLINE void add_four(double *sum, const uint32_t *first, const uint32_t *second,
                      struct rows on_first, struct rows on_second)
 {
 #pragma GCC unroll 8
     for (int k = 0; k < LANES; k++) {
-        *(quad *)(sum + 4 * (size_t)first[k]) -= quad_of(on_first, k);
-        *(quad *)(sum + 4 * (size_t)second[k]) += quad_of(on_second, k);
+        *(quad *)record(sum, 4, first[k]) -= quad_of(on_first, k);
+        *(quad *)record(sum, 4, second[k]) += quad_of(on_second, k);
     }
 }
 
 // The same with forces, opposite ones, and moments. A sum is one cache line: with 8
 // lanes it is one vector.
-INLINE void add_eight(double *sum, const int32_t *first, const int32_t *second,
+INLINE void add_eight(double *sum, const uint32_t *first, const uint32_t *second,
                       struct rows force, struct rows on_first, struct rows on_second)
 {
 #pragma GCC unroll 8
     for (int k = 0; k < LANES; k++) {
-        double *of_first = sum + 8 * (size_t)first[k];
-        double *of_second = sum + 8 * (size_t)second[k];
+        double *of_first = record(sum, 8, first[k]);
+        double *of_second = record(sum, 8, second[k]);
 #if LANES == 8
         *(lanes *)of_first -= both_of(force, on_first, k);
         *(lanes *)of_second += both_of(force, on_second, k);
@@ -743,7 +881,7 @@ INLINE void add_eight(double *sum, const int32_t *first, const int32_t *second,
 }
 
 // The same with the same moment on both.
-INLINE void add_opposite(double *sum, const int32_t *first, const int32_t *second,
+INLINE void add_opposite(double *sum, const uint32_t *first, const uint32_t *second,
                          struct rows force, struct rows moment)
 {
 #if LANES == 8
@@ -751,8 +889,8 @@ INLINE void add_opposite(double *sum, const int32_t *first, const int32_t *secon
 #pragma GCC unroll 8
     for (int k = 0; k < LANES; k++) {
         const lanes both = both_of(force, moment, k);
-        *(lanes *)(sum + 8 * (size_t)first[k]) -= both;
-        double *of_second = sum + 8 * (size_t)second[k];
+        *(lanes *)(record(sum, 8, first[k])) -= both;
+        double *of_second = record(sum, 8, second[k]);
         store(of_second, fused(sign, both, load(of_second)));
     }
 #else
@@ -772,8 +910,8 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
     const struct pair_group *g = dem->pairs.group + k;
     const struct sum_group *sum = dem->pairs.sum + k;
     const bool elsewhere = dem->pairs.elsewhere[k];
-    const int32_t *first = (elsewhere ? sum->first : g->first) + at;
-    const int32_t *second = (elsewhere ? sum->second : g->second) + at;
+    const uint32_t *first = (elsewhere ? sum->first : g->first) + at;
+    const uint32_t *second = (elsewhere ? sum->second : g->second) + at;
     const bool turns = features & FEATURE_TURN;
     const struct lanes3 force =
         turns ? add_scaled3(pair->shear, pair->normal, n) : scale3(pair->normal, n);
@@ -784,16 +922,15 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
     }
 
     const struct lanes3 torque = cross3(n, pair->shear);
-    struct lanes3 on_first = scale3(m->first_arm, torque);
-    const struct lanes3 from_second = scale3(m->second_arm, torque);
-    struct lanes3 on_second;
+    struct lanes3 on_first, on_second;
     if (features & FEATURE_PARALLEL_BOND) {
-        on_first = add3(on_first, pair->moment);
-        on_second = subtract3(pair->moment, from_second);
+        on_first = add_scaled3(pair->moment, m->first_arm, torque);
+        on_second = subtract_scaled3(pair->moment, m->second_arm, torque);
     } else {
-        on_second = scale3(splat(-1), from_second);
+        on_first = scale3(m->first_arm, torque);
+        on_second = scale3(-m->second_arm, torque);
     }
-    if (have_one_arm(features))
+    if (have_one_arm(features) && !(features & FEATURE_PARALLEL_BOND))
         add_opposite(dem->sum, first, second, rows_of(force), rows_of(on_first));
     else
         add_eight(dem->sum, first, second, rows_of(force), rows_of(on_first),
@@ -803,19 +940,18 @@ INLINE void put_loads(const struct dem *dem, int k, int at, const struct meeting
     store3(dem->pairs.moment[k].second, at, on_second);
 }
 
-INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *lie,
+INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct meeting *met,
                        lanes time_step, int *busy, unsigned features)
 {
     const lanes zero = {0};
-    const struct pair_group *g = dem->pairs.group + k;
-    const struct meeting m = meet(dem, g, at, lie, time_step, features);
-    const mask touch = m.overlap >= 0.0;
-    mask held = (mask)zero;
+    const struct meeting m = *met;
+    const mask touch = at_least(m.overlap, zero);
+    mask held = above(zero, zero);
     if (features & FEATURE_BOND)
-        held = load(dem->pairs.bonds[k].normal_strength + at) >= 0.0;
+        held = at_least(load(dem->pairs.bonds[k].normal_strength + at), zero);
     const bool keep = dem->keeps_loads, wet = dem->pairs.liquid;
     const lanes pull = wet ? load(dem->pairs.liquid[k].pull + at) : zero;
-    const mask acts = touch | held | (pull != 0.0);
+    const mask acts = either(either(touch, held), unlike(pull, zero));
     if (!any(acts) && dem->pairs.idle[k] && !keep) return 0;
 
     *busy |= any(acts);
@@ -845,13 +981,13 @@ INLINE int sweep_lanes(const struct dem *dem, int k, int at, const struct lie *l
 // come in order, and the processor sees that for itself.
 INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
 {
-    const int32_t *second = dem->pairs.group[k].second;
+    const uint32_t *second = dem->pairs.group[k].second;
     const size_t stride = features & FEATURE_TURN ? 8 : 4;
     for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
-        const size_t j = (size_t)second[lane];
-        __builtin_prefetch(&dem->place[j]);
-        __builtin_prefetch(&dem->motion[j]);
-        __builtin_prefetch(dem->sum + stride * j, 1);
+        const uint32_t j = second[lane];
+        __builtin_prefetch(record((const double *)dem->place, 4, j));
+        __builtin_prefetch(record((const double *)dem->motion, 8, j));
+        __builtin_prefetch(record(dem->sum, stride, j), 1);
     }
 }
 
@@ -862,21 +998,26 @@ INLINE int sweep_groups(const struct dem *dem, int begin, int end, unsigned feat
     const lanes time_step = zero + (dem->cycle > 0 ? dem->time_step : 0);
     int n_broken = 0;
     enum { AHEAD = 8, CACHED = 4096 }; // groups; grains
+    // Roots and quotients take long, and so does all that waits for them: how the pairs
+    // of some groups meet is found before any of them is swept.
+    enum { BLOCK = 4 };
     const bool far = dem->n_particle > CACHED;
-    struct lie next = look(dem, begin, 0);
-    for (int k = begin; k < end; k++) {
-        int busy = 0;
-        if (far && k + AHEAD < end) fetch_ahead(dem, k + AHEAD, features);
-        for (int at = 0; at < PAIRS_IN_GROUP; at += LANES) {
-            // Roots and quotients take long: while they are on their way for the next
-            // lanes, these are swept.
-            const struct lie lie = next;
-            const bool is_last = at + LANES == PAIRS_IN_GROUP;
-            next =
-                look(dem, is_last && k + 1 < end ? k + 1 : k, is_last ? 0 : at + LANES);
-            n_broken += sweep_lanes(dem, k, at, &lie, time_step, &busy, features);
+    for (int begin_block = begin; begin_block < end; begin_block += BLOCK) {
+        struct meeting met[BLOCK][PAIRS_IN_GROUP / LANES];
+        const int next = begin_block + BLOCK < end ? begin_block + BLOCK : end;
+        for (int k = begin_block; k < next; k++) {
+            if (far && k + AHEAD < end) fetch_ahead(dem, k + AHEAD, features);
+            for (int at = 0; at < PAIRS_IN_GROUP; at += LANES)
+                met[k - begin_block][at / LANES] =
+                    meet(dem, k, at, time_step, features);
         }
-        dem->pairs.idle[k] = !busy;
+        for (int k = begin_block; k < next; k++) {
+            int busy = 0;
+            for (int at = 0; at < PAIRS_IN_GROUP; at += LANES)
+                n_broken += sweep_lanes(dem, k, at, &met[k - begin_block][at / LANES],
+                                        time_step, &busy, features);
+            dem->pairs.idle[k] = !busy;
+        }
     }
     return n_broken;
 }
@@ -887,8 +1028,5 @@ INLINE int sweep_groups(const struct dem *dem, int begin, int end, unsigned feat
         return sweep_groups(dem, begin, end, features);                                \
     }
 
-#if FUSED
 EACH_SET(SWEEP)
-#else
 EACH_PARALLEL_BOND_SET(SWEEP)
-#endif

@@ -291,8 +291,12 @@ static void derive(struct dem *dem)
         if (dem->period[axis] > 0)
             dem->period[axis] = dem->box_upper[axis] - dem->box_lower[axis];
     if (dem->n_particle > 0) dem->law = pair_law(dem, 0, 0);
-    for (int p = 0; dem->pairs.own && p < dem->pairs.n_pair; p++)
-        set_pair_law(dem, p);
+    for (int p = 0; p < dem->pairs.n_pair; p++) {
+        struct pair_group *group = &dem->pairs.group[p / PAIRS_IN_GROUP];
+        const int lane = p % PAIRS_IN_GROUP;
+        group->inverse_distance[lane] = 1 / group->distance[lane];
+        if (dem->pairs.own) set_pair_law(dem, p);
+    }
     set_wall_laws(dem);
     list_walls_of_grains(dem);
     if (dem->liquid) count_bridges(dem);

@@ -119,7 +119,7 @@ static void copy_history(struct pair_list *to, int to_pair,
                          const struct pair_list *from, int from_pair)
 {
     COPY(shear, struct shear_group, force, 3);
-    COPY(bonds, struct bond_group, normal_strength, 2);
+    COPY(bonds, struct bond_group, radius, 3);
     COPY(bonds, struct bond_group, shear_force, 7);
 }
 
@@ -129,8 +129,7 @@ static void copy_pair(struct pair_list *to, int to_pair, const struct pair_list 
     for (int end = 0; end < 2; end++)
         to->particle[to_pair][end] = from->particle[from_pair][end];
     to->bond[to_pair] = from->bond[from_pair];
-    COPY(group, struct pair_group, separation, 5);
-    COPY(bonds, struct bond_group, radius, 1);
+    COPY(group, struct pair_group, separation, 6);
     if (to->own) COPY(own, struct own_group, normal_stiffness, 5);
     copy_history(to, to_pair, from, from_pair);
 }
@@ -142,8 +141,8 @@ static void sweep_only(struct dem *dem, const struct resting *resting, int n)
     for (int p = 0; p < n; p++) {
         copy_pair(pairs, p, &resting->all, resting->number[p]);
         struct pair_group *group = &pairs->group[p / PAIRS_IN_GROUP];
-        group->first[p % PAIRS_IN_GROUP] = pairs->particle[p][0];
-        group->second[p % PAIRS_IN_GROUP] = pairs->particle[p][1];
+        set_grains(group, p % PAIRS_IN_GROUP, pairs->particle[p][0],
+                   pairs->particle[p][1]);
         pairs->bonds[p / PAIRS_IN_GROUP].crack[p % PAIRS_IN_GROUP] = -1;
     }
     for (int p = n; p < PAIRS_IN_GROUP * pairs->n_group; p++)
