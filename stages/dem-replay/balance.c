@@ -9,19 +9,19 @@
 
 static const struct displacement nothing = {{0, 0, 0}, {0, 0, 0}};
 
-static void pull(struct displacement *sum, struct displacement load)
+void pull(struct displacement *sum, struct displacement load)
 {
     sum->shift = subtract(sum->shift, load.shift);
     sum->turn = subtract(sum->turn, load.turn);
 }
 
-static struct displacement scaled(double share, struct displacement a)
+struct displacement scaled(double share, struct displacement a)
 {
     return (struct displacement){scale(share, a.shift), scale(share, a.turn)};
 }
 
-static void strain_joints(const struct equilibrium *e, const struct displacement *moved,
-                          double (*strain)[STRAINS])
+void strain_joints(const struct equilibrium *e, const struct displacement *moved,
+                   double (*strain)[STRAINS])
 {
     for (int j = 0; j < e->n_joint; j++) {
         const int32_t *grain = e->joint[j].grain;
@@ -42,21 +42,7 @@ void resist(struct equilibrium *e)
         e->left[i] = e->load[i];
         pull(&e->left[i], scaled(e->damping, e->dashpots[i]));
     }
-    if (e->large)
-        large_strain_joints(e);
-    else
-        strain_trial(e);
-    for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        e->resistance[j] = joint_resistance(joint, e->strain[j]);
-        if (!e->large) joint_take_off(joint, e->resistance[j].load, e->left);
-        for (int end = 0; end < 2 && e->large; end++)
-            if (joint->grain[end] >= 0)
-                pull(&e->left[joint->grain[end]], large_loads(e, j, end));
-    }
-    if (e->large)
-        for (int i = 0; i < e->n; i++)
-            pull(&e->left[i], scaled(1 - e->large->share, e->large->withheld[i]));
+    e->kind->resist(e);
     for (int i = 0; i < e->n; i++)
         if (e->setup.fixed[i] || e->is_gone[i]) e->left[i] = nothing;
 }
@@ -91,12 +77,7 @@ bool factor(struct equilibrium *e)
     }
     corrections_clear(e->corrections);
     e->factors++;
-    if (!e->large) return stiffness_factor(e->matrix, e->tangent, NULL, e->soft);
-    large_linearise(e);
-    e->large->is_unstable =
-        !stiffness_factor(e->matrix, e->tangent, e->large->more, e->soft) ||
-        !stiffness_is_positive(e->matrix);
-    return !e->large->is_unstable;
+    return e->kind->factor(e);
 }
 
 // How many of a joint's strains do not resist as the factor says when it is, bonded or
@@ -190,10 +171,7 @@ void let_go(struct equilibrium *e, const bool *leaves)
     resist(e);
 }
 
-// Fragments that no support holds leave where a grain of theirs moves by more than MOST
-// (of MOVES, displacements or what is left). Whether any did.
-static bool let_go_beyond(struct equilibrium *e, const struct displacement *moves,
-                          double most)
+bool let_go_beyond(struct equilibrium *e, const struct displacement *moves, double most)
 {
     bool *leaves = NEW_ARRAY(bool, e->n);
     bool any = false;
@@ -214,8 +192,7 @@ static bool let_go_beyond(struct equilibrium *e, const struct displacement *move
 bool improve(struct equilibrium *e, bool *is_fresh)
 {
     const enum outcome outcome = find_step(e);
-    const bool may_leave = !e->large || e->large->is_least;
-    if (may_leave && (outcome == FOUND || *is_fresh) &&
+    if (e->may_leave && (outcome == FOUND || *is_fresh) &&
         let_go_beyond(e, e->step, furthest))
         return true;
     if (outcome != FOUND) {
@@ -224,7 +201,7 @@ bool improve(struct equilibrium *e, bool *is_fresh)
         *is_fresh = true;
         return factor(e);
     }
-    if (e->large) large_accelerate(e);
+    if (e->kind->take) e->kind->take(e);
     for (int i = 0; i < e->n; i++) {
         pull(&e->trial[i], scaled(-1, e->step[i]));
         pull(&e->dashpots[i], scaled(-1, e->rest[i]));
@@ -232,31 +209,6 @@ bool improve(struct equilibrium *e, bool *is_fresh)
     resist(e);
     e->iterations++;
     return true;
-}
-
-// The next equilibrium, or step in time on the way there, from the last one: to well
-// below what may be left, as forces on many grains add up, where that comes easily.
-static bool approach(struct equilibrium *e)
-{
-    enum { ROUNDS = 20 };
-    if (e->large) return large_approach(e);
-    resist(e);
-    e->enough = e->setup.tolerance * e->largest_load;
-    if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
-    const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
-    if (largest_left(e) <= well) return true; // foreseen
-    bool is_fresh = e->factors == 0 ||
-                    corrections_work(e->corrections) > 16 * stiffness_work(e->matrix);
-    if (is_fresh && !factor(e)) return false;
-    double before = INFINITY;
-    for (int round = 0; round < ROUNDS; round++) {
-        const double left = largest_left(e);
-        if (left <= well || (left <= e->enough && left >= 0.1 * before)) return true;
-        before = left;
-        if (!improve(e, &is_fresh)) break;
-    }
-    resist(e);
-    return largest_left(e) <= e->enough;
 }
 
 void keep_history(struct equilibrium *e)
@@ -270,7 +222,7 @@ void keep_history(struct equilibrium *e)
         if (e->joint[j].contact.touch == TOUCH_BEGINS)
             e->joint[j].contact.touch = TOUCH_STICKS;
     }
-    if (e->large) large_keep_history(e);
+    if (e->kind->keep_history) e->kind->keep_history(e);
 }
 
 void go_back(struct equilibrium *e)
@@ -279,8 +231,7 @@ void go_back(struct equilibrium *e)
     memset(e->dashpots, 0, (size_t)e->n * sizeof *e->dashpots);
 }
 
-// The first with the largest load left.
-static int least_balanced(const struct equilibrium *e)
+int least_balanced(const struct equilibrium *e)
 {
     int worst = 0;
     for (int i = 1; i < e->n; i++)
@@ -297,7 +248,7 @@ static bool creep(struct equilibrium *e)
     e->damping = 1;
     go_back(e);
     for (int64_t k = 0; k < e->setup.most_iterations && e->damping <= stiffest; k++) {
-        const bool found = approach(e);
+        const bool found = e->kind->approach(e);
         if (found) {
             keep_history(e);
             if (e->damping == 0) return true;
@@ -314,25 +265,10 @@ static bool creep(struct equilibrium *e)
     return false;
 }
 
-void balance(struct equilibrium *e)
+bool come_to_rest(struct equilibrium *e)
 {
-    const double enough = e->setup.tolerance * e->largest_load;
-    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
-    bool rests;
-    do {
-        e->damping = 0;
-        go_back(e);
-        foresee(e);
-        rests = approach(e);
-        if (rests)
-            keep_history(e);
-        else
-            rests = creep(e);
-    } while ((!e->large && let_go_beyond(e, e->trial, furthest)) ||
-             (!rests && let_go_beyond(e, e->left, enough)));
-    if (!rests) {
-        e->n_restless++;
-        e->restless = least_balanced(e);
-        keep_history(e);
-    }
+    e->damping = 0;
+    if (!e->kind->approach(e)) return creep(e);
+    keep_history(e);
+    return true;
 }

@@ -102,6 +102,8 @@ enum status equilibrium_new(struct equilibrium **result,
     e->soft[0] = e->soft[1] = softness(e);
     make_room_for_joints(e);
     e->foresight = foresight_new(e);
+    e->may_leave = !setup->large_displacements;
+    e->kind = e->may_leave ? &small_displacements : &large_displacements;
     if (setup->large_displacements) e->large = large_new(e);
     *result = e;
     return STATUS_OK;
@@ -220,9 +222,8 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
     for (int i = 0; i < e->n; i++)
         e->largest_load = fmax(e->largest_load, norm(e->load[i].shift));
     do {
-        const enum status status = e->large ? large_balance(e, reason) : STATUS_OK;
+        const enum status status = e->kind->balance(e, reason);
         if (status) return status;
-        if (!e->large) balance(e);
     } while (break_one(e));
     foresight_go_on(e->foresight);
     return check_small(e, reason);

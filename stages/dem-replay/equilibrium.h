@@ -87,5 +87,7 @@ int equilibrium_gone(const struct equilibrium *equilibrium, int *first);
 // Loads under which something held did not come to rest, and the grain that had most
 // left to balance under the LAST of them.
 int equilibrium_restless(const struct equilibrium *equilibrium, int *last);
+// How often it snapped through or buckled, and the grain that gave way most at the LAST.
+int equilibrium_snaps(const struct equilibrium *equilibrium, int *last);
 
 #endif

@@ -35,7 +35,22 @@ static inline double size_of(struct displacement a)
     return fmax(norm(a.shift), norm(a.turn));
 }
 
+struct equilibrium;
+
+// What depends on how far grains may move.
+struct equilibrium_kind {
+    // Joints at the trial: strains, and resistance, which is taken off what is left.
+    void (*resist)(struct equilibrium *);
+    bool (*factor)(struct equilibrium *); // the tangents, if there is such a factor
+    void (*take)(struct equilibrium *);   // a step that is found; NULL: as it is
+    void (*keep_history)(struct equilibrium *); // besides; or NULL
+    bool (*approach)(struct equilibrium *); // the next one, or step in time towards it
+    enum status (*balance)(struct equilibrium *, struct reason *); // all of the load
+};
+extern const struct equilibrium_kind small_displacements, large_displacements;
+
 struct equilibrium {
+    const struct equilibrium_kind *kind;
     const struct packing *packing;
     struct equilibrium_setup setup;
     double length, stiffness; // units
@@ -56,7 +71,8 @@ struct equilibrium {
     struct displacement *step;     // (n)
     struct displacement *before;   // (n) the last equilibrium
     struct fragments fragments;
-    bool *is_gone; // (n) grains
+    bool *is_gone;  // (n) grains
+    bool may_leave; // grains that nothing holds, where a step would take them far
     int n_gone, first_gone;
     struct stiffness *matrix;
     double (*tangent)[STRAINS]; // (n_joint) in the factor
@@ -67,8 +83,10 @@ struct equilibrium {
     double largest_load;       // so far: what is left is measured by it
     double enough;             // what may be left
     int iterations, factors;
-    int n_restless; // loads under which not all came to rest
-    int restless;   // grain that had most left to balance under the last of them
+    int n_restless;      // loads under which not all came to rest
+    int restless;        // grain that had most left to balance under the last of them
+    int n_snap, snapped; // ends of equilibrium gone through in time; the grain that
+                         // moved most at the last
     int n_crack, crack_capacity;
     struct dem_crack *crack;
     struct large *large; // NULL: displacements are small
@@ -86,11 +104,6 @@ void load_grains(struct equilibrium *equilibrium);
 struct net_load loads_of(const struct equilibrium *equilibrium,
                          const struct vector *from, struct vector *load);
 
-// Equilibrium under the load: at once or, where that is not found, in time. What does
-// not even then come to rest leaves if nothing supports it; else it goes on moving
-// under the next load.
-void balance(struct equilibrium *equilibrium);
-
 // The most overloaded bond breaks, if one is at its strength. Whether one was.
 bool break_one(struct equilibrium *equilibrium);
 
@@ -103,9 +116,23 @@ double largest_left(const struct equilibrium *equilibrium);
 bool factor(struct equilibrium *equilibrium);
 bool improve(struct equilibrium *equilibrium, bool *is_fresh);
 // Fragments that are marked leave: their load counts no more, and nothing touches them.
+// Those that no support holds do where a grain of theirs moves by more than MOST, of
+// MOVES (n), displacements or what is left. Whether any did.
 void let_go(struct equilibrium *equilibrium, const bool *leaves);
+bool let_go_beyond(struct equilibrium *equilibrium, const struct displacement *moves,
+                   double most);
 void keep_history(struct equilibrium *equilibrium);
 void go_back(struct equilibrium *equilibrium);
+// The next equilibrium, from the trial at once or else in steps of time, as the last
+// one. Whether there was rest.
+bool come_to_rest(struct equilibrium *equilibrium);
+int least_balanced(const struct equilibrium *equilibrium); // the first grain of those
+
+// The strains that joints, as they lie, have when grains have MOVED (n).
+void strain_joints(const struct equilibrium *equilibrium,
+                   const struct displacement *moved, double (*strain)[STRAINS]);
+void pull(struct displacement *sum, struct displacement load); // taken off SUM
+struct displacement scaled(double share, struct displacement a);
 
 // [K 4.20] of sums over grains and joints.
 struct unbalanced {

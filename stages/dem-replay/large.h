@@ -7,7 +7,7 @@
 // what is left is measured on the present geometry, and a new factor made, with the
 // stiffness that comes of loads turning with joints, when it falls slowly. Where that
 // stiffness is no longer positive equilibrium has come to its end: grains buckle or
-// snap through, which is dynamics.
+// snap through, and dynamics takes them to the next [large_walk.c].
 #ifndef CRAQUELURE_LARGE_H
 #define CRAQUELURE_LARGE_H
 
@@ -22,8 +22,8 @@ struct large {
     struct vector *searched;       // (n) shifts when grains near each other were sought
     struct displacement *withheld; // (n) what was not balanced when the way began
     double share;                  // of that let in
-    double balanced;               // of the last load
-    bool is_least;                 // no smaller increment is tried
+    double balanced, ended;        // of the last load; so much of one at the last snap
+    double drag;                   // of dashpots at each grain, besides those at joints
     bool is_stale;                 // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored
 };
@@ -31,23 +31,31 @@ struct large {
 struct large *large_new(struct equilibrium *equilibrium);
 void large_free(struct large *large);
 
-// Strains at the trial, and how joints lie there.
-void large_strain_joints(struct equilibrium *equilibrium);
-// The load of JOINT on grain END at the trial.
-struct displacement large_loads(const struct equilibrium *equilibrium, int joint,
-                                int end);
+struct displacement moved_from(const struct displacement *from,
+                               const struct displacement *to);
+// Of a grain since the last equilibrium, at the trial.
+struct displacement since_before(const struct equilibrium *equilibrium, int grain);
 // Joints lie from now on, for the factor and what corrects it, as at the trial.
 void large_linearise(struct equilibrium *equilibrium);
-// The step that is found becomes the one that is taken.
-void large_accelerate(struct equilibrium *equilibrium);
-void large_keep_history(struct equilibrium *equilibrium);
 
 // Grains that have come near each other, or the wall, become joints. Whether any of
 // these touch at the trial.
 bool large_meet(struct equilibrium *equilibrium);
 
-// As approach() and balance() do where displacements are small.
+// To the equilibrium at the share that is let in, if there is a stable one near; with
+// DAMPING, a step in time towards it. MOVED, as a share of what an increment may be.
+enum advance { ADVANCED, TOO_FAR, MEETS, UNSTABLE, NOT_FOUND };
+enum advance large_advance(struct equilibrium *equilibrium, double damping,
+                           double *moved);
 bool large_approach(struct equilibrium *equilibrium);
 enum status large_balance(struct equilibrium *equilibrium, struct reason *reason);
+
+// The grain that moves or turns most in the mode that is resisted least at the last
+// equilibrium. A little of that mode then becomes part of it. In steps of time to rest
+// under the share that is let in: whether it was reached, bonds that are at their
+// strength on the way breaking one a step.
+int large_softest(struct equilibrium *equilibrium);
+void large_kick(struct equilibrium *equilibrium);
+bool large_walk(struct equilibrium *equilibrium, const struct displacement *start);
 
 #endif

@@ -370,6 +370,10 @@ static void warn_if_loose(const struct packing *packing,
         report("%d grains left the aggregate, grain %d the first: nothing held them "
                "under their load",
                response->n_gone, response->first_gone);
+    if (response->n_snap > 0)
+        report("it snapped through or buckled %d times, and dashpots brought it to "
+               "rest; grain %d moved most at the last",
+               response->n_snap, response->snapped);
     if (response->n_restless > 0)
         report("under %d of the loads not all came to rest, under the last of them "
                "grain %d",

@@ -40,6 +40,12 @@ int equilibrium_restless(const struct equilibrium *e, int *last)
     return e->n_restless;
 }
 
+int equilibrium_snaps(const struct equilibrium *e, int *last)
+{
+    *last = e->snapped;
+    return e->n_snap;
+}
+
 void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
 {
     realise(e->foresight);

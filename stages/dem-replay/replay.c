@@ -22,6 +22,7 @@ struct run {
     struct net_load taken_off;
     int n_before;        // bonds that an earlier replay has broken
     int restless_before; // loads of an earlier replay that did not come to rest
+    int snaps_before;    // of an earlier replay
     struct replay_place place;
 };
 
@@ -350,6 +351,7 @@ static enum status repeat_earlier(struct run *run, struct reason *reason)
     equilibrium_cracks(run->equilibrium, &run->n_before);
     int grain;
     run->restless_before = equilibrium_restless(run->equilibrium, &grain);
+    run->snaps_before = equilibrium_snaps(run->equilibrium, &grain);
     run->place.began = cycles_done(run);
     return STATUS_OK;
 }
@@ -423,6 +425,8 @@ enum status replay(const struct packing *packing, const struct load *load,
         response->n_restless =
             equilibrium_restless(run.equilibrium, &response->restless) -
             run.restless_before;
+        response->n_snap =
+            equilibrium_snaps(run.equilibrium, &response->snapped) - run.snaps_before;
     }
     if (!status && settings->keep_state) response->engine = save_engine(&run);
     dem_free(run.dem);

@@ -81,6 +81,8 @@ struct response {
     int n_gone, first_gone;            // grains that left an equilibrium
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last
+    int n_snap, snapped; // ends of equilibrium gone through in time, and the grain that
+                         // moved most at the last
     struct array_list engine; // at the end, if it was to be kept; quasi-static: all
                               // loads up to there
 };

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The load is let in by increments, as long as there is a stable equilibrium near the
+// last one.
+#include "large.h"
+
+#include "basics/memory.h"
+#include "equilibrium_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Increments get no smaller than this share of what is to be let in: so exactly is
+// known where equilibrium ends.
+static const double least_increment = 1e-6;
+
+// Without a sign that it ends, equilibrium is not looked for in smaller ones than this.
+static const double rough_increment = 1e-3;
+
+// ---- one increment ------------------------------------------------------------------
+
+// Mean radii that a grain may move in an increment, so that others do not pass it.
+static const double stride = 0.5;
+
+// The furthest that a grain or a joint has turned, or grains came closer, since the
+// last equilibrium.
+static double furthest_since(const struct equilibrium *e)
+{
+    double most = 0;
+    for (int i = 0; i < e->n; i++) {
+        const struct displacement since = since_before(e, i);
+        const double way = norm(since.shift) * e->setup.increment / stride;
+        const double size = fmax(norm(since.turn), way);
+        if (!e->is_gone[i] && !(size <= most)) most = size;
+    }
+    for (int j = 0; j < e->n_joint; j++) {
+        const struct joint *joint = &e->joint[j];
+        const struct vector *before = e->large->before[j].axis;
+        const double turned = distance(e->large->now[j].axis[0], before[0]);
+        const double closer =
+            fabs(e->strain[j][STRAIN_ALONG] - joint->strain[STRAIN_ALONG]);
+        const double size = fmax(turned, closer);
+        if (!joint->is_gone && !(size <= most)) most = size;
+    }
+    return most;
+}
+
+// Newton's method goes astray before it goes so far, or where numbers end.
+static bool is_astray(const struct equilibrium *e)
+{
+    double sum = 0;
+    for (int i = 0; i < e->n; i++)
+        sum += norm(e->left[i].shift) + norm(e->left[i].turn) +
+               norm(e->trial[i].shift) + norm(e->trial[i].turn);
+    return !isfinite(sum) || !(furthest_since(e) <= 4 * e->setup.increment);
+}
+
+bool large_approach(struct equilibrium *e)
+{
+    enum { ROUNDS = 60 };
+    const double slow = 0.1;
+    resist(e);
+    e->enough = e->setup.tolerance * e->largest_load;
+    if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
+    const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
+    bool is_fresh = e->large->is_stale || e->damping > 0;
+    if (is_astray(e)) return false;
+    if (is_fresh && !factor(e)) return false;
+    e->large->is_stale = false;
+    anderson_begin(&e->large->acceleration, 6 * e->n);
+    double before = INFINITY;
+    int since = 0, patience = 1; // rounds with one factor
+    for (int round = 0; round < ROUNDS; round++) {
+        const double left = largest_left(e);
+        if (left <= well || (left <= e->enough && left >= slow * before)) return true;
+        if (left > slow * before && since >= patience) {
+            is_fresh = true;
+            since = 0;
+            patience *= 4;
+            if (!factor(e)) return false;
+        }
+        before = left;
+        if (!improve(e, &is_fresh) || is_astray(e)) return false;
+        is_fresh = false;
+        since++;
+    }
+    resist(e);
+    return largest_left(e) <= e->enough;
+}
+
+enum advance large_advance(struct equilibrium *e, double damping, double *moved)
+{
+    go_back(e);
+    e->damping = damping;
+    e->large->is_unstable = false;
+    *moved = 4; // if it is not known
+    if (!large_approach(e)) return e->large->is_unstable ? UNSTABLE : NOT_FOUND;
+    *moved = furthest_since(e) / e->setup.increment;
+    if (*moved > 1) return TOO_FAR;
+    if (large_meet(e)) return MEETS;
+    return damping > 0 || factor(e) ? ADVANCED : UNSTABLE;
+}
+
+// ---- the way ------------------------------------------------------------------------
+
+static void withhold(struct equilibrium *e)
+{
+    e->damping = 0;
+    e->large->share = 1;
+    go_back(e);
+    resist(e);
+    memcpy(e->large->withheld, e->left, (size_t)e->n * sizeof *e->left);
+}
+
+// How far the way is.
+struct way {
+    double reached, increment;
+    double widest; // increment so far, 0: none
+    double before; // of the load, balanced when this began
+};
+
+static struct way begin_way(struct equilibrium *e, double before)
+{
+    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    withhold(e);
+    return (struct way){.increment = 1, .before = before};
+}
+
+static double balanced(const struct way *way)
+{
+    return way->before + (1 - way->before) * way->reached;
+}
+
+static enum advance try_increment(struct equilibrium *e, struct way *way)
+{
+    struct large *large = e->large;
+    double moved;
+    const bool is_least = way->increment <= least_increment;
+    e->may_leave = is_least;
+    large->share = fmin(1, way->reached + way->increment);
+    const enum advance outcome = large_advance(e, 0, &moved);
+    large->is_stale = outcome != ADVANCED;
+    if (outcome == ADVANCED) {
+        keep_history(e);
+        way->widest = fmax(way->widest, large->share - way->reached);
+        way->reached = large->share;
+        way->increment *= fmin(2, 0.8 / fmax(moved, 0.01));
+    } else if (outcome != MEETS && !is_least) {
+        way->increment =
+            fmin(way->increment, 1 - way->reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
+    }
+    large->balanced = balanced(way);
+    return outcome;
+}
+
+// ---- its end ------------------------------------------------------------------------
+
+static bool let_go_of(struct equilibrium *e, int fragment)
+{
+    if (e->fragments.is_held[fragment]) return false;
+    bool *leaves = NEW_ARRAY(bool, e->n);
+    leaves[fragment] = true;
+    let_go(e, leaves);
+    free(leaves);
+    return true;
+}
+
+// Where the stiffness is not positive, a fragment that nothing holds leaves if it is
+// what gives way, or else a bond that is at its strength there breaks. Whether there
+// was one: if not, SOFTEST gave way. In this order: a loose grain would else break one
+// bond after the other, none of which had been relieved by the last.
+static bool give_way(struct equilibrium *e, double reached, int *softest)
+{
+    e->large->share = reached;
+    go_back(e);
+    resist(e);
+    *softest = large_softest(e);
+    return let_go_of(e, e->fragments.of[*softest]) || break_one(e);
+}
+
+static enum status refuse_end(struct equilibrium *e, int softest, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "equilibrium ends with %.6f of what this load changes: the stiffness "
+                  "is no longer positive (buckling, or a snap through), grain %d moves "
+                  "most, and dashpots do not bring it to rest (engine=explicit follows "
+                  "what comes then)",
+                  e->large->balanced, softest);
+}
+
+// Something went on moving, and does so under the next load.
+static void leave_restless(struct equilibrium *e)
+{
+    e->n_restless++;
+    e->large->share = 1;
+    resist(e);
+    e->restless = least_balanced(e);
+    large_linearise(e);
+    e->large->is_stale = true;
+}
+
+// Rest was found: it snapped through or buckled if anything moved further from START
+// than it may in an increment.
+static void note_snap(struct equilibrium *e, const struct displacement *start,
+                      double balanced)
+{
+    double most = e->setup.increment;
+    for (int i = 0; i < e->n; i++) {
+        const double way = size_of(moved_from(&start[i], &e->before[i]));
+        if (e->is_gone[i] || !(way > most)) continue;
+        most = way;
+        e->snapped = i;
+    }
+    if (!(most > e->setup.increment)) return;
+    e->n_snap++;
+    e->large->ended = balanced;
+}
+
+// Where slip and contacts that open leave none near the last: few steps mostly do.
+static bool slip(struct equilibrium *e)
+{
+    e->may_leave = true;
+    e->large->is_stale = true;
+    go_back(e);
+    const bool rests = come_to_rest(e);
+    large_meet(e);
+    resist(e);
+    large_linearise(e);
+    e->large->is_stale = true;
+    return rests;
+}
+
+// What is left of the load, or what nothing holds, leaves.
+static bool let_go_restless(struct equilibrium *e)
+{
+    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    return let_go_beyond(e, e->left, e->setup.tolerance * e->largest_load);
+}
+
+enum end { RESTS, LEAVES, MOVES };
+
+// From where equilibrium ends dynamics decides: under as much more of the load as was
+// the most to be let in at a time, or all of it where slip is the end.
+static enum end go_through(struct equilibrium *e, const struct way *way,
+                           bool is_unstable)
+{
+    const double more = is_unstable && way->widest > 0 ? way->widest : 1;
+    struct displacement *start = duplicate(e->before, (size_t)e->n, sizeof *start);
+    if (is_unstable) large_kick(e);
+    e->large->share = fmin(1, way->reached + more);
+    enum end end = !is_unstable && slip(e) ? RESTS : MOVES;
+    if (end == MOVES && !is_unstable && let_go_restless(e)) end = LEAVES;
+    if (end == MOVES && large_walk(e, start)) end = RESTS;
+    if (end == MOVES && let_go_restless(e)) end = LEAVES;
+    if (end == RESTS) note_snap(e, start, balanced(way));
+    free(start);
+    return end;
+}
+
+// Where there is no stable equilibrium near the last one.
+static enum status go_beyond(struct equilibrium *e, struct way *way, bool is_unstable,
+                             struct reason *reason)
+{
+    int softest = 0;
+    const bool gives_way = is_unstable && give_way(e, way->reached, &softest);
+    const enum end end = gives_way ? LEAVES : go_through(e, way, is_unstable);
+    if (end == MOVES && is_unstable) return refuse_end(e, softest, reason);
+    if (end == MOVES) leave_restless(e);
+    if (end != LEAVES) way->reached = e->large->share;
+    if (way->reached < 1) *way = begin_way(e, balanced(way));
+    return STATUS_OK;
+}
+
+enum status large_balance(struct equilibrium *e, struct reason *reason)
+{
+    struct way way = begin_way(e, 0);
+    while (way.reached < 1) {
+        const double usual = way.widest > 0 ? way.widest : 1;
+        const bool is_rough = way.increment <= rough_increment * usual;
+        const bool is_least = way.increment <= least_increment;
+        const enum advance outcome = try_increment(e, &way);
+        const bool is_unstable = outcome == UNSTABLE && is_least;
+        if (!is_unstable && !(outcome == NOT_FOUND && is_rough)) continue;
+        const enum status status = go_beyond(e, &way, is_unstable, reason);
+        if (status) return status;
+    }
+    e->large->balanced = 1;
+    return STATUS_OK;
+}
