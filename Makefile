@@ -171,6 +171,11 @@ RUNS ?= $(BUILD)/runs
 RUN ?=# a launcher for the stages: RUN='srun -n1'
 THREADS ?=# of each stage
 
+# Stops at once where a word of the variable $1, or no word, is not $2 (whole): it must be $3.
+must = $(if $(shell printf '%s\n' $(foreach w,$($1),'$(subst ','\'',$w)') | grep -qvxE '$2' && echo so),$(error $1 must be $3, got '$($1)'))
+whole := [1-9][0-9]{0,6}
+number := ([0-9]+\.?|[0-9]*\.[0-9]+)([eE][-+]?[0-9]+)?
+
 artifacts :=
 pipeline_goals := $(RUNS)/%
 

@@ -36,6 +36,8 @@ endef
 irregular: ## cracks in irregular aggregates of 1000 grains, pressure gradients on and off (minutes)
 
 ifneq ($(filter irregular,$(MAKECMDGOALS)),)
+$(call must,AGGREGATES,$(whole),a whole number)
+$(call must,IRREGULAR_VISCOSITY,$(number),a number)
 irregular_seeds := $(shell seq $(AGGREGATES))
 $(foreach seed,$(irregular_seeds),$(call irregular_aggregate,$(seed)))
 irregular_tables := $(irregular_arms:%=$(irregular_folder)/%.json)

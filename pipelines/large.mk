@@ -17,6 +17,7 @@ large_step = $(call step,$(large_folder)/$1,$2,pipelines/timed $3,$(large_scene)
 large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (an hour)
 
 ifneq ($(filter large $(large_folder)/%,$(MAKECMDGOALS)),)
+$(call must,GRAINS,$(whole),a whole number)
 $(call large_step,packing.h5,pack,$(PACK),count=$(GRAINS),)
 $(call large_step,tessellation.h5,tessellate,$(TESSELLATE),,packing.h5)
 $(call large_step,network.h5,merge-nodes,$(MERGE_NODES),,tessellation.h5)

@@ -34,6 +34,9 @@ endef
 monte-carlo: ## cracks over 10 realisations in both drying limits, tested against each other (minutes)
 
 ifneq ($(filter monte-carlo,$(MAKECMDGOALS)),)
+$(call must,REALISATIONS,$(whole),a whole number)
+$(call must,ENGINE,explicit|quasi-static,explicit or quasi-static)
+$(if $(DRYING_INTERVAL),$(call must,DRYING_INTERVAL,0?\.[0-9]+|[0-9](\.[0-9]+)?[eE]-[0-9]+|[01],a number from 0 to 1))
 $(call crack_network,$(monte_carlo_top),$(MONTE_CARLO_SCENE))
 monte_carlo_seeds := $(shell seq $(REALISATIONS))
 $(foreach limit,$(monte_carlo_limits),$(foreach seed,$(monte_carlo_seeds),$(call monte_carlo_run,$(seed),$(limit))))

@@ -30,6 +30,7 @@ endef
 coupled: ## drying and shrinking in turns, beside one way, and their picture (minutes)
 
 ifneq ($(filter coupled $(coupled_folder)/%,$(MAKECMDGOALS)),)
+$(call must,COUPLED_PORTIONS,[0-9]+(\+[0-9]+)?,numbers N or N+M)
 coupled_courses := $(foreach s,$(coupled_samples),$(foreach n,$(COUPLED_PORTIONS),$(coupled_folder)/$s/$n/course.tsv))
 coupled_drawn := $(foreach s,$(coupled_samples),$(foreach n,$(firstword $(COUPLED_PORTIONS)) $(lastword $(COUPLED_PORTIONS)),$(coupled_folder)/$s/$n/course.tsv))
 $(foreach s,$(coupled_samples),$(foreach n,$(COUPLED_PORTIONS),$(call coupled_run,$s,$n)))
@@ -52,6 +53,7 @@ collapse_folder := $(RUNS)/collapse
 collapse: ## the load that the soft aggregate bears as its throats narrow (minutes)
 
 ifneq ($(filter collapse $(collapse_folder)/%,$(MAKECMDGOALS)),)
+$(call must,COLLAPSE_PORTIONS,$(whole),a whole number)
 $(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/collapse pipelines/coupled-run $(collapse_scene),pipelines/collapse $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
 
 collapse: $(collapse_folder)/collapse.md

@@ -8,6 +8,9 @@
 SHARE ?= 1
 percolation_study := $(BUILD)/tests/bench/percolation_study
 
+ifneq ($(filter percolation,$(MAKECMDGOALS)),)
+$(call must,SHARE,$(number),a number)
+endif
 .PHONY: percolation
 percolation: $(percolation_study) ## thresholds and exponents of invasion percolation (minutes)
 	@mkdir -p $(RUNS)/percolation

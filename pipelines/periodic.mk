@@ -28,6 +28,8 @@ periodic_counts = $(call step,$(periodic_folder)/$1-$2.json,crackstats,$(CRACKST
 periodic: ## cracks in a box that repeats sideways, K's Table 5.3 and Fig. 5.24 (about two minutes)
 
 ifneq ($(filter periodic,$(MAKECMDGOALS)),)
+$(call must,PERIODIC_SEEDS,$(whole),whole numbers)
+$(call must,PERIODIC_SCALES,$(number),numbers)
 $(call crack_network,$(periodic_folder),$(periodic_scene))
 $(foreach limit,$(periodic_limits),$(foreach seed,$(PERIODIC_SEEDS),$(call periodic_history,$(seed),$(limit))))
 $(foreach limit,$(periodic_limits),$(foreach f,$(PERIODIC_SCALES),$(call periodic_counts,$(limit),$f)))

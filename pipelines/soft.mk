@@ -24,6 +24,7 @@ endef
 soft: ## shrinkage and spring-back of the soft aggregate, and their picture
 
 ifneq ($(filter soft,$(MAKECMDGOALS)),)
+$(call must,SOFT_SCALES,$(number),numbers)
 $(call crack_network,$(soft_folder),$(soft_scene))
 $(call step,$(soft_folder)/drying.h5,dry,$(DRY),$(soft_scene),,$(soft_folder)/network.h5)
 $(foreach scale,$(SOFT_SCALES),$(call soft_arm,$(scale)))

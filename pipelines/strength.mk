@@ -27,6 +27,8 @@ strength_counts = $(call step,$(strength_folder)/$1-$2.json,crackstats,$(CRACKST
 strength: ## K's Table 5.2 over 20 seeds (about three minutes)
 
 ifneq ($(filter strength,$(MAKECMDGOALS)),)
+$(call must,SEEDS,$(whole),whole numbers)
+$(call must,FORCE_SCALE,$(number),a number)
 $(call crack_network,$(strength_folder),$(strength_scene))
 $(foreach seed,$(SEEDS),$(call strength_history,$(seed),inviscid,$(strengths)))
 $(foreach seed,$(SEEDS),$(call strength_history,$(seed),immobile,1.6e4))

@@ -41,6 +41,7 @@ endef
 weibull: ## cracks against the scatter of strengths, 10 seeds (about ten minutes of one core)
 
 ifneq ($(filter weibull $(weibull_folder)/%,$(MAKECMDGOALS)),)
+$(call must,WEIBULL_SEEDS,$(whole),whole numbers)
 $(call crack_network,$(weibull_folder),$(weibull_scene))
 $(foreach liquid,inviscid immobile,$(foreach seed,$(WEIBULL_SEEDS),$(call weibull_drying,$(liquid),$(seed))))
 $(foreach row,$(weibull_rows),$(call weibull_row,$(row)))

@@ -44,4 +44,9 @@ every=$(rows "$scratch/monte-carlo/tiny/drying/inviscid-1.h5")
 coarse=$(rows "$scratch/monte-carlo/tiny-0.1/drying/inviscid-1.h5")
 is 'dryings recorded at intervals stand apart, with fewer steps' true \
     "$(jq -n "$coarse > 5 and $coarse < $every / 2")"
+is 'what cannot be meant is refused before anything runs' \
+    "DRYING_INTERVAL must be a number from 0 to 1, got 'abc'|REALISATIONS must be a whole number, got ''|ENGINE must be explicit or quasi-static, got 'fast'" \
+    "$(for word in DRYING_INTERVAL=abc REALISATIONS= ENGINE=fast; do
+        make monte-carlo RUNS="$scratch/none" $word 2>&1 | sed -n 's/.*\*\*\* \(.*\)\.  Stop\./\1/p'
+    done | paste -sd'|')$(ls "$scratch/none" 2>/dev/null)"
 finish

@@ -195,6 +195,33 @@ with scratch() as folder:
     ok(stopped == [True, True] and end.returncode == 0 and made == os.stat(at("lattice/1/response.h5")).st_mtime_ns
        and all(open(name, "rb").read() == whole[name] for name in names),
        "killed and gone on with: the same bytes, and nothing is made twice", (stopped, end.stderr.decode()))
+    # In portions as short as it takes for throats to keep their room, killed once.
+    def room(path):
+        with h5py.File(path) as network:
+            return volumes(network).sum()
+
+    def changes(folder, count):
+        return [abs(room(at(f"{folder}/{k}/network.h5")) / room(at(f"{folder}/{k}/drying.h5")) - 1) for k in range(1, count + 1)]
+
+    def count_portions(folder):
+        return len([name for name in os.listdir(at(folder)) if name.isdigit()]) - 1
+
+    free = [*command[:2], "1", "most_change=0", at("free/course.tsv")]
+    bounded = [*command[:2], "1", "most_change=0.03", at("bounded/course.tsv")]
+    ends = [subprocess.run(each, env=os.environ | {"BIN": BIN}, capture_output=True) for each in (free, bounded)]
+    n = count_portions("bounded")
+    found = changes("bounded", n)
+    ok([end.returncode for end in ends] == [0, 0] and count_portions("free") == 1 and n > 4 and max(found) <= 0.03,
+       "portions are halved until throats keep their room", (n, found))
+    course = open(at("bounded/course.tsv"), "rb").read()
+    for k in range(2, n + 1):
+        for name in os.listdir(at(f"bounded/{k}")):
+            if k > 3 or name not in ("portions", "drying.h5"):
+                os.remove(at(f"bounded/{k}/{name}"))
+    end = subprocess.run(bounded, env=os.environ | {"BIN": BIN}, capture_output=True)
+    ok(end.returncode == 0 and open(at("bounded/course.tsv"), "rb").read() == course and count_portions("bounded") == n,
+       "and gone on with in the middle: the same bytes", end.stderr.decode())
+
     end = subprocess.run([*command[:-1], "force-protocol.force_scale=0.1", command[-1]],
                          env=os.environ | {"BIN": BIN}, capture_output=True)
     ok(end.returncode == 0 and all((open(name, "rb").read() != whole[name]) == ("/0/" not in name)
@@ -213,6 +240,7 @@ with scratch() as folder:
         pass
     refused = [refusal(64, "portions", "none", word) for word in ("0", "0+0", "3+", "+3", "-1", "1+x")]
     refused += [refusal(64, word, "none", "2", word) for word in ("demreplay.cycles=2", "dry=3")]
+    refused += [refusal(64, "most_change", "none", "2", f"most_change={word}") for word in ("abc", "-1", "")]
     refused += [refusal(73, "other/7", "other", "2")]
     ok(all(refused) and os.path.exists(at("other/7/precious")) and not os.path.exists(at("none")),
        "refused in a line, and nothing lost", refused)
