@@ -183,7 +183,7 @@ bool liquid_graph_correct(struct liquid_graph *graph, double aim)
         graph->n, graph, multiply, precondition, {room[0], room[1], room[2]}};
     double *correction = room[3];
     conjugate_gradients(&problem, graph->lack, correction, aim, MOST_STEPS);
-    if (!(sqrt(dot_product(graph->lack, graph->lack, graph->n)) <= aim))
+    if (!(sqrt(sum_of_products(graph->lack, graph->lack, graph->n)) <= aim))
         graph_factor_forget(graph->factor);
     for (int i = 0; i < graph->n; i++)
         compensated_add(&graph->potential[i], correction[i]);

@@ -235,7 +235,7 @@ static enum status find_multipliers(struct throats *throats, struct vector *mult
     const double aim = 1e-15 * sqrt(pulls_squared(throats));
     const int count =
         conjugate_gradients(&problem, &residual->x, &multiplier->x, aim, most);
-    const double left = sqrt(dot_product(&residual->x, &residual->x, n));
+    const double left = sqrt(sum_of_products(&residual->x, &residual->x, n));
     for (int k = 0; k < 3; k++)
         free(problem.work[k]);
     free(residual);

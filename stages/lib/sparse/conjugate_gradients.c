@@ -23,7 +23,7 @@ static double block_product(const double *x, const double *y, int n)
     return sum;
 }
 
-double dot_product(const double *x, const double *y, int n)
+double sum_of_products(const double *x, const double *y, int n)
 {
     if (n <= BLOCK) return block_product(x, y, n);
     const int blocks = (n + BLOCK - 1) / BLOCK;
@@ -45,21 +45,21 @@ int resume_conjugate_gradients(const struct linear_problem *problem, double *res
 {
     const int n = problem->n;
     double *z = problem->work[0], *p = problem->work[1], *image = problem->work[2];
-    double curvature = dot_product(p, image, n);
+    double curvature = sum_of_products(p, image, n);
     int iteration = 0;
     for (int i = 0; i < n; i++)
         x[i] = 0;
-    while (iteration < most && sqrt(dot_product(residual, residual, n)) > aim) {
+    while (iteration < most && sqrt(sum_of_products(residual, residual, n)) > aim) {
         problem->precondition(problem->context, residual, z);
-        const double overlap = curvature > 0 ? dot_product(z, image, n) / curvature
+        const double overlap = curvature > 0 ? sum_of_products(z, image, n) / curvature
                                              : 0; // along the last p
 #pragma omp parallel for schedule(static) if (n > LARGE)
         for (int i = 0; i < n; i++)
             p[i] = z[i] - overlap * p[i];
         problem->multiply(problem->context, p, image);
-        curvature = dot_product(p, image, n);
+        curvature = sum_of_products(p, image, n);
         if (!(curvature > 0)) break;
-        const double step = dot_product(p, residual, n) / curvature;
+        const double step = sum_of_products(p, residual, n) / curvature;
 #pragma omp parallel for schedule(static) if (n > LARGE)
         for (int i = 0; i < n; i++) {
             x[i] += step * p[i];

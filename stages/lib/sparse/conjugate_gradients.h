@@ -25,6 +25,6 @@ int resume_conjugate_gradients(const struct linear_problem *problem, double *res
                                double *x, double aim, int most);
 
 // A sum in blocks of fixed length: the same for any number of threads.
-double dot_product(const double *x, const double *y, int n);
+double sum_of_products(const double *x, const double *y, int n);
 
 #endif

@@ -53,7 +53,7 @@ static int iterate(struct linear_solver *linear, const double *b, double *x,
                    double reduction)
 {
     const int n = linear->matrix->n;
-    const double size = sqrt(dot_product(b, b, n));
+    const double size = sqrt(sum_of_products(b, b, n));
     const struct linear_problem problem = {
         n,
         linear,
