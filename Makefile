@@ -277,7 +277,8 @@ speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minu
 
 # --- house ----------------------------------------------------------------------------
 
-C_SOURCES := $(wildcard stages/*/*.[ch] stages/lib/*/*.[ch] stages/lib/*/*.cpp tests/*/*.[ch])
+C_SOURCES := $(wildcard stages/*/*.[ch] stages/lib/*/*.[ch] stages/lib/*/*.cpp tests/*.h \
+	tests/*/*.[ch])
 
 .PHONY: format tidy help
 format: ## format the C and C++ sources

@@ -23,6 +23,7 @@
 #include "dry/drying.h"
 #include "network/invasion.h"
 
+#include "../random.h"
 #include "basics/memory.h"
 
 #include <math.h>
@@ -30,14 +31,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-static double next_random(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static double seconds(void)
 {
@@ -59,7 +52,8 @@ static struct network lattice(const int n[3])
                               .throat_radius = NEW_ARRAY(double, most),
                               .throat_length = NEW_ARRAY(double, most),
                               .throat_kind = NEW_ARRAY(uint8_t, most)};
-    network.packing.upper = (struct vector){n[0] - 1, n[1] > 1 ? n[1] - 1 : 1, n[2] - 1};
+    network.packing.upper =
+        (struct vector){n[0] - 1, n[1] > 1 ? n[1] - 1 : 1, n[2] - 1};
     uint64_t random = 1;
     for (int node = 0; node < n_node; node++) {
         const int at[3] = {node % n[0], node / n[0] % n[1], node / n[0] / n[1]};

@@ -23,6 +23,7 @@
 #include "network/invasion.h"
 #include "tessellate/diagram.h"
 
+#include "../random.h"
 #include "basics/memory.h"
 
 #include <math.h>
@@ -31,14 +32,6 @@
 #include <string.h>
 
 enum { INLET = WALL_Z_UPPER, OUTLET = WALL_Z_LOWER, DRAWS = 100 };
-
-static double next_random(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static uint64_t stream(uint64_t seed, int run)
 {
@@ -71,16 +64,15 @@ static struct network lattice(const int n[3])
 {
     const int n_node = n[0] * n[1] * n[2], stride[3] = {1, n[0], n[0] * n[1]};
     const size_t most = 3 * (size_t)n_node;
-    struct network network = {.packing = {.upper = {n[0], n[1], n[2]},
-                                          .periodic = {1, 1, 0}},
-                              .n_node = n_node,
-                              .node_position = NEW_ARRAY(struct vector, n_node),
-                              .node_walls = NEW_ARRAY(uint8_t, n_node),
-                              .throat_nodes =
-                                  allocate(most, sizeof *network.throat_nodes),
-                              .throat_radius = NEW_ARRAY(double, most),
-                              .throat_length = NEW_ARRAY(double, most),
-                              .throat_kind = NEW_ARRAY(uint8_t, most)};
+    struct network network = {
+        .packing = {.upper = {n[0], n[1], n[2]}, .periodic = {1, 1, 0}},
+        .n_node = n_node,
+        .node_position = NEW_ARRAY(struct vector, n_node),
+        .node_walls = NEW_ARRAY(uint8_t, n_node),
+        .throat_nodes = allocate(most, sizeof *network.throat_nodes),
+        .throat_radius = NEW_ARRAY(double, most),
+        .throat_length = NEW_ARRAY(double, most),
+        .throat_kind = NEW_ARRAY(uint8_t, most)};
     for (int node = 0; node < n_node; node++) {
         const int at[3] = {node % n[0], node / n[0] % n[1], node / n[0] / n[1]};
         network.node_position[node] = (struct vector){at[0], at[1], at[2]};

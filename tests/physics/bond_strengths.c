@@ -276,14 +276,14 @@ static void as_strong_whatever_the_numbers(void **state)
     (void)state;
     for (int repeats = 0; repeats < 2; repeats++) {
         struct packing packing = irregular_packing(4, RADIUS, repeats);
-        int *order = shuffled(packing.n_particle, 5);
+        int *order = shuffled(packing.n_particle, &(uint64_t){5});
         check_renumbered(&packing, order);
         free(order);
         packing_free(&packing);
     }
     struct packing packing = cubic_lattice(4, 3, 3, false);
     bond_grains(&packing, BONDS_BY_DISTANCE, 0.45);
-    int *order = shuffled(packing.n_particle, 6);
+    int *order = shuffled(packing.n_particle, &(uint64_t){6});
     check_renumbered(&packing, order);
     free(order);
     packing_free(&packing);

@@ -12,7 +12,7 @@ static struct packing loose_grains(void)
     uint64_t seed = 31;
     for (int i = 0; i < N; i++) {
         const int at[3] = {i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)};
-        packing.radius[i] = RADIUS * (1 + 0.1 * next_random(&seed));
+        packing.radius[i] = RADIUS * (1 + 0.1 * next_signed(&seed));
         packing.position[i] =
             (struct vector){(2.3 * at[0] + 1.2) * RADIUS, (2.3 * at[1] + 1.2) * RADIUS,
                             (2.3 * at[2] + 1.2) * RADIUS};

@@ -18,7 +18,7 @@ static struct scene some_scene(void)
     struct vector *jolt = random_vectors(3 * GRAINS, 1, 22);
     for (int i = 0; i < GRAINS; i++) {
         const struct vector at = {i % 3, i / 3 % 3, (double)(i / 9)};
-        scene.radius[i] = RADIUS * (0.9 + 0.1 * next_random(&seed));
+        scene.radius[i] = RADIUS * (0.9 + 0.1 * next_signed(&seed));
         scene.position[i] = scale(1.85 * RADIUS, add(at, scale(0.03, jolt[i])));
         scene.velocity[i] = jolt[GRAINS + i];
         scene.force[i] = scale(-3e-8, subtract(at, (struct vector){1, 1, 1.5}));

@@ -14,7 +14,7 @@ static struct packing gas(const uint8_t periodic[3])
     uint64_t seed = 22;
     for (int i = 0, k = 0; i < N; k++) {
         assert_true(k < 100 * N);
-        packing.radius[i] = RADIUS * (1 + 0.5 * next_random(&seed));
+        packing.radius[i] = RADIUS * (1 + 0.5 * next_signed(&seed));
         packing.position[i] = at[k];
         bool touches = false;
         for (int j = 0; j < i && !touches; j++) {

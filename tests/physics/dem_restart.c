@@ -195,7 +195,7 @@ static struct packing cloud(int edge, double spread, bool periodic)
             add(shift[i], (struct vector){(2.4 * at[0] + 1.3) * RADIUS,
                                           (2.4 * at[1] + 1.3) * RADIUS,
                                           (2.4 * at[2] + 1.3) * RADIUS});
-        packing.radius[i] = RADIUS * (1 - spread * fabs(next_random(&seed)));
+        packing.radius[i] = RADIUS * (1 - spread * fabs(next_signed(&seed)));
     }
     const double side = 2.4 * edge * RADIUS;
     packing.upper = (struct vector){side, side, side};
@@ -437,7 +437,7 @@ static void flipped_bits(void **state)
         static const int64_t size[] = {8, 4, 8, 1};
         const int64_t bytes = array[k].count * size[array[k].type];
         for (int trial = 0; trial < 20 && bytes > 0; trial++) {
-            const double where = 0.5 * (next_random(&seed) + 1);
+            const double where = next_random(&seed);
             uint8_t *byte = (uint8_t *)array[k].data + (int64_t)(where * (double)bytes);
             const uint8_t was = *byte;
             *byte ^= (uint8_t)(1u << trial % 8);

@@ -4,6 +4,7 @@
 #ifndef CRAQUELURE_TEST_DEM_SCENE_H
 #define CRAQUELURE_TEST_DEM_SCENE_H
 
+#include "../random.h"
 #include "basics/memory.h"
 #include "dem/engine.h"
 
@@ -131,22 +132,19 @@ static inline void assert_close(double got, double wanted, double fraction)
         fail_msg("got %.17g, wanted %.17g within %g", got, wanted, fraction);
 }
 
-// Numbers from a seed, in [-1,1): splitmix64.
-static inline double next_random(uint64_t *state)
+// Evenly distributed in [-1,1); advances STATE.
+static inline double next_signed(uint64_t *state)
 {
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+    return 2 * next_random(state) - 1;
 }
 
 static inline struct vector *random_vectors(int count, double size, uint64_t seed)
 {
     struct vector *all = NEW_ARRAY(struct vector, count);
     for (int i = 0; i < count; i++) {
-        all[i].x = size * next_random(&seed);
-        all[i].y = size * next_random(&seed);
-        all[i].z = size * next_random(&seed);
+        all[i].x = size * next_signed(&seed);
+        all[i].y = size * next_signed(&seed);
+        all[i].z = size * next_signed(&seed);
     }
     return all;
 }

@@ -17,20 +17,6 @@
 
 static const double spacing = 5e-7;
 
-static int *random_permutation(int n, uint64_t *seed)
-{
-    int *to = NEW_ARRAY(int, n);
-    for (int i = 0; i < n; i++)
-        to[i] = i;
-    for (int i = n - 1; i > 0; i--) {
-        const int j = (int)(next_random(seed) * (i + 1));
-        const int swap = to[i];
-        to[i] = to[j];
-        to[j] = swap;
-    }
-    return to;
-}
-
 // A copy in which node i is NODE_TO[i] and throat t is THROAT_TO[t].
 static struct network renumbered(const struct network *old, int n[3],
                                  const int *node_to, const int *throat_to)
@@ -75,8 +61,8 @@ static void check_renumbered(enum liquid_limit liquid, double spread,
     struct network network = lattice_network(n[0], n[1], n[2], spacing);
     randomise_radii(&network, spacing, spread, 3);
     impose_empty_throats(&network, empty_walls);
-    int *node_to = random_permutation(network.n_node, &seed);
-    int *throat_to = random_permutation(network.n_throat, &seed);
+    int *node_to = shuffled(network.n_node, &seed);
+    int *throat_to = shuffled(network.n_throat, &seed);
     struct network other = renumbered(&network, n, node_to, throat_to);
 
     struct drying_conditions conditions = kharaghani_conditions(liquid);
@@ -162,8 +148,8 @@ static void check_irregular(enum liquid_limit liquid)
     conditions.viscosity = 1e-6;
     struct drying_history first = dry_and_check(&network, &conditions);
     for (int run = 0; run < 3; run++) {
-        int *node_to = random_permutation(network.n_node, &seed);
-        int *throat_to = random_permutation(network.n_throat, &seed);
+        int *node_to = shuffled(network.n_node, &seed);
+        int *throat_to = shuffled(network.n_throat, &seed);
         struct network other = renumbered(&network, n, node_to, throat_to);
         struct drying_history again = dry_and_check(&other, &conditions);
         check_same_events(&first, &again, throat_to);

@@ -361,25 +361,12 @@ static void test_cubic_threshold(void **state)
 
 // --- whatever the numbers ----------------------------------------------------------
 
-static void shuffle(int *place, int n, uint64_t *seed)
-{
-    for (int i = 0; i < n; i++)
-        place[i] = i;
-    for (int i = n - 1; i > 0; i--) {
-        const int j = (int)(next_random(seed) * (i + 1)), swap = place[i];
-        place[i] = place[j];
-        place[j] = swap;
-    }
-}
-
 // Of all values EASE (of throats, or nodes) only so many are DIFFERENT.
 static void check_renumbered(enum invasion_rule rule, int different)
 {
     uint64_t seed = 31;
     struct network one = lattice_network(6, 6, 6, 1), two = lattice_network(6, 6, 6, 1);
-    int *node = NEW_ARRAY(int, one.n_node), *throat = NEW_ARRAY(int, one.n_throat);
-    shuffle(node, one.n_node, &seed);
-    shuffle(throat, one.n_throat, &seed);
+    int *node = shuffled(one.n_node, &seed), *throat = shuffled(one.n_throat, &seed);
     const bool throats = rule == INVADE_THROATS;
     const int n = throats ? one.n_throat : one.n_node;
     double *ease[2] = {NEW_ARRAY(double, n), NEW_ARRAY(double, n)};

@@ -401,7 +401,7 @@ static void turned_and_renumbered_the_same(void **state)
 {
     (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
-    int *order = shuffled(N, 3);
+    int *order = shuffled(N, &(uint64_t){3});
     const double angle = 0.7;
     struct packing other = turned_packing(&packing, axis, angle, order);
     uint8_t *held = lowest_grains(&packing, SIDE), *held_there = NEW_ARRAY(uint8_t, N);

@@ -2,8 +2,8 @@
 // Regular triangulations by their definition, with exact numbers: no point has less
 // power to the centre of a cell than its corners have, cells fill the hull, and which
 // they are depends on the points alone.
-#include "geometry/insertion_order.h"
 #include "geometry/regular_triangulation.h"
+#include "geometry/insertion_order.h"
 
 #include <gsl/gsl_rng.h>
 #include <setjmp.h>

@@ -9,15 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// In [0,1): splitmix64.
-static double next_share(uint64_t *state)
-{
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 struct packing irregular_packing(int side, double size, bool repeats)
 {
     const int n = side * side * side;
@@ -32,7 +23,7 @@ struct packing irregular_packing(int side, double size, bool repeats)
         const int at[3] = {i % side, i / side % side, i / (side * side)};
         for (int axis = 0; axis < 3; axis++)
             set_component(&packing.position[i], axis,
-                          size * (2 * at[axis] + 0.7 + 0.6 * next_share(&seed)));
+                          size * (2 * at[axis] + 0.7 + 0.6 * next_random(&seed)));
     }
     for (int i = 0; i < n; i++) {
         packing.radius[i] = size;
@@ -96,17 +87,6 @@ struct packing turned_packing(const struct packing *packing, struct vector axis,
     return other;
 }
 
-int *shuffled(int n, uint64_t seed)
-{
-    int *order = NEW_ARRAY(int, n);
-    for (int i = 0; i < n; i++) {
-        const int other = (int)((i + 1) * next_share(&seed));
-        order[i] = order[other];
-        order[other] = i;
-    }
-    return order;
-}
-
 struct vector *shrinking_load(const struct packing *packing, double size)
 {
     struct vector *force = NEW_ARRAY(struct vector, packing->n_particle);
@@ -114,7 +94,7 @@ struct vector *shrinking_load(const struct packing *packing, double size)
     const double reach = norm(subtract(packing->upper, middle));
     uint64_t seed = 2;
     for (int i = 0; i < packing->n_particle; i++)
-        force[i] = scale(size * (0.5 + 0.5 * next_share(&seed)) / reach,
+        force[i] = scale(size * (0.5 + 0.5 * next_random(&seed)) / reach,
                          subtract(middle, packing->position[i]));
     return force;
 }

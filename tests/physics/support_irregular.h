@@ -3,6 +3,7 @@
 #ifndef CRAQUELURE_TEST_SUPPORT_IRREGULAR_H
 #define CRAQUELURE_TEST_SUPPORT_IRREGULAR_H
 
+#include "../random.h"
 #include "geometry/packing.h"
 
 // SIDE^3 grains of radii about SIZE, m, each as large as its nearest neighbour lets it
@@ -17,9 +18,6 @@ uint8_t *lowest_grains(const struct packing *packing, int side);
 struct packing turned_packing(const struct packing *packing, struct vector axis,
                               double angle, const int *order);
 struct vector turned(struct vector a, struct vector axis, double angle);
-
-// Numbers 0 to N-1 in an order of their own; the caller frees it.
-int *shuffled(int n, uint64_t seed);
 
 // Forces towards the middle of the box, uneven, at most SIZE N. (n_particle)
 struct vector *shrinking_load(const struct packing *packing, double size);

@@ -11,14 +11,6 @@
 
 #include <cmocka.h>
 
-double next_random(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 static int lattice_node(int nx, int ny, int i, int j, int k)
 {
     return (k * ny + j) * nx + i;

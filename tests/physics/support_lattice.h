@@ -3,6 +3,7 @@
 #ifndef CRAQUELURE_SUPPORT_LATTICE_H
 #define CRAQUELURE_SUPPORT_LATTICE_H
 
+#include "../random.h"
 #include "dry/drying.h"
 
 // Counts of nodes along x, y, z; all throats of length SPACING and radius 0.2 SPACING.
@@ -23,9 +24,6 @@ int lattice_throat(const struct network *network, int node, int axis);
 struct drying_conditions kharaghani_conditions(enum liquid_limit liquid);
 // And with the Kelvin effect.
 struct drying_conditions kelvin_conditions(enum liquid_limit liquid);
-
-// Evenly distributed in [0,1); advances STATE (splitmix64).
-double next_random(uint64_t *state);
 
 // Dries NETWORK, or the test fails.
 struct drying_history dry_or_fail(const struct network *network,
