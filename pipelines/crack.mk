@@ -17,8 +17,12 @@ FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
 DEM_REPLAY ?= $(BUILD)/bin/dem-replay
 CRACKSTATS ?= $(BUILD)/bin/crackstats
 
-ifneq ($(word 2,$(SCENE)),)
-$(error SCENE=$(SCENE): make takes no blanks in names of files)
+# What make or its shell would take apart.
+hash := \#
+unfit := $(strip $(word 2,$(value SCENE)) $(foreach sign,' " ` ; & < > | * ? [ ] { } ! $$ $(hash),$(findstring \
+	$(sign),$(value SCENE))))
+ifneq ($(unfit),)
+$(error SCENE=$(value SCENE): make takes no blanks or signs in names of files)
 endif
 
 pipeline_goals += demo run
