@@ -19,17 +19,18 @@ static double end_of_drying(const struct artifact *response)
 static void check_cracks(const struct run *run, const char *path)
 {
     uint8_t *broke = NEW_ARRAY(uint8_t, run->packing.n_bond);
-    for (int k = 0; k < run->n_crack; k++) {
-        if (broke[run->bond[k]]++)
-            die(STATUS_BAD_DATA, "%s: /cracks/bond: row %d: bond %d has broken before",
-                input_name(path), k, run->bond[k]);
-        if (run->time[k] > run->end)
-            die(STATUS_BAD_DATA,
-                "%s: /cracks/time: row %d: must not be after the end of /history/time, "
-                "%g s, got %g",
-                input_name(path), k, run->end, run->time[k]);
-    }
+    int k = 0;
+    while (k < run->n_crack && run->time[k] <= run->end && !broke[run->bond[k]]++)
+        k++;
     free(broke);
+    if (k == run->n_crack) return;
+    if (run->time[k] > run->end)
+        die(STATUS_BAD_DATA,
+            "%s: /cracks/time: row %d: must not be after the end of /history/time, %g "
+            "s, got %g",
+            input_name(path), k, run->end, run->time[k]);
+    die(STATUS_BAD_DATA, "%s: /cracks/bond: row %d: bond %d has broken before",
+        input_name(path), k, run->bond[k]);
 }
 
 struct run read_run(const struct artifact *response)
