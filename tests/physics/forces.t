@@ -180,26 +180,27 @@ def imbalance(force, centres, middle):
 
 def balance():
     faces = ["form=faces", "balanced=false"]
-    every = [*faces, "contact_angle=40", "rings.left=suction", "pressure=clusters"]
-    nearest = ["form=solid-angle", *every[2:]]
+    liquid = ["contact_angle=40", "pressure=clusters"]
+    every = [*faces, *liquid, "rings.left=suction"]
+    nearest = ["form=solid-angle", *liquid]
     for label, n, box, how, dry, merge, forms in [
             ("cells left out", 90, (3.1e-6, 3.1e-6, 3.6e-6), ["boundary=eliminate"], [], 0,
              [faces, every, nearest]),
             ("a box, empty sides", 60, (2.6e-6, 2.6e-6, 3e-6), [], [SIDES], 0,
              [faces, every, nearest]),
             ("merged", 60, (2.6e-6, 2.6e-6, 3e-6), [], [SIDES], 0.1,
-             [nearest, ["form=faces"], ["form=centres"]]),
+             [[*nearest, "rings.left=suction"], ["form=faces"], ["form=centres"]]),
             ("a layer, empty sides", 60, (5e-6, 5e-7, 5e-6), ["dimensions=2"],
              ['imposed_empty=["-x","+x","-z"]'], 0, [faces, every, nearest, ["form=arcs"]])]:
         layer = "dimensions=2" in how
         centres, radii = scatter(n, box, layer)
-        for liquid in "inviscid", "immobile":
-            drying("d", centres, radii, box, how, [f"liquid={liquid}", *dry], merge)
+        for limit in "inviscid", "immobile":
+            drying("d", centres, radii, box, how, [f"liquid={limit}", *dry], merge)
             for also in forms:
                 force, _, _ = forces("d", *also)
                 net, moment = imbalance(force, centres, np.array(box) / 2)
                 ok(net < 1e-10 and moment < 1e-10,
-                   f"{label}, {liquid}, {', '.join(also)}: forces and moments balance at "
+                   f"{label}, {limit}, {', '.join(also)}: forces and moments balance at "
                    "every step", (net, moment))
 
 
