@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // merge-nodes: short throats removed from a pore network [K 3.3.7].
 #include "artifacts/artifact.h"
+#include "artifacts/document.h"
 #include "artifacts/write_network.h"
 #include "basics/memory.h"
 #include "basics/status.h"

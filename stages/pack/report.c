@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report.h"
 
+#include "artifacts/document.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "geometry/fabric.h"

@@ -115,8 +115,4 @@ json_t *one_input(const struct artifact *input);
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
                  const char *model);
 
-// Writes DOCUMENT to PATH, whole or not at all, with a line for every value, and frees
-// it.
-void write_json(const char *path, json_t *document);
-
 #endif

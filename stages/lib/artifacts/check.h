@@ -16,8 +16,4 @@
 enum status check_file(hid_t file, const struct schema *schema, size_t image_size,
                        struct reason *reason);
 
-// The same for a JSON artifact: every member is there and of its type.
-enum status check_document(const json_t *document, const struct schema *schema,
-                           struct reason *reason);
-
 #endif

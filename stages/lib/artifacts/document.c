@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "artifacts/document.h"
 
-#include "artifacts/check.h"
-#include "basics/status.h"
+#include "basics/memory.h"
 
 #include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 bool is_document(const struct bytes *bytes)
@@ -13,6 +14,45 @@ bool is_document(const struct bytes *bytes)
     while (k < bytes->size && isspace(bytes->data[k]))
         k++;
     return k < bytes->size && bytes->data[k] == '{';
+}
+
+static bool has_json_type(const json_t *value, const char *type)
+{
+    if (json_is_null(value)) return strchr(type, '?') != NULL; // "object?" may be null
+    switch (json_typeof(value)) {
+    case JSON_OBJECT:
+        return !strncmp(type, "object", 6);
+    case JSON_ARRAY:
+        return !strncmp(type, "array", 5);
+    case JSON_INTEGER:
+        return !strncmp(type, "integer", 7) || !strncmp(type, "number", 6);
+    case JSON_REAL:
+        return !strncmp(type, "number", 6);
+    default:
+        return false;
+    }
+}
+
+enum status check_document(const json_t *document, const struct schema *schema,
+                           struct reason *reason)
+{
+    const json_t *members = json_object_get(schema->document, "members");
+    if (!members)
+        return refuse(reason, STATUS_BAD_DATA, "a %s is an HDF5 file, not JSON",
+                      schema->name);
+    size_t k;
+    json_t *entry;
+    json_array_foreach(members, k, entry)
+    {
+        const char *name = json_string_value(json_object_get(entry, "name"));
+        const char *type = json_string_value(json_object_get(entry, "type"));
+        const json_t *value = json_object_get(document, name + 1);
+        if (!value) return refuse(reason, STATUS_BAD_DATA, "%s: is missing", name);
+        if (!has_json_type(value, type))
+            return refuse(reason, STATUS_BAD_DATA, "%s: must be of type %s", name,
+                          type);
+    }
+    return STATUS_OK;
 }
 
 json_t *document_of(const char *path, const struct bytes *bytes)
@@ -35,4 +75,15 @@ json_t *document_of(const char *path, const struct bytes *bytes)
         die(STATUS_BAD_DATA, "%s: %s", input_name(path), reason.text);
     schema_free(schema);
     return document;
+}
+
+void write_json(const char *path, json_t *document)
+{
+    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    char *line = allocate(strlen(text) + 2, 1);
+    sprintf(line, "%s\n", text);
+    write_whole(path, line, strlen(line));
+    free(line);
+    free(text);
+    json_decref(document);
 }

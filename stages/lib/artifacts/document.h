@@ -3,7 +3,9 @@
 #ifndef CRAQUELURE_DOCUMENT_H
 #define CRAQUELURE_DOCUMENT_H
 
+#include "artifacts/schema.h"
 #include "basics/file.h"
+#include "basics/status.h"
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -14,5 +16,14 @@ bool is_document(const struct bytes *bytes);
 // Reads and checks it; PATH is for messages. Exits 65 when it is not an artifact or
 // breaks its schema. The caller owns it.
 json_t *document_of(const char *path, const struct bytes *bytes);
+
+// Every member that SCHEMA asks for is there and of its type; else STATUS_BAD_DATA with
+// the member in REASON.
+enum status check_document(const json_t *document, const struct schema *schema,
+                           struct reason *reason);
+
+// Writes DOCUMENT to PATH, whole or not at all, with a line for every value, and frees
+// it.
+void write_json(const char *path, json_t *document);
 
 #endif

@@ -3,6 +3,7 @@
 // time stamps, and the oldest file layout, set explicitly.
 #include "artifacts/artifact.h"
 #include "artifacts/check.h"
+#include "artifacts/document.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 
@@ -375,17 +376,6 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
     publish(artifact->descriptor, artifact->path);
     schema_free(artifact->schema);
     free(artifact);
-}
-
-void write_json(const char *path, json_t *document)
-{
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    char *line = allocate(strlen(text) + 2, 1);
-    sprintf(line, "%s\n", text);
-    write_whole(path, line, strlen(line));
-    free(line);
-    free(text);
-    json_decref(document);
 }
 
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
