@@ -37,7 +37,11 @@ PACKINGS = [
     ["method=poisson", "count=30", "upper=[3e-6,3e-6,3e-6]"],
     ["method=random_sequential", "count=30", "upper=[3e-6,3e-6,3e-6]"],
     ["method=random_sequential", "count=40", "upper=[3e-6,3e-6,3e-6]",
-     "sizes.distribution=lognormal", "sizes.spread=0.3"]]
+     "sizes.distribution=lognormal", "sizes.spread=0.3"],
+    ["method=random_sequential", "count=40", "domain.shape=ring", "domain.radius=2e-6",
+     "domain.inner_radius=0.7e-6", "domain.height=2.5e-6"],
+    ["method=random_sequential", "count=40", "upper=[3e-6,3e-6,3e-6]", "domain.cut.shape=cylinder",
+     "domain.cut.radius=0.7e-6", "domain.cut.lower=[0,0,1.2e-6]"]]
 
 
 def leaves(properties, prefix):
