@@ -49,6 +49,12 @@ static void go_to_lane(struct equilibrium *e, int lane)
     }
 }
 
+// Whether the next lane is found, at places that are numbers.
+static bool is_hint(const struct foresight *f)
+{
+    return f->used < f->found && isfinite(f->sums.furthest[f->used]);
+}
+
 // Whether what was found in LANE is balanced to SHARE of the tolerance, and all
 // displacements are small.
 static bool is_balanced(const struct equilibrium *e, int lane, double share)
@@ -103,7 +109,7 @@ static bool find_next(struct equilibrium *e)
             f->found = look(e, f->used, end);
             is_polished = false;
         }
-        f->has_hint = f->used < f->found;
+        f->has_hint = is_hint(f);
         if (!f->has_hint || !is_balanced(e, f->used, 1)) return false;
         if (break_in_lane(e, f->used)) continue;
         if (is_polished || is_balanced(e, f->used, well_below)) return true;
@@ -143,7 +149,7 @@ void foresee(struct equilibrium *e)
     if (f->n_lane == 0) {
         begin_lanes_anew(e);
         f->found = look(e, 0, 1);
-        f->has_hint = f->found > 0;
+        f->has_hint = is_hint(f);
     }
     if (f->has_hint) go_to_lane(e, f->used);
     f->n_lane = f->found = f->used = 0;

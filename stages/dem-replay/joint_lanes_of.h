@@ -32,9 +32,10 @@ INLINE void take_root(lanes *a)
 #endif
 }
 
+// What is no number is larger than all, and stays: a singular factor must be seen.
 INLINE void take_larger(const lanes *a, lanes *most)
 {
-    const whole is_larger = *a > *most;
+    const whole is_larger = ~(*a <= *most) & (*most == *most);
     *most = (lanes)((is_larger & (whole)*a) | (~is_larger & (whole)*most));
 }
 

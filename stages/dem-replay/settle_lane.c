@@ -148,6 +148,15 @@ static void find_strains(struct settler *s, const struct corrections *correction
     }
 }
 
+// Not where the factor is all but singular.
+static bool are_finite(const double *number, int count)
+{
+    double none = 0;
+    for (int k = 0; k < count; k++)
+        none += 0 * number[k];
+    return none == 0;
+}
+
 bool settle_lane(struct settler *s, struct corrections *corrections,
                  const struct lane_row *row, bool may_change, const double *given,
                  bool *touches, double *load)
@@ -159,6 +168,7 @@ bool settle_lane(struct settler *s, struct corrections *corrections,
         if (!factor_acting(s, corrections, count, row, touches)) return false;
         if (!may_change) memset(s->at_zero, 0, (size_t)s->n_acting * sizeof(double));
         find_strains(s, corrections, count, given);
+        if (!are_finite(s->strain, count)) return false;
         bool is_same = true;
         for (int k = 0; k < count && may_change; k++) {
             const bool now = row[k].contact > 0 && s->strain[k] <= row[k].closed_to;
