@@ -6,7 +6,6 @@
 #include "geometry/triangulation_in_walls.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 // In units: copies of grains are first made as far as this.
 static const double first_reach = 2;

@@ -6,7 +6,6 @@
 #include "sparse/linear_solver.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 // Each correction gains what the solver promises, at most this; rounding ends it.
 enum { CORRECTIONS = 12 };

@@ -4,8 +4,6 @@
 #include "basics/memory.h"
 #include "facet.h"
 
-#include <stdlib.h>
-
 struct motion {
     struct corner corner[3];
     struct vector velocity[3]; // of grains

@@ -5,8 +5,6 @@
 #include "merge_parts.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static double mean(const double *values, int count)
 {

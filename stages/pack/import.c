@@ -2,7 +2,6 @@
 #include "basics/memory.h"
 #include "pack.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,8 +2,6 @@
 #include "basics/memory.h"
 #include "pack.h"
 
-#include <stdlib.h>
-
 enum { MOST_IN_CELL = 4 };
 
 // A unit cell of touching grains of radius 1: its edges, and where its grains are, as

@@ -9,7 +9,6 @@
 #include "parameters.h"
 #include "report.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

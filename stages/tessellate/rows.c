@@ -4,7 +4,6 @@
 #include "basics/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static int compare_rows(const void *a, const void *b)
 {

@@ -6,6 +6,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 // L D L' in the order of elimination. A pore passes a share of what it holds to each of

@@ -9,7 +9,6 @@
 
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 // A throat, as one of its pores sees it. Widths are of the widest there was.
 struct half_throat {
