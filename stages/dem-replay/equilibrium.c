@@ -213,6 +213,7 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
                              struct reason *reason)
 {
     e->force = force;
+    e->n_load++;
     foresight_check(e->foresight, force);
     if (foreseen(e)) {
         foresight_go_on(e->foresight);

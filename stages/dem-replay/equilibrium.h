@@ -17,7 +17,7 @@
 #ifndef CRAQUELURE_EQUILIBRIUM_H
 #define CRAQUELURE_EQUILIBRIUM_H
 
-#include "dem/dem.h"
+#include "dem/keeper.h"
 #include "net_load.h"
 
 struct equilibrium_setup {
@@ -58,6 +58,17 @@ void equilibrium_expect(struct equilibrium *equilibrium, int count,
 enum status equilibrium_find(struct equilibrium *equilibrium,
                              const struct vector *force, struct reason *reason);
 
+// Forgets what only speeds up those that come; what was expected is to be said anew.
+// From there on all is as after equilibrium_restore from what equilibrium_save gave
+// then: the same bytes. It costs a factor: whether there have been many since the last.
+bool equilibrium_may_forget(const struct equilibrium *equilibrium);
+void equilibrium_forget(struct equilibrium *equilibrium);
+// A new list, to be freed with dem_free_arrays. STATUS_BAD_DATA: it is not one of such
+// an equilibrium.
+struct array_list equilibrium_save(const struct equilibrium *equilibrium);
+enum status equilibrium_restore(struct equilibrium *equilibrium,
+                                const struct array_list *list, struct reason *reason);
+
 // As the same functions of the engine [dem.h] say. The cycle of a crack is the
 // iteration.
 const struct dem_crack *equilibrium_cracks(const struct equilibrium *equilibrium,
@@ -87,7 +98,8 @@ int equilibrium_gone(const struct equilibrium *equilibrium, int *first);
 // Loads under which something held did not come to rest, and the grain that had most
 // left to balance under the LAST of them.
 int equilibrium_restless(const struct equilibrium *equilibrium, int *last);
-// How often it snapped through or buckled, and the grain that gave way most at the LAST.
+// How often it snapped through or buckled, and the grain that gave way most at the
+// LAST.
 int equilibrium_snaps(const struct equilibrium *equilibrium, int *last);
 
 #endif

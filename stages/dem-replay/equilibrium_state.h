@@ -82,7 +82,8 @@ struct equilibrium {
     double soft[2];            // against shifts and turns
     double largest_load;       // so far: what is left is measured by it
     double enough;             // what may be left
-    int iterations, factors;
+    int iterations;
+    int factors, n_load; // since all that speeds things up was forgotten
     int n_restless;      // loads under which not all came to rest
     int restless;        // grain that had most left to balance under the last of them
     int n_snap, snapped; // ends of equilibrium gone through in time; the grain that

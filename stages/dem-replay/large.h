@@ -38,6 +38,9 @@ struct displacement since_before(const struct equilibrium *equilibrium, int grai
 // Joints lie from now on, for the factor and what corrects it, as at the trial.
 void large_linearise(struct equilibrium *equilibrium);
 
+// For as many joints as there are.
+void large_make_room(struct equilibrium *equilibrium);
+
 // Grains that have come near each other, or the wall, become joints. Whether any of
 // these touch at the trial.
 bool large_meet(struct equilibrium *equilibrium);

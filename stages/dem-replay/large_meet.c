@@ -122,6 +122,16 @@ static void append_near(struct equilibrium *e)
     free(now.position);
 }
 
+void large_make_room(struct equilibrium *e)
+{
+    struct large *large = e->large;
+    const size_t count = (size_t)e->n_joint;
+    large->start = reallocate(large->start, count, sizeof *large->start);
+    large->before = reallocate(large->before, count, sizeof *large->before);
+    large->now = reallocate(large->now, count, sizeof *large->now);
+    large->more = reallocate(large->more, count, sizeof *large->more);
+}
+
 bool large_meet(struct equilibrium *e)
 {
     struct large *large = e->large;
@@ -131,8 +141,7 @@ bool large_meet(struct equilibrium *e)
     const int before = e->n_joint;
     append_near(e);
     if (e->n_joint == before) return false;
-    large->now = reallocate(large->now, (size_t)e->n_joint, sizeof *large->now);
-    large->more = reallocate(large->more, (size_t)e->n_joint, sizeof *large->more);
+    large_make_room(e);
     make_room_for_joints(e);
     resist(e);
     for (int j = before; j < e->n_joint; j++)

@@ -275,12 +275,14 @@ static void check_engine(const struct replay_settings *settings,
                          const struct invocation *invocation)
 {
     if (settings->engine == ENGINE_EXPLICIT) return;
+    if (invocation->checkpoint && settings->large_displacements &&
+        settings->material.friction > 0)
+        die(STATUS_USAGE,
+            "--checkpoint is not for quasi_static.large_displacements with "
+            "friction: the bytes would not be sure to be the same");
     if (settings->large_displacements && settings->support == SUPPORT_FREE)
         die(STATUS_BAD_DATA, "dem-replay.quasi_static.large_displacements: is for "
                              "support=fixed and wall: something must hold the grains");
-    if (invocation->checkpoint)
-        die(STATUS_USAGE, "--checkpoint is for engine=explicit: an equilibrium has no "
-                          "state between steps that is kept");
     if (settings->liquid.volume > 0)
         die(STATUS_BAD_DATA, "dem-replay.bridges.volume: equilibria know no liquid "
                              "bridges, engine=explicit does");

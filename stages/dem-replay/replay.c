@@ -24,6 +24,7 @@ struct run {
     int restless_before; // loads of an earlier replay that did not come to rest
     int snaps_before;    // of an earlier replay
     struct replay_place place;
+    struct kept_state kept; // of equilibria, the last
 };
 
 static enum status begin_equilibrium(struct run *run, struct reason *reason)
@@ -265,13 +266,17 @@ static enum status settle(struct run *run, int step, struct reason *reason)
                   run->load->saturation[step], cause.text);
 }
 
+static const struct dem_crack *engine_cracks(const struct run *run, int *count)
+{
+    return is_explicit(run) ? dem_cracks(run->dem, count)
+                            : equilibrium_cracks(run->equilibrium, count);
+}
+
 static void note_cracks(struct run *run, int step)
 {
     struct response *response = run->response;
     int count;
-    const struct dem_crack *cracks = is_explicit(run)
-                                         ? dem_cracks(run->dem, &count)
-                                         : equilibrium_cracks(run->equilibrium, &count);
+    const struct dem_crack *cracks = engine_cracks(run, &count);
     cracks += run->n_before;
     count -= run->n_before;
     response->crack =
@@ -323,15 +328,25 @@ static void take_last_snapshot(struct run *run, int step)
     if (last < 0 || response->snapshot[last].step < step) take_snapshot(run, step);
 }
 
+static enum status restore_engine(struct run *run, const struct array_list *engine,
+                                  struct reason *reason)
+{
+    return is_explicit(run)
+               ? dem_restore(run->dem, engine->array, engine->count, reason)
+               : equilibrium_restore(run->equilibrium, engine, reason);
+}
+
 static enum status go_on(struct run *run, struct reason *reason)
 {
     const struct kept_state *state = run->keeper->begin;
-    const enum status status =
-        dem_restore(run->dem, state->engine.array, state->engine.count, reason);
+    const enum status status = restore_engine(run, &state->engine, reason);
     if (status) return status;
+    struct engine_past past = {.cycle = cycles_done(run)};
+    past.crack = engine_cracks(run, &past.n_crack) + run->n_before;
+    past.n_crack -= run->n_before;
     return restore_response(run->response, run->packing, run->load,
-                            run->settings->n_snapshot, run->dem, run->n_before,
-                            &state->stage, &run->place, reason);
+                            run->settings->n_snapshot, &past, &state->stage,
+                            &run->place, reason);
 }
 
 // The loads of an earlier replay once more: each takes its equilibrium from the last.
@@ -347,6 +362,10 @@ static enum status repeat_earlier(struct run *run, struct reason *reason)
         memcpy(run->force, force + (size_t)k * n, n * sizeof *run->force);
         const enum status status = settle_equilibrium(run, reason);
         if (status) return status;
+        if (!equilibrium_may_forget(run->equilibrium)) continue;
+        equilibrium_forget(run->equilibrium); // as in one piece
+        equilibrium_expect(run->equilibrium, n_load - 1 - k,
+                           force + (size_t)(k + 1) * n);
     }
     equilibrium_cracks(run->equilibrium, &run->n_before);
     int grain;
@@ -394,6 +413,32 @@ static enum status do_step(struct run *run, struct reason *reason)
     return status;
 }
 
+static void expect_rest(struct run *run)
+{
+    const int step = run->place.step;
+    equilibrium_expect(run->equilibrium, run->load->n_time - step,
+                       run->load->force +
+                           (size_t)step * (size_t)run->packing->n_particle);
+}
+
+// Equilibria are kept from where they forget, whether anyone asks or not, so that it
+// makes no difference; what is given away is the last of these.
+static void keep_equilibrium(struct run *run)
+{
+    if (run->place.step == run->load->n_time) return;
+    if (equilibrium_may_forget(run->equilibrium)) {
+        equilibrium_forget(run->equilibrium);
+        expect_rest(run);
+        if (!run->keeper || !run->keeper->due) return;
+        free_kept_state(&run->kept);
+        run->kept = (struct kept_state){
+            equilibrium_save(run->equilibrium),
+            save_response(run->response, run->packing, run->load->n_time, run->place)};
+    }
+    if (run->kept.engine.count > 0 && is_due(run->keeper))
+        run->keeper->keep(run->keeper->context, &run->kept);
+}
+
 enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
                    const struct replay_progress *progress, const struct keeper *keeper,
@@ -414,9 +459,10 @@ enum status replay(const struct packing *packing, const struct load *load,
     enum status status = begin(&run, reason);
     if (!status && settings->begin) status = go_on_from_earlier(&run, reason);
     if (!status && keeper && keeper->begin) status = go_on(&run, reason);
-    if (run.equilibrium) equilibrium_expect(run.equilibrium, load->n_time, load->force);
+    if (run.equilibrium) expect_rest(&run);
     while (!status && run.place.step < load->n_time) {
         status = do_step(&run, reason);
+        if (!status && run.equilibrium) keep_equilibrium(&run);
         if (progress && progress->report)
             progress->report(progress->context, (double)run.place.step / load->n_time);
     }
@@ -431,6 +477,7 @@ enum status replay(const struct packing *packing, const struct load *load,
     if (!status && settings->keep_state) response->engine = save_engine(&run);
     dem_free(run.dem);
     equilibrium_free(run.equilibrium);
+    free_kept_state(&run.kept);
     free(run.force);
     if (status) response_free(response);
     return status;

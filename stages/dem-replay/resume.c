@@ -141,13 +141,13 @@ const struct vector *saved_loads(const struct array_list *list,
                       largest);
 }
 
-static enum status restore_history(struct response *response, int n_time,
-                                   const struct dem *dem, struct array_reader *reader,
+static enum status restore_history(struct response *response, int n_time, int64_t cycle,
+                                   struct array_reader *reader,
                                    struct replay_place *place)
 {
-    const double now = (double)dem_cycle(dem);
     const int64_t *step = read_array(reader, "step", DEM_INT64, 1, 0, n_time - 1);
-    const int64_t *began = read_array(reader, "step_began", DEM_INT64, 1, 0, now);
+    const int64_t *began =
+        read_array(reader, "step_began", DEM_INT64, 1, 0, (double)cycle);
     const double *ratio =
         read_array(reader, "unbalanced_ratio", DEM_FLOAT64, n_time, 0, largest);
     const int64_t *cycles =
@@ -168,19 +168,17 @@ static enum status restore_history(struct response *response, int n_time,
 
 // The engine knows the cracks; of those of whole steps the step is known too.
 static enum status restore_cracks(struct response *response, int n_time,
-                                  const struct dem *dem, int n_before,
+                                  const struct engine_past *past,
                                   struct array_reader *reader)
 {
-    int in_engine;
-    const struct dem_crack *crack = dem_cracks(dem, &in_engine) + n_before;
     const int64_t n = array_count(reader->list, "crack_step");
     const int32_t *step = read_array(reader, "crack_step", DEM_INT32, n, 0, n_time - 1);
     if (reader->failed) return STATUS_BAD_DATA;
-    if (n > in_engine - n_before)
+    if (n > past->n_crack)
         return refuse(reader->reason, STATUS_BAD_DATA,
                       "crack_step: is longer than the cracks");
     response->n_crack = (int)n;
-    response->crack = duplicate(crack, (size_t)n, sizeof *crack);
+    response->crack = duplicate(past->crack, (size_t)n, sizeof *past->crack);
     response->crack_step = duplicate(step, (size_t)n, sizeof *step);
     return STATUS_OK;
 }
@@ -268,14 +266,15 @@ static enum status restore_contacts(struct response *response,
 
 enum status restore_response(struct response *response, const struct packing *packing,
                              const struct load *load, int most_snapshots,
-                             const struct dem *dem, int n_before,
+                             const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason)
 {
     struct array_reader reader = {.list = list, .reason = reason};
-    enum status status = restore_history(response, load->n_time, dem, &reader, place);
+    enum status status =
+        restore_history(response, load->n_time, past->cycle, &reader, place);
     if (status == STATUS_OK)
-        status = restore_cracks(response, load->n_time, dem, n_before, &reader);
+        status = restore_cracks(response, load->n_time, past, &reader);
     if (status == STATUS_OK)
         status = restore_snapshots(response, packing, load, most_snapshots, &reader);
     if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);

@@ -30,12 +30,19 @@ const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,
                                  struct reason *reason);
 
-// Fills RESPONSE, as empty as replay begins with, from LIST and the cracks of DEM, of
-// which the first N_BEFORE are an earlier replay's.
+// Of the engine when its state was kept: the cracks but those of an earlier replay, and
+// the cycle.
+struct engine_past {
+    const struct dem_crack *crack;
+    int n_crack;
+    int64_t cycle;
+};
+
+// Fills RESPONSE, as empty as replay begins with, from LIST and the PAST.
 // STATUS_BAD_DATA: not the list of such a replay.
 enum status restore_response(struct response *response, const struct packing *packing,
                              const struct load *load, int most_snapshots,
-                             const struct dem *dem, int n_before,
+                             const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason);
 

@@ -142,6 +142,12 @@ with scratch() as folder:
               [*short, "--set", "cycles=100", "--set", "bridges.volume=1e-22", "--set",
                "bridges.shared=true", "--set", "bond.kind=contact"])
 
+    equilibria = [*short, "--set", 'engine="quasi-static"']
+    in_pieces("dem-replay by equilibria with friction", equilibria)
+    in_pieces("dem-replay by equilibria with large displacements",
+              [*equilibria, "--set", "friction=0", "--set",
+               "quasi_static.large_displacements=true"])
+
     in_pieces("dem-replay of a body that nothing holds",
               [*short, "--set", "cycles=100", "--set", "support=free", "--set",
                "bond.strength.distribution=weibull"])
