@@ -235,7 +235,8 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
         if (dem->liquid) settle_bridges(dem);
         move_walls(dem);
         const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
-        dem->travelled += dem->time_step * fastest;
+        dem->last_travel = dem->time_step * fastest;
+        dem->travelled += dem->last_travel;
         if (!outcome.pace.sound) {
             wake_pairs(dem);
             return refuse(

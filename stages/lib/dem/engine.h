@@ -99,9 +99,9 @@ struct own_group {
     double friction[PAIRS_IN_GROUP];
 };
 struct bond_group {
-    _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without a bond
+    _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without an intact bond
     double normal_strength[PAIRS_IN_GROUP];             // -1 without an intact bond
-    double shear_strength[PAIRS_IN_GROUP];
+    double shear_strength[PAIRS_IN_GROUP]; // of parallel bonds, both times A R
     double shear_force[3][PAIRS_IN_GROUP]; // of parallel bonds, as all below
     double bending[3][PAIRS_IN_GROUP];     // M^s
     double twist[PAIRS_IN_GROUP];          // M^n along n
@@ -279,6 +279,7 @@ struct dem {
     double skin;
     struct vector *place_at_search; // (n_particle) displacement when pairs were sought
     double travelled;               // no grain has moved further since
+    double last_travel;             // nor further than this in the last cycle
     double closed_in;               // of this, by rescaling and by walls that move
     int64_t search_cycle;           // when that was
     int searches_in_order;          // since grains were last renumbered

@@ -75,7 +75,7 @@ static void count_bridge(struct liquid *liquid, int i, int j, int by)
 }
 
 // How far the surfaces are apart in effective radii, with the digits of the overlap
-// (pair_kernel.h). Without branches: the compiler makes vectors of it.
+// (pair_meet.h). Without branches: the compiler makes vectors of it.
 static void gaps_of(const struct dem *dem, const struct pair_group *group,
                     const struct liquid_group *liquid, double gap[PAIRS_IN_GROUP])
 {

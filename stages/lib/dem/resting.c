@@ -28,6 +28,8 @@ struct resting {
     int32_t *number; // (of those swept) in ALL
     int n_apart;
     struct apart *apart;
+    double largest_reach;
+    double room; // so much nearer two of them may come before any may touch
 };
 
 // A gap may be misjudged by so much of the distance, for rounding.
@@ -88,6 +90,8 @@ static int part(struct dem *dem, struct resting *resting)
                 (1 + 2 * margin) * touching_distance(&dem->pairs, p) + dem->least_gap;
             if (distance_square(dem->place, &apart) > least * least) {
                 resting->apart[resting->n_apart++] = apart;
+                resting->largest_reach =
+                    fmax(resting->largest_reach, sqrt(apart.reach_square));
                 forget_shear(&dem->pairs, p);
                 continue;
             }
@@ -187,14 +191,28 @@ void wake_pairs(struct dem *dem)
     arrange_sums(dem);
 }
 
+// Two that are apart by d with d^2 - reach^2 >= LEAST, the least there is, have room
+// for d - reach, which is least where the reach is largest.
+static double room_of(const struct resting *resting, double least)
+{
+    const double reach = resting->largest_reach;
+    return least / (sqrt(reach * reach + least) + reach);
+}
+
 static bool any_may_touch(const struct dem *dem)
 {
-    const struct resting *resting = dem->resting;
-    bool may = false;
-    for (int k = 0; k < resting->n_apart; k++)
-        may |= !(distance_square(dem->place, &resting->apart[k]) >
-                 resting->apart[k].reach_square);
-    return may;
+    struct resting *resting = dem->resting;
+    resting->room -= 2 * dem->last_travel;
+    if (resting->room > 0) return false;
+    double least = INFINITY;
+    for (int k = 0; k < resting->n_apart; k++) {
+        const struct apart *apart = &resting->apart[k];
+        const double beyond = distance_square(dem->place, apart) - apart->reach_square;
+        least = beyond < least ? beyond : least;
+    }
+    if (!(least > 0)) return true;
+    resting->room = room_of(resting, least);
+    return false;
 }
 
 // Not before every pair has been swept once: of two fixed grains, too, a bond without

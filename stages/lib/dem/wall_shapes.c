@@ -69,7 +69,7 @@ static struct vector meet_round(const struct dem *dem, const struct dem_wall *wa
     const struct vector moved = is_cylinder ? across(s->moved, axis) : s->moved;
     const struct vector now = add(start, moved);
     const double before = norm(start), length = norm(now), sum = before + length;
-    // length - before [pair_kernel.h]
+    // length - before [pair_meet.h]
     const double stretch = sum > 0 ? dot(moved, add(start, now)) / sum : 0;
     const double sign = wall->outside ? -1 : 1;
     *overlap =
