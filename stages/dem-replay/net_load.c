@@ -130,6 +130,7 @@ struct net_load take_off_net_load(const struct packing *packing, const bool *is_
     const struct whole whole =
         whole_of(packing, is_gone, now ? now->displacement : NULL);
     const struct net_load net = about_centre(&whole, force);
+    if (whole.mass == 0) return about_corner(&whole, net); // all have left
     const struct net_load stop =
         now ? stopping(&whole, now) : (struct net_load){{0, 0, 0}, {0, 0, 0}};
     const struct vector turn = turn_of(&whole, add(net.moment, stop.moment));

@@ -138,7 +138,8 @@ def follow(seed, folder):
             wrong.extend(f"{name} {words}: {each}" for each in look(f"{folder}/{output}", name))
         return True
 
-    grains = [word for each in chance.choice(PACKINGS) for word in ("--set", each)]
+    chosen = chance.choice(PACKINGS) + ["bonds=none"] * (seed % 10 == 3)
+    grains = [word for each in chosen for word in ("--set", each)]
     stage("pack", "packing", words=[*grains, "--set", f"seed={seed % 2**32}"])
     if chance.random() < 0.5:
         stage("flow", "flow", "packing")

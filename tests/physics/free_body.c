@@ -69,6 +69,17 @@ static void a_row_turns_across_itself_only(void **state)
     packing_free(&packing);
 }
 
+static void of_nobody_nothing_is_taken(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(2, 1, 1, false);
+    const bool is_gone[2] = {true, true};
+    struct vector force[2] = {{1e-9, 0, 0}, {0, 0, 0}};
+    take_off_net_load(&packing, is_gone, NULL, force);
+    assert_true(force[0].x == 1e-9 && norm(force[1]) == 0);
+    packing_free(&packing);
+}
+
 // Of a box that repeats only what moves all grains one way is taken off, and what turns
 // them about the one axis along which it repeats: the same wherever the box begins.
 static void a_box_that_repeats_does_not_turn(void **state)
@@ -210,6 +221,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_left),
         cmocka_unit_test(a_row_turns_across_itself_only),
+        cmocka_unit_test(of_nobody_nothing_is_taken),
         cmocka_unit_test(a_box_that_repeats_does_not_turn),
         cmocka_unit_test(both_engines_shrink_it_alike),
         cmocka_unit_test(pressed_it_stays_as_it_is),
