@@ -265,6 +265,27 @@ static void multiply_tile(int k, const double *a, int a_stride, const double *pa
             store(c[j] + NUMBERS * q, sum[j][q]);
 }
 
+// Of COUNT numbers, fewer than a tile is high or wide; when packed, zeros follow.
+INLINE void store_first(double *to, const double *from, int count)
+{
+#if defined __x86_64__ && BYTES == 64
+    _mm512_mask_storeu_pd(to, (__mmask8)((1 << count) - 1), (__m512d)load(from));
+#else
+    for (int k = 0; k < count; k++)
+        to[k] = from[k];
+#endif
+}
+
+INLINE void pack_first(double *to, const double *from, int count)
+{
+#if defined __x86_64__ && BYTES == 64
+    store(to, (vector)_mm512_maskz_loadu_pd((__mmask8)((1 << count) - 1), from));
+#else
+    for (int k = 0; k < WIDE; k++)
+        to[k] = k < count ? from[k] : 0;
+#endif
+}
+
 static void multiply(int m, int n, int k, const double *a, int a_stride,
                      const double *b, int b_stride, double *c, int c_stride, bool lower,
                      double *work)
@@ -276,8 +297,7 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
             if (columns == WIDE)
                 store(work + WIDE * p, load(row));
             else
-                for (int l = 0; l < WIDE; l++)
-                    work[WIDE * p + l] = l < columns ? row[l] : 0;
+                pack_first(work + WIDE * p, row, columns);
         }
         for (int i = lower ? j : 0; i < m; i += HIGH) {
             const int rows = m - i < HIGH ? m - i : HIGH;
@@ -288,7 +308,7 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
                 if (rows == HIGH)
                     memcpy(to, tile[l], sizeof tile[l]);
                 else
-                    memcpy(to, tile[l], (size_t)rows * sizeof *to);
+                    store_first(to, tile[l], rows);
             }
         }
     }
