@@ -52,6 +52,7 @@ void foresight_expect(struct foresight *f, int count, const struct vector *force
     f->n_expected = count;
     f->force = force;
     f->n_lane = f->found = f->used = 0;
+    f->sight = LANES;
 }
 
 void foresight_check(struct foresight *f, const struct vector *force)

@@ -14,6 +14,7 @@ struct foresight {
     int n_lane, found, used; // loads side by side, where those end that are known, and
                              // how many were asked for
     int present;   // lane that the joints have not come to yet, or -1 [foreseen.c]
+    int sight;     // lanes to look at
     bool has_hint; // the next lane leads near its equilibrium
     int n_crack, n_gone, factors;     // that there were when these were
     bool has_begun;                   // the way through the factor

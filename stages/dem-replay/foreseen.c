@@ -93,20 +93,24 @@ static bool break_in_lane(struct equilibrium *e, int lane)
     strain_trial(e);
     if (!break_one(e)) return false;
     f->found = lane;
+    f->sight = 1;
     return true;
 }
 
-// The next lane, and after a bond has broken again that one alone. Whether it is found;
-// where no other bond breaks, with one round more if that is what it takes to be well
-// below the tolerance.
+// The next lane, and those after it, while no bond breaks; after one has, again that
+// lane alone, and then twice as many each time. Whether it is found; where no other
+// bond breaks, with one round more if that is what it takes to be well below the
+// tolerance.
 static bool find_next(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
     bool is_polished = false;
-    for (int end = f->n_lane;; end = f->used + 1) {
+    for (;;) {
         if (f->used >= f->found) {
+            const int end = f->used + f->sight;
             settle_joints(e);
-            f->found = look(e, f->used, end);
+            f->found = look(e, f->used, end < f->n_lane ? end : f->n_lane);
+            f->sight = 2 * f->sight < LANES ? 2 * f->sight : LANES;
             is_polished = false;
         }
         f->has_hint = is_hint(f);
