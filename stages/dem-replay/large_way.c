@@ -276,11 +276,12 @@ enum status large_balance(struct equilibrium *e, struct reason *reason)
     struct way way = begin_way(e, 0);
     while (way.reached < 1) {
         const double usual = way.widest > 0 ? way.widest : 1;
-        const bool is_rough = way.increment <= rough_increment * usual;
         const bool is_least = way.increment <= least_increment;
+        const bool is_rough = is_least || way.increment <= rough_increment * usual;
         const enum advance outcome = try_increment(e, &way);
         const bool is_unstable = outcome == UNSTABLE && is_least;
-        if (!is_unstable && !(outcome == NOT_FOUND && is_rough)) continue;
+        const bool is_jump = outcome == TOO_FAR && is_least;
+        if (!is_unstable && !is_jump && !(outcome == NOT_FOUND && is_rough)) continue;
         const enum status status = go_beyond(e, &way, is_unstable, reason);
         if (status) return status;
     }
