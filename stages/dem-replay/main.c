@@ -369,13 +369,13 @@ static void warn_if_loose(const struct packing *packing,
         largest_radius = fmax(largest_radius, packing->radius[i]);
     const double moved = largest_displacement(packing, response);
     if (response->n_gone > 0)
-        report("%d grains left the aggregate, grain %d the first: nothing held them "
+        report("%d grain%s left the aggregate, grain %d the first: nothing held them "
                "under their load",
-               response->n_gone, response->first_gone);
+               response->n_gone, response->n_gone > 1 ? "s" : "", response->first_gone);
     if (response->n_snap > 0)
-        report("it snapped through or buckled %d times, and dashpots brought it to "
+        report("it snapped through or buckled %d time%s, and dashpots brought it to "
                "rest; grain %d moved most at the last",
-               response->n_snap, response->snapped);
+               response->n_snap, response->n_snap > 1 ? "s" : "", response->snapped);
     if (response->n_restless > 0)
         report("under %d of the loads not all came to rest, under the last of them "
                "grain %d",
