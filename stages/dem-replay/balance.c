@@ -20,8 +20,9 @@ struct displacement scaled(double share, struct displacement a)
     return (struct displacement){scale(share, a.shift), scale(share, a.turn)};
 }
 
-void strain_joints(const struct equilibrium *e, const struct displacement *moved,
-                   double (*strain)[STRAINS])
+// The strains that joints, as they lie, have when grains have MOVED (n).
+static void strain_joints(const struct equilibrium *e, const struct displacement *moved,
+                          double (*strain)[STRAINS])
 {
     for (int j = 0; j < e->n_joint; j++) {
         const int32_t *grain = e->joint[j].grain;

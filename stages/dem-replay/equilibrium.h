@@ -54,7 +54,7 @@ void equilibrium_expect(struct equilibrium *equilibrium, int count,
 
 // The next one, under FORCE (n_particle) N, with the history of those before.
 // STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small;
-// or if they may be large, equilibrium ends on the way, at equilibrium_share.
+// or if they may be large, equilibrium ends on the way.
 enum status equilibrium_find(struct equilibrium *equilibrium,
                              const struct vector *force, struct reason *reason);
 
@@ -88,9 +88,6 @@ struct net_load equilibrium_load(const struct equilibrium *equilibrium,
 double equilibrium_unbalanced_ratio(const struct equilibrium *equilibrium);
 
 int equilibrium_iterations(const struct equilibrium *equilibrium); // so far
-// How much of the last load could be balanced, of what that was more than the one
-// before: 1 but where large displacements failed.
-double equilibrium_share(const struct equilibrium *equilibrium);
 // (n_particle) of those that have left.
 const bool *equilibrium_is_gone(const struct equilibrium *equilibrium);
 // Grains that have left, and the FIRST of them.

@@ -129,9 +129,6 @@ void go_back(struct equilibrium *equilibrium);
 bool come_to_rest(struct equilibrium *equilibrium);
 int least_balanced(const struct equilibrium *equilibrium); // the first grain of those
 
-// The strains that joints, as they lie, have when grains have MOVED (n).
-void strain_joints(const struct equilibrium *equilibrium,
-                   const struct displacement *moved, double (*strain)[STRAINS]);
 void pull(struct displacement *sum, struct displacement load); // taken off SUM
 struct displacement scaled(double share, struct displacement a);
 

@@ -22,7 +22,7 @@ struct large {
     struct vector *searched;       // (n) shifts when grains near each other were sought
     struct displacement *withheld; // (n) what was not balanced when the way began
     double share;                  // of that let in
-    double balanced, ended;        // of the last load; so much of one at the last snap
+    double ended;                  // so much of a load was balanced at the last snap
     double drag;                   // of dashpots at each grain, besides those at joints
     bool is_stale;                 // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored

@@ -149,7 +149,6 @@ static enum advance try_increment(struct equilibrium *e, struct way *way)
         way->increment =
             fmin(way->increment, 1 - way->reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
     }
-    large->balanced = balanced(way);
     return outcome;
 }
 
@@ -178,14 +177,14 @@ static bool give_way(struct equilibrium *e, double reached, int *softest)
     return let_go_of(e, e->fragments.of[*softest]) || break_one(e);
 }
 
-static enum status refuse_end(struct equilibrium *e, int softest, struct reason *reason)
+static enum status refuse_end(double balanced, int softest, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "equilibrium ends with %.6f of what this load changes: the stiffness "
                   "is no longer positive (buckling, or a snap through), grain %d moves "
                   "most, and dashpots do not bring it to rest (engine=explicit follows "
                   "what comes then)",
-                  e->large->balanced, softest);
+                  balanced, softest);
 }
 
 // Something went on moving, and does so under the next load.
@@ -264,7 +263,7 @@ static enum status go_beyond(struct equilibrium *e, struct way *way, bool is_uns
     int softest = 0;
     const bool gives_way = is_unstable && give_way(e, way->reached, &softest);
     const enum end end = gives_way ? LEAVES : go_through(e, way, is_unstable);
-    if (end == MOVES && is_unstable) return refuse_end(e, softest, reason);
+    if (end == MOVES && is_unstable) return refuse_end(balanced(way), softest, reason);
     if (end == MOVES) leave_restless(e);
     if (end != LEAVES) way->reached = e->large->share;
     if (way->reached < 1) *way = begin_way(e, balanced(way));
@@ -277,14 +276,13 @@ enum status large_balance(struct equilibrium *e, struct reason *reason)
     while (way.reached < 1) {
         const double usual = way.widest > 0 ? way.widest : 1;
         const bool is_least = way.increment <= least_increment;
-        const bool is_rough = is_least || way.increment <= rough_increment * usual;
+        const bool is_rough = way.increment <= rough_increment * usual;
         const enum advance outcome = try_increment(e, &way);
-        const bool is_unstable = outcome == UNSTABLE && is_least;
-        const bool is_jump = outcome == TOO_FAR && is_least;
-        if (!is_unstable && !is_jump && !(outcome == NOT_FOUND && is_rough)) continue;
-        const enum status status = go_beyond(e, &way, is_unstable, reason);
+        const bool goes_on = outcome == ADVANCED || outcome == MEETS;
+        const bool ends = is_least ? !goes_on : outcome == NOT_FOUND && is_rough;
+        if (!ends) continue;
+        const enum status status = go_beyond(e, &way, outcome == UNSTABLE, reason);
         if (status) return status;
     }
-    e->large->balanced = 1;
     return STATUS_OK;
 }

@@ -18,11 +18,6 @@ int equilibrium_iterations(const struct equilibrium *e)
     return e->iterations;
 }
 
-double equilibrium_share(const struct equilibrium *e)
-{
-    return e->large ? e->large->balanced : 1;
-}
-
 const bool *equilibrium_is_gone(const struct equilibrium *e)
 {
     return e->is_gone;

@@ -329,8 +329,6 @@ void free_pairs(struct pair_list *pairs);
 // other order.
 void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
                 int old_pair, bool swapped);
-// From grain I to J where they are now, to the nearest image.
-struct vector separation_now(const struct dem *dem, int i, int j);
 // Sets how the pair in lane LANE of GROUP lies as of where its grains began.
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);
 // Makes lane PAIR one that holds no pair.

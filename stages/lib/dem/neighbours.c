@@ -16,7 +16,8 @@ struct candidates {
     int32_t *bond;          // or -1
 };
 
-struct vector separation_now(const struct dem *dem, int i, int j)
+// From grain I to J where they are now, to the nearest image.
+static struct vector separation_now(const struct dem *dem, int i, int j)
 {
     struct vector apart = subtract(position_now(dem, j), position_now(dem, i));
     for (int axis = 0; axis < 3; axis++) {
