@@ -12,7 +12,7 @@
 //
 // Only what the scene needs is computed: without friction and bonds grains neither turn
 // nor keep a history of shear, and with one radius and one material no pair has numbers
-// of its own (kernels.h).
+// of its own (pair_kernel.h).
 #ifndef CRAQUELURE_DEM_H
 #define CRAQUELURE_DEM_H
 

@@ -53,7 +53,7 @@ static struct contact_law timed_law(const struct dem *dem, const struct encounte
                                 .shear_damping = 2.0 / 7 * damping};
 }
 
-// (1 - nu^2)/E and (2 - nu)(1 + nu)/E: what each body adds to 1/E* and to 1/(4 G*) [K
+// (1 - nu^2)/E and (2 - nu)(1 + nu)/E: what each body adds to 1/E* and to 1/(2 G*) [K
 // 4.23 has the same law in other words].
 static double normal_compliance(const struct material *m)
 {
