@@ -148,8 +148,10 @@ static const struct parameter table[] = {
     {"bridges.pull_in_contact", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
      "also where grains overlap; false: only apart [G 4]",
      AT(settings.liquid.pulls_in_contact)},
-    {"time_step_safety", PARAMETER_NUMBER, "1", "0.045", BOUND_ABOVE, 0, 0, NULL,
-     "time step, of the critical one of two grains [K 4.47]",
+    {"time_step_safety", PARAMETER_NUMBER_OR_NULL, "1", "0.045", BOUND_ABOVE, 0, 0,
+     NULL,
+     "time step, of the critical one of two grains [K 4.47]; null: half the "
+     "stability limit of the aggregate",
      AT(settings.time_step_safety)},
     {"allow_unstable", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "run past the stability limit of the aggregate", AT(settings.force_time_step)},

@@ -82,13 +82,18 @@ static enum status begin_dem(struct run *run, struct reason *reason)
     const enum status status = dem_create(&run->dem, &setup, reason);
     free(normal);
     free(shear);
-    if (status) return status;
+    return status;
+}
+
+// At the end: one chosen by the engine may have become shorter.
+static void note_time_step(const struct run *run)
+{
+    const double safety = run->settings->time_step_safety;
+    const double limit = dem_time_step_limit(run->dem);
     run->response->time_step = dem_time_step(run->dem);
     // Where nothing can touch no step is too long: then what [K 4.47] says is written.
-    const double limit = dem_time_step_limit(run->dem);
     run->response->time_step_limit =
-        isinf(limit) ? run->response->time_step / settings->time_step_safety : limit;
-    return STATUS_OK;
+        isinf(limit) ? run->response->time_step / (isnan(safety) ? 1 : safety) : limit;
 }
 
 static bool is_explicit(const struct run *run)
@@ -474,6 +479,7 @@ enum status replay(const struct packing *packing, const struct load *load,
         response->n_snap =
             equilibrium_snaps(run.equilibrium, &response->snapped) - run.snaps_before;
     }
+    if (run.dem) note_time_step(&run);
     if (!status && settings->keep_state) response->engine = save_engine(&run);
     dem_free(run.dem);
     equilibrium_free(run.equilibrium);

@@ -140,9 +140,10 @@ static enum status check_numbers(const struct dem_setup *setup, struct reason *r
         status = check_liquid(setup->liquid, reason);
     if (status != STATUS_OK) return status;
     const double no_limit = INFINITY;
+    const bool is_automatic = setup->time_step > 0 || isnan(setup->time_step_safety);
     const struct quantity step[] = {
-        {"time step safety", setup->time_step > 0 ? 1 : setup->time_step_safety, 0,
-         no_limit, true, false},
+        {"time step safety", is_automatic ? 1 : setup->time_step_safety, 0, no_limit,
+         true, false},
         {"time step", setup->time_step, 0, no_limit, false, false},
         {"largest overlap", setup->largest_overlap, 0, 1, false, false},
         {"threads", setup->threads, 1, no_limit, false, false}};

@@ -289,7 +289,9 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
         lightest = fmin(lightest, dem->mass[i]);
     if (dem->n_particle == 0) lightest = 1;
     // [K 4.47]; the stiffness is 1.
-    dem->time_step = setup->time_step > 0
+    dem->step_is_automatic = !(setup->time_step > 0) && isnan(setup->time_step_safety);
+    dem->time_step = dem->step_is_automatic ? automatic_time_step(dem)
+                     : setup->time_step > 0
                          ? setup->time_step / dem->unit.time
                          : setup->time_step_safety * 2 * sqrt(fmin(lightest, 1));
 }
@@ -380,7 +382,6 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     take_walls(dem, setup);
     dem->features = choose_features(dem, setup);
     dem->sweep = choose_sweep(dem->features);
-    choose_time_step(dem, setup);
     enum status status =
         setup->liquid ? take_liquid(dem, setup->liquid, reason) : STATUS_OK;
     if (status == STATUS_OK) status = check_periods(dem, reason);
@@ -392,6 +393,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     if (setup->unstressed) lie_at_rest(dem);
     if (dem->liquid) form_bridges(dem);
     dem->time_step_limit = stability_limit(dem, false);
+    choose_time_step(dem, setup);
     if (setup->force_time_step) return STATUS_OK;
     return check_time_step(dem, setup, reason);
 }

@@ -129,8 +129,9 @@ struct dem_setup {
     // For statics: every grain is given the inertia of the mean one, so that small ones
     // do not shorten the time step. Weights stay what they are.
     bool density_scaling;
-    // Time step over the critical one of [K 4.47], > 0. The stiffness of Hertz contacts
-    // is taken at an overlap of LARGEST_OVERLAP mean radii.
+    // Time step over the critical one of [K 4.47], > 0; NAN: half the stability limit
+    // (stability.c), of the pairs at the start and of all found later. The stiffness of
+    // Hertz contacts is taken at an overlap of LARGEST_OVERLAP mean radii.
     double time_step_safety;
     double time_step;       // s; > 0: this and not the safety decides
     double largest_overlap; // Hertz: expected, over the mean radius; 0: 0.01

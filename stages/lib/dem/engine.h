@@ -33,6 +33,8 @@ enum { NUMBER_STEP = 8 };
 #define FIRST_SKIN 0.2
 // No grain may move further than this (in mean radii) in one time step.
 #define FURTHEST_STEP 0.1
+// Of the stability limit, what a time step is that nobody chose.
+#define AUTOMATIC_SHARE 0.5
 // Fewer pairs are left to one thread: starting others would cost more.
 enum { LEAST_TO_SHARE = 5000 };
 
@@ -221,6 +223,7 @@ struct dem {
     double local_damping;
     double time_step;
     double time_step_limit;
+    bool step_is_automatic, step_was_shortened;
     double expected_overlap; // of Hertz contacts
     int64_t cycle;
     int threads;
@@ -408,6 +411,10 @@ struct motion load_on_grain(const struct dem *dem, int particle);
 // The largest stable time step [stability.c]: of all pairs in the list, or if NOW only
 // of those that touch, at the overlaps they have.
 double stability_limit(const struct dem *dem, bool now);
+// AUTOMATIC_SHARE of it, or of that of two equal grains that meet, if that is less.
+double automatic_time_step(const struct dem *dem);
+// An automatic step that is too long for the pairs that have been found.
+void shorten_time_step(struct dem *dem);
 
 static inline int first_grain(const struct pair_group *group, int lane)
 {

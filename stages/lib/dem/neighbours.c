@@ -478,4 +478,5 @@ void keep_pairs(struct dem *dem)
     enum { SEARCHES_IN_ORDER = 64 };
     if (++dem->searches_in_order > SEARCHES_IN_ORDER) renumber_grains(dem);
     find_pairs(dem);
+    if (dem->step_is_automatic) shorten_time_step(dem);
 }

@@ -229,6 +229,7 @@ static enum status make_room(struct dem *dem, const struct saved *saved)
     dem->crack_capacity = n_crack + 1;
     dem->crack =
         reallocate(dem->crack, (size_t)dem->crack_capacity, sizeof *dem->crack);
+    dem->step_was_shortened = dem_find_array(saved->array, saved->count, "time_step");
     const bool pushed = dem_find_array(saved->array, saved->count, "applied_force");
     if (pushed && !dem->applied)
         dem->applied = NEW_ARRAY(struct vector, dem->n_particle);
@@ -278,6 +279,18 @@ static enum status check_rest(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
+// Of an earlier run that was to choose it; one chosen since is kept.
+static void take_time_step(struct dem *dem, double chosen)
+{
+    if (!dem->step_was_shortened) return;
+    const bool stays = dem->step_is_automatic && dem->time_step < chosen;
+    dem->step_was_shortened = stays;
+    if (stays)
+        dem->time_step_limit = dem->time_step / AUTOMATIC_SHARE;
+    else
+        dem->time_step = chosen;
+}
+
 // What follows from all that.
 static void derive(struct dem *dem)
 {
@@ -308,12 +321,14 @@ enum status dem_restore(struct dem *dem, const struct dem_array *array, int coun
                         struct reason *reason)
 {
     const struct saved saved = {array, count, reason};
+    const double chosen = dem->time_step;
     enum status status = take_order(dem, &saved);
     if (status == STATUS_OK) status = take_broken(dem, &saved);
     if (status == STATUS_OK) status = take_list(dem, &saved);
     if (status == STATUS_OK) status = make_room(dem, &saved);
     if (status == STATUS_OK) status = take_numbers(dem, &saved);
     if (status == STATUS_OK) status = check_rest(dem, reason);
+    if (status == STATUS_OK) take_time_step(dem, chosen);
     if (status == STATUS_OK) derive(dem);
     return status;
 }

@@ -162,7 +162,14 @@ static struct joint wall_joint(const struct dem *dem, const struct wall_pair *pa
                           .weight = 1};
 }
 
-static double grain_limit(const struct dem *dem, int particle, bool now)
+// dt^2 k + 2 dt c = 4; infinite when nothing resists.
+static double largest_step(double k, double c)
+{
+    return 4 / (c + sqrt(c * c + 4 * k));
+}
+
+// At most LEAST, that of other grains.
+static double grain_limit(const struct dem *dem, int particle, bool now, double least)
 {
     struct block stiffness = {{{0}}}, damping = {{{0}}};
     const int *offset = dem->pair_offset + particle;
@@ -178,18 +185,52 @@ static double grain_limit(const struct dem *dem, int particle, bool now)
                        dem->mobility[particle]);
         add_resistance(&damping, &joint.dashpot, joint.weight, dem->mobility[particle]);
     }
-    const double k = largest_eigenvalue(stiffness), c = largest_eigenvalue(damping);
-    return 4 / (c + sqrt(c * c + 4 * k)); // dt^2 k + 2 dt c = 4; infinite when alone
+    // No eigenvalue is more than the trace, which is had for nothing.
+    if (largest_step(trace(&stiffness), trace(&damping)) > least * (1 + 1e-9))
+        return least;
+    return fmin(least, largest_step(largest_eigenvalue(stiffness),
+                                    largest_eigenvalue(damping)));
 }
 
 double stability_limit(const struct dem *dem, bool now)
 {
     double limit = INFINITY;
     for (int i = 0; i < dem->n_particle; i++)
-        limit = fmin(limit, grain_limit(dem, i, now));
+        limit = grain_limit(dem, i, now, limit);
     // Against the motion, local damping makes springs and dashpots stronger by its
     // share: springs would allow its square root, dashpots do not.
     return limit / (1 + dem->local_damping);
+}
+
+// Of two grains like this one that touch, whether any is near or not.
+static double meeting_limit(const struct dem *dem, int particle)
+{
+    const double radius = dem->place[particle].radius;
+    const double *mobility = dem->mobility[particle];
+    const double along = 2 * mobility[0];
+    const double across = along + 2 * radius * radius * mobility[1];
+    const struct contact_law law =
+        tangents(dem, pair_law(dem, particle, particle), dem->expected_overlap, false);
+    return largest_step(
+        fmax(along * law.normal_stiffness, across * law.shear_stiffness),
+        fmax(along * law.normal_damping, across * law.shear_damping));
+}
+
+double automatic_time_step(const struct dem *dem)
+{
+    double limit = dem->time_step_limit;
+    for (int i = 0; i < dem->n_particle; i++)
+        limit = fmin(limit, meeting_limit(dem, i) / (1 + dem->local_damping));
+    return AUTOMATIC_SHARE * (isinf(limit) ? 1 : limit);
+}
+
+void shorten_time_step(struct dem *dem)
+{
+    const double limit = stability_limit(dem, false);
+    if (AUTOMATIC_SHARE * limit >= dem->time_step) return;
+    dem->time_step_limit = limit;
+    dem->time_step = AUTOMATIC_SHARE * limit;
+    dem->step_was_shortened = true;
 }
 
 double dem_time_step_limit(const struct dem *dem)

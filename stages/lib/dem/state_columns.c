@@ -21,6 +21,18 @@ static struct column *add_column(struct column_list *list, struct column column)
     return &list->column[list->count++];
 }
 
+static void add_time_step(struct column_list *list, struct dem *dem)
+{
+    if (!dem->step_was_shortened) return;
+    add_column(list, (struct column){.name = "time_step",
+                                     .type = DEM_FLOAT64,
+                                     .width = 1,
+                                     .rows = 1,
+                                     .base = &dem->time_step,
+                                     .least = smallest,
+                                     .most = largest});
+}
+
 static void add_scalars(struct column_list *list, struct dem *dem)
 {
     const struct {
@@ -194,6 +206,7 @@ struct column_list list_columns(struct dem *dem)
 {
     struct column_list list = {.count = 0};
     add_scalars(&list, dem);
+    add_time_step(&list, dem);
     add_grains(&list, dem);
     add_walls(&list, dem);
     add_cracks(&list, dem);

@@ -2,7 +2,6 @@
 // What the table of a stage's parameters tells its user: --help and --schema.
 #include "parameters/parameters.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,12 @@ static const char *number_text(double value, char text[24])
     snprintf(text, 24, "%g", value);
     if (strtod(text, NULL) != value) snprintf(text, 24, "%.10g", value);
     return text;
+}
+
+bool parameter_may_be_null(const struct parameter *parameter)
+{
+    return parameter->type == PARAMETER_NUMBER_OR_NULL ||
+           (parameter->fallback && !strcmp(parameter->fallback, "null"));
 }
 
 const char *parameter_rule(const struct parameter *parameter, char text[80])
@@ -110,6 +115,7 @@ static json_t *value_schema(const struct parameter *parameter)
 {
     switch (parameter->type) {
     case PARAMETER_NUMBER:
+    case PARAMETER_NUMBER_OR_NULL:
         return bounded(parameter, "number");
     case PARAMETER_INTEGER:
         return bounded(parameter, "integer");
@@ -162,7 +168,7 @@ json_t *parameters_schema(const struct parameter *table, const char *stage)
     json_object_set_new(schema, "title", json_string(stage));
     for (const struct parameter *p = table; p->key; p++) {
         json_t *value = value_schema(p);
-        if (p->fallback && !strcmp(p->fallback, "null"))
+        if (parameter_may_be_null(p))
             value = json_pack("{s:[o,{s:s}]}", "anyOf", value, "type", "null");
         json_object_set_new(value, "description", json_string(p->text));
         if (strcmp(p->unit, "1"))

@@ -22,12 +22,17 @@ struct filling {
     int problems;
 };
 
-static const char *const type_names[] = {
-    "a number",       "an integer",
-    "true or false",  "one of",
-    "a list of",      "a text",
-    "three integers", "three of true or false",
-    "three numbers",  "a list of at most 1024 numbers"};
+static const char *const type_names[] = {"a number",
+                                         "a number or null",
+                                         "an integer",
+                                         "true or false",
+                                         "one of",
+                                         "a list of",
+                                         "a text",
+                                         "three integers",
+                                         "three of true or false",
+                                         "three numbers",
+                                         "a list of at most 1024 numbers"};
 
 char *json_canonical(const json_t *json)
 {
@@ -102,6 +107,7 @@ static bool has_type(const struct parameter *parameter, const json_t *value)
 {
     switch (parameter->type) {
     case PARAMETER_NUMBER:
+    case PARAMETER_NUMBER_OR_NULL:
         return json_is_number(value);
     case PARAMETER_INTEGER:
         return json_is_integer(value);
@@ -170,6 +176,7 @@ static void store(struct filling *filling, const struct parameter *parameter,
     struct number_list *list = target;
     switch (parameter->type) {
     case PARAMETER_NUMBER:
+    case PARAMETER_NUMBER_OR_NULL:
         *(double *)target = number_or_nan(value);
         break;
     case PARAMETER_INTEGER:
@@ -306,8 +313,9 @@ static void check_keys(struct filling *filling, json_t *object, const char *pref
 static json_t *as_typed(const struct parameter *parameter, json_t *value)
 {
     const double number = json_number_value(value);
-    if (parameter->type == PARAMETER_NUMBER && json_is_integer(value))
-        return json_real(number);
+    const bool is_number = parameter->type == PARAMETER_NUMBER ||
+                           parameter->type == PARAMETER_NUMBER_OR_NULL;
+    if (is_number && json_is_integer(value)) return json_real(number);
     if (parameter->type == PARAMETER_INTEGER && json_is_real(value) &&
         fabs(number) <= 0x1p53 && number == rint(number))
         return json_integer((json_int_t)number);
@@ -328,8 +336,7 @@ static void take(struct filling *filling, const struct parameter *parameter,
         die(STATUS_INTERNAL, "%s: the default is not JSON: %s", parameter->key,
             parameter->fallback);
     json_t *typed = as_typed(parameter, value);
-    const bool left_out = json_is_null(value) && parameter->fallback &&
-                          !strcmp(parameter->fallback, "null");
+    const bool left_out = json_is_null(value) && parameter_may_be_null(parameter);
     if (left_out || has_type(parameter, typed)) {
         if (!left_out) check_bounds(filling, parameter, value);
         store(filling, parameter, typed, parameters);

@@ -7,14 +7,17 @@
 #define CRAQUELURE_PARAMETERS_H
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 enum parameter_type {
-    PARAMETER_NUMBER,  // double; NAN where the default is null and nothing is given
-    PARAMETER_INTEGER, // int64_t
-    PARAMETER_BOOLEAN, // bool
-    PARAMETER_CHOICE,  // int: place in CHOICES
-    PARAMETER_CHOICES, // unsigned: bit k set when choice k is in the list
+    PARAMETER_NUMBER, // double; NAN where the default is null and nothing is given
+    PARAMETER_NUMBER_OR_NULL, // double; null, NAN, has a meaning that is not the
+                              // default
+    PARAMETER_INTEGER,        // int64_t
+    PARAMETER_BOOLEAN,        // bool
+    PARAMETER_CHOICE,         // int: place in CHOICES
+    PARAMETER_CHOICES,        // unsigned: bit k set when choice k is in the list
     PARAMETER_TEXT,   // const char *, owned by the JSON; NULL where the default is null
     PARAMETER_COUNTS, // int64_t[3]
     PARAMETER_FLAGS,  // bool[3]
@@ -58,6 +61,9 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
 // Puts "key.path=value" into SECTION; the value is read as JSON, or else as text.
 // Exits 64 when there is no "=" or no key.
 void parameters_set(json_t *section, const char *assignment);
+
+// Whether null is a value that can be given.
+bool parameter_may_be_null(const struct parameter *parameter);
 
 // What the bound asks for, "> 0 m", in TEXT; nothing where there is none.
 const char *parameter_rule(const struct parameter *parameter, char text[80]);
