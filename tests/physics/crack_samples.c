@@ -113,6 +113,16 @@ static void test_pairs_that_say_little(void **state)
         isnan(paired_t_test((struct sample){same, 1}, (struct sample){more, 1}).p));
 }
 
+// With one degree of freedom Student's is Cauchy's.
+static void test_two_pairs(void **state)
+{
+    (void)state;
+    static const double before[] = {5, 9}, after[] = {4, 6};
+    const struct paired_t found = paired_t_test(SAMPLE(before), SAMPLE(after));
+    assert_close(found.t, 2, 1e-15);
+    assert_close(found.p, 1 - 2 * atan(2) / M_PI, 1e-14);
+}
+
 static void test_interval_of_student_sleep(void **state)
 {
     (void)state;
@@ -239,6 +249,7 @@ int main(void)
         cmocka_unit_test(test_signed_ranks_of_depression),
         cmocka_unit_test(test_signed_ranks_by_counting),
         cmocka_unit_test(test_pairs_that_say_little),
+        cmocka_unit_test(test_two_pairs),
         cmocka_unit_test(test_interval_of_student_sleep),
         cmocka_unit_test(test_ranks_of_student_sleep_with_ties),
         cmocka_unit_test(test_ranks_of_hollander_and_wolfe),

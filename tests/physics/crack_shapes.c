@@ -1,75 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Connected cracks and fragments against a search from grain to grain, cracks that span
 // or lead around a box that repeats, strains put in and found again.
-#include "basics/memory.h"
+#include "crack_lattice.h"
 #include "crackstats/clusters.h"
 #include "crackstats/deformation.h"
 #include "crackstats/orientation.h"
 #include "crackstats/pieces.h"
 
 #include <gsl/gsl_rng.h>
-#include <stdlib.h>
-#include <string.h>
-
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
-
-static void assert_close(double got, double wanted, double tolerance)
-{
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, tolerance);
-}
-
-// ---- a lattice of grains ------------------------------------------------------------
-
-// NX x NY x NZ grains of radius 1/2; bonded to their neighbours, around the box along x
-// when it repeats there. Unit spacing.
-static struct run lattice(int nx, int ny, int nz, bool periodic_x)
-{
-    const int n = nx * ny * nz;
-    struct run run = {.packing = {.n_particle = n,
-                                  .position = NEW_ARRAY(struct vector, n),
-                                  .radius = NEW_ARRAY(double, n),
-                                  .upper = {nx, ny, nz},
-                                  .periodic = {periodic_x, 0, 0},
-                                  .bond = allocate(3 * (size_t)n, sizeof(int32_t[2]))}};
-    struct packing *packing = &run.packing;
-    for (int i = 0; i < n; i++) {
-        const int x = i % nx, y = i / nx % ny, z = i / nx / ny;
-        packing->position[i] = (struct vector){x + 0.5, y + 0.5, z + 0.5};
-        packing->radius[i] = 0.5;
-        const int next[3] = {x + 1 < nx             ? i + 1
-                             : periodic_x && nx > 2 ? i - x
-                                                    : -1,
-                             y + 1 < ny ? i + nx : -1, z + 1 < nz ? i + nx * ny : -1};
-        for (int axis = 0; axis < 3; axis++) {
-            if (next[axis] < 0) continue;
-            int32_t *bond = packing->bond[packing->n_bond++];
-            bond[0] = i < next[axis] ? i : next[axis];
-            bond[1] = i < next[axis] ? next[axis] : i;
-        }
-    }
-    run.bond = NEW_ARRAY(int32_t, packing->n_bond);
-    run.mode = NEW_ARRAY(uint8_t, packing->n_bond);
-    return run;
-}
-
-static void crack(struct run *run, int bond)
-{
-    run->bond[run->n_crack++] = bond;
-}
-
-static int bond_between(const struct run *run, int a, int b)
-{
-    for (int k = 0; k < run->packing.n_bond; k++)
-        if (run->packing.bond[k][0] == a && run->packing.bond[k][1] == b) return k;
-    fail_msg("no bond between %d and %d", a, b);
-    return -1;
-}
 
 // ---- brute force --------------------------------------------------------------------
 
@@ -217,6 +155,48 @@ static void test_cracks_that_lead_around_the_box(void **state)
     run_free(&run);
 }
 
+// Whether a walk over broken bonds from grain I, which is X boxes along, comes to some
+// grain in two boxes.
+static bool leads_around(const struct run *run, int i, int x, int *box, bool *seen)
+{
+    if (seen[i]) return box[i] != x;
+    seen[i] = true;
+    box[i] = x;
+    bool around = false;
+    for (int k = 0; k < run->n_crack; k++) {
+        const int32_t *pair = run->packing.bond[run->bond[k]];
+        if (pair[0] != i && pair[1] != i) continue;
+        const int other = pair[pair[0] == i];
+        const double apart =
+            run->packing.position[other].x - run->packing.position[i].x;
+        const int over = apart > 1.5 ? -1 : apart < -1.5 ? 1 : 0;
+        around |= leads_around(run, other, x + over, box, seen);
+    }
+    return around;
+}
+
+static void test_leading_around_by_walking(void **state)
+{
+    (void)state;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    int n_around = 0;
+    for (int trial = 0; trial < 200; trial++) {
+        struct run run = lattice(4, 3, 4, true);
+        const double share = 0.2 + 0.3 * gsl_rng_uniform(rng);
+        for (int b = 0; b < run.packing.n_bond; b++)
+            if (gsl_rng_uniform(rng) < share) crack(&run, b);
+        int box[48];
+        bool seen[48] = {false}, around = false;
+        for (int i = 0; i < 48; i++)
+            if (!seen[i]) around |= leads_around(&run, i, 0, box, seen);
+        assert_int_equal(clusters_of(&run).spans[0], around);
+        n_around += around;
+        run_free(&run);
+    }
+    assert_in_range(n_around, 50, 150);
+    gsl_rng_free(rng);
+}
+
 // ---- deformation --------------------------------------------------------------------
 
 static const double stretch[3][3] = {
@@ -289,6 +269,21 @@ static void test_only_the_largest_fragment_counts(void **state)
     run_free(&run);
 }
 
+// As many unknowns as grains give.
+static void test_four_grains_have_one(void **state)
+{
+    (void)state;
+    struct run run = lattice(2, 2, 2, false);
+    for (int b = 0; b < run.packing.n_bond; b++) {
+        const int32_t *pair = run.packing.bond[b];
+        if (pair[0] != 0 || (pair[1] & (pair[1] - 1))) crack(&run, b);
+    }
+    displace(&run, 1);
+    run.displacement[7] = (struct vector){1e6, -1e7, 1e5};
+    assert_close(body_deformation(&run, 0).strain[5], 0.001, 1e-13);
+    run_free(&run);
+}
+
 static void test_three_grains_have_no_strain(void **state)
 {
     (void)state;
@@ -318,6 +313,31 @@ static void test_upright_and_level_cracks(void **state)
     run_free(&run);
 }
 
+// The fabric of one crack is n n, however long the bond and from whichever end; a bond
+// down is as steep as one up.
+static void test_oblique_cracks(void **state)
+{
+    (void)state;
+    for (int up = -1; up <= 1; up += 2) {
+        struct run run = lattice(2, 1, 1, false);
+        run.packing.position[1] =
+            add(run.packing.position[0], (struct vector){2 * up, 3 * up, 6 * up});
+        crack(&run, 0);
+        struct orientation found = {0};
+        add_orientation(&found, &run);
+        const double n[3] = {2. / 7, 3. / 7, 6. / 7};
+        for (int i = 0; i < 9; i++)
+            assert_close(found.fabric[MODE_NORMAL][i], n[i / 3] * n[i % 3], 1e-15);
+        const double angle = acos(6. / 7) / M_PI_2;
+        assert_close(found.cracks[(int)(angle * INCLINATION_CLASSES)][MODE_NORMAL], 1,
+                     0);
+        run.packing.position[1] = run.packing.position[0]; // has no direction
+        add_orientation(&found, &run);
+        assert_close(found.fabric[MODE_NORMAL][8], n[2] * n[2], 1e-15);
+        run_free(&run);
+    }
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -325,11 +345,14 @@ int main(void)
         cmocka_unit_test(test_clusters_and_fragments_by_brute_force),
         cmocka_unit_test(test_a_layer_of_cracks_spans_along_itself),
         cmocka_unit_test(test_cracks_that_lead_around_the_box),
+        cmocka_unit_test(test_leading_around_by_walking),
         cmocka_unit_test(test_a_homogeneous_strain_is_found_again),
         cmocka_unit_test(test_small_strains_keep_their_digits),
         cmocka_unit_test(test_only_the_largest_fragment_counts),
+        cmocka_unit_test(test_four_grains_have_one),
         cmocka_unit_test(test_three_grains_have_no_strain),
         cmocka_unit_test(test_upright_and_level_cracks),
+        cmocka_unit_test(test_oblique_cracks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
