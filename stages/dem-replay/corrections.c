@@ -28,7 +28,7 @@ void corrections_clear(struct corrections *c)
 {
     for (int k = 0; k < c->n_addition; k++)
         halves_free(&c->addition[k].halves);
-    c->n_addition = c->n_entry = c->count = c->n_factored = 0;
+    c->n_addition = c->n_entry = c->count = c->n_acting = c->n_factored = 0;
     c->work = 0;
     for (int j = 0; j < c->n_joint; j++)
         c->of[j] = -1;
@@ -76,7 +76,6 @@ static void make_room(struct corrections *c)
     c->compliance = compliance;
     c->matrix = reallocate(c->matrix, after * (after + 16), sizeof *c->matrix);
     c->work_space = reallocate(c->work_space, after * DENSE_PANEL, sizeof(double));
-    c->n_factored = 0;
     int **const whole[] = {&c->entry_of, &c->strain_of, &c->order, &c->acting,
                            &c->factored};
     for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)

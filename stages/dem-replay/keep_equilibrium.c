@@ -7,6 +7,7 @@
 
 #include "basics/memory.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -261,8 +262,9 @@ enum status equilibrium_restore(struct equilibrium *e, const struct array_list *
     const int n_table = list_tables(e, table);
     for (int t = 0; t < n_table; t++) {
         const int64_t count = (int64_t)width_of(&table[t]) * table[t].count;
+        // Points of glue overlap by -infinity [make_joints.c].
         const double *number =
-            read_array(&reader, table[t].name, DEM_FLOAT64, count, -largest, largest);
+            read_array(&reader, table[t].name, DEM_FLOAT64, count, -INFINITY, largest);
         if (!number) return STATUS_BAD_DATA;
         copy_table(&table[t], (double *)number, false);
     }

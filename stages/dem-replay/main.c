@@ -273,15 +273,9 @@ static json_t *digests(const struct artifact *input, const struct artifact *earl
     return inputs;
 }
 
-static void check_engine(const struct replay_settings *settings,
-                         const struct invocation *invocation)
+static void check_engine(const struct replay_settings *settings)
 {
     if (settings->engine == ENGINE_EXPLICIT) return;
-    if (invocation->checkpoint && settings->large_displacements &&
-        settings->material.friction > 0)
-        die(STATUS_USAGE,
-            "--checkpoint is not for quasi_static.large_displacements with "
-            "friction: the bytes would not be sure to be the same");
     if (settings->large_displacements && settings->support == SUPPORT_FREE)
         die(STATUS_BAD_DATA, "dem-replay.quasi_static.large_displacements: is for "
                              "support=fixed and wall: something must hold the grains");
@@ -404,7 +398,7 @@ int main(int argc, char **argv)
     settings->n_snapshot = parameters.snapshots.count;
     settings->snapshot = parameters.snapshots.value;
     settings->threads = invocation.threads;
-    check_engine(settings, &invocation);
+    check_engine(settings);
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
     struct packing packing = artifact_get_packing(input);
     struct load load = read_load(input);

@@ -145,8 +145,7 @@ with scratch() as folder:
     equilibria = [*short, "--set", 'engine="quasi-static"']
     in_pieces("dem-replay by equilibria with friction", equilibria)
     in_pieces("dem-replay by equilibria with large displacements",
-              [*equilibria, "--set", "friction=0", "--set",
-               "quasi_static.large_displacements=true"])
+              [*equilibria, "--set", "quasi_static.large_displacements=true"])
 
     in_pieces("dem-replay of a body that nothing holds",
               [*short, "--set", "cycles=100", "--set", "support=free", "--set",

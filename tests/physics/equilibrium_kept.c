@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An equilibrium that is given up after any of its loads, and gone on with from what
+// was kept then, ends in the same bytes (dem-replay, --checkpoint).
+#include "equilibrium_scene.h"
+
+#include "basics/memory.h"
+
+#include <string.h>
+
+enum { LOADS = 12 };
+
+struct scene {
+    const char *name;
+    bool is_large;
+    enum dem_bond_kind bond;
+    double friction, strength; // N/m2, or N of contact bonds
+    double size;               // N
+};
+
+// Pulled about, more and more, so that contacts slip, open and close.
+static void load_scene(const struct scene *scene, int load, struct vector force[BLOCK])
+{
+    for (int i = 0; i < BLOCK; i++) {
+        const double x = i % SIDE - 1, y = i / SIDE % SIDE - 1;
+        const double more = sin(0.9 * load + i), size = scene->size * (1 + 0.5 * load);
+        force[i] = (struct vector){size * (more - x), size * (0.5 - more * y),
+                                   size * (0.6 * more - 0.8)};
+    }
+}
+
+static struct equilibrium *begin(const struct scene *scene,
+                                 const struct packing *packing, const uint8_t *fixed)
+{
+    static double strength[3 * BLOCK]; // of bonds, relative
+    for (int b = 0; b < packing->n_bond; b++)
+        strength[b] = 1 + 0.9 * sin(b * b);
+    struct equilibrium_setup setup = setup_of(packing, fixed);
+    setup.relative_strength = strength;
+    setup.material.friction = scene->friction;
+    setup.bond.kind = scene->bond;
+    setup.bond.normal_strength = setup.bond.shear_strength = scene->strength;
+    setup.tolerance = 1e-8;
+    setup.rolling = 1e-3;
+    setup.large_displacements = scene->is_large;
+    setup.increment = 0.02;
+    return make(&setup);
+}
+
+static void go_on(const struct scene *scene, const struct packing *packing,
+                  const uint8_t *fixed, struct equilibrium **equilibrium)
+{
+    struct reason reason = {""};
+    struct array_list list = equilibrium_save(*equilibrium);
+    equilibrium_free(*equilibrium);
+    *equilibrium = begin(scene, packing, fixed);
+    if (equilibrium_restore(*equilibrium, &list, &reason)) fail_msg("%s", reason.text);
+    dem_free_arrays(list.array, list.count);
+}
+
+static void assert_same(const struct scene *scene, int load, struct equilibrium *one,
+                        struct equilibrium *other)
+{
+    struct array_list a = equilibrium_save(one), b = equilibrium_save(other);
+    assert_int_equal(a.count, b.count);
+    for (int k = 0; k < a.count; k++) {
+        const size_t bytes =
+            (size_t)a.array[k].count * dem_number_size(a.array[k].type);
+        if (a.array[k].count != b.array[k].count ||
+            memcmp(a.array[k].data, b.array[k].data, bytes))
+            fail_msg("%s: other %s after load %d", scene->name, a.array[k].name, load);
+    }
+    dem_free_arrays(a.array, a.count);
+    dem_free_arrays(b.array, b.count);
+}
+
+// Beside one in one piece, which forgets after as many loads.
+static void in_pieces(const struct scene *scene, int between)
+{
+    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    uint8_t fixed[BLOCK];
+    hold_bottom(fixed);
+    struct equilibrium *whole = begin(scene, &packing, fixed);
+    struct equilibrium *cut = begin(scene, &packing, fixed);
+    for (int load = 0; load < LOADS; load++) {
+        struct vector force[BLOCK];
+        load_scene(scene, load, force);
+        find(whole, force);
+        find(cut, force);
+        assert_same(scene, load, whole, cut);
+        if (load % between) continue;
+        equilibrium_forget(whole);
+        equilibrium_forget(cut);
+        go_on(scene, &packing, fixed, &cut);
+    }
+    int cracks, last;
+    equilibrium_cracks(whole, &cracks);
+    print_message(
+        "# %s: %d iterations, %d cracks, %d left, %d snaps, %d without rest\n",
+        scene->name, equilibrium_iterations(whole), cracks,
+        equilibrium_gone(whole, &last), equilibrium_snaps(whole, &last),
+        equilibrium_restless(whole, &last));
+    equilibrium_free(whole);
+    equilibrium_free(cut);
+    packing_free(&packing);
+}
+
+static void the_same_bytes(void **state)
+{
+    (void)state;
+    const struct scene scene[] = {
+        {"small, nothing breaks", false, DEM_PARALLEL_BOND, 0.5, INFINITY, 2e-9},
+        {"large, nothing breaks", true, DEM_PARALLEL_BOND, 0.5, INFINITY, 1e-7},
+        {"small, friction", false, DEM_PARALLEL_BOND, 0.5, 2e5, 2e-9},
+        {"large", true, DEM_PARALLEL_BOND, 0, 1e5, 2e-9},
+        {"large, friction", true, DEM_PARALLEL_BOND, 0.5, 2e5, 2e-9},
+        {"large, friction, far", true, DEM_PARALLEL_BOND, 0.5, 4e7, 1e-6},
+        {"small, contact bonds", false, DEM_CONTACT_BOND, 0.5, 2e-8, 2e-9},
+        {"large, contact bonds", true, DEM_CONTACT_BOND, 0.5, 2e-8, 2e-9}};
+    for (size_t k = 0; k < sizeof scene / sizeof *scene; k++)
+        for (int between = 1; between <= 3; between += 2)
+            in_pieces(&scene[k], between);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_same_bytes)};
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("equilibrium kept", tests, NULL, NULL);
+}
