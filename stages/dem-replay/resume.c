@@ -129,6 +129,12 @@ bool saved_by_equilibria(const struct array_list *list)
     return dem_find_array(list->array, list->count, loads_name) != NULL;
 }
 
+enum status refuse_other_engine(struct reason *reason, const char *name)
+{
+    return refuse(reason, STATUS_BAD_DATA,
+                  "was kept by engine=%s, which alone can go on from it", name);
+}
+
 const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,
                                  struct reason *reason)

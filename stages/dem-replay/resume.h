@@ -22,8 +22,10 @@ struct array_list save_response(const struct response *response,
 struct array_list save_loads(const struct array_list *earlier, const struct load *load,
                              const struct packing *packing);
 
-// Whether it was kept by equilibria (save_loads), not by cycles.
+// Whether it was kept by equilibria (save_loads), not by cycles; and what an engine
+// says to the list of the other, called NAME.
 bool saved_by_equilibria(const struct array_list *list);
+enum status refuse_other_engine(struct reason *reason, const char *name);
 
 // (*n_load * n_particle) N, of such a LIST, which owns them; NULL with the reason.
 const struct vector *saved_loads(const struct array_list *list,

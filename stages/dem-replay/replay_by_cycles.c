@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The replay as cycles of discrete elements [K 4, dem/dem.h].
+#include "replay_engine.h"
+
+#include "basics/memory.h"
+#include "reaction.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void describe(const struct replay_settings *settings, char *text, size_t size)
+{
+    snprintf(text, size,
+             "discrete elements: leapfrog, linear contacts, slip, dashpots, %s bonds "
+             "[K 4]",
+             settings->bond.kind == DEM_CONTACT_BOND ? "contact" : "parallel");
+}
+
+// ---- begin --------------------------------------------------------------------------
+
+// NULL: all have the mean.
+static double *strengths(const struct run *run, double mean)
+{
+    const double *relative = run->settings->relative_strength;
+    if (!relative) return NULL;
+    double *strength = NEW_ARRAY(double, run->packing->n_bond);
+    for (int b = 0; b < run->packing->n_bond; b++)
+        strength[b] = mean * relative[b];
+    return strength;
+}
+
+static enum status create(struct run *run, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    const struct packing *packing = run->packing;
+    const struct dem_wall beneath = {.point = packing->lower, .normal = {0, 0, 1}};
+    double *normal = strengths(run, settings->bond.normal_strength);
+    double *shear = strengths(run, settings->bond.shear_strength);
+    const struct dem_setup setup = {
+        .packing = packing,
+        .material = settings->material,
+        .bond = settings->bond,
+        .normal_strength = normal,
+        .shear_strength = shear,
+        .liquid = settings->liquid.volume > 0 ? &settings->liquid : NULL,
+        .fixed = settings->held,
+        .unstressed = settings->unstressed,
+        .n_wall = settings->support == SUPPORT_WALL,
+        .wall = &beneath,
+        .time_step_safety = settings->time_step_safety,
+        .force_time_step = settings->force_time_step,
+        .threads = settings->threads};
+    struct dem *dem;
+    const enum status status = dem_create(&dem, &setup, reason);
+    run->state = dem;
+    free(normal);
+    free(shear);
+    return status;
+}
+
+static enum status restore(struct run *run, const struct array_list *list,
+                           struct reason *reason)
+{
+    return dem_restore(run->state, list->array, list->count, reason);
+}
+
+static enum status begin(struct run *run, struct reason *reason)
+{
+    const enum status status = create(run, reason);
+    const struct array_list *earlier = run->settings->begin;
+    if (status || !earlier) return status;
+    if (saved_by_equilibria(earlier))
+        return refuse_other_engine(reason, "quasi-static");
+    return restore(run, earlier, reason);
+}
+
+// ---- loads --------------------------------------------------------------------------
+
+// Forces keep their directions when grains turn as one, and would turn them further:
+// what is taken off follows the grains, often enough to bring all such motion to rest.
+enum { TAKE_OFF_EVERY = 16 }; // cycles
+
+static void take_off(struct run *run)
+{
+    struct vector *state[3];
+    for (int k = 0; k < 3; k++)
+        state[k] = NEW_ARRAY(struct vector, run->packing->n_particle);
+    dem_displacements(run->state, state[0]);
+    dem_velocities(run->state, state[1]);
+    dem_spins(run->state, state[2]);
+    const struct moving_grains now = {state[0], state[1], state[2],
+                                      run->settings->material.density,
+                                      TAKE_OFF_EVERY * dem_time_step(run->state)};
+    run->taken_off = take_off_net_load(run->packing, NULL, &now, run->force);
+    for (int k = 0; k < 3; k++)
+        free(state[k]);
+}
+
+// Time steps before those that every step of the load has. Where an earlier replay went
+// before, its last load is on already.
+static int64_t ramp(const struct run *run)
+{
+    const bool is_first = run->place.step == 0 && !run->settings->begin;
+    return is_first ? run->settings->ramp : 0;
+}
+
+static void grow(struct run *run)
+{
+    const int64_t next = dem_cycle(run->state) - run->place.began + 1;
+    for (int i = 0; next < ramp(run) && i < run->packing->n_particle; i++)
+        run->force[i] = scale((double)next / (double)ramp(run), run->force[i]);
+}
+
+// The forces of the step, on the grains as they are.
+static void apply_forces(struct run *run)
+{
+    take_forces(run);
+    grow(run);
+    if (run->settings->support == SUPPORT_FREE) take_off(run);
+    dem_set_force(run->state, run->force);
+}
+
+// ---- advance ------------------------------------------------------------------------
+
+// [K 4.20] has no denominator once no contact carries a force: then all that is applied
+// is unbalanced.
+static double unbalanced_ratio(const struct run *run)
+{
+    const double ratio = dem_unbalanced_ratio(run->state);
+    return isinf(ratio) ? 1 : ratio;
+}
+
+// Without a load nothing remains to measure what is left by: both terms of [K 4.20]
+// decay.
+static bool is_loaded(const struct run *run)
+{
+    for (int i = 0; i < run->packing->n_particle; i++)
+        if (norm(run->force[i]) > 0) return true;
+    return false;
+}
+
+// CYCLES more, cut where the state may be kept, and where the load follows the grains,
+// which must not depend on it.
+static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
+{
+    const bool is_free = run->settings->support == SUPPORT_FREE;
+    const int64_t end = dem_cycle(run->state) + cycles;
+    const int64_t most =
+        is_free ? TAKE_OFF_EVERY : cycles_between_questions(run->packing->n_particle);
+    while (dem_cycle(run->state) < end) {
+        const int64_t now = dem_cycle(run->state), left = end - now;
+        const int64_t next = is_free ? most - (now - run->place.began) % most : most;
+        const enum status status =
+            dem_run(run->state, left < next ? left : next, reason);
+        if (status) return status;
+        if (is_free) apply_forces(run);
+        if (is_due(run->keeper))
+            keep_state(run->keeper, run->state,
+                       save_response(run->response, run->packing, run->load->n_time,
+                                     run->place));
+    }
+    return STATUS_OK;
+}
+
+// Until a step is as settled as wanted, which is looked at every 16 cycles from where
+// those of every step end.
+static enum status run_on(struct run *run, struct reason *reason)
+{
+    enum { LOOK_EVERY = 16 };
+    const struct replay_settings *settings = run->settings;
+    if (isnan(settings->tolerance) || !is_loaded(run)) return STATUS_OK;
+    const int64_t first = run->place.began + ramp(run) + settings->cycles;
+    for (;;) {
+        const int64_t done = dem_cycle(run->state) - first;
+        const int64_t left = settings->most_cycles - done;
+        const int64_t to_look = LOOK_EVERY - done % LOOK_EVERY;
+        const bool looks = to_look == LOOK_EVERY || left <= 0;
+        if (looks && unbalanced_ratio(run) < settings->tolerance) return STATUS_OK;
+        if (left <= 0)
+            return refuse(reason, STATUS_NOT_CONVERGED,
+                          "unbalanced ratio %g is not below %g after %lld cycles",
+                          dem_unbalanced_ratio(run->state), settings->tolerance,
+                          (long long)settings->most_cycles);
+        const enum status status =
+            run_cycles(run, left < to_look ? left : to_look, reason);
+        if (status) return status;
+    }
+}
+
+static enum status advance(struct run *run, struct reason *reason)
+{
+    const int64_t full = run->place.began + ramp(run);
+    enum status status = STATUS_OK;
+    apply_forces(run);
+    while (!status && dem_cycle(run->state) < full) {
+        apply_forces(run);
+        status = run_cycles(run, 1, reason);
+    }
+    const int64_t left = full + run->settings->cycles - dem_cycle(run->state);
+    if (!status) status = run_cycles(run, left, reason);
+    return status ? status : run_on(run, reason);
+}
+
+// ---- what there is to see -----------------------------------------------------------
+
+static int64_t cycles(const struct run *run)
+{
+    return dem_cycle(run->state);
+}
+
+static struct net_load reaction(const struct run *run)
+{
+    return reaction_of_dem(run->packing, run->state, run->settings->held,
+                           run->settings->support == SUPPORT_WALL);
+}
+
+static const struct dem_crack *cracks(const struct run *run, int *count)
+{
+    return dem_cracks(run->state, count);
+}
+
+static void observe(const struct run *run, struct snapshot *snapshot)
+{
+    dem_displacements(run->state, snapshot->displacement);
+    dem_bonds_intact(run->state, snapshot->intact);
+    snapshot->contact = dem_contacts(run->state, &snapshot->n_contact);
+}
+
+static struct array_list save(const struct run *run)
+{
+    struct array_list list;
+    list.array = dem_save(run->state, &list.count);
+    return list;
+}
+
+// At the end: a time step chosen by the engine may have become shorter.
+static void note_time_step(const struct run *run)
+{
+    struct response *response = run->response;
+    const double safety = run->settings->time_step_safety;
+    const double limit = dem_time_step_limit(run->state);
+    response->time_step = dem_time_step(run->state);
+    // Where nothing can touch no step is too long: then what [K 4.47] says is written.
+    response->time_step_limit =
+        isinf(limit) ? response->time_step / (isnan(safety) ? 1 : safety) : limit;
+}
+
+static void end(struct run *run)
+{
+    if (run->state) note_time_step(run);
+    dem_free(run->state);
+}
+
+const struct replay_engine replay_by_cycles = {
+    .describe = describe,
+    .begin = begin,
+    .restore = restore,
+    .advance = advance,
+    .cycles = cycles,
+    .unbalanced_ratio = unbalanced_ratio,
+    .reaction = reaction,
+    .cracks = cracks,
+    .observe = observe,
+    .save = save,
+    .end = end,
+};

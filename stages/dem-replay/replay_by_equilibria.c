@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The replay as one equilibrium after another [equilibrium.h].
+#include "replay_engine.h"
+
+#include "basics/memory.h"
+#include "equilibrium.h"
+#include "reaction.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct equilibria {
+    struct equilibrium *last;
+    bool is_expecting;                 // told which forces come
+    int restless_before, snaps_before; // of an earlier replay
+    struct kept_state kept;            // the last
+};
+
+static struct equilibrium *last(const struct run *run)
+{
+    return ((const struct equilibria *)run->state)->last;
+}
+
+static enum status check(const struct replay_settings *settings, struct reason *reason)
+{
+    if (settings->large_displacements && settings->support == SUPPORT_FREE)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.quasi_static.large_displacements: is for "
+                      "support=fixed and wall: something must hold the grains");
+    if (settings->liquid.volume > 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.bridges.volume: equilibria know no liquid "
+                      "bridges, engine=explicit does");
+    return STATUS_OK;
+}
+
+static void describe(const struct replay_settings *settings, char *text, size_t size)
+{
+    snprintf(text, size,
+             "equilibria: linear contacts, slip, %s bonds that break one by one [K 4], "
+             "%s displacements; what nothing holds leaves",
+             settings->bond.kind == DEM_CONTACT_BOND ? "contact" : "parallel",
+             settings->large_displacements ? "large" : "small");
+}
+
+// ---- begin --------------------------------------------------------------------------
+
+static enum status create(struct run *run, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    const struct equilibrium_setup setup = {
+        .packing = run->packing,
+        .fixed = settings->held,
+        .has_wall = settings->support == SUPPORT_WALL,
+        .is_free = settings->support == SUPPORT_FREE,
+        .material = settings->material,
+        .bond = settings->bond,
+        .unstressed = settings->unstressed,
+        .relative_strength = settings->relative_strength,
+        .tolerance = settings->equilibrium_tolerance,
+        .most_iterations = settings->most_iterations,
+        .rolling = settings->rolling,
+        .large_displacements = settings->large_displacements,
+        .increment = settings->increment};
+    struct equilibria *state = run->state = NEW_ARRAY(struct equilibria, 1);
+    return equilibrium_new(&state->last, &setup, reason);
+}
+
+static enum status find(struct run *run, struct reason *reason)
+{
+    const enum status status = equilibrium_find(last(run), run->force, reason);
+    if (run->settings->support == SUPPORT_FREE)
+        run->taken_off = equilibrium_load(last(run), run->force);
+    return status;
+}
+
+// The loads of an earlier replay once more: each takes its equilibrium from the last.
+static enum status repeat(struct run *run, struct reason *reason)
+{
+    struct equilibria *state = run->state;
+    const size_t n = (size_t)run->packing->n_particle;
+    int n_load, grain;
+    const struct vector *force =
+        saved_loads(run->settings->begin, run->packing, &n_load, reason);
+    if (!force) return STATUS_BAD_DATA;
+    equilibrium_expect(state->last, n_load, force);
+    for (int k = 0; k < n_load; k++) {
+        memcpy(run->force, force + (size_t)k * n, n * sizeof *run->force);
+        const enum status status = find(run, reason);
+        if (status) return status;
+        if (!equilibrium_may_forget(state->last)) continue;
+        equilibrium_forget(state->last); // as in one piece
+        equilibrium_expect(state->last, n_load - 1 - k, force + (size_t)(k + 1) * n);
+    }
+    state->restless_before = equilibrium_restless(state->last, &grain);
+    state->snaps_before = equilibrium_snaps(state->last, &grain);
+    return STATUS_OK;
+}
+
+static enum status begin(struct run *run, struct reason *reason)
+{
+    const enum status status = create(run, reason);
+    const struct array_list *earlier = run->settings->begin;
+    if (status || !earlier) return status;
+    if (!saved_by_equilibria(earlier)) return refuse_other_engine(reason, "explicit");
+    return repeat(run, reason);
+}
+
+static enum status restore(struct run *run, const struct array_list *list,
+                           struct reason *reason)
+{
+    return equilibrium_restore(last(run), list, reason);
+}
+
+// ---- advance ------------------------------------------------------------------------
+
+// Equilibria are kept from where they forget, whether anyone asks or not, so that it
+// makes no difference; what is given away is the last of these.
+static void keep(struct run *run)
+{
+    struct equilibria *state = run->state;
+    if (equilibrium_may_forget(state->last)) {
+        equilibrium_forget(state->last);
+        state->is_expecting = false;
+        if (!run->keeper || !run->keeper->due) return;
+        free_kept_state(&state->kept);
+        state->kept = (struct kept_state){
+            equilibrium_save(state->last),
+            save_response(run->response, run->packing, run->load->n_time, run->place)};
+    }
+    if (state->kept.engine.count > 0 && is_due(run->keeper))
+        run->keeper->keep(run->keeper->context, &state->kept);
+}
+
+static void expect(struct run *run)
+{
+    struct equilibria *state = run->state;
+    const int step = run->place.step;
+    if (state->is_expecting) return;
+    equilibrium_expect(state->last, run->load->n_time - step,
+                       run->load->force +
+                           (size_t)step * (size_t)run->packing->n_particle);
+    state->is_expecting = true;
+}
+
+static enum status advance(struct run *run, struct reason *reason)
+{
+    keep(run);
+    expect(run);
+    return find(run, reason);
+}
+
+// ---- what there is to see -----------------------------------------------------------
+
+static int64_t cycles(const struct run *run)
+{
+    return equilibrium_iterations(last(run));
+}
+
+static double unbalanced_ratio(const struct run *run)
+{
+    return equilibrium_unbalanced_ratio(last(run));
+}
+
+static struct net_load reaction(const struct run *run)
+{
+    return reaction_of_equilibrium(run->packing, last(run), run->settings->held,
+                                   run->force);
+}
+
+static const struct dem_crack *cracks(const struct run *run, int *count)
+{
+    return equilibrium_cracks(last(run), count);
+}
+
+static void observe(const struct run *run, struct snapshot *snapshot)
+{
+    equilibrium_displacements(last(run), snapshot->displacement);
+    equilibrium_bonds_intact(last(run), snapshot->intact);
+    snapshot->contact = equilibrium_contacts(last(run), &snapshot->n_contact);
+}
+
+static struct array_list save(const struct run *run)
+{
+    return save_loads(run->settings->begin, run->load, run->packing);
+}
+
+static void end(struct run *run)
+{
+    struct equilibria *state = run->state;
+    struct response *response = run->response;
+    if (state->last) {
+        response->n_gone = equilibrium_gone(state->last, &response->first_gone);
+        response->n_restless = equilibrium_restless(state->last, &response->restless) -
+                               state->restless_before;
+        response->n_snap =
+            equilibrium_snaps(state->last, &response->snapped) - state->snaps_before;
+    }
+    equilibrium_free(state->last);
+    free_kept_state(&state->kept);
+    free(state);
+}
+
+const struct replay_engine replay_by_equilibria = {
+    .needs_support = true,
+    .check = check,
+    .describe = describe,
+    .begin = begin,
+    .restore = restore,
+    .advance = advance,
+    .cycles = cycles,
+    .unbalanced_ratio = unbalanced_ratio,
+    .reaction = reaction,
+    .cracks = cracks,
+    .observe = observe,
+    .save = save,
+    .end = end,
+};
