@@ -51,6 +51,22 @@ static void choose_grains(const struct replay_parameters *parameters,
     if (!quiet) report("support=fixed holds no grain: none touches held.walls");
 }
 
+// Masses are cubes of radii, moments of inertia fifth powers.
+static void check_sizes(const struct packing *packing, const char *path)
+{
+    static const double smallest = 1e-60, largest = 1e60; // m
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double radius = packing->radius[i];
+        const struct vector at = packing->position[i];
+        const double furthest = fmax(fmax(fabs(at.x), fabs(at.y)), fabs(at.z));
+        if (radius < smallest || radius > largest || furthest > largest)
+            die(STATUS_BAD_DATA,
+                "%s: grain %d: radii must be from 1e-60 to 1e60 m, and places as near, "
+                "for what grains weigh to be a number; got %g, %g m away",
+                input_name(path), i, radius, furthest);
+    }
+}
+
 static struct load read_load(const struct artifact *input)
 {
     struct load load;
@@ -168,8 +184,8 @@ static void warn_if_loose(const struct packing *packing,
                "rest; grain %d moved most at the last",
                response->n_snap, response->n_snap > 1 ? "s" : "", response->snapped);
     if (response->n_restless > 0)
-        report("under %d of the loads not all came to rest, under the last of them "
-               "grain %d",
+        report("under %d of the loads not all came to rest within "
+               "quasi_static.tolerance, under the last of them grain %d",
                response->n_restless, response->restless);
     if (moved > largest_radius)
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
@@ -186,6 +202,7 @@ int main(int argc, char **argv)
     complete_settings(&parameters, invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
     struct packing packing = artifact_get_packing(input);
+    check_sizes(&packing, input->path);
     struct load load = read_load(input);
     struct array_list engine = {NULL, 0};
     struct artifact *earlier = open_earlier(&invocation, &packing, &engine);

@@ -86,6 +86,16 @@ with scratch() as folder:
         status, message = refused(*settings)
         ok(status == 65 and says in message, f"refused: {says}", message)
 
+    # ---- what does not come to rest
+    for most in 1, 40:
+        words_of_it = words(("engine=quasi-static", f"quasi_static.most_iterations={most}"))
+        told = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words_of_it, at("forces"), "-o",
+                               at("response")], capture_output=True, text=True).stderr
+        count = h5py.File(at("response"))["summary"].attrs["steps_unsettled"]
+        ok(f"under {count} of the loads not all came to rest" in told if most == 1 else
+           count == 0 and "rest" not in told, f"{count} loads without rest, as the message says",
+           told)
+
     # ---- bonds
     response = replay("bond.by=touching")
     listed = h5py.File(at("forces"))["bonds/particles"][:]
