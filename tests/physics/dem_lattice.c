@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A bonded cubic lattice along its axis: E = K_n/(4R) [K 4.45] of the contacts in
-// compression, with the bonds beside them; of the bonds alone in tension.
+// compression, with the bonds beside them; of the bonds alone in tension. Its strength.
 #include "dem_scene.h"
 
 static const int side = 3, height = 6;
@@ -58,6 +58,47 @@ static void test_free_sides_make_no_difference(void **state)
     assert_close(e, pair / (2 * RADIUS), 1e-8);
 }
 
+// Contact bonds of strength F hold a pull of F/(4R^2) [K 4.46]. Each increment is
+// followed by as much again, as a load that comes at once may stretch what it pulls
+// twice as far.
+static void test_strength(void **state)
+{
+    (void)state;
+    const double strength = 1e-6;
+    struct packing packing = cubic_lattice(side, side, height, true);
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.bond = (struct dem_bond_material){.kind = DEM_CONTACT_BOND,
+                                            .normal_strength = strength,
+                                            .shear_strength = strength};
+    const int layer = side * side, n = layer * height;
+    uint8_t *fixed = NEW_ARRAY(uint8_t, n);
+    memset(fixed, 1, (size_t)layer);
+    setup.fixed = fixed;
+    struct dem *dem = create(&setup);
+    struct vector *force = NEW_ARRAY(struct vector, n);
+    int n_crack;
+    for (double left = 0.5; left > 1e-3; left /= 2) {
+        for (int i = n - layer; i < n; i++)
+            force[i].z = (1 - left) * strength;
+        dem_set_force(dem, force);
+        settle(dem, 1e-8);
+        dem_cracks(dem, &n_crack);
+        assert_int_equal(n_crack, 0);
+    }
+    for (int i = n - layer; i < n; i++)
+        force[i].z = (1 + 1e-3) * strength;
+    dem_set_force(dem, force);
+    run(dem, 20000);
+    const struct dem_crack *crack = dem_cracks(dem, &n_crack);
+    assert_true(n_crack >= layer);
+    for (int k = 0; k < n_crack; k++)
+        assert_int_equal(crack[k].mode, DEM_CRACK_NORMAL);
+    dem_free(dem);
+    free(force);
+    free(fixed);
+    packing_free(&packing);
+}
+
 // As many pairs as the lattice has bonds: diagonals are further than the skin.
 static void test_pairs_of_the_lattice(void **state)
 {
@@ -86,6 +127,7 @@ int main(void)
         cmocka_unit_test(test_compression),
         cmocka_unit_test(test_tension),
         cmocka_unit_test(test_free_sides_make_no_difference),
+        cmocka_unit_test(test_strength),
         cmocka_unit_test(test_pairs_of_the_lattice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
