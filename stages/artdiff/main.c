@@ -3,8 +3,8 @@
 #include "artifacts/document.h"
 #include "basics/status.h"
 #include "compare.h"
+#include "parameters/command_line.h"
 
-#include <argp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,35 +21,19 @@ static const struct argp_option option_table[] = {
      "alone, of 1 where that has no unit and is less [0]; whole numbers must be equal",
      0},
     {"quiet", 'q', NULL, 0, "Only the exit status", 0},
-    {"version", 'V', NULL, 0, "Print program version", -1},
+    VERSION_OPTION,
     {0}};
-
-static double parse_tolerance(const char *text)
-{
-    char *end;
-    const double tolerance = strtod(text, &end);
-    if (*end || end == text || !(tolerance >= 0 && tolerance <= 1))
-        die(STATUS_USAGE, "--tolerance: must be from 0 to 1, got %s", text);
-    return tolerance;
-}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->err_stream = NULL; // one line, getopt's own, is enough
-        return 0;
     case 't':
-        options->tolerance = parse_tolerance(argument);
+        options->tolerance = number_of_option("--tolerance", argument, 0, 1);
         return 0;
     case 'q':
         options->quiet = true;
         return 0;
-    case 'V':
-        printf("artdiff (craquelure %s) stage version %d\n", CRAQUELURE_VERSION,
-               STAGE_VERSION);
-        exit(STATUS_OK);
     case ARGP_KEY_ARG:
         if (state->arg_num > 1) die(STATUS_USAGE, "%s: two artifacts only", argument);
         options->input[state->arg_num] = argument;
@@ -58,7 +42,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         if (state->arg_num < 2) die(STATUS_USAGE, "two artifacts are needed");
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_common_option(key, state, "artdiff", STAGE_VERSION);
     }
 }
 
@@ -114,7 +98,7 @@ int main(int argc, char **argv)
             "Exit status:\n"
             "  0 none does; 1 some do; 64 command line; 65 bad input;\n"
             "  66 no such input; 70 our fault; 74 failed I/O"};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options)) exit(STATUS_USAGE);
+    parse_command_line(&argp, argc, argv, &options);
 
     char *lines = NULL;
     size_t size = 0;

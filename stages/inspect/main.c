@@ -5,10 +5,9 @@
 #include "basics/status.h"
 #include "describe.h"
 #include "export.h"
+#include "parameters/command_line.h"
 #include "series.h"
 
-#include <argp.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 struct options {
@@ -30,25 +29,13 @@ static const struct argp_option option_table[] = {
      "Write a network as JSON graph, which OpenPNM and import-network read", 0},
     {"statoil", KEY_STATOIL, "PREFIX", 0,
      "Write a network as PREFIX_node1.dat, _node2.dat, _link1.dat and _link2.dat", 0},
-    {"version", 'V', NULL, 0, "Print program version", -1},
+    VERSION_OPTION,
     {0}};
-
-static int parse_frames(const char *text)
-{
-    char *end;
-    const long frames = strtol(text, &end, 10);
-    if (*end || end == text || frames < 1 || frames > 10000)
-        die(STATUS_USAGE, "--frames: must be from 1 to 10000, got %s", text);
-    return (int)frames;
-}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     struct options *options = state->input;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->err_stream = NULL; // one line, getopt's own, is enough
-        return 0;
     case 'd':
         options->data = argument;
         return 0;
@@ -56,7 +43,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         options->vtk = argument;
         return 0;
     case KEY_FRAMES:
-        options->frames = parse_frames(argument);
+        options->frames = (int)whole_of_option("--frames", argument, 1, 10000);
         return 0;
     case KEY_OPENPNM:
         options->openpnm = argument;
@@ -64,16 +51,12 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_STATOIL:
         options->statoil = argument;
         return 0;
-    case 'V':
-        printf("inspect (craquelure %s) stage version %d\n", CRAQUELURE_VERSION,
-               STAGE_VERSION);
-        exit(STATUS_OK);
     case ARGP_KEY_ARG:
         if (state->arg_num) die(STATUS_USAGE, "%s: one input only", argument);
         options->input = argument;
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_common_option(key, state, "inspect", STAGE_VERSION);
     }
 }
 
@@ -85,7 +68,7 @@ int main(int argc, char **argv)
         .parser = parse_option,
         .args_doc = "[ARTIFACT]",
         .doc = "inspect -- any artifact as JSON, or as a series for ParaView"};
-    if (argp_parse(&argp, argc, argv, 0, NULL, &options)) exit(STATUS_USAGE);
+    parse_command_line(&argp, argc, argv, &options);
 
     struct bytes bytes = read_whole(options.input);
     if (is_document(&bytes)) { // describes itself

@@ -4,10 +4,9 @@
 #include "basics/file.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "parameters/command_line.h"
 
-#include <argp.h>
 #include <assert.h>
-#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +41,7 @@ static const struct argp_option options[] = {
      0},
     {"schema", KEY_SCHEMA, NULL, 0, "Print the JSON Schema of the parameters", 1},
     {"parameters", KEY_PARAMETERS, NULL, 0, "Print the effective parameters", 1},
-    {"version", 'V', NULL, 0, "Print program version", -1},
+    VERSION_OPTION,
     {0}};
 
 // What parsing gathers before the parameters are read.
@@ -61,14 +60,6 @@ const char *stage_program(const struct stage *stage, char text[64])
     return text;
 }
 
-// What --help and the like print is lost on a full disk; nobody else looks.
-static void flush_standard_output(void)
-{
-    if (!fflush(stdout) && !ferror(stdout)) return;
-    report("standard output: %s", strerror(errno));
-    _exit(STATUS_IO);
-}
-
 static void print_schema(const struct stage *stage)
 {
     json_t *schema = parameters_schema(stage->parameters, stage->name);
@@ -76,24 +67,6 @@ static void print_schema(const struct stage *stage)
     putchar('\n');
     json_decref(schema);
     exit(STATUS_OK);
-}
-
-static int parse_threads(const char *text)
-{
-    char *end;
-    const long threads = strtol(text, &end, 10);
-    if (*end || end == text || threads < 1 || threads > 1024)
-        die(STATUS_USAGE, "--threads: must be from 1 to 1024, got %s", text);
-    return (int)threads;
-}
-
-static double parse_every(const char *text)
-{
-    char *end;
-    const double every = strtod(text, &end);
-    if (*end || end == text || !(every >= 0 && every <= 1e9))
-        die(STATUS_USAGE, "--checkpoint-every: must be from 0 to 1e9, got %s", text);
-    return every;
 }
 
 static enum progress_mode parse_progress(const char *text)
@@ -120,9 +93,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     struct command_line *line = state->input;
     struct invocation *invocation = line->invocation;
     switch (key) {
-    case ARGP_KEY_INIT:
-        state->err_stream = NULL; // one line, getopt's own, is enough
-        return 0;
     case 'p':
         line->params = argument;
         return 0;
@@ -136,10 +106,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'q':
         invocation->quiet = true;
         return 0;
-    case 'V':
-        printf("%s (craquelure %s) stage version %d\n", line->stage->name,
-               CRAQUELURE_VERSION, line->stage->version);
-        exit(STATUS_OK);
     case KEY_REPORT:
         invocation->report = argument;
         return 0;
@@ -147,10 +113,11 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         invocation->checkpoint = argument;
         return 0;
     case KEY_EVERY:
-        invocation->checkpoint_every = parse_every(argument);
+        invocation->checkpoint_every =
+            number_of_option("--checkpoint-every", argument, 0, 1e9);
         return 0;
     case KEY_THREADS:
-        invocation->threads = parse_threads(argument);
+        invocation->threads = (int)whole_of_option("--threads", argument, 1, 1024);
         return 0;
     case KEY_PROGRESS:
         invocation->progress = parse_progress(argument);
@@ -165,7 +132,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         add_input(line, argument);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return parse_common_option(key, state, line->stage->name, line->stage->version);
     }
 }
 
@@ -325,8 +292,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               .args_doc = stage->most_inputs ? "[INPUT...]" : "",
                               .doc = stage->summary,
                               .help_filter = help_filter};
-    atexit(flush_standard_output);
-    if (argp_parse(&argp, argc, argv, 0, NULL, &line)) exit(STATUS_USAGE);
+    parse_command_line(&argp, argc, argv, &line);
     fill(&line, parameters);
     free(line.set);
     if (line.print_parameters) {

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every program's command line has alike: --help, --version, an error in one line.
+#ifndef CRAQUELURE_COMMAND_LINE_H
+#define CRAQUELURE_COMMAND_LINE_H
+
+#include <argp.h>
+
+// A row of each program's table of options.
+#define VERSION_OPTION                                                                 \
+    {                                                                                  \
+        "version", 'V', NULL, 0, "Print program version", -1                           \
+    }
+
+// What its parser returns for a KEY it does not know. Exits on --version.
+error_t parse_common_option(int key, struct argp_state *state, const char *program,
+                            int version);
+
+// Parses into INPUT, of the program's own parser. Exits on --help and on errors (64).
+void parse_command_line(const struct argp *argp, int argc, char **argv, void *input);
+
+// The number that TEXT is. Exits (64) unless it is from LEAST to MOST.
+long whole_of_option(const char *option, const char *text, long least, long most);
+double number_of_option(const char *option, const char *text, double least,
+                        double most);
+
+#endif
