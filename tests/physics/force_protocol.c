@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces over time: two throats and two grains by hand, and the walk from step to step
+// beside forces found anew.
+#include "basics/memory.h"
+#include "force-protocol/auxiliary.h"
+#include "force-protocol/times.h"
+#include "support_lattice.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// clang-format off
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+// clang-format on
+
+static void assert_close(double got, double wanted)
+{
+    if (!(fabs(got - wanted) <= 1e-14 * fmax(1, fabs(wanted))))
+        fail_msg("got %.17g, wanted %.17g", got, wanted);
+}
+
+// ---- by hand ------------------------------------------------------------------------
+
+// Throat 0 empties from time 0 to 1, throat 1 from 1 to 3. A suction of 10 Pa, half of
+// which counts: F_0 = 5 (s_0, 0, -s_1), F_1 = 2.5 (0, s_1, 0).
+struct pair {
+    struct network network;
+    struct drying_record record;
+    struct suction_law law;
+    struct action action;
+};
+
+static struct pair two_throats(void)
+{
+    static int64_t offset[] = {0, 0, 1, 2};
+    static int32_t throat[] = {0, 1};
+    static double left[] = {0, 0}, time[] = {0, 1, 3}, saturation[] = {1, 0.5, 0};
+    static bool exposed[3] = {true};
+    struct pair pair = {.network = {.packing = {.n_particle = 2,
+                                                .position = NEW_ARRAY(struct vector, 2),
+                                                .lower = {1, 1, 1},
+                                                .upper = {5, 5, 5}},
+                                    .n_node = 3,
+                                    .n_throat = 2,
+                                    .throat_nodes = allocate(2, sizeof(int32_t[2])),
+                                    .throat_radius = NEW_ARRAY(double, 2),
+                                    .throat_kind = NEW_ARRAY(uint8_t, 2)},
+                        .record = {.n_step = 3,
+                                   .time = time,
+                                   .saturation = saturation,
+                                   .offset = offset,
+                                   .throat = throat,
+                                   .throat_saturation = left,
+                                   .exposed = exposed},
+                        .law = {.rule = SUCTION_UNIFORM, .uniform = 10, .meniscus = 3},
+                        .action = {.scale = 0.5}};
+    pair.network.packing.position[0] = (struct vector){2, 3, 3};
+    pair.network.packing.position[1] = (struct vector){3, 3, 5};
+    for (int t = 0; t < 2; t++) {
+        pair.network.throat_nodes[t][0] = t;
+        pair.network.throat_nodes[t][1] = t + 1;
+        pair.network.throat_radius[t] = 1;
+    }
+    struct patches *patches = &pair.action.patches[LOAD_SUCTION];
+    patches_add(patches, 0, 0, (struct vector){0.25, 0, 0});
+    patches_add(patches, 0, 0, (struct vector){0.75, 0, 0}); // one patch of both
+    patches_add(patches, 1, 0, (struct vector){0, 0, -1});
+    patches_add(patches, 1, 1, (struct vector){0, 0.5, 0});
+    assert_int_equal(patches->n, 3);
+    patches_sort(patches, 2);
+    return pair;
+}
+
+static void pair_free(struct pair *pair)
+{
+    network_free(&pair->network);
+    action_free(&pair->action);
+}
+
+static struct process process_of(const struct pair *pair)
+{
+    return (struct process){&pair->network, &pair->record, &pair->law, &pair->action};
+}
+
+static void forces_at_uniform_times(void **state)
+{
+    (void)state;
+    struct pair pair = two_throats();
+    const struct process process = process_of(&pair);
+    struct protocol protocol =
+        make_protocol(&process, uniform_times(&pair.record, 7), 7);
+    for (int m = 0; m < 7; m++) {
+        const double t = 0.5 * m, first = fmax(0, 1 - t);
+        const double second = t < 1 ? 1 : (3 - t) / 2;
+        assert_close(protocol.time[m], t);
+        assert_close(protocol.saturation[m], 0.5 * (first + second));
+        const struct vector *force = protocol.force + 2 * m;
+        const struct vector wanted[2] = {{5 * first, 0, -5 * second},
+                                         {0, 2.5 * second, 0}};
+        for (int i = 0; i < 2; i++)
+            assert_close(distance(force[i], wanted[i]), 0);
+    }
+    assert_close(largest_force(&protocol, 2), 5 * sqrt(2));
+    assert_close(largest_change(&protocol, 2), 2.5);
+    assert_close(interpolation_error(&process, &protocol), 0);
+    protocol_free(&protocol);
+
+    // Only the ends: at time 1 a third of the way has gone, and F_0 = (0, 0, -5).
+    protocol = make_protocol(&process, uniform_times(&pair.record, 2), 2);
+    assert_close(interpolation_error(&process, &protocol), 5 * sqrt(5) / 3);
+    protocol_free(&protocol);
+    pair_free(&pair);
+}
+
+static void as_few_times_as_it_takes(void **state)
+{
+    (void)state;
+    struct pair pair = two_throats();
+    const struct process process = process_of(&pair);
+    // Of sqrt(50): both steps change F_0 by 5, together by sqrt(50).
+    static const struct {
+        double bound;
+        int count;
+        double time[8];
+    } row[] = {{1, 2, {0, 3}},
+               {0.9, 3, {0, 1, 3}},
+               {0.5, 5, {0, 0.5, 1, 2, 3}},
+               {0.35, 7, {0, 1. / 3, 2. / 3, 1, 5. / 3, 7. / 3, 3}}};
+    for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+        double count;
+        double *times = adaptive_times(&process, row[k].bound, row[k].count, &count);
+        assert_close(count, row[k].count);
+        assert_non_null(times);
+        for (int m = 0; m < row[k].count; m++)
+            assert_close(times[m], row[k].time[m]);
+        free(times);
+        assert_null(adaptive_times(&process, row[k].bound, row[k].count - 1, &count));
+        assert_close(count, row[k].count);
+    }
+    pair_free(&pair);
+}
+
+// At time 0 forces of 5 (1, 0, -1) at (-1, 0, 0) from the middle and 2.5 (0, 1, 0) at
+// (0, 0, 2); their moments are (0, -5, 0) and (-5, 0, 0).
+static void net_force_and_moment(void **state)
+{
+    (void)state;
+    struct pair pair = two_throats();
+    const struct process process = process_of(&pair);
+    struct protocol protocol =
+        make_protocol(&process, uniform_times(&pair.record, 4), 4);
+    double force, moment;
+    net_load(&protocol, &pair.network.packing, &force, &moment);
+    assert_close(force, 7.5 / (5 * sqrt(2) + 2.5));
+    assert_close(moment, 5 * sqrt(2) / (5 * sqrt(2) + 5));
+    pair.network.packing.periodic[1] = true;
+    net_load(&protocol, &pair.network.packing, &force, &moment);
+    assert_close(moment, 0);
+    protocol_free(&protocol);
+    pair_free(&pair);
+}
+
+// Pressures in three snapshots; node 0 falls dry in the last, node 2 is in gas.
+static void a_field_is_linear_between_snapshots(void **state)
+{
+    (void)state;
+    struct pair pair = two_throats();
+    static double when[] = {0.5, 1, 2.5};
+    static double pressure[] = {-4, -8, 0, -6, -14, 0, 0, -20, 0};
+    pair.record.n_snapshot = 3;
+    pair.record.snapshot_time = when;
+    pair.record.pressure = pressure;
+    pair.law.rule = SUCTION_FIELD;
+    struct filling filling = filling_begin(&pair.network, &pair.record, &pair.law);
+    static const double time[] = {0, 0.75, 1, 1.5, 2.5, 3};
+    static const double first[] = {6, 8, 10, 10 + 10. / 3, 20, 20};
+    static const double second[] = {8, 11, 14, 16, 20, 20};
+    for (int k = 0; k < 6; k++) {
+        filling_to(&filling, time[k]);
+        assert_close(filling.suction[0], first[k]);
+        assert_close(filling.suction[1], second[k]);
+        double load[LOADS];
+        filling_loads(&filling, 1, load);
+        const double left = time[k] < 1 ? 1 : (3 - time[k]) / 2;
+        assert_close(load[LOAD_SUCTION], left * second[k]);
+    }
+    // In the middle, a quarter of the way: 10 for 9.5 and 14 for 11, of 10.
+    assert_close(field_error(&filling), 0.5 * (0.5 + 3) / 10);
+    filling_free(&filling);
+    pair_free(&pair);
+}
+
+static void auxiliary_grains_go(void **state)
+{
+    (void)state;
+    enum { N = 4, TIMES = 3 };
+    static const uint8_t kind[N] = {GRAIN_AUXILIARY, 0, GRAIN_AUXILIARY, 0};
+    static const int32_t bond[4][2] = {{0, 1}, {1, 3}, {2, 3}, {0, 2}};
+    struct packing packing = {.n_particle = N,
+                              .n_bond = 4,
+                              .position = NEW_ARRAY(struct vector, N),
+                              .radius = NEW_ARRAY(double, N),
+                              .kind = duplicate(kind, N, sizeof *kind),
+                              .bond = duplicate(bond, 4, sizeof *bond)};
+    struct protocol protocol = {.n_time = TIMES,
+                                .force = NEW_ARRAY(struct vector, N * TIMES)};
+    for (int i = 0; i < N; i++) {
+        packing.position[i].x = packing.radius[i] = i;
+        for (int m = 0; m < TIMES; m++)
+            protocol.force[m * N + i].y = 10 * m + i;
+    }
+    drop_auxiliary(&packing, &protocol);
+    assert_int_equal(packing.n_particle, 2);
+    assert_null(packing.kind);
+    assert_int_equal(packing.n_bond, 1);
+    assert_true(packing.bond[0][0] == 0 && packing.bond[0][1] == 1);
+    for (int i = 0; i < 2; i++) {
+        assert_close(packing.position[i].x, 2 * i + 1);
+        assert_close(packing.radius[i], 2 * i + 1);
+        for (int m = 0; m < TIMES; m++)
+            assert_close(protocol.force[2 * m + i].y, 10 * m + 2 * i + 1);
+    }
+    protocol_free(&protocol);
+    packing_free(&packing);
+}
+
+// ---- from step to step --------------------------------------------------------------
+
+// Random patches of all loads on the grains of a lattice that dries.
+static struct action random_action(const struct network *network)
+{
+    struct action action = {.scale = 2};
+    uint64_t seed = 5;
+    for (int l = 0; l < LOADS; l++) {
+        for (int t = 0; t < network->n_throat; t++)
+            for (int k = 0; k < 2; k++) {
+                const double share = next_random(&seed);
+                const int grain = (int)(share * network->packing.n_particle);
+                const struct vector pull = {next_random(&seed), next_random(&seed),
+                                            next_random(&seed)};
+                patches_add(&action.patches[l], t, grain, pull);
+            }
+        patches_sort(&action.patches[l], network->packing.n_particle);
+    }
+    return action;
+}
+
+static void the_walk_keeps_to_forces_found_anew(void **state)
+{
+    (void)state;
+    struct network network = lattice_network(4, 4, 5, 5e-7);
+    randomise_radii(&network, 5e-7, 0.4, 3);
+    const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    struct drying_history history = dry_and_check(&network, &conditions);
+    bool *exposed = NEW_ARRAY(bool, network.n_node);
+    const struct drying_record record = {.n_step = history.n_step,
+                                         .time = history.time,
+                                         .saturation = history.saturation,
+                                         .offset = history.change_offset,
+                                         .throat = history.change_throat,
+                                         .throat_saturation = history.change_saturation,
+                                         .exposed = exposed};
+    const int n = network.packing.n_particle;
+    struct vector *anew = NEW_ARRAY(struct vector, n);
+    struct vector *before = NEW_ARRAY(struct vector, n);
+    for (int rule = SUCTION_UNIFORM; rule <= SUCTION_CLUSTERS; rule++) {
+        const struct suction_law law = {
+            .rule = rule, .uniform = 1, .meniscus = 1e-7, .contact_line = 1e6};
+        struct action action = random_action(&network);
+        if (rule == SUCTION_UNIFORM) patches_free(&action.patches[LOAD_CONTACT_LINE]);
+        struct walk walk = walk_begin(&action, &network, &record, &law);
+        int steps = 1;
+        do {
+            forces_now(&action, &walk.filling, anew);
+            for (int i = 0; i < n; i++)
+                assert_close(distance(walk.force[i], anew[i]), 0);
+            for (int k = 0; steps > 1 && k < walk.n_changed; k++)
+                assert_close(distance(walk.former[k], before[walk.changed[k]]), 0);
+            memcpy(before, walk.force, (size_t)n * sizeof *before);
+        } while (walk_advance(&walk) && ++steps);
+        assert_int_equal(steps, record.n_step);
+        walk_free(&walk);
+        action_free(&action);
+    }
+    free(before);
+    free(anew);
+    free(exposed);
+    drying_history_free(&history);
+    network_free(&network);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(forces_at_uniform_times),
+        cmocka_unit_test(as_few_times_as_it_takes),
+        cmocka_unit_test(net_force_and_moment),
+        cmocka_unit_test(a_field_is_linear_between_snapshots),
+        cmocka_unit_test(auxiliary_grains_go),
+        cmocka_unit_test(the_walk_keeps_to_forces_found_anew),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
