@@ -134,14 +134,6 @@ static double entry(const struct floating *floating, const struct curved *curved
 
 // --- all rows ----------------------------------------------------------------------
 
-static void add_entry(cholmod_triplet *entries, int row, int column, double value)
-{
-    ((int *)entries->i)[entries->nnz] = row > column ? row : column;
-    ((int *)entries->j)[entries->nnz] = row > column ? column : row;
-    ((double *)entries->x)[entries->nnz] = value;
-    entries->nnz++;
-}
-
 static bool more_entries(struct floating *floating, cholmod_triplet *entries, int n)
 {
     const size_t needed = entries->nnz + (size_t)n;
@@ -172,9 +164,8 @@ static cholmod_sparse *make_matrix(struct floating *floating,
                                    const struct curved *curved,
                                    const struct phases *phases)
 {
-    const size_t n = (size_t)floating->room;
     cholmod_triplet *entries =
-        cholmod_allocate_triplet(n, n, 8 * n, -1, CHOLMOD_REAL, &floating->common);
+        new_entries(&floating->common, floating->room, 8 * (size_t)floating->room);
     if (!entries) return NULL;
     bool good = true;
     for (int a = 0; good && a < curved->n; a++)
@@ -182,11 +173,9 @@ static cholmod_sparse *make_matrix(struct floating *floating,
     for (int s = 0; good && s < floating->room; s++)
         if (s >= floating->n_slot || !floating->has[floating->owner[s]])
             add_entry(entries, s, s, 1);
-    cholmod_sparse *matrix =
-        good ? cholmod_triplet_to_sparse(entries, entries->nnz, &floating->common)
-             : NULL;
+    if (good) return take_matrix(&floating->common, entries);
     cholmod_free_triplet(&entries, &floating->common);
-    return matrix;
+    return NULL;
 }
 
 static bool factorise(struct floating *floating, const struct curved *curved,

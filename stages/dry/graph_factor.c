@@ -2,6 +2,7 @@
 #include "graph_factor.h"
 
 #include "basics/memory.h"
+#include "sparse/plain_cholmod.h"
 #include "sparse/plain_solve.h"
 
 #include <math.h>
@@ -32,27 +33,6 @@ struct graph_factor {
 };
 
 // --- from scratch --------------------------------------------------------------------
-
-static void add_entry(cholmod_triplet *entries, int row, int column, double value)
-{
-    ((int *)entries->i)[entries->nnz] = row > column ? row : column;
-    ((int *)entries->j)[entries->nnz] = row > column ? column : row;
-    ((double *)entries->x)[entries->nnz] = value;
-    entries->nnz++;
-}
-
-static cholmod_sparse *take_matrix(cholmod_common *common, cholmod_triplet *entries)
-{
-    cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, entries->nnz, common);
-    cholmod_free_triplet(&entries, common);
-    return matrix;
-}
-
-static cholmod_triplet *new_entries(cholmod_common *common, int n, size_t most)
-{
-    return cholmod_allocate_triplet((size_t)n, (size_t)n, most, -1, CHOLMOD_REAL,
-                                    common);
-}
 
 bool graph_factor_order(cholmod_common *common, int n, int n_link,
                         const struct graph_link *link, int *row)

@@ -12,35 +12,20 @@ struct cholesky {
     cholmod_factor *factor;
 };
 
-// Lower triangle by columns: of a symmetric matrix, the upper one by rows.
 static cholmod_sparse *lower_triangle(const struct matrix *matrix,
                                       cholmod_common *common)
 {
-    const size_t n = (size_t)matrix->n;
-    size_t n_entry = n;
-    for (int i = 0; i < matrix->n; i++)
-        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
-            n_entry += matrix->column[k] > i && matrix->column[k] < matrix->n;
+    const int n = matrix->n;
     cholmod_triplet *entries =
-        cholmod_allocate_triplet(n, n, n_entry, -1, CHOLMOD_REAL, common);
+        new_entries(common, n, (size_t)n + (size_t)matrix->offset[n]);
     if (!entries) return NULL;
-    int *row = entries->i, *column = entries->j;
-    double *value = entries->x;
-    size_t count = 0;
-    for (int i = 0; i < matrix->n; i++) {
-        row[count] = column[count] = i;
-        value[count++] = matrix->diagonal[i];
-        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
-            if (matrix->column[k] <= i || matrix->column[k] >= matrix->n) continue;
-            row[count] = matrix->column[k];
-            column[count] = i;
-            value[count++] = -matrix->value[k];
-        }
+    for (int i = 0; i < n; i++) {
+        add_entry(entries, i, i, matrix->diagonal[i]);
+        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
+            if (matrix->column[k] > i && matrix->column[k] < n)
+                add_entry(entries, i, matrix->column[k], -matrix->value[k]);
     }
-    entries->nnz = count;
-    cholmod_sparse *lower = cholmod_triplet_to_sparse(entries, count, common);
-    cholmod_free_triplet(&entries, common);
-    return lower;
+    return take_matrix(common, entries);
 }
 
 enum status cholesky_make(const struct matrix *matrix, struct cholesky **made,

@@ -17,4 +17,29 @@ static inline void plain_cholmod_start(cholmod_common *common)
     common->method[0].ordering = CHOLMOD_AMD;
 }
 
+// The lower triangle of a symmetric matrix of N rows, entry by entry, at MOST so many;
+// NULL: out of memory, as take_matrix, which frees the entries.
+static inline cholmod_triplet *new_entries(cholmod_common *common, int n, size_t most)
+{
+    return cholmod_allocate_triplet((size_t)n, (size_t)n, most, -1, CHOLMOD_REAL,
+                                    common);
+}
+
+static inline void add_entry(cholmod_triplet *entries, int row, int column,
+                             double value)
+{
+    ((int *)entries->i)[entries->nnz] = row > column ? row : column;
+    ((int *)entries->j)[entries->nnz] = row > column ? column : row;
+    ((double *)entries->x)[entries->nnz] = value;
+    entries->nnz++;
+}
+
+static inline cholmod_sparse *take_matrix(cholmod_common *common,
+                                          cholmod_triplet *entries)
+{
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, entries->nnz, common);
+    cholmod_free_triplet(&entries, common);
+    return matrix;
+}
+
 #endif
