@@ -26,11 +26,17 @@ static struct bridge bridge_of(const double radius[2], const struct ring_law *la
 
 // --- one ring ----------------------------------------------------------------------
 
-// A trial volume: by how much the suction there is more than that of the liquid, as a
+// A trial volume: its suction, and by how much that is more than the liquid's, as a
 // logarithm; -INFINITY where it is none, INFINITY where the bridge ruptures.
 struct trial {
-    double log_volume, excess;
+    double log_volume, suction, excess;
 };
+
+// [G 2] is not off by as much.
+static bool ruptures(const struct bridge *bridge, double separation)
+{
+    return separation > 2 * bridge_rupture_distance(bridge);
+}
 
 static enum status try_volume(const double radius[2], double separation,
                               const struct ring_law *law, struct trial *trial,
@@ -38,22 +44,25 @@ static enum status try_volume(const double radius[2], double separation,
 {
     const struct bridge bridge = bridge_of(radius, law, exp(trial->log_volume));
     struct bridge_state state;
+    trial->excess = INFINITY;
+    if (ruptures(&bridge, separation)) return STATUS_OK;
     const enum status status = bridge_solve(&bridge, separation, &state, reason);
+    trial->suction = state.suction;
     trial->excess = status == STATUS_NO ? INFINITY
                     : state.suction > 0 ? log(state.suction / law->suction)
                                         : -INFINITY;
     return status == STATUS_NO ? STATUS_OK : status;
 }
 
-// Smaller bridges have more suction, until they rupture. By regula falsi, every third
-// step by halves. Where the least that holds has less suction than the liquid, there
-// is none in equilibrium and *VOLUME is 0.
+// Smaller bridges have more suction, until next to rupture they have less again. By
+// regula falsi, every third step by halves. Where none of those that hold has as much
+// suction as the liquid, *VOLUME is 0: as soon as one has less than a larger one.
 static enum status find_volume(const double radius[2], double separation,
                                const struct ring_law *law, double *volume,
                                struct reason *reason)
 {
     static const double accuracy = 1e-12;
-    struct trial low = {log(LEAST), INFINITY}, high = {log(MOST), -INFINITY};
+    struct trial low = {log(LEAST), NAN, INFINITY}, high = {log(MOST), NAN, -INFINITY};
     *volume = 0;
     // Between plates this far apart no liquid has that suction, still less between
     // spheres.
@@ -62,11 +71,13 @@ static enum status find_volume(const double radius[2], double separation,
     for (int step = 1; high.log_volume - low.log_volume > accuracy; step++) {
         const double share = low.excess / (low.excess - high.excess);
         struct trial trial = {
-            low.log_volume + (step % 3 && isfinite(share) && share > 0 ? share : 0.5) *
-                                 (high.log_volume - low.log_volume),
-            0};
+            .log_volume = low.log_volume +
+                          (step % 3 && isfinite(share) && share > 0 ? share : 0.5) *
+                              (high.log_volume - low.log_volume)};
         const enum status status = try_volume(radius, separation, law, &trial, reason);
         if (status) return status;
+        if (isinf(low.excess) && trial.excess < 0 && trial.suction < high.suction)
+            return STATUS_OK;
         if (fabs(trial.excess) <= accuracy) low = high = trial;
         if (trial.excess > 0)
             low = trial;
@@ -89,7 +100,7 @@ enum status solve_ring(const double radius[2], double separation,
     }
     if (!(part > 0)) return STATUS_OK;
     const struct bridge bridge = bridge_of(radius, law, part);
-    if (separation > 2 * bridge_rupture_distance(&bridge)) return STATUS_OK; // [G 2]
+    if (ruptures(&bridge, separation)) return STATUS_OK;
     struct bridge_state state;
     const enum status status = bridge_solve(&bridge, separation, &state, reason);
     if (status == STATUS_NO) return STATUS_OK; // it ruptures
@@ -104,6 +115,7 @@ enum status solve_ring(const double radius[2], double separation,
 // Between two grains that share a face.
 struct ring {
     int32_t grain[2]; // the lower first; the second below 0: none
+    double radius[2]; // m, of the two
     double gap;       // m; 0 where they overlap
     double angle;     // of all throats beside the face, each from both its sides; 4 pi
                       // where the foot lies within it
@@ -141,6 +153,8 @@ static void add_to_ring(const struct wedges *wedges, const struct wedge *wedge,
     const int high = wedge->grain < wedge->beyond ? wedge->beyond : wedge->grain;
     ring->grain[0] = low;
     ring->grain[1] = high;
+    ring->radius[0] = radius[low];
+    ring->radius[1] = radius[high];
     ring->gap =
         fmax(0, distance(wedge->across, wedge->centre) - (radius[low] + radius[high]));
     ring->angle += angle_of(wedge);
@@ -163,30 +177,56 @@ static struct ring *survey(struct wedges *wedges, int n)
     return ring;
 }
 
-static enum status solve(const struct wedges *wedges, const struct ring_law *law,
-                         struct ring *ring, struct reason *reason)
+static enum status solve(const struct ring_law *law, struct ring *ring,
+                         struct reason *reason)
 {
-    const double *of = wedges->network->packing.radius;
-    const double radius[2] = {of[ring->grain[0]], of[ring->grain[1]]};
     double volume;
-    return solve_ring(radius, ring->gap, law, &volume, &ring->force, reason);
+    return solve_ring(ring->radius, ring->gap, law, &volume, &ring->force, reason);
 }
 
-static enum status solve_all(const struct wedges *wedges, const struct ring_law *law,
-                             int n, struct ring *ring, struct reason *reason)
+static int by_shape(const void *a, const void *b)
 {
-    int failed = n;
-#pragma omp parallel for schedule(dynamic, 64) reduction(min : failed)
-    for (int r = 0; r < n; r++) {
+    const struct ring *p = *(struct ring *const *)a, *q = *(struct ring *const *)b;
+    const double of_p[] = {p->radius[0], p->radius[1], p->gap};
+    const double of_q[] = {q->radius[0], q->radius[1], q->gap};
+    for (int k = 0; k < 3; k++)
+        if (of_p[k] != of_q[k]) return of_p[k] < of_q[k] ? -1 : 1;
+    return 0;
+}
+
+// Those between grains, the like of shape together. The caller frees them.
+static struct ring **sorted(struct ring *ring, int n, int *count)
+{
+    struct ring **list = NEW_ARRAY(struct ring *, n);
+    *count = 0;
+    for (int r = 0; r < n; r++)
+        if (ring[r].grain[1] >= 0) list[(*count)++] = &ring[r];
+    qsort(list, (size_t)*count, sizeof(struct ring *), by_shape);
+    return list;
+}
+
+// Each shape once: contacts of equal grains are all alike.
+static enum status solve_all(const struct ring_law *law, int n, struct ring *ring,
+                             struct reason *reason)
+{
+    int count, failed = n;
+    struct ring **list = sorted(ring, n, &count);
+#pragma omp parallel for schedule(dynamic, 16) reduction(min : failed)
+    for (int k = 0; k < count; k++) {
         struct reason unused;
-        if (ring[r].grain[1] >= 0 && solve(wedges, law, &ring[r], &unused))
-            failed = r < failed ? r : failed;
+        const bool is_known = k > 0 && by_shape(&list[k - 1], &list[k]) == 0;
+        if (!is_known && solve(law, list[k], &unused)) failed = k < failed ? k : failed;
     }
-    if (failed == n) return STATUS_OK;
     struct reason why;
-    const enum status status = solve(wedges, law, &ring[failed], &why);
-    return refuse(reason, status, "ring between grains %d and %d: %.400s",
-                  ring[failed].grain[0], ring[failed].grain[1], why.text);
+    enum status status = STATUS_OK;
+    if (failed < n) status = solve(law, list[failed], &why);
+    for (int k = 1; k < count; k++)
+        if (by_shape(&list[k - 1], &list[k]) == 0) list[k]->force = list[k - 1]->force;
+    const int32_t *grain = failed < n ? list[failed]->grain : NULL;
+    free(list);
+    if (status == STATUS_OK) return STATUS_OK;
+    return refuse(reason, status, "ring between grains %d and %d: %.400s", grain[0],
+                  grain[1], why.text);
 }
 
 static struct vector part_of_ring(const struct wedges *wedges,
@@ -206,7 +246,7 @@ enum status find_rings(struct wedges *wedges, const struct ring_law *law,
     const int n = wedges->network->n_face + wedges->network->n_throat;
     struct ring *ring = survey(wedges, n);
     *rings = (struct rings){0};
-    const enum status status = solve_all(wedges, law, n, ring, reason);
+    const enum status status = solve_all(law, n, ring, reason);
     for (int r = 0; r < n && !status; r++) {
         rings->count += ring[r].force != 0;
         rings->largest = fmax(rings->largest, fabs(ring[r].force));
