@@ -937,6 +937,12 @@ for size in 1e140, 1e-100:
             [*REPLAY[:1], damaged("forces", value("particles/radius", 3, size))],
             rf"damaged: grain 3: radii must be from 1e-60 to 1e60 m, .* got {size:g}, .*"
             .replace("e+", r"e\+"))
+# Bridges much larger than their bodies; those of the volume it names work.
+ONE_BRIDGE = ("bridge", "--set", "radius=1e-6", "--set", "points=2")
+setting("a bridge without rupture says what volumes have one", UNSTABLE, "volume=4e-17",
+        r"no rupture found for 4e-17 m3, 40 times the cube of the effective radius: between "
+        r"these bodies it is up to 24\.\d times \(2\.4\d*e-17 m3\)", program=ONE_BRIDGE)
+make("bridge", *ONE_BRIDGE, "--set", "volume=2.4e-17")
 setting("a time step past the stability limit is refused", UNSTABLE, "time_step_safety=10",
         r"forces: time step \S+ s is past the stability limit of \S+ s: .*must be below .*"
         "got 10", program=REPLAY)

@@ -82,6 +82,22 @@ enum status bridge_solve(const struct bridge *bridge, double separation,
     return STATUS_OK;
 }
 
+// The volume nearest to VOLUME, to 2 %, at which rupture is found, if it is at 1: both
+// over the cube of the effective radius.
+static double nearest_that_ruptures(const struct bodies *bodies, double volume)
+{
+    double found = 0, failed = log(volume); // logarithms
+    while (fabs(failed - found) > 0.02) {
+        const double middle = 0.5 * (found + failed);
+        struct equilibrium unused;
+        if (find_rupture(bodies, exp(middle), &unused) == STATUS_OK)
+            found = middle;
+        else
+            failed = middle;
+    }
+    return exp(found);
+}
+
 enum status bridge_solve_rupture(const struct bridge *bridge,
                                  struct bridge_state *state, struct reason *reason)
 {
@@ -92,9 +108,14 @@ enum status bridge_solve_rupture(const struct bridge *bridge,
     const enum status status =
         find_rupture(&bodies, bridge_dimensionless_volume(bridge), &found);
     *state = state_of(bridge, &bodies, &found);
-    if (status)
-        return refuse(reason, status, "no rupture found for %g m3", bridge->volume);
-    return STATUS_OK;
+    if (status == STATUS_OK) return STATUS_OK;
+    const double volume = bridge_dimensionless_volume(bridge);
+    const double nearest = nearest_that_ruptures(&bodies, volume);
+    return refuse(reason, status,
+                  "no rupture found for %g m3, %.3g times the cube of the effective "
+                  "radius: between these bodies it is %s %.3g times (%.3g m3)",
+                  bridge->volume, volume, nearest < volume ? "up to" : "from", nearest,
+                  bridge->volume / volume * nearest);
 }
 
 void bridge_profile(const struct bridge *bridge, const struct bridge_state *state,
