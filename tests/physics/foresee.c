@@ -151,6 +151,32 @@ static void a_bond_breaks_at_any_of_them(void **state)
     }
 }
 
+// One bond is weaker than all others, which hold; more and more, in tension or in
+// shear.
+static void the_weak_one_breaks_at_its_load(void **state)
+{
+    (void)state;
+    enum { WEAK = 70 };
+    for (int mode = 0; mode < 2; mode++) {
+        struct scene *s = make_scene(3, -1, false);
+        s->setup.bond.normal_strength = mode == DEM_CRACK_NORMAL ? 1e9 : INFINITY;
+        s->setup.bond.shear_strength = mode == DEM_CRACK_SHEAR ? 1e9 : INFINITY;
+        double *relative = NEW_ARRAY(double, s->packing.n_bond);
+        for (int b = 0; b < s->packing.n_bond; b++)
+            relative[b] = 1;
+        s->setup.relative_strength = relative;
+        int held = 0, broke = 0;
+        for (relative[WEAK] = 4e-6; relative[WEAK] < 1e-4; relative[WEAK] *= 1.7) {
+            const int cracks = compare(s, LOADS);
+            held += cracks == 0;
+            broke += cracks == 1;
+        }
+        assert_true(held > 0 && broke > 1);
+        free(relative);
+        free_scene(s);
+    }
+}
+
 static void nothing_holds_them(void **state)
 {
     (void)state;
@@ -191,6 +217,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_open_and_close),
         cmocka_unit_test(a_bond_breaks_at_any_of_them),
+        cmocka_unit_test(the_weak_one_breaks_at_its_load),
         cmocka_unit_test(nothing_holds_them),
         cmocka_unit_test(what_comes_is_not_what_was_expected)};
     cmocka_set_message_output(CM_OUTPUT_TAP);

@@ -17,14 +17,21 @@ static double total_of(const struct vector *force, int n)
     return total;
 }
 
-// Force, and moment about the lower corner.
-static struct net_load net_of(const struct packing *packing, const struct vector *force)
+static struct vector place_of(const struct packing *packing, const struct vector *moved,
+                              int i)
+{
+    const struct vector from = subtract(packing->position[i], packing->lower);
+    return moved ? add(from, moved[i]) : from;
+}
+
+// Force, and moment about the lower corner, of grains that have MOVED (NULL: not).
+static struct net_load net_of(const struct packing *packing, const struct vector *moved,
+                              const struct vector *force)
 {
     struct net_load net = {0};
     for (int i = 0; i < packing->n_particle; i++) {
-        const struct vector from = subtract(packing->position[i], packing->lower);
         net.force = add(net.force, force[i]);
-        net.moment = add(net.moment, cross(from, force[i]));
+        net.moment = add(net.moment, cross(place_of(packing, moved, i), force[i]));
     }
     return net;
 }
@@ -43,9 +50,9 @@ static void nothing_is_left(void **state)
             packing.position[i] = add(packing.position[i], away);
         struct vector *force = random_vectors(N, 1e-9, 3);
         const double total = total_of(force, N);
-        const struct net_load before = net_of(&packing, force);
+        const struct net_load before = net_of(&packing, NULL, force);
         const struct net_load off = take_off_net_load(&packing, NULL, NULL, force);
-        const struct net_load after = net_of(&packing, force);
+        const struct net_load after = net_of(&packing, NULL, force);
         assert_true(norm(before.force) > 1e-3 * total);
         assert_true(distance(off.force, before.force) < 1e-14 * total);
         assert_true(distance(off.moment, before.moment) < 1e-13 * total * RADIUS);
@@ -56,6 +63,47 @@ static void nothing_is_left(void **state)
     }
 }
 
+// Of grains on their way what is left of force and moment takes all momentum in the
+// time there is, linear and angular, about where they are now; not that of one that is
+// gone.
+static void what_is_left_stops_them(void **state)
+{
+    (void)state;
+    struct packing packing = irregular_packing(SIDE, RADIUS, false);
+    struct vector *force = random_vectors(N, 1e-9, 3);
+    struct vector *moved = random_vectors(N, RADIUS, 4);
+    struct vector *velocity = random_vectors(N, 1, 5);
+    struct vector *spin = random_vectors(N, 1 / RADIUS, 6);
+    const struct moving_grains now = {moved, velocity, spin, 3230, 1e-6};
+    const bool is_gone[N] = {[7] = true};
+    for (int i = 0; i < N; i++)
+        velocity[i].x += 2;
+    const double total = total_of(force, N);
+    const struct net_load before = net_of(&packing, moved, force);
+    const struct net_load off = take_off_net_load(&packing, is_gone, &now, force);
+    assert_true(distance(off.force, before.force) < 1e-14 * total);
+    assert_true(distance(off.moment, before.moment) < 1e-13 * total * RADIUS);
+    struct net_load left = net_of(&packing, moved, force);
+    double pushes = 0;
+    for (int i = 0; i < N; i++) {
+        if (is_gone[i]) continue;
+        const double r = packing.radius[i], mass = 3230 * 4. / 3 * M_PI * r * r * r;
+        const struct vector push = scale(mass / now.time, velocity[i]);
+        const struct vector turn = scale(0.4 * mass * r * r / now.time, spin[i]);
+        left.force = add(left.force, push);
+        left.moment = add(left.moment, cross(place_of(&packing, moved, i), push));
+        left.moment = add(left.moment, turn);
+        pushes += norm(push);
+    }
+    assert_true(norm(left.force) < 1e-14 * pushes);
+    assert_true(norm(left.moment) < 1e-13 * pushes * RADIUS * SIDE);
+    free(spin);
+    free(velocity);
+    free(moved);
+    free(force);
+    packing_free(&packing);
+}
+
 // Grains in a line have no inertia about it; across it, they turn.
 static void a_row_turns_across_itself_only(void **state)
 {
@@ -64,7 +112,7 @@ static void a_row_turns_across_itself_only(void **state)
     struct vector force[5] = {
         {0, 1e-9, 0}, {3e-9, 0, 0}, {0, 0, 0}, {0, 0, 2e-9}, {0, 0, 0}};
     take_off_net_load(&packing, NULL, NULL, force);
-    const struct net_load left = net_of(&packing, force);
+    const struct net_load left = net_of(&packing, NULL, force);
     assert_true(norm(left.force) < 1e-23 && norm(left.moment) < 1e-22 * RADIUS);
     packing_free(&packing);
 }
@@ -100,7 +148,7 @@ static void a_box_that_repeats_does_not_turn(void **state)
         const double total = total_of(force, N);
         for (int i = 0; i < N; i++)
             assert_true(distance(force[i], other[i]) < 1e-13 * total);
-        const double about_x = net_of(&packing, force).moment.x;
+        const double about_x = net_of(&packing, NULL, force).moment.x;
         assert_int_equal(fabs(about_x) < 1e-13 * total * RADIUS, axes == 1);
         free(force);
         free(other);
@@ -220,6 +268,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_left),
+        cmocka_unit_test(what_is_left_stops_them),
         cmocka_unit_test(a_row_turns_across_itself_only),
         cmocka_unit_test(of_nobody_nothing_is_taken),
         cmocka_unit_test(a_box_that_repeats_does_not_turn),
