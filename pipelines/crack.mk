@@ -2,7 +2,7 @@
 # From a scene to its cracks:
 #
 #     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
-#     make demo                        ->  the sample in both drying limits, and its picture
+#     make demo                        ->  the sample in both drying limits, and its pictures
 #     make demo SCENE=samples/x.json   ->  the same for another scene
 
 SCENE ?=
@@ -85,11 +85,19 @@ $(call artifact,$(demo_picture),stage=picture version=1,$(wildcard \
 	pipelines/picture*) $(demo_drawn),pipelines/picture $(demo_folder) $(demo_picture),$(BUILD)/bin/inspect)
 endif
 
-demo: $(demo_counts) $(demo_picture)
+# What has broken at four saturations [K Figs. 5.14, 5.16].
+demo_patterns := $(demo_folder)/patterns.svg
+demo_moments := $(foreach limit,$(demo_limits),$(foreach s,0.9 0.6 0.3 \
+	0,'$(limit), saturation $s=$(demo_folder)/$(limit)/response.h5@$s'))
+$(call artifact,$(demo_patterns),stage=crack-patterns version=2,$(wildcard \
+	pipelines/crack-patterns*) $(demo_limits:%=$(demo_folder)/%/response.h5),pipelines/crack-patterns \
+	$(demo_moments) $(demo_patterns),$(BUILD)/bin/inspect)
+
+demo: $(demo_counts) $(demo_picture) $(demo_patterns)
 ifdef really
 	@for limit in $(demo_limits); do \
 		jq -r --arg limit $$limit '"\($$limit): " + $(crack_words)' $(demo_folder)/$$limit/crackstats.json; done
 	@echo 'artifacts: $(demo_folder)'
-	$(if $(demo_picture),@echo 'picture:   $(demo_picture)')
+	@echo 'pictures:  $(demo_picture) $(demo_patterns)'
 endif
 endif

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variable: tables, the folder of the tables that pipelines/force-history makes.
+# Variables: tables, the folder of the tables that pipelines/force-history makes; strength of the
+# bond, nN.
 set terminal svg size 1000,380 font "Helvetica,15" linewidth 1 background "#ffffff"
 set multiplot
 set border 3 linecolor "#555555"
@@ -18,10 +19,12 @@ panel = "set lmargin at screen left(c); set rmargin at screen left(c) + 0.4; \
         linewidth 1.6 linecolor rgb colour[k + 1] title word(name, k + 1)"
 c = 0; heading = "Normal force of the contact, nN"
 set yrange [*:*]
-set key bottom left samplen 2 textcolor "#222222"
+set key top right samplen 2 textcolor "#222222"
 @panel
-c = 1; heading = "Where it pulls (negative)"
+c = 1; heading = "Where it pulls; dashed: its strength"
 set yrange [-2:2]
 unset key
+set arrow 1 from graph 0, first -strength to graph 1, first -strength nohead dashtype (6, 4) linewidth 1.5 \
+    linecolor "#222222"
 @panel
 unset multiplot

@@ -2,7 +2,8 @@
 # K's Table 5.2 over many realisations: the stiff aggregate with four bond strengths in
 # inviscid drying, and with one in immobile drying.
 #
-#     make strength                          ->  build/runs/strength/table.md
+#     make strength                          ->  build/runs/strength/1.03/table.md, cracks.svg,
+#                                                patterns.svg [K Fig. 5.17]
 #     make strength SEEDS="1 2 3" FORCE_SCALE=1
 
 SEEDS ?= $(shell seq 20)
@@ -37,8 +38,16 @@ $(call strength_counts,immobile,1.6e4)
 strength_tables := $(strengths:%=$(strength_folder)/inviscid-%.json) $(strength_folder)/immobile-1.6e4.json
 $(call artifact,$(strength_folder)/table.md,stage=strength version=1,pipelines/strength $(strength_tables),pipelines/strength $(strength_folder) $(strength_folder)/table.md,)
 
-strength: $(strength_folder)/table.md
+$(call artifact,$(strength_folder)/cracks.svg,stage=strength-figure version=1,pipelines/strength-figure pipelines/strength.gp $(strength_folder)/table.md,pipelines/strength-figure $(strength_folder)/table.md $(strength_folder)/cracks.svg,)
+
+# Where bonds of each strength broke, in the first of the seeds.
+strength_drawn := $(foreach s,$(strengths),$(strength_folder)/inviscid/$(firstword $(SEEDS))/response-$s.h5)
+strength_titles := $(foreach s,$(strengths),'$s N/m²=$(strength_folder)/inviscid/$(firstword $(SEEDS))/response-$s.h5')
+$(call artifact,$(strength_folder)/patterns.svg,stage=crack-patterns version=2,$(wildcard pipelines/crack-patterns*) $(strength_drawn),pipelines/crack-patterns $(strength_titles) $(strength_folder)/patterns.svg,$(BUILD)/bin/inspect)
+
+strength: $(strength_folder)/table.md $(strength_folder)/cracks.svg $(strength_folder)/patterns.svg
 ifdef really
 	@cat $<
+	@echo 'pictures: $(strength_folder)/cracks.svg, patterns.svg'
 endif
 endif

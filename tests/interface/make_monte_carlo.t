@@ -34,6 +34,23 @@ is 'then it runs alone, and what counts it' \
 is 'all three are counted' 3 "$(jq .runs "$where/inviscid.json")"
 is 'the test has two groups of three' '[3,3]' "$(jq -c .test.groups "$where/test.json")"
 is 'nothing runs again' '' "$(study)"
+# Studies of a single seed have no standard deviations.
+build/bin/crackstats "$where/immobile-1.h5" -o "$scratch/one.json"
+mkdir "$scratch/one"
+for arm in inviscid-0.4e4 inviscid-0.8e4 inviscid-1.6e4 inviscid-2e4 immobile-1.6e4 inviscid-one-0 \
+    inviscid-normal-0.1 inviscid-weibull-0.1 immobile-one-0 immobile-weibull-0.1; do
+    cp "$scratch/one.json" "$scratch/one/$arm.json"
+done
+counts=$(jq -r '.mean | "\(.cracks.total) \(.first.total) \(.fragments.count)"' "$scratch/one.json")
+read -r all first fragments <<<"$counts"
+pipelines/strength "$scratch/one" "$scratch/strength.md"
+yes "and its picture" pipelines/strength-figure "$scratch/strength.md" "$scratch/strength.svg"
+is 'the table of strengths, of one seed' "$all (K 81)" \
+    "$(awk -F' *[|] *' '$3 == "1.6e4" && $2 == "inviscid" { print $8 }' "$scratch/strength.md")"
+pipelines/weibull table "$scratch"/one/*-one-0.json "$scratch/weibull.md"
+is 'and that of scattered ones' "inviscid|one|0|$all|$first.0|$fragments" \
+    "$(sed -n 's/ *| */|/g; s/|\(inviscid|.*\)|[0-9.]*|\([0-9]*\)|/\1|\2/p' "$scratch/weibull.md")"
+
 is 'one more runs alone' 'counts.svg immobile-4.h5 immobile.json inviscid-4.h5 inviscid.json table.md test.json' \
     "$(study REALISATIONS=4)"
 rm "$where/immobile-1.h5"

@@ -195,7 +195,7 @@ for name in "a b" "it's" 'a;b' 'a#b'; do
 done
 cp $scene samples/stiff-5x5x10.json
 plan=$(make -n demo)
-is 'make demo: one network' 'merge-nodes pack tessellate' \
+is 'make demo: one network, one picture of its cracks' 'crack-patterns merge-nodes pack tessellate' \
     "$(sed -n 's/.* stage=\([^ ]*\).*/\1/p' <<<"$plan" | sort | uniq -u | xargs)"
 is 'make demo: two limits' 'immobile inviscid' \
     "$(grep -o -- '--set .liquid=[a-z]*' <<<"$plan" | cut -d= -f2 | sort | xargs)"
