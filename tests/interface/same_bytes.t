@@ -48,6 +48,14 @@ with scratch() as one, scratch() as two:
     made = [run("dem-replay", "-p", SCENE, "--threads", n, "--set", "cycles=30", large)
             for n in (1, 2, 3)]
     ok(made[0] == made[1] == made[2], "dem-replay of 2016 grains by 1, 2 and 3 threads")
+    # Equilibria find their way alone: threads make no difference to them either.
+    few, made = "tests/hard/scale.json", b""
+    for stage in STAGES[:5]:
+        made = run(stage, "-p", few, input=made)
+    for more in "friction=0", "friction=0.5", "quasi_static.large_displacements=true":
+        how = ["dem-replay", "-q", "-p", few, "--set", "engine=quasi-static", "--set", more]
+        ok(len({run(*how, "--threads", n, input=made) for n in (1, 2, 3)}) == 1,
+           f"equilibria, {more}, by 1, 2 and 3 threads")
     # A whole scene, or the stage's own section: the same parameters.
     import json
     with open(SCENE) as scene:
