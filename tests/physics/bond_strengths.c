@@ -2,8 +2,8 @@
 // Strengths of bonds that scatter, against their distributions, and the weakest link of
 // a chain against its closed form.
 #include "dem-replay/bonds.h"
-#include "dem-replay/replay.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 #include "support_irregular.h"
 
 #include <gsl/gsl_cdf.h>
@@ -146,11 +146,7 @@ static int pull_chain(int n, double *relative, enum engine engine, double share,
         .cycles = 1000,
         .tolerance = NAN,
         .threads = 1};
-    const struct keeper none = {0};
-    struct response response;
-    struct reason reason = {""};
-    if (replay(&packing, &load, &settings, NULL, &none, &response, &reason))
-        fail_msg("%s", reason.text);
+    struct response response = replay_or_fail(&packing, &load, &settings);
     const int cracks = response.n_crack;
     *first = cracks ? response.crack[0].bond : -1;
     response_free(&response);

@@ -16,22 +16,22 @@ static void a_row_as_its_hinges_say(void **state)
     struct vector force[N] = {{0, 0, 0}}, moved[N];
     const double f = 1e-10, glue = bond_stiffness * bond_area();
 
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     force[N - 1] = (struct vector){f, 0, 0};
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
     assert_true(fabs(moved[N - 1].x / ((N - 1) * f / glue) - 1) < 1e-9);
     force[N - 1] = (struct vector){-f, 0, 0};
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
     const double together = glue + contact_stiffness / 2;
     assert_true(fabs(moved[N - 1].x / (-(N - 1) * f / together) - 1) < 1e-9);
     equilibrium_free(equilibrium);
 
     setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
-    equilibrium = make(&setup);
+    equilibrium = make_equilibrium(&setup);
     force[N - 1] = (struct vector){0, f, 0};
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
     const double bending = bond_stiffness * M_PI / 4 * pow(radius_fraction * RADIUS, 4);
     double expected = 0;
@@ -48,20 +48,17 @@ static void a_row_as_its_hinges_say(void **state)
 static void a_block_as_the_discrete_elements(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    const struct equilibrium_setup setup = setup_of(&packing, fixed);
-    struct equilibrium *equilibrium = make(&setup);
+    struct block *block = new_block();
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
     load_block(force, 1e-13);
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
 
-    struct dem_setup slow = {.packing = &packing,
-                             .material = setup.material,
-                             .bond = setup.bond,
-                             .fixed = fixed,
+    struct dem_setup slow = {.packing = &block->packing,
+                             .material = block->setup.material,
+                             .bond = block->setup.bond,
+                             .fixed = block->fixed,
                              .time_step_safety = 0.04,
                              .threads = 1};
     slow.material.density = 3230;
@@ -75,7 +72,7 @@ static void a_block_as_the_discrete_elements(void **state)
     assert_true(apart(still, moved) < 1e-6);
     dem_free(dem);
     equilibrium_free(equilibrium);
-    packing_free(&packing);
+    free_block(block);
 }
 
 // Every grain feels no more than the tolerance; the contacts' forces on each, added up
@@ -83,16 +80,13 @@ static void a_block_as_the_discrete_elements(void **state)
 static void forces_balance(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
-    setup.material.friction = 0.5;
-    struct equilibrium *equilibrium = make(&setup);
+    struct block *block = new_block();
+    block->setup.material.friction = 0.5;
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK], sum[BLOCK];
     for (int step = 1; step <= 3; step++) {
         load_block(force, step * 1e-9);
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
         memcpy(sum, force, sizeof sum);
         int count;
         struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
@@ -103,10 +97,10 @@ static void forces_balance(void **state)
         }
         free(contact);
         for (int i = 0; i < BLOCK; i++)
-            if (!fixed[i]) assert_true(norm(sum[i]) <= 2e-10 * step * 1e-9);
+            if (!block->fixed[i]) assert_true(norm(sum[i]) <= 2e-10 * step * 1e-9);
     }
     equilibrium_free(equilibrium);
-    packing_free(&packing);
+    free_block(block);
 }
 
 // What rounding leaves when the load is gone is not measured by what it leaves in
@@ -114,21 +108,18 @@ static void forces_balance(void **state)
 static void nothing_is_settled(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    const struct equilibrium_setup setup = setup_of(&packing, fixed);
-    struct equilibrium *equilibrium = make(&setup);
+    struct block *block = new_block();
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     load_block(force, 1e-9);
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     const double loaded = equilibrium_unbalanced_ratio(equilibrium);
     assert_true(loaded > 0 && loaded < 1e-8);
     load_block(force, 0);
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     assert_true(equilibrium_unbalanced_ratio(equilibrium) == 0);
     equilibrium_free(equilibrium);
-    packing_free(&packing);
+    free_block(block);
 }
 
 // Of bonds in a row the one at its strength breaks, and no other: what it held leaves.
@@ -141,21 +132,21 @@ static void one_bond_breaks(void **state)
     struct equilibrium_setup setup = setup_of(&packing, fixed);
     const double f = 1e-9;
     setup.bond.normal_strength = f / bond_area();
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector force[N] = {{0, 0, 0}};
     force[N - 1] = (struct vector){(1 - 1e-6) * f, 0, 0};
     int cracks, first;
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_cracks(equilibrium, &cracks);
     assert_int_equal(cracks, 0);
     force[N - 1].x = f; // exactly
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     const struct dem_crack *crack = equilibrium_cracks(equilibrium, &cracks);
     assert_int_equal(cracks, 1);
     assert_int_equal(crack[0].mode, DEM_CRACK_NORMAL);
     assert_int_equal(equilibrium_gone(equilibrium, &first), N - 1 - crack[0].bond);
     force[N - 1].x = 100 * f; // on what has left
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_cracks(equilibrium, &cracks);
     assert_int_equal(cracks, 1);
     equilibrium_free(equilibrium);
@@ -173,10 +164,10 @@ static void a_wall_is_rigid(void **state)
     struct equilibrium_setup setup = setup_of(&packing, fixed);
     setup.has_wall = true;
     setup.material.friction = 0.5;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     const struct vector press = {0, 0, -1e-8};
     struct vector moved;
-    find(equilibrium, &press);
+    next_equilibrium(equilibrium, &press);
     equilibrium_displacements(equilibrium, &moved);
     assert_true(fabs(moved.z * contact_stiffness / -1e-8 - 1) < 1e-9);
     equilibrium_free(equilibrium);
@@ -188,30 +179,27 @@ static void a_wall_is_rigid(void **state)
 static void the_whole_balances(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
-    setup.material.friction = 0.5;
-    setup.tolerance = 1e-8;
-    setup.bond.normal_strength = setup.bond.shear_strength = 1e5;
-    struct equilibrium *equilibrium = make(&setup);
+    struct block *block = new_block();
+    block->setup.material.friction = 0.5;
+    block->setup.tolerance = 1e-8;
+    block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1e5;
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     int count, first, gone = 0;
     for (int step = 1; step <= 12; step++) {
         load_block(force, step * 1e-9);
         for (int i = 0; i < BLOCK; i++)
             force[i].z = i == BLOCK - 1 ? step * 1e-9 : 0;
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
         gone = equilibrium_gone(equilibrium, &first);
         struct vector sum = {0, 0, 0};
         for (int i = 0; i < BLOCK - gone; i++)
-            if (!fixed[i]) sum = add(sum, force[i]);
+            if (!block->fixed[i]) sum = add(sum, force[i]);
         struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
         for (int c = 0; c < count; c++) {
             const int32_t *pair = contact[c].particle;
-            if (fixed[pair[0]] == fixed[pair[1]]) continue;
-            const double sign = fixed[pair[0]] ? 1 : -1; // on the one that moves
+            if (block->fixed[pair[0]] == block->fixed[pair[1]]) continue;
+            const double sign = block->fixed[pair[0]] ? 1 : -1; // on the one that moves
             sum = add(sum, scale(sign, contact[c].force));
         }
         free(contact);
@@ -220,7 +208,7 @@ static void the_whole_balances(void **state)
     assert_int_equal(gone, 1);
     assert_int_equal(first, BLOCK - 1); // the corner that was pulled out
     equilibrium_free(equilibrium);
-    packing_free(&packing);
+    free_block(block);
 }
 
 // Turned by a quarter about the vertical, loads move grains the same way turned, slip
@@ -228,12 +216,10 @@ static void the_whole_balances(void **state)
 static void a_turned_block_answers_turned(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
-    setup.material.friction = 0.1;
-    struct equilibrium *straight = make(&setup), *turned = make(&setup);
+    struct block *block = new_block();
+    block->setup.material.friction = 0.1;
+    struct equilibrium *straight = make_equilibrium(&block->setup),
+                       *turned = make_equilibrium(&block->setup);
     struct vector force[BLOCK], other[BLOCK], moved[BLOCK], answer[BLOCK], back[BLOCK];
     int target[BLOCK];
     for (int i = 0; i < BLOCK; i++) {
@@ -244,8 +230,8 @@ static void a_turned_block_answers_turned(void **state)
         load_block(force, step * 1e-9);
         for (int i = 0; i < BLOCK; i++)
             other[target[i]] = (struct vector){-force[i].y, force[i].x, force[i].z};
-        find(straight, force);
-        find(turned, other);
+        next_equilibrium(straight, force);
+        next_equilibrium(turned, other);
     }
     equilibrium_displacements(straight, moved);
     equilibrium_displacements(turned, answer);
@@ -256,7 +242,7 @@ static void a_turned_block_answers_turned(void **state)
     assert_true(apart(back, moved) < 1e-9);
     equilibrium_free(straight);
     equilibrium_free(turned);
-    packing_free(&packing);
+    free_block(block);
 }
 
 // Every bond far past its strength at once: those that hold break, all are counted, and
@@ -264,33 +250,32 @@ static void a_turned_block_answers_turned(void **state)
 static void every_bond_breaks(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
-    setup.material.friction = 0.5;
-    setup.bond.normal_strength = setup.bond.shear_strength = 1e-3;
-    struct equilibrium *equilibrium = make(&setup);
+    struct block *block = new_block();
+    block->setup.material.friction = 0.5;
+    block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1e-3;
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     for (int i = 0; i < BLOCK; i++) // apart, all ways
-        force[i] = scale(1e-4, subtract(packing.position[i], packing.lower));
-    find(equilibrium, force);
+        force[i] =
+            scale(1e-4, subtract(block->packing.position[i], block->packing.lower));
+    next_equilibrium(equilibrium, force);
     int cracks, first;
     equilibrium_cracks(equilibrium, &cracks);
-    uint8_t *intact = NEW_ARRAY(uint8_t, packing.n_bond);
+    uint8_t *intact = NEW_ARRAY(uint8_t, block->packing.n_bond);
     equilibrium_bonds_intact(equilibrium, intact);
     int broken = 0;
-    for (int b = 0; b < packing.n_bond; b++) {
-        const bool hold = fixed[packing.bond[b][0]] != fixed[packing.bond[b][1]];
+    for (int b = 0; b < block->packing.n_bond; b++) {
+        const bool hold = block->fixed[block->packing.bond[b][0]] !=
+                          block->fixed[block->packing.bond[b][1]];
         assert_false(hold && intact[b]);
         broken += !intact[b];
     }
     assert_int_equal(cracks, broken);
     assert_int_equal(equilibrium_gone(equilibrium, &first), BLOCK - SIDE * SIDE);
-    find(equilibrium, force); // nothing is left to move
+    next_equilibrium(equilibrium, force); // nothing is left to move
     free(intact);
     equilibrium_free(equilibrium);
-    packing_free(&packing);
+    free_block(block);
 }
 
 // Bonds from a millionth to a million times as stiff as contacts: the row is pushed
@@ -307,16 +292,16 @@ static void stiffnesses_over_twelve_decades(void **state)
         setup.material.friction = 0.5;
         const double glue = contact_stiffness / 2 * pow(10, decade);
         setup.bond.normal_stiffness = setup.bond.shear_stiffness = glue / bond_area();
-        struct equilibrium *equilibrium = make(&setup);
+        struct equilibrium *equilibrium = make_equilibrium(&setup);
         struct vector force[N] = {{0, 0, 0}}, moved[N];
         const double f = 1e-9 * fmin(1, pow(10, decade));
         force[N - 1] = (struct vector){-f, 0.01 * f, 0};
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
         equilibrium_displacements(equilibrium, moved);
         const double together = glue + contact_stiffness / 2;
         assert_true(fabs(moved[N - 1].x / (-(N - 1) * f / together) - 1) < 1e-6);
         force[N - 1] = (struct vector){0, 0, 0};
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
         equilibrium_free(equilibrium);
     }
     packing_free(&packing);
@@ -333,14 +318,14 @@ static void a_mechanism_leaves(void **state)
     const uint8_t fixed[N] = {1};
     struct equilibrium_setup setup = setup_of(&packing, fixed);
     setup.material.friction = 0.5;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector force[N] = {{0, 0, 0}};
     int first;
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     assert_int_equal(equilibrium_gone(equilibrium, &first), 0);
     for (int i = 1; i < N; i++)
         force[i] = (struct vector){0, 1e-9, 0};
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     assert_int_equal(equilibrium_gone(equilibrium, &first), N - 1);
     assert_int_equal(first, 1);
     equilibrium_free(equilibrium);

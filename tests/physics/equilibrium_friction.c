@@ -2,8 +2,8 @@
 // Slip in equilibrium (dem-replay, engine=quasi-static) against closed forms: a grain
 // sheared to and fro, a row drawn through what holds it by friction, a block on a
 // slope.
-#include "dem-replay/equilibrium.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 
 static const double stiffness = 3e4; // N/m, of a grain: half of it at a contact
 static const double overlap = 1e-6;  // of the radius
@@ -29,17 +29,13 @@ static struct equilibrium *make(const struct packing *packing, const uint8_t *fi
                  .radius_fraction = radius_fraction},
         .tolerance = 1e-10,
         .most_iterations = 40};
-    struct equilibrium *equilibrium;
-    struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, &setup, &reason)) fail_msg("%s", reason.text);
-    return equilibrium;
+    return make_equilibrium(&setup);
 }
 
 static void find(struct equilibrium *equilibrium, const struct vector *force,
                  struct vector *moved)
 {
-    struct reason reason = {""};
-    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
 }
 

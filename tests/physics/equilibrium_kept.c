@@ -28,13 +28,12 @@ static void load_scene(const struct scene *scene, int load, struct vector force[
     }
 }
 
-static struct equilibrium *begin(const struct scene *scene,
-                                 const struct packing *packing, const uint8_t *fixed)
+static struct equilibrium *begin(const struct scene *scene, const struct block *block)
 {
     static double strength[3 * BLOCK]; // of bonds, relative
-    for (int b = 0; b < packing->n_bond; b++)
+    for (int b = 0; b < block->packing.n_bond; b++)
         strength[b] = 1 + 0.9 * sin(b * b);
-    struct equilibrium_setup setup = setup_of(packing, fixed);
+    struct equilibrium_setup setup = block->setup;
     setup.relative_strength = strength;
     setup.material.friction = scene->friction;
     setup.bond.kind = scene->bond;
@@ -43,16 +42,16 @@ static struct equilibrium *begin(const struct scene *scene,
     setup.rolling = 1e-3;
     setup.large_displacements = scene->is_large;
     setup.increment = 0.02;
-    return make(&setup);
+    return make_equilibrium(&setup);
 }
 
-static void go_on(const struct scene *scene, const struct packing *packing,
-                  const uint8_t *fixed, struct equilibrium **equilibrium)
+static void go_on(const struct scene *scene, const struct block *block,
+                  struct equilibrium **equilibrium)
 {
     struct reason reason = {""};
     struct array_list list = equilibrium_save(*equilibrium);
     equilibrium_free(*equilibrium);
-    *equilibrium = begin(scene, packing, fixed);
+    *equilibrium = begin(scene, block);
     if (equilibrium_restore(*equilibrium, &list, &reason)) fail_msg("%s", reason.text);
     dem_free_arrays(list.array, list.count);
 }
@@ -76,21 +75,18 @@ static void assert_same(const struct scene *scene, int load, struct equilibrium 
 // Beside one in one piece, which forgets after as many loads.
 static void in_pieces(const struct scene *scene, int between)
 {
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium *whole = begin(scene, &packing, fixed);
-    struct equilibrium *cut = begin(scene, &packing, fixed);
+    struct block *block = new_block();
+    struct equilibrium *whole = begin(scene, block), *cut = begin(scene, block);
     for (int load = 0; load < LOADS; load++) {
         struct vector force[BLOCK];
         load_scene(scene, load, force);
-        find(whole, force);
-        find(cut, force);
+        next_equilibrium(whole, force);
+        next_equilibrium(cut, force);
         assert_same(scene, load, whole, cut);
         if (load % between) continue;
         equilibrium_forget(whole);
         equilibrium_forget(cut);
-        go_on(scene, &packing, fixed, &cut);
+        go_on(scene, block, &cut);
     }
     int cracks, last;
     equilibrium_cracks(whole, &cracks);
@@ -101,7 +97,7 @@ static void in_pieces(const struct scene *scene, int between)
         equilibrium_restless(whole, &last));
     equilibrium_free(whole);
     equilibrium_free(cut);
-    packing_free(&packing);
+    free_block(block);
 }
 
 static void the_same_bytes(void **state)

@@ -4,8 +4,8 @@
 #ifndef CRAQUELURE_TEST_EQUILIBRIUM_SCENE_H
 #define CRAQUELURE_TEST_EQUILIBRIUM_SCENE_H
 
-#include "dem-replay/equilibrium.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 
 static const double bond_stiffness = 8e14; // N/m3
 static const double contact_stiffness = 3e4;
@@ -28,20 +28,6 @@ static inline struct equilibrium_setup setup_of(const struct packing *packing,
         .most_iterations = 40};
 }
 
-static inline struct equilibrium *make(const struct equilibrium_setup *setup)
-{
-    struct equilibrium *equilibrium;
-    struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
-    return equilibrium;
-}
-
-static inline void find(struct equilibrium *equilibrium, const struct vector *force)
-{
-    struct reason reason = {""};
-    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
-}
-
 static inline double bond_area(void)
 {
     return M_PI * pow(radius_fraction * RADIUS, 2);
@@ -49,10 +35,27 @@ static inline double bond_area(void)
 
 enum { SIDE = 3, HIGH = 4, BLOCK = SIDE * SIDE * HIGH };
 
-static inline void hold_bottom(uint8_t fixed[BLOCK])
+// Held at its bottom; nothing slips or breaks.
+struct block {
+    struct packing packing;
+    uint8_t fixed[BLOCK];
+    struct equilibrium_setup setup; // of these
+};
+
+static inline struct block *new_block(void)
 {
-    for (int i = 0; i < BLOCK; i++)
-        fixed[i] = i < SIDE * SIDE;
+    struct block *block = NEW_ARRAY(struct block, 1);
+    block->packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        block->fixed[i] = 1;
+    block->setup = setup_of(&block->packing, block->fixed);
+    return block;
+}
+
+static inline void free_block(struct block *block)
+{
+    packing_free(&block->packing);
+    free(block);
 }
 
 // Squeezed from the sides and pulled up unevenly, SIZE N at most.

@@ -2,8 +2,8 @@
 // Equilibria that were found several loads at a time are those found one by one:
 // displacements, contacts and cracks, wherever among the loads one comes.
 #include "basics/memory.h"
-#include "dem-replay/equilibrium.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 
 enum { SIDE = 4, HIGH = 5, N = SIDE * SIDE * HIGH, LOADS = 27, LAST = LOADS - 1 };
 
@@ -64,13 +64,10 @@ struct outcome {
 static struct outcome *find_all(const struct scene *s, int known)
 {
     struct outcome *outcome = NEW_ARRAY(struct outcome, 1);
-    struct equilibrium *equilibrium;
-    struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, &s->setup, &reason)) fail_msg("%s", reason.text);
+    struct equilibrium *equilibrium = make_equilibrium(&s->setup);
     equilibrium_expect(equilibrium, known, s->force[0]);
     for (int k = 0; k < LOADS; k++) {
-        if (equilibrium_find(equilibrium, s->force[k], &reason))
-            fail_msg("%s", reason.text);
+        next_equilibrium(equilibrium, s->force[k]);
         equilibrium_displacements(equilibrium, outcome->moved[k]);
         free(equilibrium_contacts(equilibrium, &outcome->touching[k]));
         const struct dem_crack *crack =
@@ -194,14 +191,11 @@ static void what_comes_is_not_what_was_expected(void **state)
     for (int i = 0; i < N; i++)
         s->force[13][i] = scale(-20, s->force[12][i]);
     struct outcome *right = find_all(s, LOADS);
-    struct equilibrium *equilibrium;
-    struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, &s->setup, &reason)) fail_msg("%s", reason.text);
+    struct equilibrium *equilibrium = make_equilibrium(&s->setup);
     equilibrium_expect(equilibrium, LOADS, s->force[0]);
     for (int k = 0; k < LOADS; k += k == 4 ? 7 : 1) {
         struct vector moved[N];
-        if (equilibrium_find(equilibrium, s->force[k], &reason))
-            fail_msg("%s", reason.text);
+        next_equilibrium(equilibrium, s->force[k]);
         equilibrium_displacements(equilibrium, moved);
         for (int i = 0; i < N; i++)
             assert_true(distance(moved[i], right->moved[k][i]) < 1e-8 * RADIUS);

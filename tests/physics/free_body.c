@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A body that nothing holds, under forces that keep their directions: its net load is
 // taken off, and it shrinks without moving or turning as one.
-#include "dem-replay/equilibrium.h"
 #include "dem-replay/net_load.h"
-#include "dem-replay/replay.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 #include "support_irregular.h"
 
 enum { SIDE = 4, N = SIDE * SIDE * SIDE };
@@ -187,11 +186,7 @@ static struct vector *moved(const struct packing *packing, struct vector *force,
 {
     double none[1] = {0};
     const struct load load = {1, none, none, force};
-    const struct keeper no_keeper = {0};
-    struct response response;
-    struct reason reason = {""};
-    if (replay(packing, &load, settings, NULL, &no_keeper, &response, &reason))
-        fail_msg("%s", reason.text);
+    struct response response = replay_or_fail(packing, &load, settings);
     struct vector *displacement =
         duplicate(response.snapshot[0].displacement, N, sizeof *displacement);
     response_free(&response);

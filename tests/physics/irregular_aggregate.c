@@ -4,8 +4,8 @@
 // anew.
 #include "dem-replay/bonds.h"
 #include "dem-replay/reaction.h"
-#include "dem-replay/replay.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 #include "support_irregular.h"
 
 enum { SIDE = 4, N = SIDE * SIDE * SIDE };
@@ -65,17 +65,6 @@ static struct load there_and_back(const struct vector *force, int n, int steps)
             load.force[k * n + i] =
                 scale(fmin(k + 1, 2 * steps - 1 - k) / steps, force[i]);
     return load;
-}
-
-static struct response replayed(const struct packing *packing, const struct load *load,
-                                const struct replay_settings *settings)
-{
-    const struct keeper none = {0};
-    struct response response;
-    struct reason reason = {""};
-    if (replay(packing, load, settings, NULL, &none, &response, &reason))
-        fail_msg("%s", reason.text);
-    return response;
 }
 
 static void load_free(struct load *load)
@@ -163,10 +152,7 @@ static struct equilibrium *new_equilibrium(const struct packing *packing,
                                       .tolerance = 1e-12,
                                       .most_iterations = 40};
     setup.material.friction = friction;
-    struct equilibrium *equilibrium;
-    struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, &setup, &reason)) fail_msg("%s", reason.text);
-    return equilibrium;
+    return make_equilibrium(&setup);
 }
 
 // At rest nothing is left, of forces and of moments about any point.
@@ -185,9 +171,7 @@ static void the_whole_balances_at_rest(void **state)
         for (int step = 1; step <= 20; step++) {
             for (int i = 0; i < N; i++)
                 force[i] = scale(is_gone[i] ? 0 : step / 20.0, whole[i]);
-            struct reason reason = {""};
-            if (equilibrium_find(equilibrium, force, &reason))
-                fail_msg("%s", reason.text);
+            next_equilibrium(equilibrium, force);
             struct vector net = {0, 0, 0};
             double total = 0, lever;
             for (int i = 0; i < N; i++) {
@@ -280,9 +264,7 @@ static double work_of_a_loop(double friction, const double *relative)
     struct vector was[N] = {{0, 0, 0}}, is[N];
     double work = 0, most = 0;
     for (int step = 0; step < load.n_time; step++) {
-        struct reason reason = {""};
-        if (equilibrium_find(equilibrium, load.force + step * N, &reason))
-            fail_msg("%s", reason.text);
+        next_equilibrium(equilibrium, load.force + step * N);
         equilibrium_displacements(equilibrium, is);
         for (int i = 0; i < N; i++) {
             if (equilibrium_is_gone(equilibrium)[i]) continue;
@@ -342,7 +324,7 @@ static void bonds_never_heal(void **state)
         }
         settings.snapshot = snapshot;
         settings.n_snapshot = 20;
-        struct response response = replayed(&packing, &load, &settings);
+        struct response response = replay_or_fail(&packing, &load, &settings);
         assert_int_equal(response.n_snapshot, 20);
         assert_in_range(response.n_crack, 5, packing.n_bond - 1);
         for (int k = 0; k < 20; k++) {
@@ -427,10 +409,10 @@ static void turned_and_renumbered_the_same(void **state)
         struct replay_settings settings = settings_of((enum engine)engine, held);
         settings.snapshot = last;
         settings.relative_strength = relative;
-        struct response a = replayed(&packing, &load, &settings);
+        struct response a = replay_or_fail(&packing, &load, &settings);
         settings.held = held_there;
         settings.relative_strength = relative_there;
-        struct response b = replayed(&other, &turned_load, &settings);
+        struct response b = replay_or_fail(&other, &turned_load, &settings);
         assert_in_range(a.n_crack, 5, packing.n_bond - 1);
         const double off = difference(&packing, &a, &other, &b, angle, order);
         if (!(off < 1e-7)) fail_msg("engine %d: off by %g", engine, off);
@@ -476,8 +458,8 @@ static void moved_across_the_sides_the_same(void **state)
         struct replay_settings settings = settings_of((enum engine)engine, held);
         settings.snapshot = last;
         settings.relative_strength = relative;
-        struct response a = replayed(&packing, &load, &settings);
-        struct response b = replayed(&other, &load, &settings);
+        struct response a = replay_or_fail(&packing, &load, &settings);
+        struct response b = replay_or_fail(&other, &load, &settings);
         assert_in_range(a.n_crack, 1, packing.n_bond - 1);
         const double off = difference(&packing, &a, &other, &b, 0, order);
         if (!(off < 1e-7)) fail_msg("engine %d: off by %g", engine, off);
@@ -502,9 +484,9 @@ static void threads_make_no_difference(void **state)
     struct load load = there_and_back(force, packing.n_particle, 1);
     struct replay_settings settings = settings_of(ENGINE_EXPLICIT, held);
     double *relative = settings.relative_strength = weak_and_strong(&packing);
-    struct response one = replayed(&packing, &load, &settings);
+    struct response one = replay_or_fail(&packing, &load, &settings);
     settings.threads = 3;
-    struct response three = replayed(&packing, &load, &settings);
+    struct response three = replay_or_fail(&packing, &load, &settings);
     assert_in_range(one.n_crack, 5, packing.n_bond - 1);
     assert_int_equal(one.n_crack, three.n_crack);
     for (int k = 0; k < one.n_crack; k++)
@@ -533,8 +515,7 @@ static void cycles_come_to_equilibrium(void **state)
         uint8_t *held = lowest_grains(&packing, SIDE);
         struct vector *force = shrinking_load(&packing, 1e-6 * size), moved[N];
         struct equilibrium *equilibrium = new_equilibrium(&packing, held, 0, NULL);
-        struct reason reason = {""};
-        if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+        next_equilibrium(equilibrium, force);
         equilibrium_displacements(equilibrium, moved);
         double largest = 0, before = INFINITY;
         for (int i = 0; i < N; i++)
@@ -546,7 +527,7 @@ static void cycles_come_to_equilibrium(void **state)
             settings.material.friction = 0;
             settings.time_step_safety = 0.036;
             settings.cycles = cycles;
-            struct response response = replayed(&packing, &load, &settings);
+            struct response response = replay_or_fail(&packing, &load, &settings);
             double error = 0;
             for (int i = 0; i < N; i++)
                 error = fmax(error,

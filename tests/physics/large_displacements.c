@@ -146,10 +146,10 @@ static double row_error(double force, double angle, double increment)
     const uint8_t fixed[ROW] = {1};
     struct equilibrium_setup setup = row_setup(&packing, fixed);
     setup.increment = increment;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector pull[ROW] = {{0, 0, 0}}, moved[ROW];
     pull[ROW - 1] = (struct vector){force * cos(angle), force * sin(angle), 0};
-    find(equilibrium, pull);
+    next_equilibrium(equilibrium, pull);
     equilibrium_displacements(equilibrium, moved);
     const double error = distance(moved[ROW - 1], end_of(&row)) / RADIUS;
     print_message(
@@ -207,11 +207,11 @@ static void a_row_buckles(void **state)
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
     const struct equilibrium_setup setup = row_setup(&packing, fixed);
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     const double load = buckling_load();
     struct vector push[ROW] = {{0, 0, 0}}, moved[ROW];
     push[ROW - 1].x = -2 * load;
-    find(equilibrium, push);
+    next_equilibrium(equilibrium, push);
     int last;
     assert_int_equal(equilibrium_snaps(equilibrium, &last), 1);
     assert_int_equal(last, ROW - 1);
@@ -310,16 +310,14 @@ static void a_block_as_the_discrete_elements(void **state)
         double size, turn;
         int steps;
     } run[] = {{5e-8, 0.0089, 1000}, {2.5e-7, 0.047, 1000}, {1.25e-6, 0.33, 8000}};
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = block_setup(&packing, fixed);
+    struct block *block = new_block();
+    struct equilibrium_setup setup = block_setup(&block->packing, block->fixed);
     setup.increment = 0.002;
     for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
         struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
-        struct equilibrium *equilibrium = make(&setup);
+        struct equilibrium *equilibrium = make_equilibrium(&setup);
         twist_block(force, run[k].size);
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
         equilibrium_displacements(equilibrium, moved);
         assert_true(fabs(largest_turn(equilibrium) / run[k].turn - 1) < 0.01);
         cycles_to_rest(&setup, run[k].size, run[k].steps, still);
@@ -329,7 +327,7 @@ static void a_block_as_the_discrete_elements(void **state)
         assert_true(error < 1e-6);
         equilibrium_free(equilibrium);
     }
-    packing_free(&packing);
+    free_block(block);
 }
 
 // Contact bonds. Nothing resists rolling in cycles; what does here matters as much as
@@ -338,10 +336,8 @@ static void a_block_as_the_discrete_elements(void **state)
 static void contact_bonds_as_the_discrete_elements(void **state)
 {
     (void)state;
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = block_setup(&packing, fixed);
+    struct block *block = new_block();
+    struct equilibrium_setup setup = block_setup(&block->packing, block->fixed);
     setup.bond.kind = DEM_CONTACT_BOND;
     struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
     cycles_to_rest(&setup, 2e-9, 4000, still);
@@ -349,8 +345,8 @@ static void contact_bonds_as_the_discrete_elements(void **state)
     for (int k = 0; k < 4; k++) {
         setup.rolling = k % 2 ? 1e-5 : 1e-3;
         setup.large_displacements = k < 2;
-        struct equilibrium *equilibrium = make(&setup);
-        find(equilibrium, force);
+        struct equilibrium *equilibrium = make_equilibrium(&setup);
+        next_equilibrium(equilibrium, force);
         equilibrium_displacements(equilibrium, moved);
         const double error = apart(still, moved);
         print_message("# contact bonds, rolling %g: engines %g apart\n", setup.rolling,
@@ -358,7 +354,7 @@ static void contact_bonds_as_the_discrete_elements(void **state)
         if (setup.large_displacements) assert_true(error < 5 * setup.rolling);
         equilibrium_free(equilibrium);
     }
-    packing_free(&packing);
+    free_block(block);
 }
 
 // A row that is bent until its end lies on a grain that was half a radius away, and
@@ -379,10 +375,10 @@ static void grains_that_come_to_touch(void **state)
     struct equilibrium_setup setup = row_setup(&packing, fixed);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
     setup.increment = 0.005;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector force[N] = {{0, 0, 0}}, moved[N], still[N];
     force[LONG - 1].y = 1e-8;
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
     int count;
     struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
@@ -474,10 +470,10 @@ static double apex_error(double load, double increment, double height, double *e
     const uint8_t fixed[BARS + 1] = {1, 1, 1, 1, 0};
     struct equilibrium_setup setup = truss_setup(&packing, fixed);
     setup.increment = increment;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector force[BARS + 1] = {{0, 0, 0}}, moved[BARS + 1];
     force[APEX].z = -load;
-    find(equilibrium, force);
+    next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
     int last;
     *ended = equilibrium_snaps(equilibrium, &last) ? equilibrium->large->ended : 1;
@@ -534,20 +530,18 @@ static struct vector turned(struct vector a)
                                          scale((1 - cos(angle)) * dot(axis, a), axis)));
 }
 
-static void find_block(const struct packing *packing, bool is_turned, double friction,
+static void find_block(const struct block *block, bool is_turned, double friction,
                        struct vector moved[BLOCK])
 {
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
-    struct equilibrium_setup setup = block_setup(packing, fixed);
+    struct equilibrium_setup setup = block_setup(&block->packing, block->fixed);
     setup.material.friction = friction;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector force[BLOCK];
     for (int step = 1; step <= 4; step++) {
         twist_block(force, step * 3e-7);
         for (int i = 0; i < BLOCK && is_turned; i++)
             force[i] = turned(force[i]);
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
     }
     assert_true(largest_turn(equilibrium) > 0.2);
     int count, last;
@@ -562,18 +556,18 @@ static void a_turned_scene_gives_the_same(void **state)
     (void)state;
     for (int k = 0; k < 2; k++) {
         const double friction = 0.3 * k;
-        struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
+        struct block *block = new_block();
         struct vector moved[BLOCK], expected[BLOCK];
-        find_block(&packing, false, friction, expected);
+        find_block(block, false, friction, expected);
         for (int i = 0; i < BLOCK; i++) {
             expected[i] = turned(expected[i]);
-            packing.position[i] = turned(packing.position[i]);
+            block->packing.position[i] = turned(block->packing.position[i]);
         }
-        find_block(&packing, true, friction, moved);
+        find_block(block, true, friction, moved);
         print_message("# turned by 1 rad, friction %g: %g apart\n", friction,
                       apart(moved, expected));
         assert_true(apart(moved, expected) < 1e-9);
-        packing_free(&packing);
+        free_block(block);
     }
 }
 
@@ -591,20 +585,18 @@ static double stored(const struct equilibrium *equilibrium)
 // is given: F u(1) less the integral of F u, by Simpson's rule.
 static double work_not_stored(int steps, double *energy)
 {
-    struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    uint8_t fixed[BLOCK];
-    hold_bottom(fixed);
+    struct block *block = new_block();
     struct equilibrium_setup setup =
-        row_setup(&packing, fixed); // bonds alone are smooth
+        row_setup(&block->packing, block->fixed); // bonds alone are smooth
     setup.increment = 0.1;
-    struct equilibrium *equilibrium = make(&setup);
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
     struct vector full[BLOCK], force[BLOCK], moved[BLOCK];
     twist_block(full, 1.2e-6);
     double work = 0;
     for (int step = 1; step <= steps; step++) {
         for (int i = 0; i < BLOCK; i++)
             force[i] = scale((double)step / steps, full[i]);
-        find(equilibrium, force);
+        next_equilibrium(equilibrium, force);
         equilibrium_displacements(equilibrium, moved);
         const double weight = step == steps ? 1 - 1. / 3 / steps
                               : step % 2    ? -4. / 3 / steps
@@ -616,7 +608,7 @@ static double work_not_stored(int steps, double *energy)
     print_message("# %d steps, turned by %g: stored %.9g J, work %g of it more\n",
                   steps, largest_turn(equilibrium), *energy, work / *energy - 1);
     equilibrium_free(equilibrium);
-    packing_free(&packing);
+    free_block(block);
     return work - *energy;
 }
 

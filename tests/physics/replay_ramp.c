@@ -3,8 +3,8 @@
 // Pulled at once its force overshoots to twice what pulls; by a load that grows over a
 // time T, to 1 + |sin(w T / 2)| / (w T / 2) times that (Chopra, Dynamics of
 // Structures).
-#include "dem-replay/replay.h"
 #include "dem_scene.h"
+#include "support_equilibrium.h"
 
 static const double pull = 1e-9;
 static const double time_step_safety = 0.002;
@@ -48,10 +48,7 @@ static bool breaks(double strength, int64_t ramp)
     settings.material.damping_ratio = 0;
     settings.bond.normal_strength =
         strength * pull / (M_PI * bond_radius * bond_radius);
-    struct response response;
-    struct reason reason = {""};
-    if (replay(&packing, &load, &settings, NULL, NULL, &response, &reason))
-        fail_msg("replay: %s", reason.text);
+    struct response response = replay_or_fail(&packing, &load, &settings);
     assert_int_equal(response.cycles[0], settings.cycles + ramp);
     const bool broke = response.n_crack > 0;
     response_free(&response);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support_equilibrium.h"
+
+// clang-format off
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+// clang-format on
+
+struct equilibrium *make_equilibrium(const struct equilibrium_setup *setup)
+{
+    struct equilibrium *equilibrium;
+    struct reason reason = {""};
+    if (equilibrium_new(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
+    return equilibrium;
+}
+
+void next_equilibrium(struct equilibrium *equilibrium, const struct vector *force)
+{
+    struct reason reason = {""};
+    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+}
+
+struct response replay_or_fail(const struct packing *packing, const struct load *load,
+                               const struct replay_settings *settings)
+{
+    struct response response;
+    struct reason reason = {""};
+    if (replay(packing, load, settings, NULL, NULL, &response, &reason))
+        fail_msg("%s", reason.text);
+    return response;
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibria and replays that have to succeed, or the test fails.
+#ifndef CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
+#define CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
+
+#include "dem-replay/equilibrium.h"
+#include "dem-replay/replay.h"
+
+struct equilibrium *make_equilibrium(const struct equilibrium_setup *setup);
+void next_equilibrium(struct equilibrium *equilibrium, const struct vector *force);
+struct response replay_or_fail(const struct packing *packing, const struct load *load,
+                               const struct replay_settings *settings);
+
+#endif
