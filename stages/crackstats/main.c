@@ -122,7 +122,9 @@ static void must_fit(const struct study *study, const struct run *run, const cha
     if (study->n_run == 0) return;
     const double bonds = study->bonds / study->n_run;
     if (same_bonds && bonds != run->packing.n_bond)
-        die(STATUS_BAD_DATA, "%s: has %d bonds, the runs before have %g: not one study",
+        die(STATUS_BAD_DATA,
+            "%s: has %d bonds, the runs before have %g: not one study "
+            "(same_bonds=false takes runs of other packings)",
             path, run->packing.n_bond, bonds);
     if (study->n_snapshot != run->n_snapshot)
         die(STATUS_BAD_DATA,
@@ -181,7 +183,7 @@ int main(int argc, char **argv)
     json_t *report =
         json_pack("{s:s,s:i,s:o}", "schema", "craquelure/crackstats/1", "runs",
                   study.n_run, "bonds", json_value(study.bonds / study.n_run));
-    report_tables(report, &study);
+    report_tables(report, &study, parameters.confidence);
     report_facts(report, &study, parameters.confidence,
                  (struct groups){(int)parameters.first_group, parameters.paired});
     finish_json(report, &invocation, inputs,

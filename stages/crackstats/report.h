@@ -8,8 +8,9 @@
 #include <jansson.h>
 
 // Puts in tables that are means over the runs: cracks, periods, profile, by_saturation,
-// by_time, profiles, clusters, fragments, orientation, deformation, front.
-void report_tables(json_t *report, const struct study *study);
+// by_time, profiles, clusters, fragments, orientation, deformation, front; with their
+// scatter and intervals of CONFIDENCE in profile, by_saturation and by_time.
+void report_tables(json_t *report, const struct study *study, double confidence);
 
 // Puts in the facts: mean, sd and confidence_interval over the runs (null for one run),
 // each run's own; and the test of the groups.

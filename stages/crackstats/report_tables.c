@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "basics/memory.h"
 #include "report.h"
+#include "sample.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,6 +47,36 @@ static json_t *classes(const double (*of)[MODE_COUNT], int n, double start, doub
                             json_real((start * (n - k - 1) + end * (k + 1)) / n));
         json_array_append_new(list, entry);
     }
+    return list;
+}
+
+// Puts into ENTRY how the counts of a class, RUNS times their mean, scatter.
+static void put_scatter(json_t *entry, const double squares[COLUMN_COUNT], int runs,
+                        double confidence)
+{
+    static const char *const names[COLUMN_COUNT] = {"normal", "shear", "total"};
+    json_t *sd = runs > 1 ? json_object() : json_null();
+    json_t *interval = runs > 1 ? json_object() : json_null();
+    for (int c = 0; c < COLUMN_COUNT && runs > 1; c++) {
+        const double mean = json_number_value(json_object_get(entry, names[c]));
+        const double deviation = counts_deviation(round(mean * runs), squares[c], runs);
+        const double half = half_width_of(deviation, runs, confidence);
+        json_object_set_new(sd, names[c], json_value(deviation));
+        json_object_set_new(
+            interval, names[c],
+            json_pack("[o,o]", json_value(mean - half), json_value(mean + half)));
+    }
+    json_object_set_new(entry, "sd", sd);
+    json_object_set_new(entry, "confidence_interval", interval);
+}
+
+// Classes that are counted run by run.
+static json_t *scattered(json_t *list, const double (*squares)[COLUMN_COUNT], int runs,
+                         double confidence)
+{
+    size_t k;
+    json_t *entry;
+    json_array_foreach(list, k, entry) put_scatter(entry, squares[k], runs, confidence);
     return list;
 }
 
@@ -165,9 +196,10 @@ static json_t *front(const struct study *study)
                      "slice_saturation", local);
 }
 
-void report_tables(json_t *report, const struct study *study)
+void report_tables(json_t *report, const struct study *study, double confidence)
 {
     const struct counts *counts = &study->counts;
+    const struct squares *squares = &study->squares;
     const double runs = study->n_run;
     const double *first = counts->period[PERIOD_FIRST];
     const double *second = counts->period[PERIOD_SECOND];
@@ -176,10 +208,15 @@ void report_tables(json_t *report, const struct study *study)
     const int n_slice = study->classes.n_slice, n = study->classes.n_interval;
     json_object_set_new(report, "cracks", by_mode(both, runs));
     json_object_set_new(report, "periods", periods(counts, runs));
-    json_object_set_new(report, "profile", classes(counts->slice, n_slice, 0, 1, runs));
+    json_object_set_new(report, "profile",
+                        scattered(classes(counts->slice, n_slice, 0, 1, runs),
+                                  squares->slice, study->n_run, confidence));
     json_object_set_new(report, "by_saturation",
-                        classes(counts->saturation, n, 1, 0, runs));
-    json_object_set_new(report, "by_time", classes(counts->time, n, 0, 1, runs));
+                        scattered(classes(counts->saturation, n, 1, 0, runs),
+                                  squares->saturation, study->n_run, confidence));
+    json_object_set_new(report, "by_time",
+                        scattered(classes(counts->time, n, 0, 1, runs), squares->time,
+                                  study->n_run, confidence));
     json_object_set_new(report, "profiles", profiles(study));
     json_object_set_new(report, "clusters", size_distribution(study->clusters, runs));
     json_object_set_new(report, "fragments", size_distribution(study->fragments, runs));

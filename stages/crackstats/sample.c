@@ -33,9 +33,12 @@ static double student_quantile(double p, double degrees)
 
 double half_width(struct sample sample, double confidence)
 {
-    if (sample.n < 2) return NAN;
-    return student_quantile(1 - confidence, sample.n - 1) * sample_deviation(sample) /
-           sqrt(sample.n);
+    return half_width_of(sample_deviation(sample), sample.n, confidence);
+}
+
+double half_width_of(double deviation, int n, double confidence)
+{
+    return n < 2 ? NAN : student_quantile(1 - confidence, n - 1) * deviation / sqrt(n);
 }
 
 // ---- Welch --------------------------------------------------------------------------

@@ -21,6 +21,9 @@ double student_p(double t, double degrees);
 // probability CONFIDENCE, by Student's t. NAN for fewer than two.
 double half_width(struct sample sample, double confidence);
 
+// The same for N values with this standard DEVIATION.
+double half_width_of(double deviation, int n, double confidence);
+
 // Welch's t test of equal means; variances may differ. Two-sided.
 struct welch {
     double t, degrees, p;

@@ -12,6 +12,7 @@ struct study study_new(int most_runs, struct classes classes)
     return (struct study){.classes = classes,
                           .facts = NEW_ARRAY(struct facts, most_runs),
                           .counts = counts_new(classes),
+                          .squares = squares_new(classes),
                           .front = front_new(classes)};
 }
 
@@ -19,6 +20,7 @@ void study_free(struct study *study)
 {
     free(study->facts);
     counts_free(&study->counts);
+    squares_free(&study->squares);
     free(study->clusters.size);
     free(study->fragments.size);
     free(study->snapshot_saturation);
@@ -118,6 +120,7 @@ void study_add(struct study *study, const struct run *run, const struct liquid *
     double *value = study->facts[study->n_run++].value;
     struct counts counts = counts_new(study->classes);
     count_cracks(&counts, run, study->classes);
+    squares_add(&study->squares, &counts, study->classes);
     note_counts(value, &counts, run->packing.n_bond);
     note_clusters(value, run, &study->clusters);
     note_pieces(value, run, &study->fragments);

@@ -8,6 +8,7 @@
 #include "facts.h"
 #include "front.h"
 #include "orientation.h"
+#include "scatter.h"
 #include "sizes.h"
 
 struct study {
@@ -16,6 +17,7 @@ struct study {
     double bonds;         // of all runs together, at their start
     struct facts *facts;  // (n_run)
     struct counts counts; // this and what follows: sums over the runs
+    struct squares squares;
     struct sizes clusters, fragments;
     struct orientation orientation;
     int n_snapshot;

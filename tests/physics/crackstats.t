@@ -89,8 +89,8 @@ with scratch() as folder:
     ok(sum(s["size"] * s["count"] for s in stats["clusters"]) == 5
        and sum(s["size"] * s["count"] for s in stats["fragments"]) == len(position),
        "clusters hold all cracks, fragments all grains", stats["clusters"])
-    ok(stats["sd"] is None and stats["confidence_interval"] is None and stats["test"] is None,
-       "one run has no scatter")
+    ok(stats["sd"] is None and stats["confidence_interval"] is None and stats["test"] is None
+       and stats["profile"][0]["sd"] is None, "one run has no scatter")
 
     # ---- none, one, all -------------------------------------------------------------
     everything = list(range(len(bonds)))
@@ -137,6 +137,17 @@ with scratch() as folder:
     ok(np.isclose(stats["sd"]["cracks"]["total"], np.std(first + second, ddof=1))
        and [e["cracks"]["total"] for e in stats["each"]] == first + second,
        "standard deviation, and each run's own")
+    top = crackstats("--set", "slices=1", "--set", "intervals=1", *paths[:10])
+    rows = [top["profile"][0], top["by_saturation"][0], top["by_time"][0]]
+    ok(all(np.allclose(row["confidence_interval"]["total"], interval, rtol=1e-14)
+           and np.isclose(row["sd"]["normal"], np.std(first, ddof=1), rtol=1e-14)
+           and row["confidence_interval"]["shear"] == [0, 0] for row in rows),
+       "one class of height, saturation or time scatters as all cracks do", rows)
+    few = crackstats("--set", "slices=5", *paths[:10])["profile"]
+    own = np.array([[s["total"] for s in crackstats("--set", "slices=5", p)["profile"]]
+                    for p in paths[:10]])
+    ok(np.allclose([s["sd"]["total"] for s in few], np.std(own, axis=0, ddof=1), rtol=1e-14),
+       "each slice as its counts run by run", few)
     ok(crackstats(*paths[::-1])["mean"]["cracks"] == stats["mean"]["cracks"],
        "the order of the runs does not matter to the means")
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scatter.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct squares squares_new(struct classes classes)
+{
+    const size_t n_slice = (size_t)classes.n_slice;
+    const size_t n_interval = (size_t)classes.n_interval;
+    struct squares squares = {0};
+    squares.slice = allocate(n_slice, sizeof *squares.slice);
+    squares.saturation = allocate(n_interval, sizeof *squares.saturation);
+    squares.time = allocate(n_interval, sizeof *squares.time);
+    return squares;
+}
+
+void squares_free(struct squares *squares)
+{
+    free(squares->slice);
+    free(squares->saturation);
+    free(squares->time);
+    *squares = (struct squares){0};
+}
+
+static void add_squares(double (*sum)[COLUMN_COUNT], const double (*of)[MODE_COUNT],
+                        int n)
+{
+    for (int k = 0; k < n; k++) {
+        double both = 0;
+        for (int mode = 0; mode < MODE_COUNT; mode++) {
+            sum[k][mode] += of[k][mode] * of[k][mode];
+            both += of[k][mode];
+        }
+        sum[k][MODE_COUNT] += both * both;
+    }
+}
+
+void squares_add(struct squares *squares, const struct counts *run,
+                 struct classes classes)
+{
+    add_squares(squares->slice, run->slice, classes.n_slice);
+    add_squares(squares->saturation, run->saturation, classes.n_interval);
+    add_squares(squares->time, run->time, classes.n_interval);
+}
+
+double counts_deviation(double sum, double squares, int runs)
+{
+    const double n = runs;
+    return sqrt((n * squares - sum * sum) / (n * (n - 1)));
+}
