@@ -193,7 +193,8 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "grain %d moves %.3g mean radii: displacements are not small, "
                       "and equilibrium is a matter of dynamics "
-                      "(engine=explicit, or stiffer bonds)",
+                      "(quasi_static.large_displacements=true, "
+                      "engine=explicit, or stiffer bonds)",
                       i, size_of(e->trial[i]));
     }
     for (int j = 0; j < e->n_joint; j++) {

@@ -120,6 +120,18 @@ static double longer_open_edge(const struct packing *packing, int wall)
                 component(edge, (wall + 4) / 2 % 3));
 }
 
+// A thickness that was given, but does not count.
+static void note_unused_thickness(const struct dry_parameters *parameters,
+                                  double thickness)
+{
+    static const double fallback = 5e-6; // of the parameter table
+    const double given = parameters->air.thickness;
+    if (parameters->transfer_law == TRANSFER_THICKNESS || given == fallback) return;
+    report("boundary_layer.thickness = %g m does not count without "
+           "boundary_layer.from=thickness: the layer is %.3g m thick",
+           given, thickness);
+}
+
 static struct mass_transfer give_mass_transfer(const struct network *network,
                                                struct dry_parameters *parameters,
                                                bool quiet)
@@ -136,6 +148,7 @@ static struct mass_transfer give_mass_transfer(const struct network *network,
                            conditions->diffusivity, &transfer, &reason);
     if (status) die(status, "dry.%s", reason.text);
     conditions->mass_transfer = transfer.coefficient;
+    if (!quiet) note_unused_thickness(parameters, transfer.thickness);
     if (parameters->transfer_law == TRANSFER_PLATE && transfer.sherwood < 1 && !quiet)
         report("boundary_layer: Sh = %.3g: thicker than the plate is long, where "
                "[K 3.6] does not hold (from=sphere does)",

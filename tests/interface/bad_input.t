@@ -541,7 +541,8 @@ for before, after, command in [("smaller", "a", ["tessellate"]), ("a", "b", ["me
     make(after, *command, before)
 refused("responses of two studies are not counted together", BAD_DATA,
         ["crackstats", "response", "e"],
-        "e: has 12 bonds, the runs before have 20: not one study")
+        "e: has 12 bonds, the runs before have 20: not one study "
+        "(same_bonds=false takes runs of other packings)")
 refused("the same artifact twice from one pipe is refused", BAD_DATA,
         ["crackstats", "-", "-"], "standard input: is empty", input=contents("response"))
 

@@ -5,13 +5,14 @@
 # surface or of an auxiliary layer. While all of the surface is wet the rate is that of
 # diffusion in one dimension, whatever the network: D M p_g/(R T eps) A ln(p_g/(p_g - p_v)).
 import os
+import subprocess
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch
 
 DIFFUSIVITY, GAS, FALL = 2.5685e-5, 8.31446261815324, -np.log1p(-2339 / 1e5)
 DENSITY = 1e5 * 0.01802 / (GAS * 293.15)
@@ -223,6 +224,10 @@ with scratch() as folder:
              2e-3 / (0.664 * Re**0.5 * Sc**(1 / 3))),
             ("around a sphere in air at rest: its radius", given("sphere", *slow), 1e-3)]:
         ok(abs(rate / one_dimension(area, thickness) - 1) < 1e-12, f"thickness {label}", rate)
+    said = subprocess.run([f"{BIN}/dry", "--set", "boundary_layer.thickness=7e-6", at("n"), "-o",
+                           at("d")], stderr=subprocess.PIPE, text=True).stderr
+    ok("thickness = 7e-06 m does not count without boundary_layer.from=thickness" in said,
+       "a thickness that does not count is said", said)
     Re = 0.3 * 2e-3 / 1.53e-5
     rate = given("sphere", flow[0], "boundary_layer.air_velocity=0.3")
     ok(abs(rate / one_dimension(area, 2e-3 / (2 + 0.6 * Re**0.5 * Sc**(1 / 3))) - 1) < 1e-12,
