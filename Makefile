@@ -193,9 +193,11 @@ step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),ve
 include $(wildcard pipelines/*.mk)
 
 ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
-$(shell mkdir -p $(BUILD))# a file, for there may be more recipes than a command line holds
-$(file >$(BUILD)/recipes,$(foreach a,$(artifacts),$(recipe/$a)))
-stale := $(shell pipelines/memo check $(BUILD)/recipes)
+# A file, for there may be more recipes than a command line holds; this make's own, for there may
+# be several at work.
+recipes := $(shell mkdir -p $(BUILD) && mktemp $(BUILD)/recipes.XXXXXX)
+$(file >$(recipes),$(foreach a,$(artifacts),$(recipe/$a)))
+stale := $(shell pipelines/memo check $(recipes); status=$$?; rm -f $(recipes); exit $$status)
 ifneq ($(.SHELLSTATUS),0)
 $(error pipelines/memo could not tell what is stale)
 endif

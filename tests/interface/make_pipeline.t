@@ -26,6 +26,7 @@ while (( $# )); do
 done
 echo "$name" >>ran
 [[ -e fail-$name ]] && exit 3
+[[ -e slow-$name ]] && { touch slow; sleep 1; }
 [[ -e hang-$name ]] && { echo half >"$output"; touch hangs; sleep 60; }
 {
     echo "$name ${sets[*]}"
@@ -188,6 +189,35 @@ is 'many artifacts: all current' 0 "$(make -q many SCENE=$scene; echo $?)"
 rm build/runs/many/77.h5
 is 'many artifacts: one is not' "$(printf '  RUN   %s' build/runs/many/77.h5)" \
     "$(make many SCENE=$scene)"
+
+# Two at once on one scene.
+edit '.dry.liquid = "viscous"'
+touch slow-dry
+make run SCENE=$scene >said 2>&1 & first=$!
+for (( i = 0; i < 300; i++ )); do [[ -e slow ]] && break; sleep 0.1; done
+is 'two makes of one scene: the second waits and finds it made' 'make: status 0 WAIT' \
+    "make: status $(make run SCENE=$scene >other 2>&1; echo $?) $(awk '$2 ~ /drying/ { print $1 }' other)"
+wait $first
+is 'and the first ends well too' 0 $?
+rm slow-dry
+settled 'after both'
+
+# Two at once: one begins while the other looks at what is stale.
+make run SCENE=$scene >said 2>&1
+mv pipelines/memo memo-itself
+cat >pipelines/memo <<'END'
+#!/bin/bash
+[[ $1 == check ]] && sleep 0.5
+exec ./memo-itself "$@"
+END
+chmod +x pipelines/memo
+cp $scene samples/y.json
+edit '.pack.radius = 3'
+make -n run SCENE=$scene >plan & sleep 0.2
+make -n run SCENE=samples/y.json >said
+wait $!
+mv memo-itself pipelines/memo
+is 'of two makes at once each sees what is stale' 1 "$(grep -c 'memo run .*stage=pack' plan)"
 
 for name in "a b" "it's" 'a;b' 'a#b'; do
     is "a scene named $name is refused" 1 "$(make run SCENE="samples/$name.json" 2>&1 \
