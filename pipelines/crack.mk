@@ -52,6 +52,15 @@ ifneq ($(SCENE),)
 run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
+# A wrong key of the last stage is not to be found after the others have run.
+run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats
+ifdef really
+.PHONY: sections
+$(run_folder)/packing.h5: | sections
+sections: | $(run_stages:%=$(BUILD)/bin/%)
+	@for stage in $(run_stages); do \
+		$(BUILD)/bin/$$stage -p $(SCENE) --parameters >/dev/null || exit; done
+endif
 run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
 ifdef really
 	@jq -r '$(crack_words)' $(run_folder)/crackstats.json 2>/dev/null || true

@@ -667,8 +667,10 @@ parameters("an unknown nested key comes with the nearest known one", "dry",
            "the nearest known one is boundary_layer.layers")
 parameters("a key with a line break gives one line", "pack", {"radius\nx": 1},
            r"pack.radius\?x: unknown key; the nearest known one is radius")
-parameters("an unknown section of a scene is named", "pack", {"pack": {}, "packs": {}},
-           "packs: unknown section; sections are named as stages")
+parameters("unknown sections of a scene are named", "pack",
+           {"pack": {}, "packs": {}, "dem-repaly": {}},
+           "packs: unknown section; the nearest stage is pack",
+           "dem-repaly: unknown section; the nearest stage is dem-replay")
 parameters("a section that is no object is refused", "pack", {"pack": 3},
            "pack: must be an object")
 parameters("a number where a group belongs is refused", "dem-replay", {"bond": 3},

@@ -17,6 +17,7 @@ name=${0##*/} sets=() inputs=()
 while (( $# )); do
     case $1 in
     --version) echo "$name $(<"$(dirname "$0")/$name.version")"; exit ;;
+    --parameters) ! grep -q "wrong-$name" "$scene"; exit ;;
     -p) scene=$2; shift ;;
     --set) sets+=("$2"); shift ;;
     -o) output=$2; shift ;;
@@ -125,6 +126,10 @@ is 'a lost key' merge-nodes "$(ran)"
 settled 'after a lost key'
 rm -r $x
 is 'a removed run' "$all" "$(ran)"
+
+edit '.["wrong-crackstats"] = 1'
+is 'a wrong section stops make before anything runs' 'make: status 2' "$(ran)"
+edit 'del(.["wrong-crackstats"])'
 
 touch fail-dem-replay
 edit '.["dem-replay"].stiffness = 3'

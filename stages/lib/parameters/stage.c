@@ -4,6 +4,7 @@
 #include "basics/file.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "parameters/spelling.h"
 #include "parameters/command_line.h"
 
 #include <assert.h>
@@ -188,16 +189,28 @@ static bool is_scene(json_t *json)
     return false;
 }
 
+static const char *nearest_section(const char *key)
+{
+    const char *nearest = sections[0];
+    for (int k = 1; sections[k]; k++)
+        if (edit_distance(key, sections[k]) < edit_distance(key, nearest))
+            nearest = sections[k];
+    return nearest;
+}
+
 static json_t *section_of_scene(json_t *scene, const char *path, const char *stage)
 {
     const char *key;
     json_t *value;
+    int unknown = 0;
     json_object_foreach(scene, key, value)
     {
-        if (!is_section(key) && strcmp(key, "comment"))
-            die(STATUS_BAD_DATA,
-                "%s: %s: unknown section; sections are named as stages", path, key);
+        if (is_section(key) || !strcmp(key, "comment")) continue;
+        report("%s: %s: unknown section; the nearest stage is %s", path, key,
+               nearest_section(key));
+        unknown++;
     }
+    if (unknown) exit(STATUS_BAD_DATA);
     json_t *section = json_object_get(scene, stage);
     if (section && !json_is_object(section))
         die(STATUS_BAD_DATA, "%s: %s: must be an object", path, stage);
