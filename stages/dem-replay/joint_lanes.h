@@ -16,11 +16,12 @@ struct bond_strength {
 
 // What joints and grains say of each lane. What is not a number is in the sums.
 struct lane_sums {
-    double carried[LANES], carrying[LANES]; // forces of joints, and how many carry one
-    double overload[LANES];                 // of bonds, the largest
-    double unbalanced[LANES];               // sum of the forces left on grains
-    double left[LANES];                     // largest force or moment left
-    double furthest[LANES];                 // largest displacement since the beginning
+    double carried[LANES],
+        carrying[LANES];      // forces of joints; those that carry or hold
+    double overload[LANES];   // of bonds, the largest
+    double unbalanced[LANES]; // sum of the forces left on grains
+    double left[LANES];       // largest force or moment left
+    double furthest[LANES];   // largest displacement since the beginning
 };
 
 struct lane_kernels {

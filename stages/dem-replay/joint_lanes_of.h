@@ -153,7 +153,8 @@ static void resist(int n_joint, const struct joint *joint,
         lanes force = load[0] * load[0] + load[1] * load[1] + load[2] * load[2];
         take_root(&force);
         carried += force;
-        carrying -= __builtin_convertvector(force > 0, lanes);
+        const whole carries = (force > 0) | -(int64_t)joint->is_bonded;
+        carrying -= __builtin_convertvector(carries, lanes);
     }
     memcpy(sums->carried, &carried, sizeof carried);
     memcpy(sums->carrying, &carrying, sizeof carrying);

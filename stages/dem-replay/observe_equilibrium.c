@@ -143,8 +143,8 @@ double unbalanced_ratio(const struct equilibrium *e, const struct unbalanced *su
     const double nothing = e->setup.tolerance * e->largest_load;
     if (sum->largest_left <= nothing && sum->carried <= sum->carrying * nothing)
         return 0;
-    return sum->carrying > 0 ? sum->left / sum->moving / (sum->carried / sum->carrying)
-                             : 1; // all is unbalanced
+    return sum->carried > 0 ? sum->left / sum->moving / (sum->carried / sum->carrying)
+                            : 1; // all is unbalanced
 }
 
 double equilibrium_unbalanced_ratio(const struct equilibrium *e)
@@ -159,9 +159,8 @@ double equilibrium_unbalanced_ratio(const struct equilibrium *e)
     for (int j = 0; j < e->n_joint; j++) {
         const double *load = e->resistance[j].load; // along axes that are perpendicular
         const double force = norm((struct vector){load[0], load[1], load[2]});
-        if (!(force > 0)) continue;
         sum.carried += force;
-        sum.carrying++;
+        sum.carrying += force > 0 || (e->joint[j].is_bonded && !e->joint[j].is_gone);
     }
     return unbalanced_ratio(e, &sum);
 }

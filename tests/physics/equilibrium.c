@@ -26,6 +26,24 @@ static void a_row_as_its_hinges_say(void **state)
     equilibrium_displacements(equilibrium, moved);
     const double together = glue + contact_stiffness / 2;
     assert_true(fabs(moved[N - 1].x / (-(N - 1) * f / together) - 1) < 1e-9);
+    int count;
+    struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+    assert_int_equal(count, N - 1);
+    for (int c = 0; c < count; c++) {
+        assert_true(contact[c].particle[0] == c && contact[c].particle[1] == c + 1);
+        assert_close(contact[c].overlap, f / together, 1e-9);
+        assert_close(contact[c].force.x, f, 1e-9);
+        assert_close(contact[c].position.x, 2 * (c + 1) * RADIUS + moved[c].x, 1e-9);
+    }
+    free(contact);
+    struct vector pulls[N], held, turning;
+    equilibrium_load(equilibrium, pulls);
+    for (int i = 0; i < N; i++)
+        assert_true(distance(pulls[i], force[i]) <= 1e-15 * f);
+    const struct vector about = {0, -RADIUS, 0};
+    equilibrium_reaction(equilibrium, about, &held, &turning);
+    assert_close(held.x, f, 1e-9);
+    assert_close(turning.z, -2 * RADIUS * f, 1e-9);
     equilibrium_free(equilibrium);
 
     setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
@@ -99,6 +117,34 @@ static void forces_balance(void **state)
         for (int i = 0; i < BLOCK; i++)
             if (!block->fixed[i]) assert_true(norm(sum[i]) <= 2e-10 * step * 1e-9);
     }
+    equilibrium_free(equilibrium);
+    free_block(block);
+}
+
+// What is left where one does not look for more: [K 4.20] from the forces of contacts.
+static void the_unbalanced_ratio(void **state)
+{
+    (void)state;
+    struct block *block = new_block();
+    block->setup.tolerance = 0.3;
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct vector force[BLOCK];
+    load_block(force, 1e-9);
+    next_equilibrium(equilibrium, force);
+    int count;
+    struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+    double carried = 0, left = 0;
+    for (int c = 0; c < count; c++) {
+        const int32_t *pair = contact[c].particle;
+        force[pair[0]] = subtract(force[pair[0]], contact[c].force);
+        force[pair[1]] = add(force[pair[1]], contact[c].force);
+        carried += norm(contact[c].force);
+    }
+    for (int i = 0; i < BLOCK; i++)
+        if (!block->fixed[i]) left += norm(force[i]);
+    const double wanted = left / (BLOCK - SIDE * SIDE) / (carried / count);
+    assert_close(equilibrium_unbalanced_ratio(equilibrium), wanted, 1e-6);
+    free(contact);
     equilibrium_free(equilibrium);
     free_block(block);
 }
@@ -338,6 +384,7 @@ int main(void)
         cmocka_unit_test(a_row_as_its_hinges_say),
         cmocka_unit_test(a_block_as_the_discrete_elements),
         cmocka_unit_test(forces_balance),
+        cmocka_unit_test(the_unbalanced_ratio),
         cmocka_unit_test(nothing_is_settled),
         cmocka_unit_test(the_whole_balances),
         cmocka_unit_test(a_turned_block_answers_turned),
