@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains of many sizes at irregular places, in both engines of the replay: balance of
-// the whole, energy, bonds that stay broken, and scenes that are turned or numbered
-// anew.
+// Grains of many sizes at irregular places, in both engines of the replay, equilibria
+// for large displacements too: balance of the whole, energy, bonds that stay broken,
+// and scenes that are turned or numbered anew.
 #include "dem-replay/bonds.h"
 #include "dem-replay/reaction.h"
 #include "dem_scene.h"
@@ -15,7 +15,10 @@ static const double strength = 6e4; // N/m2, the mean
 static const struct vector axis = {1, 2, 3};
 static const double full = 1;
 
-static struct replay_settings settings_of(enum engine engine, uint8_t *held)
+// Both engines, equilibria for small displacements and for large ones.
+enum way { CYCLES, SMALL, LARGE, WAYS };
+
+static struct replay_settings settings_of(enum way way, uint8_t *held)
 {
     return (struct replay_settings){
         .material = {.density = 3230,
@@ -26,7 +29,9 @@ static struct replay_settings settings_of(enum engine engine, uint8_t *held)
         .bond = {8e16, 8e16, strength, strength, 0.5858, DEM_PARALLEL_BOND},
         .held = held,
         .support = SUPPORT_FIXED,
-        .engine = engine,
+        .engine = way == CYCLES ? ENGINE_EXPLICIT : ENGINE_QUASI_STATIC,
+        .large_displacements = way == LARGE,
+        .increment = 0.02,
         .equilibrium_tolerance = 1e-12,
         .most_iterations = 40,
         .time_step_safety = 0.02,
@@ -140,61 +145,78 @@ static void the_whole_balances_in_motion(void **state)
 }
 
 static struct equilibrium *new_equilibrium(const struct packing *packing,
-                                           const uint8_t *held, double friction,
-                                           const double *relative)
+                                           const uint8_t *held, enum way way,
+                                           double friction, const double *relative)
 {
-    const struct replay_settings settings = settings_of(ENGINE_QUASI_STATIC, NULL);
+    const struct replay_settings settings = settings_of(way, NULL);
     struct equilibrium_setup setup = {.packing = packing,
                                       .fixed = held,
                                       .material = settings.material,
                                       .bond = settings.bond,
                                       .relative_strength = relative,
                                       .tolerance = 1e-12,
-                                      .most_iterations = 40};
+                                      .most_iterations = 40,
+                                      .large_displacements = way == LARGE,
+                                      .increment = settings.increment};
     setup.material.friction = friction;
     return make_equilibrium(&setup);
 }
 
-// At rest nothing is left, of forces and of moments about any point.
+// Nothing is left, of forces and of moments about any point, which small displacements
+// have where grains began.
+static void check_rest(const struct packing *packing,
+                       const struct equilibrium *equilibrium, const uint8_t *held,
+                       const struct vector *force, enum way way)
+{
+    struct vector position[N], net = {0, 0, 0};
+    double total = 0, lever;
+    equilibrium_displacements(equilibrium, position);
+    for (int i = 0; i < N; i++) {
+        position[i] = add(packing->position[i], scale(way == LARGE, position[i]));
+        net = add(net, force[i]);
+        total += norm(force[i]);
+    }
+    const struct vector moment = moment_of(packing, position, force, &lever);
+    const struct net_load reaction =
+        reaction_of_equilibrium(packing, equilibrium, held, force);
+    const double left = norm(add(net, reaction.force)) / total;
+    const double turn = norm(add(moment, reaction.moment)) / lever;
+    if (!(left < 1e-10 && (packing->periodic[0] || turn < 1e-10)))
+        fail_msg("%g of the load, %g of its moment", left, turn);
+}
+
+static void check_balance_at_rest(const struct packing *packing, enum way way)
+{
+    uint8_t *held = lowest_grains(packing, SIDE);
+    double *relative = weak_and_strong(packing);
+    struct equilibrium *equilibrium =
+        new_equilibrium(packing, held, way, 0.5, relative);
+    struct vector *whole = shrinking_load(packing, size), force[N];
+    const bool *is_gone = equilibrium_is_gone(equilibrium);
+    int cracks = 0;
+    for (int step = 1; step <= 20; step++) {
+        for (int i = 0; i < N; i++)
+            force[i] = scale(is_gone[i] ? 0 : step / 20.0, whole[i]);
+        next_equilibrium(equilibrium, force);
+        for (int i = 0; i < N; i++)
+            if (is_gone[i]) force[i] = (struct vector){0, 0, 0};
+        check_rest(packing, equilibrium, held, force, way);
+    }
+    equilibrium_cracks(equilibrium, &cracks);
+    assert_in_range(cracks, 5, packing->n_bond - 1);
+    equilibrium_free(equilibrium);
+    free(relative);
+    free(whole);
+    free(held);
+}
+
 static void the_whole_balances_at_rest(void **state)
 {
     (void)state;
     for (int repeats = 0; repeats < 2; repeats++) {
         struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
-        uint8_t *held = lowest_grains(&packing, SIDE);
-        double *relative = weak_and_strong(&packing);
-        struct equilibrium *equilibrium =
-            new_equilibrium(&packing, held, 0.5, relative);
-        struct vector *whole = shrinking_load(&packing, size), force[N];
-        const bool *is_gone = equilibrium_is_gone(equilibrium);
-        int cracks = 0;
-        for (int step = 1; step <= 20; step++) {
-            for (int i = 0; i < N; i++)
-                force[i] = scale(is_gone[i] ? 0 : step / 20.0, whole[i]);
-            next_equilibrium(equilibrium, force);
-            struct vector net = {0, 0, 0};
-            double total = 0, lever;
-            for (int i = 0; i < N; i++) {
-                if (is_gone[i]) force[i] = (struct vector){0, 0, 0};
-                net = add(net, force[i]);
-                total += norm(force[i]);
-            }
-            const struct vector moment =
-                moment_of(&packing, packing.position, force, &lever);
-            const struct net_load reaction =
-                reaction_of_equilibrium(&packing, equilibrium, held, force);
-            const double left = norm(add(net, reaction.force));
-            const double turn = norm(add(moment, reaction.moment));
-            if (!(left < 1e-10 * total && (repeats || turn < 1e-10 * lever)))
-                fail_msg("step %d: %g of the load, %g of its moment", step,
-                         left / total, turn / lever);
-        }
-        equilibrium_cracks(equilibrium, &cracks);
-        assert_in_range(cracks, 5, packing.n_bond - 1);
-        equilibrium_free(equilibrium);
-        free(relative);
-        free(whole);
-        free(held);
+        check_balance_at_rest(&packing, SMALL);
+        check_balance_at_rest(&packing, LARGE);
         packing_free(&packing);
     }
 }
@@ -258,7 +280,7 @@ static double work_of_a_loop(double friction, const double *relative)
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     uint8_t *held = lowest_grains(&packing, SIDE);
     struct equilibrium *equilibrium =
-        new_equilibrium(&packing, held, friction, relative);
+        new_equilibrium(&packing, held, SMALL, friction, relative);
     struct vector *whole = shrinking_load(&packing, size);
     struct load load = there_and_back(whole, N, 20);
     struct vector was[N] = {{0, 0, 0}}, is[N];
@@ -314,8 +336,8 @@ static void bonds_never_heal(void **state)
     double *relative = weak_and_strong(&packing);
     struct vector *force = shrinking_load(&packing, size);
     struct load load = there_and_back(force, N, 10);
-    for (int engine = 0; engine < 2; engine++) {
-        struct replay_settings settings = settings_of((enum engine)engine, held);
+    for (enum way way = CYCLES; way < WAYS; way++) {
+        struct replay_settings settings = settings_of(way, held);
         settings.relative_strength = relative;
         double snapshot[20];
         for (int k = 0; k < 20; k++) {
@@ -405,8 +427,8 @@ static void turned_and_renumbered_the_same(void **state)
     const double last[1] = {0};
     for (int k = 0; k < 5; k++)
         load.saturation[k] = turned_load.saturation[k] = 4 - k;
-    for (int engine = 0; engine < 2; engine++) {
-        struct replay_settings settings = settings_of((enum engine)engine, held);
+    for (enum way way = CYCLES; way < WAYS; way++) {
+        struct replay_settings settings = settings_of(way, held);
         settings.snapshot = last;
         settings.relative_strength = relative;
         struct response a = replay_or_fail(&packing, &load, &settings);
@@ -415,7 +437,7 @@ static void turned_and_renumbered_the_same(void **state)
         struct response b = replay_or_fail(&other, &turned_load, &settings);
         assert_in_range(a.n_crack, 5, packing.n_bond - 1);
         const double off = difference(&packing, &a, &other, &b, angle, order);
-        if (!(off < 1e-7)) fail_msg("engine %d: off by %g", engine, off);
+        if (!(off < 1e-7)) fail_msg("way %d: off by %g", (int)way, off);
         response_free(&a);
         response_free(&b);
     }
@@ -454,15 +476,15 @@ static void moved_across_the_sides_the_same(void **state)
     load.n_time = 2;
     const double last[1] = {0};
     load.saturation[0] = 1;
-    for (int engine = 0; engine < 2; engine++) {
-        struct replay_settings settings = settings_of((enum engine)engine, held);
+    for (enum way way = CYCLES; way < WAYS; way++) {
+        struct replay_settings settings = settings_of(way, held);
         settings.snapshot = last;
         settings.relative_strength = relative;
         struct response a = replay_or_fail(&packing, &load, &settings);
         struct response b = replay_or_fail(&other, &load, &settings);
         assert_in_range(a.n_crack, 1, packing.n_bond - 1);
         const double off = difference(&packing, &a, &other, &b, 0, order);
-        if (!(off < 1e-7)) fail_msg("engine %d: off by %g", engine, off);
+        if (!(off < 1e-7)) fail_msg("way %d: off by %g", (int)way, off);
         response_free(&a);
         response_free(&b);
     }
@@ -482,7 +504,7 @@ static void threads_make_no_difference(void **state)
     uint8_t *held = lowest_grains(&packing, 10);
     struct vector *force = shrinking_load(&packing, size);
     struct load load = there_and_back(force, packing.n_particle, 1);
-    struct replay_settings settings = settings_of(ENGINE_EXPLICIT, held);
+    struct replay_settings settings = settings_of(CYCLES, held);
     double *relative = settings.relative_strength = weak_and_strong(&packing);
     struct response one = replay_or_fail(&packing, &load, &settings);
     settings.threads = 3;
@@ -514,8 +536,10 @@ static void cycles_come_to_equilibrium(void **state)
         struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
         uint8_t *held = lowest_grains(&packing, SIDE);
         struct vector *force = shrinking_load(&packing, 1e-6 * size), moved[N];
-        struct equilibrium *equilibrium = new_equilibrium(&packing, held, 0, NULL);
-        next_equilibrium(equilibrium, force);
+        struct equilibrium *equilibrium =
+            new_equilibrium(&packing, held, SMALL, 0, NULL);
+        struct reason reason = {""};
+        if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
         equilibrium_displacements(equilibrium, moved);
         double largest = 0, before = INFINITY;
         for (int i = 0; i < N; i++)
@@ -523,7 +547,7 @@ static void cycles_come_to_equilibrium(void **state)
         struct load load = there_and_back(force, N, 1);
         load.n_time = 1;
         for (int64_t cycles = 14000; cycles <= 56000; cycles += 14000) {
-            struct replay_settings settings = settings_of(ENGINE_EXPLICIT, held);
+            struct replay_settings settings = settings_of(CYCLES, held);
             settings.material.friction = 0;
             settings.time_step_safety = 0.036;
             settings.cycles = cycles;

@@ -26,12 +26,18 @@ with scratch() as folder:
     drying = {limit: run("dry", "-p", SCENE, "--set", f"liquid={limit}", input=network)
               for limit in ("inviscid", "immobile")}
 
+    def forces_of(limit, scale):
+        name = at(f"forces-{limit}-{scale}")
+        if not os.path.exists(name):
+            run("force-protocol", "-p", SCENE, "--set", f"force_scale={scale}", "-o", name,
+                input=drying[limit])
+        return name
+
     def replay(limit, scale, *settings):
         name = at("-".join((limit, str(scale), *settings)))
-        forces = run("force-protocol", "-p", SCENE, "--set", f"force_scale={scale}",
-                     input=drying[limit])
+        forces = forces_of(limit, scale)
         run("dem-replay", "-p", SCENE, *(word for s in settings for word in ("--set", s)),
-            "-o", name, input=forces)
+            forces, "-o", name)
         return name
 
     def strength(limit, value):
@@ -98,6 +104,18 @@ with scratch() as folder:
     share = lambda stats: stats["cracks"]["normal"] / stats["cracks"]["total"]
     ok(share(weak) > share(strong), "normal cracks gain on shear cracks as bonds weaken, as K",
        f"{share(weak)} {share(strong)}")
+
+    # In every equilibrium supports bear the whole load, while contacts slip and bonds break.
+    response = h5py.File(replay("inviscid", 1, "engine=quasi-static"))
+    force = h5py.File(forces_of("inviscid", 1))["force"][:]
+    arm = response["particles/position"][:] - response["domain/lower"][:]
+    net = force.sum(1) + response["history/reaction_force"][:]
+    turn = np.cross(arm, force).sum(1) + response["history/reaction_moment"][:]
+    size = np.linalg.norm(force, axis=2)
+    off = [np.linalg.norm(left, axis=1).max() / whole.sum(1).max() for left, whole in
+           ((net, size), (turn, size * np.linalg.norm(arm, axis=1)))]
+    ok(max(off) < 1e-10 and response["summary"].attrs["cracks"] > 20,
+       "equilibria hand forces and moments on to 1e-10 at every step", off)
 
     # Without friction grains that have come loose slip away, and take no bonds along.
     small, large = (h5py.File(replay("immobile", 1, "engine=quasi-static", "friction=0",
