@@ -136,22 +136,15 @@ static void move_flat(const struct grains *grains, int axis, double least,
     }
 }
 
-static struct vector round_part(const struct body *body, struct vector x)
-{
-    for (int axis = 0; axis < 3; axis++)
-        if (!body_is_round(body, axis)) set_component(&x, axis, 0);
-    return x;
-}
-
 // In the plane or space in which it is round: shift, turn and stretch.
 static void move_round(const struct grains *grains, double least, struct body *body)
 {
     double was = 0;
     struct products products = {0};
     for (int i = 0; i < grains->count; i++) {
-        const struct vector at = round_part(body, grains->was[i]);
+        const struct vector at = body_round_part(body, grains->was[i]);
         was += dot(at, at);
-        add_products(&products, at, round_part(body, grains->is[i]));
+        add_products(&products, at, body_round_part(body, grains->is[i]));
     }
     struct turn turn = {.cosine = 1, .along = was};
     if (was > least) turn = find_turn(&products);
@@ -159,7 +152,7 @@ static void move_round(const struct grains *grains, double least, struct body *b
     const struct vector half = scale(0.5, subtract(body->upper, body->lower));
     const struct vector off = subtract(add(body->lower, half), grains->from);
     const struct vector centre =
-        add(grains->to, scale(stretch, turned(&turn, round_part(body, off))));
+        add(grains->to, scale(stretch, turned(&turn, body_round_part(body, off))));
     for (int axis = 0; axis < 3; axis++) {
         if (!body_is_round(body, axis)) continue;
         const double at = component(centre, axis);

@@ -2,6 +2,7 @@
 #include "clocks.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "charges.h"
 
 #include <math.h>
@@ -14,20 +15,6 @@ static const double TIE = 1e-12;
 
 // --- who loses ---------------------------------------------------------------------
 
-// Where THROAT is or belongs among those that lose.
-static int losing_place(const struct clocks *clocks, int throat)
-{
-    int low = 0, high = clocks->n_losing;
-    while (low < high) {
-        const int middle = low + (high - low) / 2;
-        if (clocks->losing[middle] < throat)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 // From the throat that the account is to lose from.
 static void start_clock(struct clocks *clocks, int k)
 {
@@ -35,7 +22,7 @@ static void start_clock(struct clocks *clocks, int k)
     const int throat = clocks->by_throat
                            ? owner
                            : clusters_invasion_throat(&clocks->phases->clusters, owner);
-    const int place = losing_place(clocks, throat);
+    const int place = first_not_below(clocks->losing, clocks->n_losing, throat);
     memmove(clocks->losing + place + 1, clocks->losing + place,
             (size_t)(clocks->n_losing++ - place) * sizeof *clocks->losing);
     clocks->losing[place] = throat;
@@ -60,7 +47,8 @@ static void settle_clock(struct clocks *clocks, int k)
 
 static void stop_clock(struct clocks *clocks, int k)
 {
-    const int throat = clocks->throat[k], place = losing_place(clocks, throat);
+    const int throat = clocks->throat[k];
+    const int place = first_not_below(clocks->losing, clocks->n_losing, throat);
     memmove(clocks->losing + place, clocks->losing + place + 1,
             (size_t)(--clocks->n_losing - place) * sizeof *clocks->losing);
     settle_clock(clocks, k);
@@ -245,12 +233,6 @@ static double first_end(const struct clocks *clocks)
     return first[0];
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const int *m = a, *n = b;
-    return (*m > *n) - (*m < *n);
-}
-
 static void end_throat(struct clocks *clocks, int k)
 {
     struct phases *phases = clocks->phases;
@@ -277,7 +259,7 @@ static void end_throats(struct clocks *clocks)
     }
     if (clocks->n_ended > 1)
         qsort(clocks->ended, (size_t)clocks->n_ended, sizeof *clocks->ended,
-              compare_numbers);
+              rising_ints);
 }
 
 double clocks_advance(struct clocks *clocks)

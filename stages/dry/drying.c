@@ -3,6 +3,7 @@
 #include "drying.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "boundary_layer.h"
 #include "network/checks.h"
 #include "resume.h"
@@ -67,15 +68,9 @@ bool step_is_due(struct run *run)
     return true;
 }
 
-static int compare_throats(const void *a, const void *b)
-{
-    const int *t = a, *s = b;
-    return (*t > *s) - (*t < *s);
-}
-
 void sort_ended(struct run *run)
 {
-    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, compare_throats);
+    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, rising_ints);
 }
 
 void record_state(struct run *run)

@@ -4,6 +4,7 @@
 #include "planar_region.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -118,12 +119,6 @@ static bool is_in_region(const struct planar_region *region, struct planar origi
     return inside > 0;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double length_in_region(const struct planar_region *region, struct planar origin,
                         struct planar from, struct planar to)
 {
@@ -143,7 +138,7 @@ double length_in_region(const struct planar_region *region, struct planar origin
         if (t > 0 && t < 1) crossing[n++] = t;
     }
     crossing[n++] = 1;
-    qsort(crossing, (size_t)n, sizeof *crossing, compare_numbers);
+    qsort(crossing, (size_t)n, sizeof *crossing, rising_doubles);
     double share = 0;
     for (int k = 0; k + 1 < n; k++) {
         const double middle = (crossing[k] + crossing[k + 1]) / 2;

@@ -2,6 +2,7 @@
 // The inwards packing method [K 3.1.2, Fig. 3.2]: the front is a queue of pairs of
 // neighbours; a new grain touches both of a pair and makes new pairs.
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "grids.h"
 #include "pack.h"
 
@@ -107,12 +108,6 @@ static double wall_gap(const struct spiral *spiral, int thing, struct vector pla
     return locus.radius - distance(place, locus.centre);
 }
 
-static int rising(const void *a, const void *b)
-{
-    const int first = *(const int *)a, second = *(const int *)b;
-    return (first > second) - (first < second);
-}
-
 static void queue(struct spiral *spiral, struct pair pair)
 {
     GROW_ARRAY(spiral->front, spiral->n_front, spiral->capacity_front);
@@ -133,7 +128,7 @@ static void add_pairs(struct spiral *spiral, int new)
     }
     const int count =
         grids_near(spiral->grids, place, radius, 2 * radius, spiral->near, MOST_NEAR);
-    qsort(spiral->near, (size_t)count, sizeof *spiral->near, rising);
+    qsort(spiral->near, (size_t)count, sizeof *spiral->near, rising_ints);
     for (int k = 0; k < count; k++) {
         const int other = spiral->near[k];
         const double its = grids_radius(spiral->grids, other);

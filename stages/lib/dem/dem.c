@@ -3,6 +3,7 @@
 #include "dem/engine.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -97,20 +98,6 @@ void dem_set_local_damping(struct dem *dem, double share)
     dem->local_damping = share;
 }
 
-// The first grain that groups before GROUP do not finish.
-static int first_unfinished(const struct dem *dem, int group)
-{
-    int low = 0, high = dem->n_particle;
-    while (low < high) {
-        const int middle = low + (high - low) / 2;
-        if (dem->last_group[middle] < group)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 static int smaller(int a, int b)
 {
     return a < b ? a : b;
@@ -132,12 +119,13 @@ static struct outcome sweep_share(struct dem *dem, int begin, int end)
 {
     enum { BLOCK = 32 }; // groups, few enough for what they touch to stay cached
     struct outcome outcome = {0, {0, true}};
-    int grain = begin > 0 ? first_unfinished(dem, begin) : 0;
+    int grain = // the first that groups before do not finish
+        begin > 0 ? first_not_below(dem->last_group, dem->n_particle, begin) : 0;
     for (int block = begin; block < end; block += BLOCK) {
         const int next = block + BLOCK < end ? block + BLOCK : end;
         if (dem->liquid) wet_groups(dem, block, next);
         outcome.n_broken += dem->sweep(dem, block, next);
-        const int finished = first_unfinished(dem, next);
+        const int finished = first_not_below(dem->last_group, dem->n_particle, next);
         add_pace(&outcome, move_grains(dem, grain, finished));
         grain = finished;
     }

@@ -25,8 +25,7 @@ static double radius_of(const struct body *body)
     return 0.5 * (body->upper.x - body->lower.x);
 }
 
-// What of X counts for the round side.
-static struct vector round_part(const struct body *body, struct vector x)
+struct vector body_round_part(const struct body *body, struct vector x)
 {
     for (int axis = 0; axis < 3; axis++)
         if (!body_is_round(body, axis)) set_component(&x, axis, 0);
@@ -41,7 +40,7 @@ bool body_holds(const struct body *body, struct vector x)
             return false;
     }
     return body->shape == BODY_BOX ||
-           norm(round_part(body, subtract(x, centre_of(body)))) <= radius_of(body);
+           norm(body_round_part(body, subtract(x, centre_of(body)))) <= radius_of(body);
 }
 
 // |from + t along| = radius, without subtracting near-equal numbers.
@@ -83,8 +82,8 @@ bool body_span(const struct body *body, struct vector from, struct vector to,
             return false;
     return body->shape == BODY_BOX ||
            round_span(radius_of(body),
-                      round_part(body, subtract(from, centre_of(body))),
-                      round_part(body, along), span);
+                      body_round_part(body, subtract(from, centre_of(body))),
+                      body_round_part(body, along), span);
 }
 
 // The nearest side, for a point in the box; else the nearest point of all.
@@ -115,7 +114,7 @@ static struct vector nearest_on_box(const struct body *box, struct vector x)
 struct vector body_outward(const struct body *body, struct vector x)
 {
     if (body->shape == BODY_BOX) return (struct vector){0, 0, 1};
-    const struct vector out = round_part(body, subtract(x, centre_of(body)));
+    const struct vector out = body_round_part(body, subtract(x, centre_of(body)));
     const double away = norm(out);
     return away > 0 ? scale(1 / away, out) : (struct vector){1, 0, 0}; // any will do
 }
@@ -123,7 +122,7 @@ struct vector body_outward(const struct body *body, struct vector x)
 struct vector body_nearest_round(const struct body *body, struct vector x)
 {
     if (body->shape == BODY_BOX) return nearest_on_box(body, x);
-    const struct vector out = round_part(body, subtract(x, centre_of(body)));
+    const struct vector out = body_round_part(body, subtract(x, centre_of(body)));
     const struct vector middle = subtract(x, out); // on the axis, or the centre
     return add(middle, scale(radius_of(body), body_outward(body, x)));
 }
@@ -136,7 +135,7 @@ struct vector body_nearest(const struct body *body, struct vector x)
     const double at = component(x, axis), low = component(body->lower, axis),
                  high = component(body->upper, axis);
     const double end = at - low < high - at ? low : high;
-    const double out = norm(round_part(body, subtract(x, centre_of(body))));
+    const double out = norm(body_round_part(body, subtract(x, centre_of(body))));
     const bool beyond = at < low || at > high;
     if (out > radius_of(body) || (!beyond && radius_of(body) - out <= fabs(end - at)))
         x = round;

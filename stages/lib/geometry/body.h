@@ -27,6 +27,8 @@ static inline bool body_is_one(const struct body *body)
 
 // Whether it is round in the plane that AXIS, 0 to 2, lies in.
 bool body_is_round(const struct body *body, int axis);
+// What of X counts for the round side.
+struct vector body_round_part(const struct body *body, struct vector x);
 
 // Whether X lies in it.
 bool body_holds(const struct body *body, struct vector x);

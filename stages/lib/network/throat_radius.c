@@ -2,6 +2,7 @@
 #include "network/throat_radius.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
@@ -98,12 +99,6 @@ static int compare_ranked(const void *a, const void *b)
     return (first->throat > second->throat) - (first->throat < second->throat);
 }
 
-static int compare_radii(const void *a, const void *b)
-{
-    const double first = *(const double *)a, second = *(const double *)b;
-    return (first > second) - (first < second);
-}
-
 // Hands the radii out anew: the widest where the field is highest.
 static void correlate(struct network *network, double correlation_length,
                       gsl_rng *generator)
@@ -119,7 +114,7 @@ static void correlate(struct network *network, double correlation_length,
     }
     qsort(order, n, sizeof *order, compare_ranked);
     double *radius = duplicate(network->throat_radius, n, sizeof *radius);
-    qsort(radius, n, sizeof *radius, compare_radii);
+    qsort(radius, n, sizeof *radius, rising_doubles);
     for (size_t k = 0; k < n; k++)
         network->throat_radius[order[k].throat] = radius[k];
     free(radius);

@@ -4,17 +4,12 @@
 #include "supernodal_state.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "dense_kernels.h"
 #include "vector_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-static int compare_ints(const void *a, const void *b)
-{
-    const int p = *(const int *)a, q = *(const int *)b;
-    return (p > q) - (p < q);
-}
 
 static void find_way(struct supernodal *f, int count, const int *index,
                      struct halves *halves)
@@ -31,7 +26,7 @@ static void find_way(struct supernodal *f, int count, const int *index,
     for (int k = 0; k < halves->n_super; k++)
         f->is_on_way[halves->super[k]] = false;
     if (halves->n_super > 0)
-        qsort(halves->super, (size_t)halves->n_super, sizeof(int), compare_ints);
+        qsort(halves->super, (size_t)halves->n_super, sizeof(int), rising_ints);
 }
 
 struct halves supernodal_halves(struct supernodal *f, int columns, int count,

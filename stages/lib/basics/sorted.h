@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers in rising order.
+#ifndef CRAQUELURE_SORTED_H
+#define CRAQUELURE_SORTED_H
+
+// For qsort.
+static inline int rising_ints(const void *a, const void *b)
+{
+    const int first = *(const int *)a, second = *(const int *)b;
+    return (first > second) - (first < second);
+}
+
+static inline int rising_doubles(const void *a, const void *b)
+{
+    const double first = *(const double *)a, second = *(const double *)b;
+    return (first > second) - (first < second);
+}
+
+// Where the first of N sorted numbers is that is not below WANTED; N: none is.
+static inline int first_not_below(const int *sorted, int n, int wanted)
+{
+    int low = 0, high = n;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (sorted[middle] < wanted)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+#endif
