@@ -57,7 +57,7 @@ static void make_room(struct settler *s, int count)
     for (size_t k = 0; k < sizeof real / sizeof *real; k++)
         *real[k] = reallocate(*real[k], n, sizeof **real);
     s->matrix = reallocate(s->matrix, n * n + 8, sizeof *s->matrix);
-    s->work = reallocate(s->work, 24 * n, sizeof *s->work);
+    s->work = reallocate(s->work, DENSE_SYMMETRIC_WORK * n, sizeof *s->work);
     s->n_factored = 0;
 }
 

@@ -237,7 +237,8 @@ static void vectors_of_any_width(void **state)
     enum { M = 51, COLUMNS = 13, K = 17 };
     if (!has_wide_vectors()) skip();
     double a[M * K + 8], sum[2][LANES][LANES] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
-    double work[M * DENSE_PANEL];
+    double d[2][M * M] = {{0}};
+    double work[M * PACKED];
     double matrix[2][M * M];
     int order[2][M];
     for (int k = 0; k < M * K + 8; k++)
@@ -247,6 +248,8 @@ static void vectors_of_any_width(void **state)
     for (int wide = 0; wide < 2; wide++) {
         both[wide]->multiply_transposed(M, COLUMNS, K, a, M, a + 5, M, c[wide], M,
                                         false, work);
+        both[wide]->multiply_transposed(M - 1, M - 1, K, a, M, a, M, d[wide], M, true,
+                                        work);
         both[wide]->add_product_of_eight(K, a, 8, a + 9, sum[wide]);
         for (int k = 0; k < M * M; k++)
             matrix[wide][k] = sin(k * k);
@@ -263,14 +266,23 @@ static void vectors_of_any_width(void **state)
                 expected += a[k * M + i] * a[5 + k * M + j];
             assert_true(fabs(c[1][j * M + i] - expected) < 1e-12);
         }
+    for (int i = 0; i < M - 1; i++)
+        for (int j = 0; j <= i; j++) {
+            double expected = 0;
+            for (int k = 0; k < K; k++)
+                expected += a[k * M + i] * a[k * M + j];
+            assert_true(fabs(d[1][j * M + i] - expected) < 1e-12);
+            assert_true(d[0][j * M + i] == d[1][j * M + i]);
+        }
 }
 
 // The first half of the pivots positive, the rest negative; at once, and from the
 // system of the first DONE on; one that is not is refused.
 static void check_symmetric_system(int n, int done)
 {
-    enum { MOST = 30, STRIDE = MOST + 3 };
-    double whole[MOST][MOST] = {{0}}, matrix[MOST * STRIDE + 8], work[24 * MOST];
+    enum { MOST = 110, STRIDE = MOST + 3 };
+    static double whole[MOST][MOST], matrix[MOST * STRIDE + 8];
+    static double work[DENSE_SYMMETRIC_WORK * MOST];
     double sign[MOST], x[MOST], right[MOST];
     for (int i = 0; i < n; i++) {
         sign[i] = i < n / 2 ? 1 : -1;
@@ -298,10 +310,10 @@ static void check_symmetric_system(int n, int done)
 static void symmetric_systems(void **state)
 {
     (void)state;
-    for (int n = 1; n <= 30; n++)
+    for (int n = 1; n <= 110; n += n < 30 ? 1 : 20)
         for (int done = 0; done <= n; done += 3)
             check_symmetric_system(n, done);
-    double wrong[1 + 8] = {-1}, work[24];
+    double wrong[1 + 8] = {-1}, work[DENSE_SYMMETRIC_WORK];
     assert_false(dense_symmetric_factor(1, 0, wrong, 1, (double[]){1}, work));
 }
 

@@ -49,7 +49,8 @@ static inline double dot_product(int n, const double *a, const double *b)
 }
 
 // C (m by n) = A (m by k) B (n by k)^T, of a square C at least the lower triangle where
-// LOWER. WORK (8 k). Seven numbers beyond those of A are read, whatever they are.
+// LOWER. WORK (PACKED k), of vector_kernels.h. Seven numbers beyond those of A are
+// read, whatever they are.
 void multiply_transposed(int m, int n, int k, const double *a, int a_stride,
                          const double *b, int b_stride, double *c, int c_stride,
                          bool lower, double *work);

@@ -2,23 +2,30 @@
 #include "dense_symmetric.h"
 
 #include "dense_kernels.h"
+#include "vector_kernels.h"
 
+#include <assert.h>
 #include <math.h>
 
-enum { WIDE = 8 }; // columns at a time: the rest is read as much less often
+// Columns at a time, and of them again: the rest is read as much less often.
+enum { WIDE = 8, PANEL = PACKED };
 
-// Takes what the columns before FIRST say off the rows from BEGIN on of those from
-// FIRST to END - 1.
-static void update(int n, double *matrix, int stride, const double *sign, int first,
-                   int end, int begin, double *work)
+static_assert(DENSE_SYMMETRIC_WORK == 3 * PANEL, "three panels");
+
+// Takes what the columns from FROM to TO - 1 say off the rows from BEGIN on of those
+// from FIRST to END - 1.
+static void update(int n, double *matrix, int stride, const double *sign, int from,
+                   int to, int first, int end, int begin, double *work)
 {
-    double *product = work, *sided = work + 8 * n, *packed = work + 16 * n;
-    for (int p = 0; p < first; p++)
-        for (int j = 0; j < WIDE; j++)
-            sided[WIDE * p + j] =
-                first + j < end ? sign[p] * matrix[(long)p * stride + first + j] : 0;
-    multiply_transposed(n - begin, end - first, first, matrix + begin, stride, sided,
-                        WIDE, product, n, begin == first, packed);
+    const int columns = to - from, wide = end - first;
+    if (columns == 0 || wide <= 0 || begin >= n) return;
+    double *product = work, *sided = work + PANEL * n, *packed = sided + PANEL * n;
+    const double *panel = matrix + (long)from * stride;
+    for (int p = 0; p < columns; p++)
+        for (int j = 0; j < wide; j++)
+            sided[wide * p + j] = sign[from + p] * panel[(long)p * stride + first + j];
+    multiply_transposed(n - begin, wide, columns, panel + begin, stride, sided, wide,
+                        product, n, begin == first, packed);
     for (int j = first; j < end; j++)
         for (int i = begin > j ? begin : j; i < n; i++)
             matrix[(long)j * stride + i] -= product[(long)(j - first) * n + i - begin];
@@ -51,16 +58,27 @@ int dense_symmetric_kept(int done)
     return done - done % WIDE;
 }
 
+static int clamp(int k, int low, int high)
+{
+    return k < low ? low : k < high ? k : high;
+}
+
 bool dense_symmetric_factor(int n, int done, double *matrix, int stride,
                             const double *sign, double *work)
 {
     const int kept = dense_symmetric_kept(done);
-    for (int first = 0; first < n; first += WIDE) {
-        const int end = first + WIDE < n ? first + WIDE : n;
-        const int begin = first < kept ? done : first;
-        if (begin == n) continue;
-        if (first > 0) update(n, matrix, stride, sign, first, end, begin, work);
-        if (!factor_columns(n, matrix, stride, sign, first, end, begin)) return false;
+    for (int panel = 0; panel < n; panel += PANEL) {
+        const int last = clamp(panel + PANEL, 0, n), split = clamp(kept, panel, last);
+        update(n, matrix, stride, sign, 0, panel, panel, split, done, work);
+        update(n, matrix, stride, sign, 0, panel, split, last, split, work);
+        for (int first = panel; first < last; first += WIDE) {
+            const int end = clamp(first + WIDE, 0, last);
+            const int begin = first < kept ? done : first;
+            if (begin == n) continue;
+            update(n, matrix, stride, sign, panel, first, first, end, begin, work);
+            if (!factor_columns(n, matrix, stride, sign, first, end, begin))
+                return false;
+        }
     }
     return true;
 }

@@ -100,7 +100,7 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     free(matrix.p);
     free(matrix.i);
     find_targets(f, start, row);
-    f->work = NEW_ARRAY(double, ((size_t)f->tallest + 8) * (size_t)f->widest);
+    f->work = NEW_ARRAY(double, ((size_t)f->tallest + PACKED) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->is_on_way = NEW_ARRAY(bool, f->n_super);
     f->lanes = allocate_aligned((size_t)n, LANES * sizeof *f->lanes);
@@ -155,25 +155,40 @@ static bool factor_columns(const struct supernode *super, int first, int end,
     return true;
 }
 
+// Takes what the columns from FROM to TO - 1 say off those from FIRST to END - 1.
+static void take_off_columns(struct supernodal *f, const struct supernode *super,
+                             int from, int to, int first, int end)
+{
+    if (from == to) return;
+    const int rows = super->rows, below = rows - first;
+    double *product = f->work, *packed = f->work + (long)f->tallest * f->widest;
+    const double *before = super->panel + (long)from * rows + first;
+    multiply_transposed(below, end - first, to - from, before, rows, before, rows,
+                        product, below, true, packed);
+    for (int j = first; j < end; j++) {
+        double *column = super->panel + (long)j * rows;
+        const double *off = product + (long)(j - first) * below - first;
+        for (int i = j; i < rows; i++)
+            column[i] -= off[i];
+    }
+}
+
+// Wide parts of a panel one after another, narrow ones within: what is before them is
+// read as much less often.
 static bool factor_panel(struct supernodal *f, const struct supernode *super)
 {
-    enum { WIDE = 8 };
-    const int rows = super->rows;
-    double *product = f->work, *packed = f->work + (long)f->tallest * f->widest;
-    for (int first = 0; first < super->columns; first += WIDE) {
-        const int end = first + WIDE < super->columns ? first + WIDE : super->columns;
-        double *panel = super->panel + (long)first * rows + first, diagonal[WIDE];
-        for (int j = 0; j < end - first; j++)
-            diagonal[j] = panel[(long)j * rows + j];
-        if (first > 0) {
-            const double *before = super->panel + first;
-            multiply_transposed(rows - first, end - first, first, before, rows, before,
-                                rows, product, rows, true, packed);
-            for (int j = 0; j < end - first; j++)
-                for (int i = j; i < rows - first; i++)
-                    panel[(long)j * rows + i] -= product[(long)j * rows + i];
+    enum { WIDE = 48, NARROW = 8 };
+    double diagonal[WIDE];
+    for (int first = 0, end; first < super->columns; first = end) {
+        end = first + WIDE < super->columns ? first + WIDE : super->columns;
+        for (int j = first; j < end; j++)
+            diagonal[j - first] = super->panel[(long)j * super->rows + j];
+        take_off_columns(f, super, 0, first, first, end);
+        for (int k = first, last; k < end; k = last) {
+            last = k + NARROW < end ? k + NARROW : end;
+            take_off_columns(f, super, first, k, k, last);
+            if (!factor_columns(super, k, last, diagonal + k - first)) return false;
         }
-        if (!factor_columns(super, first, end, diagonal)) return false;
     }
     return true;
 }

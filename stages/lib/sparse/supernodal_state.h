@@ -28,7 +28,7 @@ struct supernodal {
     long *target;    // (n_entry) in the panels, or -1
     int widest;      // most columns of a supernode
     int tallest;     // most rows
-    double *work;    // (tallest * widest) and (8 widest)
+    double *work;    // (tallest * widest) and (PACKED * widest)
     double *lanes;   // (n * LANES), of zeros between calls
     int *local;      // (tallest)
     bool *is_on_way; // (n_super), false between calls

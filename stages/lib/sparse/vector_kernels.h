@@ -8,6 +8,8 @@
 
 struct supernode;
 
+enum { PACKED = 48 }; // columns of B that multiply_transposed takes together
+
 struct vector_kernels {
     // X (n * LANES), in the order of the factor, as far as SUPER is concerned: becomes
     // L^-1 X, or L^-T X.

@@ -245,31 +245,14 @@ static void add_product_of_eight(int n, const double *a, int a_lanes, const doub
         add_tile(n, a + i, a_lanes, b, 4, PARTS, sum[i]);
 }
 
-// Eight rows of WIDE columns, which stay in registers.
-enum { WIDE = NUMBERS, HIGH = 8 };
+// A tile of TALL vectors of rows and WIDE columns stays in registers.
+enum { WIDE = NUMBERS, TALL = 3 };
 
-static void multiply_tile(int k, const double *a, int a_stride, const double *packed,
-                          double c[WIDE][HIGH])
-{
-    vector sum[WIDE][PARTS];
-    for (int j = 0; j < WIDE; j++)
-        for (int q = 0; q < PARTS; q++)
-            sum[j][q] = all_of(0);
-    for (int p = 0; p < k; p++, a += a_stride)
-        for (int j = 0; j < WIDE; j++)
-            for (int q = 0; q < PARTS; q++)
-                sum[j][q] = fused(load(a + NUMBERS * q), all_of(packed[WIDE * p + j]),
-                                  sum[j][q]);
-    for (int j = 0; j < WIDE; j++)
-        for (int q = 0; q < PARTS; q++)
-            store(c[j] + NUMBERS * q, sum[j][q]);
-}
-
-// Of COUNT numbers, fewer than a tile is high or wide; when packed, zeros follow.
-INLINE void store_first(double *to, const double *from, int count)
+// Of COUNT numbers, fewer than a vector has; when packed, zeros follow.
+INLINE void store_first(double *to, vector from, int count)
 {
 #if defined __x86_64__ && BYTES == 64
-    _mm512_mask_storeu_pd(to, (__mmask8)((1 << count) - 1), (__m512d)load(from));
+    _mm512_mask_storeu_pd(to, (__mmask8)((1 << count) - 1), (__m512d)from);
 #else
     for (int k = 0; k < count; k++)
         to[k] = from[k];
@@ -286,30 +269,70 @@ INLINE void pack_first(double *to, const double *from, int count)
 #endif
 }
 
+INLINE void multiply_tile(int tall, int k, const double *a, int a_stride,
+                          const double *packed, double *c, int c_stride, int rows,
+                          int columns)
+{
+    vector sum[WIDE][TALL], of_a[TALL];
+    for (int j = 0; j < WIDE; j++)
+        for (int q = 0; q < tall; q++)
+            sum[j][q] = all_of(0);
+    for (int p = 0; p < k; p++, a += a_stride, packed += WIDE) {
+        for (int q = 0; q < tall; q++)
+            of_a[q] = load(a + NUMBERS * q);
+        for (int j = 0; j < WIDE; j++)
+            for (int q = 0; q < tall; q++)
+                sum[j][q] = fused(of_a[q], all_of(packed[j]), sum[j][q]);
+    }
+    for (int j = 0; j < WIDE; j++)
+        for (int q = 0; q < tall && j < columns; q++) {
+            double *to = c + (long)j * c_stride + NUMBERS * q;
+            if (rows >= NUMBERS * (q + 1))
+                store(to, sum[j][q]);
+            else
+                store_first(to, sum[j][q], rows - NUMBERS * q);
+        }
+}
+
+static void multiply_tall(int k, const double *a, int a_stride, const double *packed,
+                          double *c, int c_stride, int rows, int columns)
+{
+    if (rows > 2 * NUMBERS)
+        multiply_tile(3, k, a, a_stride, packed, c, c_stride, rows, columns);
+    else if (rows > NUMBERS)
+        multiply_tile(2, k, a, a_stride, packed, c, c_stride, rows, columns);
+    else
+        multiply_tile(1, k, a, a_stride, packed, c, c_stride, rows, columns);
+}
+
+// WIDE columns after another, each (k * WIDE).
+static void pack(int n, int k, const double *b, int b_stride, double *packed)
+{
+    for (int j = 0; j < n; j += WIDE)
+        for (int p = 0; p < k; p++, packed += WIDE) {
+            const double *row = b + (long)p * b_stride + j;
+            if (n - j >= WIDE)
+                store(packed, load(row));
+            else
+                pack_first(packed, row, n - j);
+        }
+}
+
+// As many columns of B as there is room for, which stay near, then tiles of A once for
+// all of these.
 static void multiply(int m, int n, int k, const double *a, int a_stride,
                      const double *b, int b_stride, double *c, int c_stride, bool lower,
                      double *work)
 {
-    for (int j = 0; j < n; j += WIDE) {
-        const int columns = n - j < WIDE ? n - j : WIDE;
-        for (int p = 0; p < k; p++) {
-            const double *row = b + (long)p * b_stride + j;
-            if (columns == WIDE)
-                store(work + WIDE * p, load(row));
-            else
-                pack_first(work + WIDE * p, row, columns);
-        }
-        for (int i = lower ? j : 0; i < m; i += HIGH) {
-            const int rows = m - i < HIGH ? m - i : HIGH;
-            double tile[WIDE][HIGH];
-            multiply_tile(k, a + i, a_stride, work, tile);
-            for (int l = 0; l < columns; l++) {
-                double *to = c + (long)(j + l) * c_stride + i;
-                if (rows == HIGH)
-                    memcpy(to, tile[l], sizeof tile[l]);
-                else
-                    store_first(to, tile[l], rows);
-            }
+    for (int first = 0; first < n; first += PACKED) {
+        const int columns = n - first < PACKED ? n - first : PACKED;
+        pack(columns, k, b + first, b_stride, work);
+        for (int i = lower ? first : 0; i < m; i += TALL * NUMBERS) {
+            const int rows = m - i < TALL * NUMBERS ? m - i : TALL * NUMBERS;
+            for (int j = 0; j < columns && !(lower && first + j >= i + rows); j += WIDE)
+                multiply_tall(k, a + i, a_stride, work + (long)j * k,
+                              c + (long)(first + j) * c_stride + i, c_stride, rows,
+                              columns - j);
         }
     }
 }
