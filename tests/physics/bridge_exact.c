@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact bridge: against shapes known in closed form, against energy, and against
 // symmetries.
+#include "../test.h"
 #include "bridges/bridges.h"
 #include "bridges/equilibrium.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 static void close_to(double value, double reference, double tolerance, const char *what)
 {

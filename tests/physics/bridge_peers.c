@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bridges beside numbers that others computed: exact values by arc-length shooting, and
 // the forces that Yade 2023.02a gives (tests/physics/bridges/*.csv).
+#include "../test.h"
 #include "bridges/bridges.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 // [G Table 1]
 static const struct {

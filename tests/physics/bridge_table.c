@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of exact forces against the exact forces, off its nodes.
+#include "../test.h"
 #include "bridges/bridges.h"
 #include "bridges/equilibrium.h"
 #include "bridges/table.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 // Places in (0, 1) that fill it evenly.
 static double place(int k, double irrational)

@@ -4,19 +4,13 @@
 #ifndef CRAQUELURE_TEST_CRACK_LATTICE_H
 #define CRAQUELURE_TEST_CRACK_LATTICE_H
 
+#include "../test.h"
 #include "basics/memory.h"
 #include "crackstats/run.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 
 static inline void assert_close(double got, double wanted, double tolerance)
 {

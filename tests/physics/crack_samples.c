@@ -2,17 +2,11 @@
 // Confidence intervals and tests of two samples, against published outcomes: Student's
 // sleep data, Hollander and Wolfe's membranes, the manual of scipy; and U by counting
 // all orders.
+#include "../test.h"
 #include "crackstats/pairs.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 
 static void assert_close(double got, double wanted, double tolerance)
 {

@@ -5,15 +5,10 @@
 #define CRAQUELURE_TEST_DEM_SCENE_H
 
 #include "../random.h"
+#include "../test.h"
 #include "basics/memory.h"
 #include "dem/engine.h"
 
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

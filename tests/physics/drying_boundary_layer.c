@@ -2,6 +2,7 @@
 // The finite-volume scheme of the boundary layer: K's areas on the cubic lattice [K
 // 3.3.5, Fig. 3.44], no area lost or won anywhere, and lateral diffusion over stripes
 // that has a closed form.
+#include "../test.h"
 #include "dry/boundary_layer.h"
 #include "dry/column_order.h"
 #include "dry/vapour.h"
@@ -10,13 +11,9 @@
 #include "basics/memory.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
 #include <gsl/gsl_linalg.h>
 
 static const double spacing = 5e-7;

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Clusters kept online against clusters found anew after every event, on small random
 // networks with parallel throats and loose pieces.
+#include "../test.h"
 #include "dry/clusters.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { NODES = 40, THROATS = 70 };
 

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which faces are open, and which throats are imposed empty.
+#include "../test.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 1e-6;
 static const unsigned all_walls = (1u << WALL_COUNT) - 1;

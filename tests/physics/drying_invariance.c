@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What drying must not depend on: how nodes and throats are numbered, the unit of
 // length, and, while the liquid is in one piece, how fast it dries.
+#include "../test.h"
 #include "dry/clusters.h"
 #include "network/invasion.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 

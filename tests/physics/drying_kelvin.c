@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Menisci with vapour pressures of their own: tubes in closed form, condensation by
 // hand and in balance, the limit of no surface tension, and the unit of length.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double spacing = 1e-7;
 

@@ -2,20 +2,16 @@
 // Viscous liquid whose menisci have vapour pressures of their own: tubes in closed form
 // and by quadrature, both limits of the viscosity, no Kelvin effect, balances,
 // equilibrium with the air, and the unit of length.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_roots.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double spacing = 1e-7;
 

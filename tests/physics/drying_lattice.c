@@ -2,17 +2,13 @@
 // The two limits of the liquid on cubic lattices [K 5.4]: a flat front and one cluster
 // where it is immobile; many clusters and a long first period where it has no
 // viscosity.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 

@@ -2,17 +2,13 @@
 // Viscous liquid over 26 decades of viscosity, between liquid without and liquid
 // that does not move: when each throat empties, in which order, and where liquid is
 // half-way. In regular and irregular networks, flat and in space.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 enum { SLABS = 8 };

@@ -2,19 +2,15 @@
 // Menisci with vapour pressures of their own in networks that dry at random: what they
 // evaporate, and which of them wait, against relaxation in long double of all throats
 // that are gas and all bodies of liquid, without elimination.
+#include "../test.h"
 #include "dry/conditions.h"
 #include "dry/curved.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 1e-7;
 enum { MOST_SWEEPS = 1000000 };

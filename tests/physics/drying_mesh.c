@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sites eliminated one by one against Gaussian elimination in long double, over twelve
 // decades of conductance.
+#include "../test.h"
 #include "dry/star_mesh.h"
 #include "dry/triangle.h"
 #include "support_lattice.h"
@@ -8,13 +9,8 @@
 #include "basics/memory.h"
 #include "basics/wide_vectors.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { SITES = 150, AIR = SITES, LINKS = 450 };
 

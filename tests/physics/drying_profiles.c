@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Profiles and snapshots hold the liquid that the history says is there.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "dry/profiles.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 static void check_level(const struct network *network,
                         const struct drying_history *history,

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rate of a fully wet surface is known in closed form: one-dimensional diffusion
 // through the boundary layer, whatever the network below [K 3.9].
+#include "../test.h"
 #include "support_lattice.h"
-
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
 
 static double wet_surface_rate(const struct drying_conditions *conditions, double area)
 {

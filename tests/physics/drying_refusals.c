@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What cannot dry is refused, with the name of what is wrong; extremes that can, dry.
+#include "../test.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 

@@ -2,20 +2,16 @@
 // Networks that do not begin full: on from the middle of another run they dry as it
 // did; gas that has come in by itself has taken the throats that invasion percolation
 // takes; a tube half empty is a shorter tube under a longer way out.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 #include "dry/start.h"
 #include "network/invasion.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double spacing = 1e-6;
 

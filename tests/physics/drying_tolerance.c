@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drying with vapour_tolerance beside the exact vapour of the same throats and nodes,
 // event by event: what wet nodes give off, errors added up, and the rate.
+#include "../test.h"
 #include "dry/boundary_layer.h"
 #include "dry/clocks.h"
 #include "dry/conditions.h"
@@ -8,13 +9,8 @@
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tubes: chains of throats in series dry like a Stefan tube, and of tubes that share a
 // reservoir the widest empties first.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 

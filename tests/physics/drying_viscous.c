@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Viscous liquid between its menisci [K 3.10]: two tubes in closed form, and both
 // limits.
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 static const double spacing = 5e-7;
 enum { DEPTH = 6 };

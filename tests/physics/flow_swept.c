@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rate at which moving grains open a pore is the derivative of its volume: cells
 // less the sectors of grains in them, measured a little before and a little after.
+#include "../test.h"
 #include "flow/facet.h"
 #include "flow/swept.h"
 #include "geometry/solid_angle.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { N = 40 };
 

@@ -2,18 +2,14 @@
 // Walls are the limit of large spheres that touch the box from outside, of which the
 // paper takes some of 10^6 boxes [C 3.1]: the larger they are, the more cells are the
 // same, and pores come to where walls put them as one over their radius.
+#include "../test.h"
 #include "basics/memory.h"
 #include "flow/cells.h"
 #include "geometry/regular_triangulation.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 enum { N = 150, ALL = N + 6 };
 

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The liquid as force-protocol follows it, beside the drying it comes from.
+#include "../test.h"
 #include "basics/memory.h"
 #include "force-protocol/filling.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-// after the four above
-#include <cmocka.h>
 
 struct dried {
     struct network network;

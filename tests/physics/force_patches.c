@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The patches of a grain's surface that face its throats, in a cubic cell.
+#include "../test.h"
 #include "basics/memory.h"
 #include "force-protocol/balance.h"
 #include "force-protocol/patches.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-// after the four above
-#include <cmocka.h>
 
 // Sums of the absolute errors of what should vanish.
 static double size(struct vector a)

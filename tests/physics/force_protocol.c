@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces over time: two throats and two grains by hand, and the walk from step to step
 // beside forces found anew.
+#include "../test.h"
 #include "basics/memory.h"
 #include "force-protocol/auxiliary.h"
 #include "force-protocol/times.h"
@@ -9,13 +10,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 
 static void assert_close(double got, double wanted)
 {
@@ -117,8 +111,8 @@ static void forces_at_uniform_times(void **state)
 }
 
 // The contact line of throat 1 pulls grain 1 with 8 N from the moment at which throat 0
-// leaves gas at its end until it is empty itself; what is interpolated misses a jump by all
-// of it.
+// leaves gas at its end until it is empty itself; what is interpolated misses a jump by
+// all of it.
 static void what_jumps_is_missed(void **state)
 {
     (void)state;

@@ -3,18 +3,14 @@
 // random networks with parallel throats, loose pieces and throats imposed empty; with
 // ties; however it is numbered. And ranks against sorting.
 #include "network/invasion.h"
+#include "../test.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 #include "basics/ranks.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 // --- the rule itself ---------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 // Flow through networks of conductances over many decades, by elimination and by a
 // graph with a factor that follows, next to Gauss's elimination in 600 bits (MPFR).
 #include "sparse/kron.h"
+#include "../test.h"
 #include "dry/liquid_graph.h"
 
 #include "basics/memory.h"
@@ -10,14 +11,9 @@
 #include <mpfr.h>
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { EDGE = 6, NODES = EDGE * EDGE * EDGE, ENDS = 4, BITS = 600 };
 

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Domains: volumes by their formulas and by throwing points, and random places that are
 // spread evenly over where a grain fits.
+#include "../test.h"
 #include "pack/domain.h"
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { POINTS = 400000 };
 

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drawn radii against the density that was asked for, integrated here on its own: mean,
 // variance and the whole distribution, by number and by mass, to 1:50.
+#include "../test.h"
 #include "pack/sizes.h"
 
 #include "basics/memory.h"
 
 #include <gsl/gsl_sort.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { DRAWS = 200000, BINS = 200000 };
 

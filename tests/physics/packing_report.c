@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is said of a packing, against closed forms: cut spheres and lenses, lattices,
 // chains, Poisson points.
+#include "../test.h"
 #include "basics/memory.h"
 #include "geometry/fabric.h"
 #include "geometry/neighbours.h"
@@ -8,12 +9,6 @@
 #include "geometry/sphere_cut.h"
 #include "support_lattice.h"
 
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 #include <gsl/gsl_integration.h>
 #include <stdlib.h>
 #include <string.h>

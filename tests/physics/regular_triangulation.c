@@ -3,18 +3,14 @@
 // power to the centre of a cell than its corners have, cells fill the hull, and which
 // they are depends on the points alone.
 #include "geometry/regular_triangulation.h"
+#include "../test.h"
 #include "geometry/insertion_order.h"
 
-#include <gsl/gsl_rng.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-#include <string.h>
-// after the three above
 #include "basics/memory.h"
 #include "geometry/exact.h"
-#include <cmocka.h>
+#include <gsl/gsl_rng.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { POINTS = 216, SIDE = 6 };
 

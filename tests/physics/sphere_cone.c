@@ -2,15 +2,11 @@
 // Tetrahedra less a ball about one corner, against boxes cut by spheres in closed form,
 // and against themselves.
 #include "geometry/sphere_cone.h"
+#include "../test.h"
 #include "geometry/sphere_cut.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-// after the three above
-#include <cmocka.h>
 
 // A face of the box at the end of AXIS (SIDE 0 or 1), as two triangles.
 static double over_face(double radius, const struct vector corner[2], int axis,

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sparse Cholesky factors and small dense systems against what they are put into.
 #include "sparse/supernodal.h"
+#include "../test.h"
 #include "basics/memory.h"
 #include "sparse/dense_symmetric.h"
 #include "sparse/dense_system.h"
 #include "sparse/vector_kernels.h"
 
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 #include <math.h>
 #include <stdlib.h>
 

@@ -2,18 +2,14 @@
 // Drawn throat radii against the distributions they are drawn from, and correlated ones
 // against the covariance they are to have.
 #include "network/throat_radius.h"
+#include "../test.h"
 #include "basics/memory.h"
 #include "support_lattice.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdlib.h>
-// after the three above
-#include <cmocka.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sort.h>
 #include <gsl/gsl_statistics_double.h>
+#include <stdlib.h>
 
 enum { SIDE = 16 };
 #define SPACING 1e-6

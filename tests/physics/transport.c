@@ -3,19 +3,15 @@
 // tubes, lattices and chains in closed form, random networks against Gaussian
 // elimination in long double, and what mirrors and exchanged ends must not change.
 #include "invade/transport.h"
+#include "../test.h"
 #include "invade/entry.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 static const double tension = 0.07274;
 
