@@ -30,8 +30,8 @@ static struct vector unit(struct vector a)
 }
 
 // The axes across a normal that turns to NORMAL the shortest way, and by SPIN about it.
-static void turn_axes(const struct vector axis[3], struct vector normal, double spin,
-                      struct vector turned[3])
+static void turn_axes(const struct vector *axis, struct vector normal, double spin,
+                      struct vector *turned)
 {
     const struct vector both = add(axis[0], normal);
     const struct vector flat = subtract(
@@ -72,7 +72,7 @@ static struct motion motion_of(const struct joint *joint, const struct passage *
         motion.stretch = grown / (norm(now) + from);
     }
     motion.closer = motion.stretch - joint->strain[STRAIN_ALONG];
-    const double half = (has_wall(joint) ? 0.5 : 0.25) * motion.closer;
+    const double half = 0.25 * motion.closer;
     motion.rolling =
         add(scale(before->arm[0] + half, i.turn), scale(before->arm[1] + half, j.turn));
     if (has_wall(joint)) return motion;
@@ -101,12 +101,8 @@ void large_strains(const struct joint *joint, const struct passage *passage,
     struct vector axis[3];
     turn_axes(before->axis, middle, 0.5 * dot(motion.mean, middle), axis);
     turn_axes(before->axis, normal, dot(motion.mean, middle), now->axis);
-    for (int end = 0; end < 2; end++)
-        now->arm[end] = before->arm[end] + 0.5 * motion.closer;
-    if (has_wall(joint)) {
-        now->arm[0] = before->arm[0] + motion.closer;
-        now->arm[1] = 0;
-    }
+    now->arm[0] = before->arm[0] + 0.5 * motion.closer;
+    now->arm[1] = has_wall(joint) ? 0 : before->arm[1] + 0.5 * motion.closer;
     const double distance = before->arm[0] + before->arm[1] + 0.5 * motion.closer;
     // A wall lies still: what its grain moves sideways is all of it.
     const struct vector across =
@@ -150,8 +146,7 @@ static void change_loads(const struct joint *joint, const struct lie *lie,
     const bool wall = has_wall(joint);
     struct vector with = scale(0.5 * dot(n, turn), n); // the joint turns
     if (!wall) with = add(with, scale(1 / (lie->arm[0] + lie->arm[1]), cross(n, way)));
-    const double longer[2] = {(wall ? 1 : 0.5) * dot(n, way),
-                              wall ? 0 : 0.5 * dot(n, way)};
+    const double longer[2] = {0.5 * dot(n, way), wall ? 0 : 0.5 * dot(n, way)};
     const struct vector force = cross(with, carried->force);
     const struct vector moment = cross(with, carried->moment);
     const struct vector turning = cross(with, carried->turning);

@@ -67,7 +67,7 @@ struct joint wall_joint(const struct joint_setup *setup, int i)
     struct joint joint = {.grain = {i, -1}, .bond = -1};
     find_axes(&joint, (struct vector){0, 0, -1});
     joint.overlap = overlap_of(setup, radius - height);
-    joint.arm[0] = radius - joint.overlap;
+    joint.arm[0] = radius - 0.5 * joint.overlap; // as in the engine
     if (setup->unstressed) joint.overlap = fmin(joint.overlap, 0);
     return in_contact(setup, joint, 1);
 }
