@@ -248,6 +248,112 @@ static void test_larger_ratio_names_the_mode(void **state)
     assert_int_equal(crack.mode, DEM_CRACK_SHEAR);
 }
 
+// A bond that breaks does nothing in the cycle in which it does [K 4.43]: grains that
+// fly apart and turn go on as they were.
+static void test_what_breaks_pulls_no_more(void **state)
+{
+    (void)state;
+    struct packing packing = bonded_pair();
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.material.damping_ratio = 0;
+    for (int mode = 0; mode < 2; mode++) {
+        setup.bond.normal_strength = mode == DEM_CRACK_NORMAL ? 1e-3 : INFINITY;
+        setup.bond.shear_strength = mode == DEM_CRACK_SHEAR ? 1e-3 : INFINITY;
+        struct dem *dem = create(&setup);
+        const struct vector velocity[2] = {{-1e-3, 2e-3, 1e-3}, {3e-3, 1e-3, -2e-3}};
+        const struct vector spin[2] = {{1e3, 2e3, -1e3}, {-2e3, 1e3, 3e3}};
+        dem_set_velocity(dem, velocity, spin);
+        run(dem, 10);
+        int n_crack;
+        const struct dem_crack *crack = dem_cracks(dem, &n_crack);
+        assert_int_equal(n_crack, 1);
+        assert_int_equal(crack[0].mode, mode);
+        struct vector after[2], turning[2];
+        dem_velocities(dem, after);
+        dem_spins(dem, turning);
+        for (int i = 0; i < 2; i++) {
+            assert_true(distance(after[i], velocity[i]) < 1e-15 * norm(velocity[i]));
+            assert_true(distance(turning[i], spin[i]) < 1e-15 * norm(spin[i]));
+        }
+        dem_free(dem);
+    }
+    packing_free(&packing);
+}
+
+// K 4.41 and 4.42 ask for a stress of at least the strength: without strength a bond
+// breaks at rest.
+static void test_no_strength_at_all(void **state)
+{
+    (void)state;
+    struct packing packing = bonded_pair();
+    for (int kind = 0; kind < 2; kind++)
+        for (int mode = 0; mode < 2; mode++) {
+            struct dem_setup setup = stiff_setup(&packing);
+            setup.bond.kind = kind ? DEM_CONTACT_BOND : DEM_PARALLEL_BOND;
+            setup.bond.normal_strength = mode == DEM_CRACK_NORMAL ? 0 : INFINITY;
+            setup.bond.shear_strength = mode == DEM_CRACK_SHEAR ? 0 : INFINITY;
+            struct dem *dem = create(&setup);
+            run(dem, 1);
+            int n_crack;
+            const struct dem_crack *crack = dem_cracks(dem, &n_crack);
+            assert_int_equal(n_crack, 1);
+            assert_int_equal(crack[0].mode, mode);
+            dem_free(dem);
+        }
+    packing_free(&packing);
+}
+
+// Pairs far from each other, swept together, each loaded its own way: one moves as it
+// does alone, whatever breaks beside it.
+static void test_pairs_do_not_know_each_other(void **state)
+{
+    (void)state;
+    enum { PAIRS = 11 };
+    struct packing alone = bonded_pair(), all = new_packing(2 * PAIRS, PAIRS);
+    for (int p = 0; p < PAIRS; p++)
+        for (int end = 0; end < 2; end++) {
+            const struct vector away = {0, 16 * p * RADIUS, 0};
+            all.position[2 * p + end] = add(alone.position[end], away);
+            all.bond[p][end] = 2 * p + end;
+        }
+    all.upper = (struct vector){4 * RADIUS, 16 * PAIRS * RADIUS, 4 * RADIUS};
+    uint8_t fixed[2 * PAIRS] = {0};
+    for (int p = 0; p < PAIRS; p++)
+        fixed[2 * p] = 1;
+    for (int kind = 0; kind < 2; kind++) {
+        struct dem_setup setup = stiff_setup(&all);
+        setup.fixed = fixed;
+        setup.bond.kind = kind ? DEM_CONTACT_BOND : DEM_PARALLEL_BOND;
+        setup.bond.normal_strength = kind ? 2e-9 : 2e4;
+        setup.bond.shear_strength = kind ? 2e-9 : 2e4;
+        struct dem *together = create(&setup);
+        struct vector *force = random_vectors(2 * PAIRS, 4e-9, 8);
+        dem_set_force(together, force);
+        run(together, 700);
+        int n_crack, n_alone = 0;
+        dem_cracks(together, &n_crack);
+        assert_in_range(n_crack, 2, PAIRS - 2);
+        setup.packing = &alone;
+        for (int p = 0; p < PAIRS; p++) {
+            struct dem *dem = create(&setup);
+            dem_set_force(dem, force + 2 * p);
+            run(dem, 700);
+            int n;
+            dem_cracks(dem, &n);
+            n_alone += n;
+            const struct vector moved = displacement_of(dem, 1);
+            assert_true(distance(moved, displacement_of(together, 2 * p + 1)) <=
+                        1e-12 * norm(moved));
+            dem_free(dem);
+        }
+        assert_int_equal(n_alone, n_crack);
+        dem_free(together);
+        free(force);
+    }
+    packing_free(&all);
+    packing_free(&alone);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -261,6 +367,9 @@ int main(void)
         cmocka_unit_test(test_bending),
         cmocka_unit_test(test_twist),
         cmocka_unit_test(test_larger_ratio_names_the_mode),
+        cmocka_unit_test(test_what_breaks_pulls_no_more),
+        cmocka_unit_test(test_no_strength_at_all),
+        cmocka_unit_test(test_pairs_do_not_know_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

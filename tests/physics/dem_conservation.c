@@ -70,6 +70,32 @@ static void test_dashpots_take_energy(void **state)
     packing_free(&packing);
 }
 
+// With the inertia of the mean grain all fall by their own weight.
+static void test_density_scaling(void **state)
+{
+    (void)state;
+    struct packing packing = new_packing(3, 0);
+    double mean = 0;
+    for (int i = 0; i < 3; i++) {
+        packing.radius[i] = (i + 1) * RADIUS;
+        packing.position[i].x = 10 * i * RADIUS;
+        mean += pow(i + 1, 3) / 3;
+    }
+    packing.upper = (struct vector){40 * RADIUS, 9 * RADIUS, 9 * RADIUS};
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.density_scaling = true;
+    setup.gravity = (struct vector){0, 0, -9.81};
+    struct dem *dem = create(&setup);
+    run(dem, 100);
+    struct vector velocity[3];
+    dem_velocities(dem, velocity);
+    for (int i = 0; i < 3; i++)
+        assert_close(velocity[i].z,
+                     -9.81 * pow(i + 1, 3) / mean * 100 * dem_time_step(dem), 1e-12);
+    dem_free(dem);
+    packing_free(&packing);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -77,6 +103,7 @@ int main(void)
         cmocka_unit_test(test_momentum),
         cmocka_unit_test(test_energy_is_second_order),
         cmocka_unit_test(test_dashpots_take_energy),
+        cmocka_unit_test(test_density_scaling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

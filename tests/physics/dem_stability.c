@@ -2,6 +2,7 @@
 // The stability limit: a step past it is refused by name; forced, it diverges and says
 // so, without a NaN; just inside, nothing grows. And input that cannot be.
 #include "dem_scene.h"
+#include "support_irregular.h"
 
 enum { SIDE = 4, N = SIDE * SIDE * SIDE };
 
@@ -190,6 +191,25 @@ static void test_few_grains(void **state)
     }
 }
 
+// Whichever way the scene is turned; an irregular one, with and without dashpots.
+static void test_limit_turns_along(void **state)
+{
+    (void)state;
+    struct packing packing = irregular_packing(SIDE, RADIUS, false);
+    const struct vector axis = {1, 2, 3};
+    struct packing other = turned_packing(&packing, axis, 1, NULL);
+    for (int k = 0; k < 2; k++) {
+        struct dem_setup setup = stiff_setup(&packing);
+        setup.material.shear_stiffness = 1e4;
+        setup.material.damping_ratio = k ? 0.7 : 0;
+        const double limit = limit_of(setup);
+        setup.packing = &other;
+        assert_close(limit_of(setup), limit, 1e-11);
+    }
+    packing_free(&other);
+    packing_free(&packing);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -200,6 +220,7 @@ int main(void)
         cmocka_unit_test(test_bad_numbers),
         cmocka_unit_test(test_bad_packings),
         cmocka_unit_test(test_few_grains),
+        cmocka_unit_test(test_limit_turns_along),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

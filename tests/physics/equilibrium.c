@@ -378,6 +378,47 @@ static void a_mechanism_leaves(void **state)
     packing_free(&packing);
 }
 
+// Grains 2 and 3 beside grain 1 turn it about its bond with the held one by a couple of
+// 4 f R; their own bonds bend under f R. Either breaks at M r / J or M r / I
+// [K 4.41, 4.42].
+static void twist_and_bending_break(void **state)
+{
+    (void)state;
+    struct packing packing = new_packing(4, 3);
+    const struct vector place[4] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, -2, 0}};
+    for (int i = 0; i < 4; i++)
+        packing.position[i] = scale(RADIUS, place[i]);
+    for (int b = 0; b < 3; b++) {
+        packing.bond[b][0] = b > 0;
+        packing.bond[b][1] = b + 1;
+    }
+    packing.lower = (struct vector){-RADIUS, -3 * RADIUS, -RADIUS};
+    packing.upper = (struct vector){3 * RADIUS, 3 * RADIUS, RADIUS};
+    const uint8_t fixed[4] = {1};
+    const double f = 1e-12, r = radius_fraction * RADIUS;
+    for (int mode = 0; mode < 2; mode++) {
+        struct equilibrium_setup setup = setup_of(&packing, fixed);
+        setup.bond.normal_strength = setup.bond.shear_strength = INFINITY;
+        if (mode == DEM_CRACK_SHEAR)
+            setup.bond.shear_strength = 4 * f * RADIUS * r / (M_PI_2 * pow(r, 4));
+        else
+            setup.bond.normal_strength = f * RADIUS * r / (M_PI_4 * pow(r, 4));
+        for (int over = 0; over < 2; over++) {
+            struct equilibrium *equilibrium = make_equilibrium(&setup);
+            const double load = f * (1 + (over ? 1e-6 : -1e-6));
+            const struct vector force[4] = {[2] = {0, 0, load}, [3] = {0, 0, -load}};
+            next_equilibrium(equilibrium, force);
+            int n_crack;
+            const struct dem_crack *crack = equilibrium_cracks(equilibrium, &n_crack);
+            assert_int_equal(n_crack > 0, over);
+            if (over) assert_int_equal(crack[0].mode, mode);
+            if (over) assert_int_equal(crack[0].bond > 0, mode == DEM_CRACK_NORMAL);
+            equilibrium_free(equilibrium);
+        }
+    }
+    packing_free(&packing);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -392,7 +433,9 @@ int main(void)
         cmocka_unit_test(every_bond_breaks),
         cmocka_unit_test(stiffnesses_over_twelve_decades),
         cmocka_unit_test(a_mechanism_leaves),
-        cmocka_unit_test(a_wall_is_rigid)};
+        cmocka_unit_test(a_wall_is_rigid),
+        cmocka_unit_test(twist_and_bending_break),
+    };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
