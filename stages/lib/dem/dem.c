@@ -2,10 +2,12 @@
 // The cycle, and what acts on it from outside.
 #include "dem/engine.h"
 
+#include "basics/barrier.h"
 #include "basics/memory.h"
 #include "basics/sorted.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 
 void dem_free(struct dem *dem)
@@ -132,43 +134,34 @@ static struct outcome sweep_share(struct dem *dem, int begin, int end)
     return outcome;
 }
 
-// Shares of equal size; then, when all are done, as much of the late grains each.
-static struct outcome sweep_shares(struct dem *dem, int n_share)
+// Threads that go through cycles together, and what each did in the last.
+struct crew {
+    struct barrier barrier;
+    struct outcome *part; // (barrier.size)
+};
+
+// Shares of equal size; then, when all are done, as much of the late grains each. Of
+// each the parts of thread ME.
+static struct outcome sweep_part(struct dem *dem, struct crew *crew, int me)
 {
     const int n = dem->pairs.n_group, share = groups_in_share(dem);
-    const int n_late = dem->n_late, late_share = (n_late + n_share - 1) / n_share;
-    struct outcome total = {0, {0, true}};
-#pragma omp parallel num_threads(n_share)
-    {
-        struct outcome mine = {0, {0, true}};
-#pragma omp for schedule(static, 1)
-        for (int t = 0; t < n_share; t++) {
-            const int begin = smaller(t * share, n);
-            const struct outcome part =
-                sweep_share(dem, begin, smaller(begin + share, n));
-            mine.n_broken += part.n_broken;
-            add_pace(&mine, part.pace);
-        }
-#pragma omp for schedule(static, 1) nowait
-        for (int t = 0; t < n_share; t++) {
-            const int begin = smaller(t * late_share, n_late);
-            const int end = smaller(begin + late_share, n_late);
-            add_pace(&mine, move_late_grains(dem, begin, end));
-        }
-#pragma omp critical
-        { // sums of integers and maxima: in any order the same
-            total.n_broken += mine.n_broken;
-            add_pace(&total, mine.pace);
-        }
+    const int n_share = dem->n_share,
+              late_share = (dem->n_late + n_share - 1) / n_share;
+    struct outcome mine = {0, {0, true}};
+    if (n == 0 && me == 0) mine.pace = move_grains(dem, 0, dem->n_particle);
+    for (int t = me; t < n_share; t += crew->barrier.size) {
+        const int begin = smaller(t * share, n);
+        const struct outcome part = sweep_share(dem, begin, smaller(begin + share, n));
+        mine.n_broken += part.n_broken;
+        add_pace(&mine, part.pace);
     }
-    return total;
-}
-
-static struct outcome sweep(struct dem *dem)
-{
-    const int n = dem->pairs.n_group;
-    if (n == 0) return (struct outcome){0, move_grains(dem, 0, dem->n_particle)};
-    return dem->n_share > 1 ? sweep_shares(dem, dem->n_share) : sweep_share(dem, 0, n);
+    if (n_share > 1 && crew->barrier.size > 1) barrier_wait(&crew->barrier);
+    for (int t = me; t < n_share && n_share > 1; t += crew->barrier.size) {
+        const int begin = smaller(t * late_share, dem->n_late);
+        const int end = smaller(begin + late_share, dem->n_late);
+        add_pace(&mine, move_late_grains(dem, begin, end));
+    }
+    return mine;
 }
 
 static void record_crack(struct dem *dem, int pair, int mode)
@@ -211,32 +204,92 @@ static double fastest_wall(const struct dem *dem)
     return fastest;
 }
 
+// Cycles asked for, and how they go.
+struct course {
+    int64_t cycles, done;
+    enum status status;
+    struct reason *reason;
+    bool pairs_are_due; // to be sought before the next
+};
+
+// What comes before the pairs are looked at.
+static void approach_cycle(struct dem *dem, struct course *course)
+{
+    rest_or_wake(dem, course->cycles - course->done, course->done == 0);
+    course->pairs_are_due = pairs_are_due(dem);
+}
+
+static void begin_cycle(struct dem *dem, const struct course *course)
+{
+    dem->keeps_loads = course->done == course->cycles - 1; // for who looks after it
+    sweep_walls(dem);
+}
+
+static void end_cycle(struct dem *dem, struct outcome outcome, struct course *course)
+{
+    if (outcome.n_broken > 0) record_cracks(dem);
+    if (dem->liquid) settle_bridges(dem);
+    move_walls(dem);
+    const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
+    dem->last_travel = dem->time_step * fastest;
+    dem->travelled += dem->last_travel;
+    if (!outcome.pace.sound) {
+        wake_pairs(dem);
+        course->status =
+            refuse(course->reason, STATUS_NOT_CONVERGED,
+                   "diverged in cycle %lld: a grain would move more than %g mean "
+                   "radii in one time step of %g s (stable below %g s)",
+                   (long long)dem->cycle, FURTHEST_STEP, dem_time_step(dem),
+                   dem_time_step_limit(dem));
+        return;
+    }
+    dem->cycle++;
+    course->done++;
+}
+
+static bool goes_on(const struct course *course)
+{
+    return course->done < course->cycles && course->status == STATUS_OK;
+}
+
+// The first thread does what all wait for.
+static void follow(struct dem *dem, struct crew *crew, int me, struct course *course)
+{
+    do {
+        crew->part[me] = sweep_part(dem, crew, me);
+        if (crew->barrier.size > 1) barrier_wait(&crew->barrier);
+        if (me == 0) {
+            struct outcome total = crew->part[0];
+            for (int t = 1; t < crew->barrier.size; t++) { // in any order the same
+                total.n_broken += crew->part[t].n_broken;
+                add_pace(&total, crew->part[t].pace);
+            }
+            end_cycle(dem, total, course);
+            if (goes_on(course)) approach_cycle(dem, course);
+            if (goes_on(course) && !course->pairs_are_due) begin_cycle(dem, course);
+        }
+        if (crew->barrier.size > 1) barrier_wait(&crew->barrier);
+    } while (goes_on(course) && !course->pairs_are_due);
+}
+
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
 {
-    for (int64_t k = 0; k < cycles; k++) {
-        rest_or_wake(dem, cycles - k, k == 0);
-        keep_pairs(dem);
-        dem->keeps_loads = k == cycles - 1; // for who looks at them after it
-        sweep_walls(dem);
-        const struct outcome outcome = sweep(dem);
-        if (outcome.n_broken > 0) record_cracks(dem);
-        if (dem->liquid) settle_bridges(dem);
-        move_walls(dem);
-        const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
-        dem->last_travel = dem->time_step * fastest;
-        dem->travelled += dem->last_travel;
-        if (!outcome.pace.sound) {
-            wake_pairs(dem);
-            return refuse(
-                reason, STATUS_NOT_CONVERGED,
-                "diverged in cycle %lld: a grain would move more than %g mean "
-                "radii in one time step of %g s (stable below %g s)",
-                (long long)dem->cycle, FURTHEST_STEP, dem_time_step(dem),
-                dem_time_step_limit(dem));
+    struct course course = {.cycles = cycles, .reason = reason};
+    if (goes_on(&course)) approach_cycle(dem, &course);
+    while (goes_on(&course)) {
+        if (course.pairs_are_due) renew_pairs(dem); // by threads of its own
+        begin_cycle(dem, &course);
+        struct crew crew = {.barrier = {.size = dem->n_share},
+                            .part = NEW_ARRAY(struct outcome, dem->n_share)};
+#pragma omp parallel num_threads(dem->n_share)
+        {
+#pragma omp single
+            crew.barrier.size = omp_get_num_threads(); // may be fewer than asked for
+            follow(dem, &crew, omp_get_thread_num(), &course);
         }
-        dem->cycle++;
+        free(crew.part);
     }
-    return STATUS_OK;
+    return course.status;
 }
 
 enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,

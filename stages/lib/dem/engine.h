@@ -315,8 +315,9 @@ void find_pairs(struct dem *dem);
 // Makes these the pairs, sorted, with all that is told from them; takes over both
 // arrays. Those that were there before keep their history.
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
-// Seeks them if a grain may have moved further than half the skin.
-void keep_pairs(struct dem *dem);
+// Whether they must be sought, as a grain may have moved further than half the skin.
+bool pairs_are_due(struct dem *dem);
+void renew_pairs(struct dem *dem);
 // Makes rows to add up in for the pairs that are swept.
 void arrange_sums(struct dem *dem);
 // Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them in again

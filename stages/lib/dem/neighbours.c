@@ -461,11 +461,11 @@ void find_pairs(struct dem *dem)
     dem->search_cycle = dem->cycle;
 }
 
-void keep_pairs(struct dem *dem)
+bool pairs_are_due(struct dem *dem)
 {
     double furthest = wall_travel(dem);
     const bool is_near = fmax(dem->travelled, furthest) <= 0.5 * dem->skin;
-    if (is_near && !skin_is_too_deep(dem)) return;
+    if (is_near && !skin_is_too_deep(dem)) return false;
     for (int i = 0; i < dem->n_particle; i++)
         furthest = fmax(furthest, distance(as_vector(dem->place[i].displacement),
                                            dem->place_at_search[i]));
@@ -473,7 +473,11 @@ void keep_pairs(struct dem *dem)
     furthest = fmax(furthest + dem->closed_in, wall_travel(dem));
     dem->travelled = furthest;
     // So near the limit that looking again soon would cost more than a search.
-    if (furthest <= 0.9 * 0.5 * dem->skin && !skin_is_too_deep(dem)) return;
+    return !(furthest <= 0.9 * 0.5 * dem->skin) || skin_is_too_deep(dem);
+}
+
+void renew_pairs(struct dem *dem)
+{
     wake_pairs(dem);
     enum { SEARCHES_IN_ORDER = 64 };
     if (++dem->searches_in_order > SEARCHES_IN_ORDER) renumber_grains(dem);

@@ -4,8 +4,8 @@
 #include "basics/file.h"
 #include "basics/memory.h"
 #include "basics/status.h"
-#include "parameters/spelling.h"
 #include "parameters/command_line.h"
+#include "parameters/spelling.h"
 
 #include <assert.h>
 #include <stdint.h>

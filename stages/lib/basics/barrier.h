@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where threads wait for each other, many times in a thousandth of a second. OpenMP's
+// barrier burns the core that the one waited for may need: beside other programs two
+// threads were slower than one by it. This one soon lets others go first.
+#ifndef CRAQUELURE_BARRIER_H
+#define CRAQUELURE_BARRIER_H
+
+#include <sched.h>
+#include <stdatomic.h>
+
+struct barrier {
+    int size; // threads, each of which must come
+    atomic_int waiting, round;
+};
+
+// Returns when all SIZE threads have come; what they wrote before can be read then.
+static inline void barrier_wait(struct barrier *barrier)
+{
+    enum { PATIENCE = 2000 }; // looks, some microseconds
+    const int round = atomic_load(&barrier->round);
+    if (atomic_fetch_add(&barrier->waiting, 1) + 1 == barrier->size) {
+        atomic_store(&barrier->waiting, 0);
+        atomic_store(&barrier->round, round ^ 1);
+        return;
+    }
+    for (int look = 0; atomic_load(&barrier->round) == round; look++)
+        if (look >= PATIENCE) sched_yield();
+}
+
+#endif
