@@ -155,20 +155,12 @@ void halves_apply_lanes(const struct supernodal *f, const struct halves *halves,
 void halves_take_off_lanes(const struct supernodal *f, const struct halves *halves,
                            const double *share, double *half)
 {
-    const int lanes = halves->lanes;
+    const struct vector_kernels *kernels = vector_kernels();
     const double *from = halves->value;
     for (int k = 0; k < halves->n_super; k++) {
         const struct supernode *super = &f->super[halves->super[k]];
-        double *at = half + (long)super->first * LANES;
-        for (int i = 0; i < super->columns; i++, from += lanes, at += LANES) {
-            four low = load_four(at), high = load_four(at + 4);
-            for (int c = 0; c < halves->columns; c++) {
-                const four all = {-from[c], -from[c], -from[c], -from[c]};
-                low = fused(all, load_four(share + c * LANES), low);
-                high = fused(all, load_four(share + c * LANES + 4), high);
-            }
-            store_four(at, low);
-            store_four(at + 4, high);
-        }
+        kernels->take_off_eight(super->columns, from, halves->lanes, share,
+                                halves->columns, half + (long)super->first * LANES);
+        from += (long)super->columns * halves->lanes;
     }
 }

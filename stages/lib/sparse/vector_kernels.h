@@ -21,6 +21,10 @@ struct vector_kernels {
     // SUM grows by A^T B, (n) rows of lanes, one, four or eight of A, eight of B.
     void (*add_product_of_eight)(int n, const double *a, int a_lanes, const double *b,
                                  double sum[LANES][LANES]);
+    // N rows of X, eight lanes each, less COLUMNS of the LANES of FROM times SHARE,
+    // eight lanes for each of them.
+    void (*take_off_eight)(int n, const double *from, int lanes, const double *share,
+                           int columns, double *x);
     // As dense_kernels.h says.
     void (*multiply_transposed)(int m, int n, int k, const double *a, int a_stride,
                                 const double *b, int b_stride, double *c, int c_stride,

@@ -46,6 +46,22 @@ INLINE vector fused(vector a, vector b, vector c)
 #endif
 }
 
+// C less A B: broadcast from memory, and no sign to turn.
+INLINE vector less(vector c, double a, vector b)
+{
+#if defined __x86_64__ && defined __FMA__ && BYTES == 64
+    return (vector)_mm512_fnmadd_pd(_mm512_set1_pd(a), (__m512d)b, (__m512d)c);
+#elif defined __x86_64__ && defined __FMA__
+    return (vector)_mm256_fnmadd_pd(_mm256_set1_pd(a), (__m256d)b, (__m256d)c);
+#else
+    return fused(all_of(-a), b, c);
+#endif
+}
+
+// Loops over what stays in registers, so with bounds that are known where they are
+// inlined.
+#define UNROLLED _Pragma("GCC unroll 8")
+
 // A over B, whose INVERSE is known: as well rounded as a division, and much sooner
 // done.
 INLINE vector divided(vector a, double b, double inverse)
@@ -72,24 +88,26 @@ INLINE void forward_columns(const struct supernode *super, int first, int wide,
     const int rows = super->rows;
     const double *panel = super->panel + (long)first * rows;
     vector own[MOST][PARTS];
-    for (int j = 0; j < wide; j++) {
+    UNROLLED for (int j = 0; j < wide; j++)
+    {
         double *at = lanes_of(super, first + j, parts, x);
         const double pivot = panel[(long)j * rows + first + j];
-        for (int q = 0; q < parts; q++) {
+        UNROLLED for (int q = 0; q < parts; q++)
+        {
             own[j][q] = load(at + NUMBERS * q);
-            for (int l = 0; l < j; l++)
-                own[j][q] = fused(all_of(-panel[(long)l * rows + first + j]), own[l][q],
-                                  own[j][q]);
+            UNROLLED for (int l = 0; l < wide; l++) if (l < j) own[j][q] =
+                less(own[j][q], panel[(long)l * rows + first + j], own[l][q]);
             own[j][q] = divided(own[j][q], pivot, 1 / pivot);
             store(at + NUMBERS * q, own[j][q]);
         }
     }
     for (int i = first + wide; i < rows; i++) {
         double *at = lanes_of(super, i, parts, x);
-        for (int q = 0; q < parts; q++) {
+        UNROLLED for (int q = 0; q < parts; q++)
+        {
             vector left = load(at + NUMBERS * q);
-            for (int j = 0; j < wide; j++)
-                left = fused(all_of(-panel[(long)j * rows + i]), own[j][q], left);
+            UNROLLED for (int j = 0; j < wide; j++) left =
+                less(left, panel[(long)j * rows + i], own[j][q]);
             store(at + NUMBERS * q, left);
         }
     }
@@ -101,22 +119,24 @@ INLINE void backward_columns(const struct supernode *super, int first, int wide,
     const int rows = super->rows;
     const double *panel = super->panel + (long)first * rows;
     vector left[MOST][PARTS];
-    for (int j = 0; j < wide; j++)
-        for (int q = 0; q < parts; q++)
-            left[j][q] = load(lanes_of(super, first + j, parts, x) + NUMBERS * q);
+    UNROLLED for (int j = 0; j < wide; j++) UNROLLED for (int q = 0; q < parts; q++)
+        left[j][q] = load(lanes_of(super, first + j, parts, x) + NUMBERS * q);
     for (int i = first + wide; i < rows; i++) {
         const double *at = lanes_of(super, i, parts, x);
-        for (int j = 0; j < wide; j++)
-            for (int q = 0; q < parts; q++)
-                left[j][q] = fused(all_of(-panel[(long)j * rows + i]),
-                                   load(at + NUMBERS * q), left[j][q]);
+        UNROLLED for (int q = 0; q < parts; q++)
+        {
+            const vector of_row = load(at + NUMBERS * q);
+            UNROLLED for (int j = 0; j < wide; j++) left[j][q] =
+                less(left[j][q], panel[(long)j * rows + i], of_row);
+        }
     }
-    for (int j = wide - 1; j >= 0; j--) {
+    UNROLLED for (int j = wide - 1; j >= 0; j--)
+    {
         const double pivot = panel[(long)j * rows + first + j];
-        for (int q = 0; q < parts; q++) {
-            for (int l = j + 1; l < wide; l++)
-                left[j][q] = fused(all_of(-panel[(long)j * rows + first + l]),
-                                   left[l][q], left[j][q]);
+        UNROLLED for (int q = 0; q < parts; q++)
+        {
+            UNROLLED for (int l = 0; l < wide; l++) if (l > j) left[j][q] =
+                less(left[j][q], panel[(long)j * rows + first + l], left[l][q]);
             left[j][q] = divided(left[j][q], pivot, 1 / pivot);
             store(lanes_of(super, first + j, parts, x) + NUMBERS * q, left[j][q]);
         }
@@ -166,11 +186,12 @@ static void backward_eight(const struct supernode *super, double *x)
 INLINE void finish_rows(double *panel, int rows, int own, int wide, int at)
 {
     vector x[8];
-    for (int j = 0; j < wide; j++) {
+    UNROLLED for (int j = 0; j < wide; j++)
+    {
         const double pivot = panel[(long)j * rows + own + j];
         x[j] = load(panel + (long)j * rows + at);
-        for (int l = 0; l < j; l++)
-            x[j] = fused(all_of(-panel[(long)l * rows + own + j]), x[l], x[j]);
+        UNROLLED for (int l = 0; l < wide; l++) if (l < j) x[j] =
+            less(x[j], panel[(long)l * rows + own + j], x[l]);
         x[j] = divided(x[j], pivot, 1 / pivot);
         store(panel + (long)j * rows + at, x[j]);
     }
@@ -212,16 +233,13 @@ INLINE void add_tile(int n, const double *a, int a_lanes, const double *b, int t
                      int parts, double *sum)
 {
     vector part[8][PARTS];
-    for (int i = 0; i < tile; i++)
-        for (int q = 0; q < parts; q++)
-            part[i][q] = load(sum + i * LANES + NUMBERS * q);
+    UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (int q = 0; q < parts; q++)
+        part[i][q] = load(sum + i * LANES + NUMBERS * q);
     for (int p = 0; p < n; p++, a += a_lanes, b += NUMBERS * parts)
-        for (int i = 0; i < tile; i++)
-            for (int q = 0; q < parts; q++)
-                part[i][q] = fused(all_of(a[i]), load(b + NUMBERS * q), part[i][q]);
-    for (int i = 0; i < tile; i++)
-        for (int q = 0; q < parts; q++)
-            store(sum + i * LANES + NUMBERS * q, part[i][q]);
+        UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (int q = 0; q < parts; q++)
+            part[i][q] = fused(all_of(a[i]), load(b + NUMBERS * q), part[i][q]);
+    UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (int q = 0; q < parts; q++)
+        store(sum + i * LANES + NUMBERS * q, part[i][q]);
 }
 
 #if BYTES == 32
@@ -243,6 +261,32 @@ static void add_product_of_eight(int n, const double *a, int a_lanes, const doub
 #endif
     for (int i = 0; i < a_lanes; i += 4)
         add_tile(n, a + i, a_lanes, b, 4, PARTS, sum[i]);
+}
+
+INLINE void take_off(int n, const double *from, int lanes, const double *share,
+                     int columns, double *x)
+{
+    vector of_share[LANES][PARTS];
+    UNROLLED for (int c = 0; c < columns; c++) UNROLLED for (int q = 0; q < PARTS; q++)
+        of_share[c][q] = load(share + c * LANES + NUMBERS * q);
+    for (; n > 0; n--, from += lanes, x += LANES)
+        UNROLLED for (int q = 0; q < PARTS; q++)
+        {
+            vector left = load(x + NUMBERS * q);
+            UNROLLED for (int c = 0; c < columns; c++) left =
+                less(left, from[c], of_share[c][q]);
+            store(x + NUMBERS * q, left);
+        }
+}
+
+static void take_off_eight(int n, const double *from, int lanes, const double *share,
+                           int columns, double *x)
+{
+    int first = 0;
+    for (; first + 4 <= columns; first += 4)
+        take_off(n, from + first, lanes, share + first * LANES, 4, x);
+    for (; first < columns; first++)
+        take_off(n, from + first, lanes, share + first * LANES, 1, x);
 }
 
 // A tile of TALL vectors of rows and WIDE columns stays in registers.
@@ -274,24 +318,22 @@ INLINE void multiply_tile(int tall, int k, const double *a, int a_stride,
                           int columns)
 {
     vector sum[WIDE][TALL], of_a[TALL];
-    for (int j = 0; j < WIDE; j++)
-        for (int q = 0; q < tall; q++)
-            sum[j][q] = all_of(0);
+    UNROLLED for (int j = 0; j < WIDE; j++) UNROLLED for (int q = 0; q < tall; q++)
+        sum[j][q] = all_of(0);
     for (int p = 0; p < k; p++, a += a_stride, packed += WIDE) {
-        for (int q = 0; q < tall; q++)
-            of_a[q] = load(a + NUMBERS * q);
-        for (int j = 0; j < WIDE; j++)
-            for (int q = 0; q < tall; q++)
-                sum[j][q] = fused(of_a[q], all_of(packed[j]), sum[j][q]);
+        UNROLLED for (int q = 0; q < tall; q++) of_a[q] = load(a + NUMBERS * q);
+        UNROLLED for (int j = 0; j < WIDE; j++) UNROLLED for (int q = 0; q < tall; q++)
+            sum[j][q] = fused(of_a[q], all_of(packed[j]), sum[j][q]);
     }
-    for (int j = 0; j < WIDE; j++)
-        for (int q = 0; q < tall && j < columns; q++) {
-            double *to = c + (long)j * c_stride + NUMBERS * q;
-            if (rows >= NUMBERS * (q + 1))
-                store(to, sum[j][q]);
-            else
-                store_first(to, sum[j][q], rows - NUMBERS * q);
-        }
+    UNROLLED for (int j = 0; j < WIDE; j++) UNROLLED for (int q = 0; q < tall; q++)
+    {
+        if (j >= columns) continue;
+        double *to = c + (long)j * c_stride + NUMBERS * q;
+        if (rows >= NUMBERS * (q + 1))
+            store(to, sum[j][q]);
+        else
+            store_first(to, sum[j][q], rows - NUMBERS * q);
+    }
 }
 
 static void multiply_tall(int k, const double *a, int a_stride, const double *packed,
@@ -344,6 +386,7 @@ const struct vector_kernels NAMED(vector_kernels) = {
     .backward_eight = backward_eight,
     .finish_columns = finish_columns,
     .add_product_of_eight = add_product_of_eight,
+    .take_off_eight = take_off_eight,
     .multiply_transposed = multiply,
     .factor_dense = factor_dense,
 };
