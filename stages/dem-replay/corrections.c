@@ -88,22 +88,31 @@ static void make_room(struct corrections *c)
     c->capacity = (int)after;
 }
 
-static void fill_compliance(struct corrections *c, const struct addition *new)
+static void fill_between(struct corrections *c, const struct addition *a,
+                         const struct addition *b)
 {
-    const int columns = new->halves.columns;
-    c->work += new->halves.work + (double)columns *new->halves.size * c->count;
-    for (int k = 0; k < c->n_addition; k++) {
-        const struct addition *other = &c->addition[k];
-        double product[LANES * LANES];
-        stiffness_product(c->stiffness, &other->halves, &new->halves, product);
-        for (int i = 0; i < other->halves.columns; i++)
-            for (int j = 0; j < columns; j++) {
-                const double compliance = product[i * columns + j];
-                const int row = other->first + i, column = new->first + j;
-                compliance_of(c, row)[column] = compliance_of(c, column)[row] =
-                    compliance;
-            }
+    double product[LANES * LANES];
+    stiffness_product(c->stiffness, &a->halves, &b->halves, product);
+    for (int i = 0; i < a->halves.columns; i++)
+        for (int j = 0; j < b->halves.columns; j++) {
+            const double compliance = product[i * b->halves.columns + j];
+            const int row = a->first + i, column = b->first + j;
+            compliance_of(c, row)[column] = compliance_of(c, column)[row] = compliance;
+        }
+}
+
+// Of the additions from FIRST on: each of all is read once for these.
+static void fill_compliance(struct corrections *c, int first)
+{
+    for (int k = first; k < c->n_addition; k++) {
+        const struct addition *new = &c->addition[k];
+        const double columns = new->halves.columns;
+        c->work += new->halves.work +
+                   columns *new->halves.size *(new->first + new->halves.columns);
     }
+    for (int k = 0; k < c->n_addition; k++)
+        for (int l = k > first ? k : first; l < c->n_addition; l++)
+            fill_between(c, &c->addition[k], &c->addition[l]);
 }
 
 // Rows for strains of one joint; how many.
@@ -132,11 +141,31 @@ static int rows_of(struct corrections *c, const struct correction *new)
     return more > 0 ? more : 0;
 }
 
-// As many at once as there are lanes.
+// Groups of rows that go through the factor together.
+struct batch {
+    int groups, first[HALVES], count[HALVES];
+    struct unit_load load[HALVES][LANES];
+};
+
+static void add_batch(struct corrections *c, struct batch *batch)
+{
+    const int before = c->n_addition;
+    struct halves halves[HALVES];
+    stiffness_halves(c->stiffness, batch->groups, batch->count, batch->load, halves);
+    for (int g = 0; g < batch->groups; g++) {
+        GROW_ARRAY(c->addition, c->n_addition, c->addition_capacity);
+        c->addition[c->n_addition++] = (struct addition){batch->first[g], halves[g]};
+    }
+    fill_compliance(c, before);
+    batch->groups = 0;
+}
+
+// As many in a group as there are lanes.
 bool corrections_add(struct corrections *c, int count, const struct correction *new)
 {
+    struct batch batch = {0};
     for (int k = 0; k < count;) {
-        struct unit_load load[LANES];
+        struct unit_load *load = batch.load[batch.groups];
         const int first = c->count;
         int loads = 0;
         for (; k < count && loads + rows_of(c, &new[k]) <= LANES; k++) {
@@ -145,11 +174,11 @@ bool corrections_add(struct corrections *c, int count, const struct correction *
             loads += add_rows(c, &new[k], load + loads);
         }
         if (loads == 0) continue;
-        GROW_ARRAY(c->addition, c->n_addition, c->addition_capacity);
-        c->addition[c->n_addition++] =
-            (struct addition){first, stiffness_halves(c->stiffness, loads, load)};
-        fill_compliance(c, &c->addition[c->n_addition - 1]);
+        batch.first[batch.groups] = first;
+        batch.count[batch.groups++] = loads;
+        if (batch.groups == HALVES) add_batch(c, &batch);
     }
+    if (batch.groups > 0) add_batch(c, &batch);
     return true;
 }
 

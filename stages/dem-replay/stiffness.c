@@ -27,9 +27,9 @@ struct stiffness {
     int *start, *row; // lower triangle by columns, upper halves of diagonal blocks too
     double *value;
     struct supernodal *factor;
-    double *load;                                  // (n_moving * DEGREES)
-    double *begun, *left;                          // the same, halves of answers
-    int *place;                        // (n_moving * DEGREES) of all degrees of freedom
+    double *load;                     // (n_moving * DEGREES)
+    double *begun, *left;             // the same, halves of answers
+    int *place;                       // (n_moving * DEGREES) of all degrees of freedom
     double *begun_lanes, *left_lanes; // of LANES of each; NULL: not yet
 };
 
@@ -121,9 +121,9 @@ void stiffness_free(struct stiffness *s)
 {
     if (!s) return;
     supernodal_free(s->factor);
-    void *const owned[] = {s->number,    s->block, s->block_of,   s->diagonal,
-                           s->start,     s->row,   s->value,      s->load,
-                           s->begun,     s->left,  s->place, s->begun_lanes,
+    void *const owned[] = {s->number,    s->block, s->block_of, s->diagonal,
+                           s->start,     s->row,   s->value,    s->load,
+                           s->begun,     s->left,  s->place,    s->begun_lanes,
                            s->left_lanes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
@@ -270,25 +270,29 @@ void stiffness_take_off(struct stiffness *s, const struct halves *halves,
     halves_take_off(s->factor, halves, load, s->left);
 }
 
-struct halves stiffness_halves(struct stiffness *s, int count,
-                               const struct unit_load *load)
+void stiffness_halves(struct stiffness *s, int groups, const int *count,
+                      const struct unit_load (*load)[LANES], struct halves *halves)
 {
     enum { ENDS = 2 * DEGREES };
-    double value[LANES * ENDS];
-    int index[LANES * ENDS];
-    for (int k = 0; k < count; k++)
-        for (int end = 0; end < 2; end++) {
-            const struct joint *joint = &s->joint[load[k].joint];
-            const int32_t grain = joint->grain[end];
-            const int number = grain < 0 ? -1 : s->number[grain];
-            const struct displacement arm = joint_arm(joint, end, load[k].strain);
-            const int first = k * ENDS + end * DEGREES;
-            memcpy(value + first, &arm, sizeof arm);
-            for (int r = 0; r < DEGREES; r++)
-                index[first + r] = number < 0 ? -1 : number * DEGREES + r;
-        }
-    return s->n_moving > 0 ? supernodal_halves(s->factor, count, ENDS, index, value)
-                           : (struct halves){.columns = count};
+    double value[HALVES][LANES][2][DEGREES] = {0};
+    int index[HALVES][LANES][2][DEGREES] = {0};
+    for (int g = 0; g < groups; g++)
+        for (int k = 0; k < count[g]; k++)
+            for (int end = 0; end < 2; end++) {
+                const struct joint *joint = &s->joint[load[g][k].joint];
+                const int32_t grain = joint->grain[end];
+                const int number = grain < 0 ? -1 : s->number[grain];
+                const struct displacement arm =
+                    joint_arm(joint, end, load[g][k].strain);
+                memcpy(value[g][k][end], &arm, sizeof arm);
+                for (int r = 0; r < DEGREES; r++)
+                    index[g][k][end][r] = number < 0 ? -1 : number * DEGREES + r;
+            }
+    if (s->n_moving > 0)
+        supernodal_halves(s->factor, groups, count, ENDS, index[0][0][0],
+                          value[0][0][0], halves);
+    for (int g = 0; g < groups && s->n_moving == 0; g++)
+        halves[g] = (struct halves){.columns = count[g]};
 }
 
 void stiffness_product(const struct stiffness *s, const struct halves *a,

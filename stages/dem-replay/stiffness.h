@@ -31,14 +31,14 @@ bool stiffness_is_positive(const struct stiffness *stiffness);
 void stiffness_begin(struct stiffness *stiffness, const struct displacement *load);
 void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
-// Halves of the answers to COUNT unit loads, LANES at most. The product of halves is
-// how the strains of the ones answer loads of the others. The caller frees them with
-// halves_free.
+// Halves of the answers to as many GROUPS of unit loads as HALVES, COUNT (groups) in
+// each. The product of halves is how the strains of the ones answer loads of the
+// others. The caller frees each (groups) with halves_free.
 struct unit_load {
     int32_t joint, strain;
 };
-struct halves stiffness_halves(struct stiffness *stiffness, int count,
-                               const struct unit_load *load);
+void stiffness_halves(struct stiffness *stiffness, int groups, const int *count,
+                      const struct unit_load (*load)[LANES], struct halves *halves);
 void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
                        const struct halves *b, double *product);
 

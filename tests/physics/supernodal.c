@@ -96,7 +96,7 @@ static void halves_make_the_same_products(void **state)
     const double value[2][6] = {{1, 2, -1, 0.5, 0, 3}, {-1, 1, 2, 4, 0.1, 0}};
     struct halves halves[2];
     for (int k = 0; k < 2; k++)
-        halves[k] = supernodal_halves(factor, 2, 3, index[k], value[k]);
+        supernodal_halves(factor, 1, &(int){2}, 3, index[k], value[k], &halves[k]);
     for (int k = 0; k < 16; k++) {
         const int a = k / 8, b = k / 4 % 2, i = k / 2 % 2, j = k % 2;
         double product[4], x[N] = {0}, expected = 0;
@@ -144,7 +144,8 @@ static void lanes_are_answers_each(void **state)
     for (int k = 0; k < N; k++)
         place[k] = N - 1 - k;
     const int index[2] = {3, 500};
-    struct halves halves = supernodal_halves(factor, 2, 1, index, (double[]){2, -1});
+    struct halves halves;
+    supernodal_halves(factor, 1, &(int){2}, 1, index, (double[]){2, -1}, &halves);
     supernodal_forward_lanes(factor, place, x, half);
     halves_apply_lanes(factor, &halves, half, product);
     for (int l = 0; l < LANES; l++) {

@@ -29,31 +29,54 @@ static void find_way(struct supernodal *f, int count, const int *index,
         qsort(halves->super, (size_t)halves->n_super, sizeof(int), rising_ints);
 }
 
-struct halves supernodal_halves(struct supernodal *f, int columns, int count,
-                                const int *index, const double *value)
+// One more supernode of the way, to where its numbers lie in HALVES.
+static double *go_through(struct supernodal *f, const struct supernode *super,
+                          struct halves *halves, double *x, double *to)
+{
+    const int lanes = halves->lanes;
+    if (lanes == 1)
+        forward_through(f, super, x);
+    else
+        (lanes == 4 ? forward_four : vector_kernels()->forward_eight)(super, x);
+    const size_t numbers = (size_t)super->columns * (size_t)lanes;
+    memcpy(to, x + (long)super->first * lanes, numbers * sizeof *to);
+    memset(x + (long)super->first * lanes, 0, numbers * sizeof *to);
+    halves->work += (double)numbers * super->rows;
+    return to + numbers;
+}
+
+static void begin_halves(struct supernodal *f, int columns, int count, const int *index,
+                         const double *value, double *x, struct halves *halves)
 {
     const int lanes = columns == 1 ? 1 : columns <= 4 ? 4 : LANES;
-    struct halves halves = {.columns = columns, .lanes = lanes};
-    find_way(f, columns * count, index, &halves);
-    halves.value =
-        allocate_uncleared((size_t)lanes * (size_t)halves.size, sizeof *halves.value);
-    double *x = f->lanes, *to = halves.value;
+    *halves = (struct halves){.columns = columns, .lanes = lanes};
+    find_way(f, columns * count, index, halves);
+    halves->value =
+        allocate_uncleared((size_t)lanes * (size_t)halves->size, sizeof *halves->value);
     for (int c = 0; c < columns; c++)
         for (int k = c * count; k < (c + 1) * count; k++)
             if (index[k] >= 0) x[f->place[index[k]] * lanes + c] = value[k];
-    for (int k = 0; k < halves.n_super; k++) {
-        const struct supernode *super = &f->super[halves.super[k]];
-        if (lanes == 1)
-            forward_through(f, super, x);
-        else
-            (lanes == 4 ? forward_four : vector_kernels()->forward_eight)(super, x);
-        const size_t numbers = (size_t)super->columns * (size_t)lanes;
-        memcpy(to, x + (long)super->first * lanes, numbers * sizeof *to);
-        memset(x + (long)super->first * lanes, 0, numbers * sizeof *to);
-        to += numbers;
-        halves.work += (double)numbers * super->rows;
+}
+
+// Each supernode for all groups that it is on the way of, while it is near.
+void supernodal_halves(struct supernodal *f, int groups, const int *columns, int count,
+                       const int *index, const double *value, struct halves *halves)
+{
+    double *x[HALVES], *to[HALVES];
+    int at[HALVES] = {0};
+    for (int g = 0; g < groups; g++) {
+        const long first = (long)g * LANES * count;
+        x[g] = f->lanes + (long)g * f->n * LANES;
+        begin_halves(f, columns[g], count, index + first, value + first, x[g],
+                     &halves[g]);
+        to[g] = halves[g].value;
     }
-    return halves;
+    for (int s = 0; s < f->n_super; s++)
+        for (int g = 0; g < groups; g++)
+            if (at[g] < halves[g].n_super && halves[g].super[at[g]] == s) {
+                to[g] = go_through(f, &f->super[s], &halves[g], x[g], to[g]);
+                at[g]++;
+            }
 }
 
 void halves_free(struct halves *halves)

@@ -103,7 +103,7 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     f->work = NEW_ARRAY(double, ((size_t)f->tallest + PACKED) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->is_on_way = NEW_ARRAY(bool, f->n_super);
-    f->lanes = allocate_aligned((size_t)n, LANES * sizeof *f->lanes);
+    f->lanes = allocate_aligned((size_t)n, HALVES * LANES * sizeof *f->lanes);
     return f;
 }
 

@@ -51,10 +51,14 @@ struct halves {
     double *value;       // (size * lanes)
 };
 
-// Of COLUMNS right-hand sides with VALUE[k] in row INDEX[k], COUNT of each; of a row -1
-// nothing. The caller frees it with halves_free.
-struct halves supernodal_halves(struct supernodal *factor, int columns, int count,
-                                const int *index, const double *value);
+// Of as many GROUPS of right-hand sides as HALVES, COLUMNS (groups) in each, LANES at
+// most. Column c of group g has in COUNT rows, INDEX[(g * LANES + c) * count + k], the
+// VALUE there; in a row -1 nothing. The caller frees each of them (groups) with
+// halves_free.
+enum { HALVES = 4 };
+void supernodal_halves(struct supernodal *factor, int groups, const int *columns,
+                       int count, const int *index, const double *value,
+                       struct halves *halves);
 void halves_free(struct halves *halves);
 
 // PRODUCT[k * b->columns + l] of column k of A and l of B, which may be the same.

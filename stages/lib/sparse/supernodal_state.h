@@ -29,7 +29,7 @@ struct supernodal {
     int widest;      // most columns of a supernode
     int tallest;     // most rows
     double *work;    // (tallest * widest) and (PACKED * widest)
-    double *lanes;   // (n * LANES), of zeros between calls
+    double *lanes;   // (n * LANES * HALVES), of zeros between calls
     int *local;      // (tallest)
     bool *is_on_way; // (n_super), false between calls
 };
