@@ -97,6 +97,7 @@ static void menisci_begin_at_the_open_surface(void **state)
     (void)state;
     struct dried dried = dry_lattice(2);
     struct filling filling = filling_begin(&dried.network, &dried.record, &by_clusters);
+    double widest = 0;
     for (int t = 0; t < dried.network.n_throat; t++) {
         const int32_t *node = dried.network.throat_nodes[t];
         const int ends = dried.record.exposed[node[0]] + dried.record.exposed[node[1]];
@@ -105,7 +106,10 @@ static void menisci_begin_at_the_open_surface(void **state)
         assert_true(load[LOAD_CONTACT_LINE] ==
                     0.03 * dried.network.throat_radius[t] * ends);
         assert_true(load[LOAD_EMPTINESS] == 0);
+        if (ends > 0) widest = fmax(widest, dried.network.throat_radius[t]);
     }
+    for (int t = 0; t < dried.network.n_throat; t++) // all in one piece
+        assert_true(fabs(filling.suction[t] * widest / 0.14 - 1) < 1e-15);
     filling_free(&filling);
     dried_free(&dried);
 }

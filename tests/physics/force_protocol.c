@@ -4,6 +4,7 @@
 #include "../test.h"
 #include "basics/memory.h"
 #include "force-protocol/auxiliary.h"
+#include "force-protocol/rings.h"
 #include "force-protocol/times.h"
 #include "support_lattice.h"
 
@@ -129,6 +130,12 @@ static void what_jumps_is_missed(void **state)
         assert_close(protocol.force[2 * m + 1].x, pull[m]);
     assert_close(interpolation_error(&process, &protocol), 8);
     protocol_free(&protocol);
+
+    // Beside jumps what bends without one counts as well: F_0 at time 1, as above.
+    pair.law.contact_line = 0.016;
+    protocol = make_protocol(&process, uniform_times(&pair.record, 2), 2);
+    assert_close(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
+    protocol_free(&protocol);
     pair_free(&pair);
 }
 
@@ -245,6 +252,33 @@ static void auxiliary_grains_go(void **state)
     packing_free(&packing);
 }
 
+// A ring left by liquid of a suction is the bridge that has this suction.
+static void rings_have_the_suction_of_the_liquid(void **state)
+{
+    (void)state;
+    const struct ring_law law = {.rule = RING_SUCTION,
+                                 .suction = 1e6,
+                                 .surface_tension = 0.07,
+                                 .contact_angle = 0.3};
+    for (int other = 1; other <= 4; other++)
+        for (int gap = 0; gap < 2; gap++) {
+            const double radius[2] = {2.5e-7, 2.5e-7 * other}, apart = gap * 5e-9;
+            double volume, force;
+            struct reason reason;
+            if (solve_ring(radius, apart, &law, &volume, &force, &reason))
+                fail_msg("%s", reason.text);
+            const struct bridge bridge = {.radius = {radius[0], radius[1]},
+                                          .volume = volume,
+                                          .surface_tension = 0.07,
+                                          .contact_angle = {0.3, 0.3}};
+            struct bridge_state found;
+            if (bridge_solve(&bridge, apart, &found, &reason))
+                fail_msg("%s", reason.text);
+            assert_true(volume > 0 && fabs(found.suction / 1e6 - 1) < 1e-8);
+            assert_true(fabs(found.force / force - 1) < 1e-8);
+        }
+}
+
 // ---- from step to step --------------------------------------------------------------
 
 // Random patches of all loads on the grains of a lattice that dries.
@@ -320,6 +354,7 @@ int main(void)
         cmocka_unit_test(net_force_and_moment),
         cmocka_unit_test(a_field_is_linear_between_snapshots),
         cmocka_unit_test(auxiliary_grains_go),
+        cmocka_unit_test(rings_have_the_suction_of_the_liquid),
         cmocka_unit_test(the_walk_keeps_to_forces_found_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,11 +23,12 @@ def settings(words):
     return [word for s in words for word in ("--set", s)]
 
 
-def drying(name, centres, radii, box, how, dry, merge=0.0, periodic=(0, 0, 0)):
+def drying(name, centres, radii, box, how, dry, merge=0.0, periodic=(0, 0, 0), lower=np.zeros(3)):
     """From grains to their drying."""
     np.savetxt("grains", np.column_stack([centres, radii]), fmt="%.17g")
     sides = "[" + ",".join(["false", "true"][p] for p in periodic) + "]"
-    run("pack", *settings(["method=import", "lower=[0,0,0]", f"upper={[float(b) for b in box]}",
+    run("pack", *settings(["method=import", f"lower={[float(x) for x in lower]}",
+                           f"upper={[float(x) for x in lower + np.array(box)]}",
                            f"periodic={sides}"]), "--quiet", "grains", "-o", "p")
     run("tessellate", *settings(how), "p", "-o", "t")
     how = ["measure=fraction", f"threshold={merge}"] if merge else []
@@ -464,6 +465,18 @@ def plain_arcs():
     ok(error < 1e-15 * 1e6 * R**2, "the arcs of a layer are its lunes over pi/2", error)
 
 
+def moved():
+    """A layer far from the origin, with the menisci, which are as high as it is thick."""
+    box = np.array([5e-6, 5e-7, 5e-6])
+    centres, radii = scatter(40, box, layer=True)
+    here = []
+    for away in np.zeros(3), np.array([-7e-6, 11e-6, 3e-6]):
+        drying("d", centres + away, radii, box, ["dimensions=2"], ["liquid=immobile"], lower=away)
+        here.append(forces("d", "form=faces")[0])
+    error = abs(here[1] - here[0]).max() / abs(here[0]).max()
+    ok(error < 1e-9, "a layer moved: the same forces", error)
+
+
 def renumbered():
     # immobile: throats that a node between them makes equally wide tie in the other
     box = (2.6e-6, 2.6e-6, 3e-6)
@@ -498,6 +511,7 @@ with scratch() as folder:
     hardly_viscous()
     overlaps()
     plain_arcs()
+    moved()
     renumbered()
     threads()
     os.chdir(TOP)
