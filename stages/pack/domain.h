@@ -56,6 +56,15 @@ enum status domain_around(const struct domain_parameters *parameters, int dimens
                           struct vector lower, struct vector upper,
                           struct domain *domain, struct reason *reason);
 
+// What rounding may put outside a wall that is touched, m.
+double domain_rounding(const struct domain *domain);
+
+// From an axis along z.
+static inline double across(double x, double y)
+{
+    return sqrt(x * x + y * y);
+}
+
 // Volume, m^3, exact. In two dimensions over the thickness upper.y - lower.y it is the
 // area, m^2.
 double domain_volume(const struct domain *domain);

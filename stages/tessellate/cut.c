@@ -106,11 +106,10 @@ static void cross_throat(struct cut *cut, int t)
     cut->crossing[t][0] = cut->crossing[t][1] = -1;
     if (first && second) return;
     find_ends(cut, t, end);
-    const struct body body =
-        body_near(&cut->network->packing, cut->k,
-                  first    ? end[0]
-                  : second ? end[1]
-                           : add(end[0], scale(0.5, subtract(end[1], end[0]))));
+    const struct body body = body_near(&cut->network->packing, cut->k,
+                                       first    ? end[0]
+                                       : second ? end[1]
+                                                : midpoint(end[0], end[1]));
     bool meets = body_span(&body, end[0], end[1], span);
     if (!meets) span[0] = span[1] = first ? 0 : 1; // grazed, if one end is within
     meets = first || second || (meets && span[0] > 0 && span[1] < 1);

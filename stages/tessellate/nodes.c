@@ -2,6 +2,7 @@
 #include "nodes.h"
 
 #include "basics/memory.h"
+#include "cell_groups.h"
 #include "geometry/exact.h"
 #include "rows.h"
 
@@ -116,85 +117,6 @@ static bool name_cell(const struct generators *generators, const int32_t corner[
     return true;
 }
 
-// ---- groups -------------------------------------------------------------------------
-
-// Cells with a grain among their corners, by the first base of their names: those of
-// generator i, which is that base, from offset[i] to offset[i + 1], ascending. Their
-// places come in the order of bases instead: those of base b from place[b] on.
-struct groups {
-    int n, largest;
-    int *offset; // (n + 2), the last but one is the end
-    int *place;  // (n_base + 1)
-    int32_t *cell;
-};
-
-static bool is_base(const struct generators *generators, int32_t i)
-{
-    return !has_copies(generators) ||
-           same_image(generators->origin[i].image, (struct image){0});
-}
-
-// Which generator each base is.
-static int32_t *find_bases(const struct generators *generators)
-{
-    int32_t *base = NEW_ARRAY(int32_t, generators->n_base);
-    for (int i = 0; i < generators->n; i++)
-        if (is_base(generators, i)) base[generators->origin[i].base] = i;
-    return base;
-}
-
-// The first corner of a cell, or another of its base; -1 when no corner is a grain.
-static int32_t first_corner(const struct generators *generators,
-                            const int32_t vertex[4])
-{
-    int32_t first = vertex[0];
-    bool near = false;
-    for (int k = 0; k < 4; k++) {
-        near |= is_grain(generators, vertex[k]);
-        if (generators->origin[vertex[k]].base < generators->origin[first].base)
-            first = vertex[k];
-    }
-    return near ? first : -1;
-}
-
-static void number_places(const struct generators *generators, struct groups *groups)
-{
-    for (int i = 0; i < generators->n; i++) {
-        const int count = groups->offset[i + 2];
-        if (count) groups->place[generators->origin[i].base + 1] = count;
-        if (count > groups->largest) groups->largest = count;
-    }
-    for (int base = 0; base < generators->n_base; base++)
-        groups->place[base + 1] += groups->place[base];
-}
-
-// Notes the generators that cells go with as their nodes.
-static struct groups group_cells(const struct generators *generators,
-                                 struct triangulation *triangulation)
-{
-    const int n = generators->n, n_cell = triangulation->n_cell;
-    struct groups groups = {.n = n,
-                            .offset = NEW_ARRAY(int, n + 2),
-                            .place = NEW_ARRAY(int, generators->n_base + 1)};
-    int32_t *base = has_copies(generators) ? find_bases(generators) : NULL;
-    for (int c = 0; c < n_cell; c++) {
-        int32_t first = first_corner(generators, triangulation->cell[c].vertex);
-        if (base && first >= 0) first = base[generators->origin[first].base];
-        if (first >= 0) groups.offset[first + 2]++;
-        triangulation->node[c] = first;
-    }
-    free(base);
-    number_places(generators, &groups);
-    // Filling moves each offset one on, so that group i ends where i + 1 begins.
-    for (int i = 0; i < n; i++)
-        groups.offset[i + 2] += groups.offset[i + 1];
-    groups.cell = allocate_uncleared((size_t)groups.offset[n + 1], sizeof(int32_t));
-    for (int c = 0; c < n_cell; c++)
-        if (triangulation->node[c] >= 0)
-            groups.cell[groups.offset[triangulation->node[c] + 1]++] = c;
-    return groups;
-}
-
 // ---- what was left out --------------------------------------------------------------
 
 // The cell of a grain among its corners is unbounded.
@@ -281,7 +203,7 @@ struct named {
 
 // Gives the cells of group G their places. False when one has no name.
 static bool place_group(const struct generators *generators,
-                        const struct groups *groups, int g,
+                        const struct cell_groups *groups, int g,
                         struct triangulation *triangulation, struct named named,
                         struct places *places, bool *complete)
 {
@@ -317,7 +239,7 @@ static bool place_group(const struct generators *generators,
 // Groups are near each other, their cells less so, their places anywhere: asked for in
 // time.
 PREFETCHING expect_group(const struct generators *generators,
-                         const struct groups *groups, const struct places *places,
+                         const struct cell_groups *groups, const struct places *places,
                          const struct triangulation *triangulation, int g)
 {
     enum { AHEAD = 6 };
@@ -336,7 +258,7 @@ PREFETCHING expect_group(const struct generators *generators,
 // False when a cell has no name.
 static bool find_places(const struct generators *generators,
                         struct triangulation *triangulation,
-                        const struct groups *groups, struct places *places,
+                        const struct cell_groups *groups, struct places *places,
                         bool *complete)
 {
     const int n = groups->place[generators->n_base];
@@ -458,13 +380,11 @@ enum status find_nodes(const struct generators *generators,
     triangulation->node = allocate_uncleared((size_t)n_cell, sizeof(int32_t));
     triangulation->seen = NEW_ARRAY(uint8_t, n_cell);
     if (repeats(generators)) triangulation->image = NEW_ARRAY(struct image, n_cell);
-    struct groups groups = group_cells(generators, triangulation);
+    struct cell_groups groups = group_cells(generators, triangulation);
     struct places places;
     const bool named =
         find_places(generators, triangulation, &groups, &places, &nodes->complete);
-    free(groups.offset);
-    free(groups.place);
-    free(groups.cell);
+    cell_groups_free(&groups);
     if (named) {
         unite_on_walls(generators, triangulation, &places);
         number_nodes(&places, nodes);

@@ -17,7 +17,7 @@ bool body_is_round(const struct body *body, int axis)
 
 static struct vector centre_of(const struct body *body)
 {
-    return add(body->lower, scale(0.5, subtract(body->upper, body->lower)));
+    return midpoint(body->lower, body->upper);
 }
 
 static double radius_of(const struct body *body)

@@ -49,6 +49,11 @@ static inline double distance(struct vector a, struct vector b)
     return norm(subtract(a, b));
 }
 
+static inline struct vector midpoint(struct vector a, struct vector b)
+{
+    return add(a, scale(0.5, subtract(b, a)));
+}
+
 // Component 0, 1 or 2.
 static inline double component(struct vector a, int axis)
 {
