@@ -54,15 +54,52 @@ static enum status try_volume(const double radius[2], double separation,
     return status == STATUS_NO ? STATUS_OK : status;
 }
 
+// No bridge between the first and the last of three has more than this, as suction is
+// concave over the logarithm of the volume.
+static double most_between(const struct trial of[3])
+{
+    const double left = of[1].log_volume - of[0].log_volume;
+    const double right = of[2].log_volume - of[1].log_volume;
+    return of[1].suction + fmax((of[1].suction - of[2].suction) * left / right,
+                                (of[1].suction - of[0].suction) * right / left);
+}
+
+// Of three trials the middle one has the most suction, too little. Replaces it by one
+// that has enough, if there is one.
+static enum status climb(const double radius[2], double separation,
+                         const struct ring_law *law, struct trial of[3],
+                         struct reason *reason)
+{
+    static const double narrow = 1e-6;
+    while (of[1].excess < 0 && most_between(of) > law->suction &&
+           of[2].log_volume - of[0].log_volume > narrow) {
+        const double left = of[1].log_volume - of[0].log_volume;
+        const double right = of[2].log_volume - of[1].log_volume;
+        const int side = right > left ? 2 : 0;
+        struct trial trial = {.log_volume = of[1].log_volume +
+                                            (side ? 0.382 * right : -0.382 * left)};
+        const enum status status = try_volume(radius, separation, law, &trial, reason);
+        if (status) return status;
+        if (trial.suction > of[1].suction) {
+            of[2 - side] = of[1];
+            of[1] = trial;
+        } else
+            of[side] = trial;
+    }
+    return STATUS_OK;
+}
+
 // Smaller bridges have more suction, until next to rupture they have less again. By
-// regula falsi, every third step by halves. Where none of those that hold has as much
-// suction as the liquid, *VOLUME is 0: as soon as one has less than a larger one.
+// regula falsi, every third step by halves; as soon as one has less than a larger one,
+// from the one that has the most. Where that has too little, *VOLUME is 0.
 static enum status find_volume(const double radius[2], double separation,
                                const struct ring_law *law, double *volume,
                                struct reason *reason)
 {
     static const double accuracy = 1e-12;
-    struct trial low = {log(LEAST), NAN, INFINITY}, high = {log(MOST), NAN, -INFINITY};
+    struct trial low = {log(LEAST), 0, INFINITY};
+    struct trial high = {log(MOST), -INFINITY, -INFINITY};
+    struct trial beyond = high;
     *volume = 0;
     // Between plates this far apart no liquid has that suction, still less between
     // spheres.
@@ -76,13 +113,20 @@ static enum status find_volume(const double radius[2], double separation,
                               (high.log_volume - low.log_volume)};
         const enum status status = try_volume(radius, separation, law, &trial, reason);
         if (status) return status;
-        if (isinf(low.excess) && trial.excess < 0 && trial.suction < high.suction)
-            return STATUS_OK;
+        if (isinf(low.excess) && trial.excess < 0 && trial.suction < high.suction) {
+            struct trial of[3] = {trial, high, beyond};
+            const enum status failed = climb(radius, separation, law, of, reason);
+            if (failed || of[1].excess < 0) return failed;
+            trial = of[1];
+            high = of[2];
+        }
         if (fabs(trial.excess) <= accuracy) low = high = trial;
-        if (trial.excess > 0)
+        if (trial.excess > 0) {
             low = trial;
-        else
+        } else {
+            beyond = high;
             high = trial;
+        }
     }
     if (low.excess < INFINITY) *volume = exp(low.log_volume);
     return STATUS_OK;
