@@ -114,6 +114,10 @@ static void test_pairs_of_the_lattice(void **state)
     for (int k = 0; k < n_contact; k++) {
         assert_true(contact[k].overlap == 0); // not the rounding of coordinates
         assert_int_equal(contact[k].bond >= 0, 1);
+        const int32_t *pair = contact[k].particle, *last = pair;
+        if (k > 0) last = contact[k - 1].particle; // by first, then second grain
+        assert_true(k == 0 || last[0] < pair[0] ||
+                    (last[0] == pair[0] && last[1] < pair[1]));
     }
     free(contact);
     dem_free(dem);

@@ -93,8 +93,7 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
     double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
     const mask acts = features & FEATURE_CONTACT_BOND ? either(touch, held) : touch;
     const struct lanes3 turned = turn(m->turning, load3(history, at), features);
-    const bool forgets = features & FEATURE_HERTZ || dem->pairs.loss;
-    struct lanes3 kept = forgets ? only_where3(acts, turned) : turned;
+    struct lanes3 kept = dem->pairs.loss ? only_where3(acts, turned) : turned;
     if (features & FEATURE_HERTZ) kept = scale3(law->forget, kept);
     const struct lanes3 trial =
         only_where3(acts, subtract_scaled3(kept, law->shear_stiffness * time_step,
