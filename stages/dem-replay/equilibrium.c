@@ -221,8 +221,7 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
         return STATUS_OK;
     }
     load_grains(e);
-    for (int i = 0; i < e->n; i++)
-        e->largest_load = fmax(e->largest_load, norm(e->load[i].shift));
+    measure_load(e);
     do {
         const enum status status = e->kind->balance(e, reason);
         if (status) return status;

@@ -33,8 +33,7 @@ struct equilibrium_setup {
                       // against shear times both arms
     double tolerance; // largest force or moment left on a grain, of the largest load
     int64_t most_iterations;  // steps in time to one equilibrium
-    bool large_displacements; // found on the geometry as it is; something holds the
-                              // grains
+    bool large_displacements; // found on the geometry as it is
     double increment; // then: turn of a grain or joint at a time, rad, or grains come
                       // closer, mean radii
 };

@@ -4,10 +4,11 @@
 
 #include "basics/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 // What is gone has no load; where nothing holds the others, theirs is then balanced
-// among themselves.
+// among themselves: if they may move far, where they are [large_free.c].
 struct net_load loads_of(const struct equilibrium *e, const struct vector *from,
                          struct vector *load)
 {
@@ -16,7 +17,7 @@ struct net_load loads_of(const struct equilibrium *e, const struct vector *from,
     for (int i = 0; i < e->n; i++)
         load[i] =
             e->is_gone[i] || e->setup.fixed[i] ? (struct vector){0, 0, 0} : from[i];
-    if (e->setup.is_free)
+    if (e->setup.is_free && !e->large)
         taken_off = take_off_net_load(e->packing, e->is_gone, NULL, load);
     for (int i = 0; i < e->n; i++)
         load[i] = scale(1 / unit, load[i]);
@@ -32,10 +33,33 @@ void load_grains(struct equilibrium *e)
     free(load);
 }
 
+// Of FORCE (n), of any unit, what would move as one grains that nothing holds and that
+// have gone far.
+static struct net_load take_off_there(const struct equilibrium *e, struct vector *force)
+{
+    struct vector *moved = displaced(e);
+    const struct moving_grains there = {.displacement = moved};
+    const struct net_load net =
+        take_off_net_load(e->packing, e->is_gone, &there, force);
+    free(moved);
+    return net;
+}
+
+void measure_load(struct equilibrium *e)
+{
+    struct vector *load = NEW_ARRAY(struct vector, e->n);
+    for (int i = 0; i < e->n; i++)
+        load[i] = e->load[i].shift;
+    if (e->setup.is_free && e->large) take_off_there(e, load);
+    for (int i = 0; i < e->n; i++)
+        e->largest_load = fmax(e->largest_load, norm(load[i]));
+    free(load);
+}
+
 struct net_load equilibrium_load(const struct equilibrium *e, struct vector *force)
 {
     realise(e->foresight);
     for (int i = 0; i < e->n; i++)
         force[i] = scale(e->stiffness * e->length, e->load[i].shift);
-    return e->taken_off;
+    return e->setup.is_free && e->large ? take_off_there(e, force) : e->taken_off;
 }

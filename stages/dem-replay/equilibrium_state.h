@@ -101,6 +101,8 @@ void make_room_for_joints(struct equilibrium *equilibrium);
 
 // The force from outside becomes the load, as far as grains are there and free.
 void load_grains(struct equilibrium *equilibrium);
+// The largest of it so far, where the grains are at the trial.
+void measure_load(struct equilibrium *equilibrium);
 // The same of the forces FROM (n), into LOAD (n); what was taken off.
 struct net_load loads_of(const struct equilibrium *equilibrium,
                          const struct vector *from, struct vector *load);

@@ -95,6 +95,7 @@ static void resist_large(struct equilibrium *e)
     }
     for (int i = 0; i < e->n; i++)
         pull(&e->left[i], scaled(1 - e->large->share, e->large->withheld[i]));
+    if (e->setup.is_free) take_off_as_one(e);
 }
 
 // With dashpots, (1 + damping) times the stiffness resists, but for this part of it.
@@ -118,41 +119,23 @@ void large_linearise(struct equilibrium *e)
 static bool factor_large(struct equilibrium *e)
 {
     const double(*tangent)[STRAINS] = (const double(*)[STRAINS])e->tangent;
-    const double slow = e->large->drag * e->damping / (1 + e->damping);
-    const double soft[2] = {e->soft[0] + slow, e->soft[1] + slow};
+    struct large *large = e->large;
     large_linearise(e);
-    e->large->is_unstable =
-        !stiffness_factor(e->matrix, tangent, e->large->more, soft) ||
-        !stiffness_is_positive(e->matrix);
-    return !e->large->is_unstable;
+    if (e->setup.is_free) large->hold = hold_of(e);
+    const double more = large->hold + large->drag * e->damping / (1 + e->damping);
+    const double soft[2] = {e->soft[0] + more, e->soft[1] + more};
+    large->is_unstable = !stiffness_factor(e->matrix, tangent, large->more, soft) ||
+                         !stiffness_is_positive(e->matrix);
+    return !large->is_unstable;
 }
 
 // Dashpots resist as joints do, not as their loads turn: the part of a step that does
-// is none of theirs.
-static void move_dashpots(struct equilibrium *e)
-{
-    for (int j = 0; j < e->n_joint; j++) {
-        const int32_t *grain = e->joint[j].grain;
-        double moved[12] = {0}, turning[12] = {0};
-        for (int end = 0; end < 2; end++)
-            if (grain[end] >= 0)
-                memcpy(moved + 6 * end, &e->step[grain[end]], sizeof *e->step);
-        for (int r = 0; r < 12; r++)
-            for (int c = 0; c < 12; c++)
-                turning[r] += e->large->more[j].block[r][c] * moved[c];
-        for (int end = 0; end < 2; end++) {
-            struct displacement part;
-            memcpy(&part, turning + 6 * end, sizeof part);
-            if (grain[end] >= 0) pull(&e->rest[grain[end]], part);
-        }
-    }
-}
-
-// Steps with joints unlike the factor are no linear iteration.
+// is none of theirs. Steps with joints unlike the factor are no linear iteration.
 static void take_large(struct equilibrium *e)
 {
-    if (e->damping > 0) move_dashpots(e);
-    if (e->damping > 0 || corrections_count(e->corrections) > 0)
+    if (e->damping > 0) take_off_turning(e, e->step, e->rest);
+    if (e->setup.is_free) stand_still(e, e->step);
+    if (e->damping > 0 || (corrections_count(e->corrections) > 0 && !e->setup.is_free))
         anderson_begin(&e->large->acceleration, 6 * e->n);
     else
         anderson_step(&e->large->acceleration, &e->step[0].shift.x);

@@ -24,12 +24,33 @@ struct large {
     double share;                  // of that let in
     double ended;                  // so much of a load was balanced at the last snap
     double drag;                   // of dashpots at each grain, besides those at joints
-    bool is_stale;                 // the factor is not that of the last equilibrium
+    double hold;      // against motion as one, in the factor [large_free.c]
+    bool is_stale;    // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored
 };
 
 struct large *large_new(struct equilibrium *equilibrium);
 void large_free(struct large *large);
+
+// A body that nothing holds [large_free.c]. Displacements at the trial, (n) m, a new
+// array; what would move it as one is taken off what is left; and what does is taken
+// off STEP (n).
+struct vector *displaced(const struct equilibrium *equilibrium);
+void take_off_as_one(struct equilibrium *equilibrium);
+void stand_still(const struct equilibrium *equilibrium, struct displacement *step);
+// How stiff the factor has to hold it so that it is positive where the body is stable.
+double hold_of(const struct equilibrium *equilibrium);
+// As large_softest, by the factor there is [large_mode.c]; its STIFFNESS, which may be
+// NULL, without what only the factor holds it with.
+int free_softest(struct equilibrium *equilibrium, double *stiffness);
+// Whether no motion but as one grows by itself, by the last factor.
+bool free_is_stable(struct equilibrium *equilibrium);
+// A MODE (n) without momentum, as what grows by itself is.
+void keep_momentum(const struct equilibrium *equilibrium, struct displacement *mode);
+// Takes off LEFT (n) what the part of the stiffness that comes of loads turning with
+// joints makes of displacements MOVED (n).
+void take_off_turning(const struct equilibrium *equilibrium,
+                      const struct displacement *moved, struct displacement *left);
 
 struct displacement moved_from(const struct displacement *from,
                                const struct displacement *to);

@@ -20,7 +20,12 @@ int large_softest(struct equilibrium *e)
     const struct displacement none = {{0, 0, 0}, {0, 0, 0}};
     int softest = 0;
     const double(*tangent)[STRAINS] = (const double(*)[STRAINS])e->tangent;
-    if (!factor(e)) stiffness_factor(e->matrix, tangent, NULL, e->soft);
+    if (!factor(e)) {
+        const double hold = e->large->hold;
+        const double soft[2] = {e->soft[0] + hold, e->soft[1] + hold};
+        stiffness_factor(e->matrix, tangent, NULL, soft);
+    }
+    if (e->setup.is_free) return free_softest(e, NULL);
     for (int i = 0; i < e->n; i++)
         e->step[i] = e->is_gone[i]
                          ? none
@@ -54,6 +59,7 @@ void large_kick(struct equilibrium *e)
 {
     const double size = 0.1 * e->setup.increment * way_of_kick(e);
     go_back(e);
+    if (e->setup.is_free) stand_still(e, e->step);
     for (int i = 0; i < e->n; i++)
         pull(&e->trial[i], scaled(-size, e->step[i]));
     resist(e);

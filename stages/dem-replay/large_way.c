@@ -98,7 +98,8 @@ enum advance large_advance(struct equilibrium *e, double damping, double *moved)
     *moved = furthest_since(e) / e->setup.increment;
     if (*moved > 1) return TOO_FAR;
     if (large_meet(e)) return MEETS;
-    return damping > 0 || factor(e) ? ADVANCED : UNSTABLE;
+    if (damping > 0) return ADVANCED;
+    return factor(e) && (!e->setup.is_free || free_is_stable(e)) ? ADVANCED : UNSTABLE;
 }
 
 // ---- the way ------------------------------------------------------------------------

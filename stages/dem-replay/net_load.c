@@ -4,24 +4,13 @@
 #include <gsl/gsl_eigen.h>
 #include <math.h>
 
-// Masses in units of the first grain's, lengths of its radius, from the lower corner of
-// the box: no large numbers.
-struct whole {
-    const struct packing *packing;
-    const bool *is_gone;               // NULL: none is
-    const struct vector *displacement; // NULL: none
-    double length, mass;               // unit, and sum
-    struct vector centre;              // of mass
-    struct vector inertia[3];          // rows of the tensor about it
-};
-
-static double mass_of(const struct whole *whole, int i)
+double whole_mass(const struct whole *whole, int i)
 {
     if (whole->is_gone && whole->is_gone[i]) return 0;
     return pow(whole->packing->radius[i] / whole->length, 3);
 }
 
-static struct vector place_of(const struct whole *whole, int i)
+struct vector whole_place(const struct whole *whole, int i)
 {
     struct vector from = subtract(whole->packing->position[i], whole->packing->lower);
     if (whole->displacement) from = add(from, whole->displacement[i]);
@@ -29,8 +18,8 @@ static struct vector place_of(const struct whole *whole, int i)
 }
 
 // The tensor is sum m (r.r 1 - r r).
-static struct whole whole_of(const struct packing *packing, const bool *is_gone,
-                             const struct vector *displacement)
+struct whole whole_of(const struct packing *packing, const bool *is_gone,
+                      const struct vector *displacement)
 {
     struct whole whole = {.packing = packing,
                           .is_gone = is_gone,
@@ -38,17 +27,17 @@ static struct whole whole_of(const struct packing *packing, const bool *is_gone,
                           .length = packing->n_particle ? packing->radius[0] : 1};
     struct vector sum = {0, 0, 0};
     for (int i = 0; i < packing->n_particle; i++) {
-        sum = add(sum, scale(mass_of(&whole, i), place_of(&whole, i)));
-        whole.mass += mass_of(&whole, i);
+        sum = add(sum, scale(whole_mass(&whole, i), whole_place(&whole, i)));
+        whole.mass += whole_mass(&whole, i);
     }
     if (whole.mass > 0) whole.centre = scale(1 / whole.mass, sum);
     for (int i = 0; i < packing->n_particle; i++) {
-        const struct vector r = place_of(&whole, i);
+        const struct vector r = whole_place(&whole, i);
         for (int axis = 0; axis < 3; axis++) {
             struct vector part = scale(-component(r, axis), r);
             set_component(&part, axis, component(part, axis) + dot(r, r));
             whole.inertia[axis] =
-                add(whole.inertia[axis], scale(mass_of(&whole, i), part));
+                add(whole.inertia[axis], scale(whole_mass(&whole, i), part));
         }
     }
     return whole;
@@ -61,9 +50,7 @@ static bool turns_about(const struct packing *packing, int axis)
     return !packing->periodic[(axis + 1) % 3] && !packing->periodic[(axis + 2) % 3];
 }
 
-// What MOMENT turns the grains with, by the principal axes; none for grains in a line
-// about that, which have no inertia.
-static struct vector turn_of(const struct whole *whole, struct vector moment)
+struct vector whole_turn(const struct whole *whole, struct vector moment)
 {
     double tensor[9], own[3], axes[9];
     for (int k = 0; k < 9; k++) {
@@ -95,7 +82,7 @@ static struct net_load about_centre(const struct whole *whole,
     struct net_load net = {0};
     for (int i = 0; i < whole->packing->n_particle; i++) {
         net.force = add(net.force, force[i]);
-        net.moment = add(net.moment, cross(place_of(whole, i), force[i]));
+        net.moment = add(net.moment, cross(whole_place(whole, i), force[i]));
     }
     return net;
 }
@@ -112,13 +99,13 @@ static struct net_load stopping(const struct whole *whole,
 {
     struct net_load sum = {0};
     for (int i = 0; i < whole->packing->n_particle; i++) {
-        const double mass = mass_of(whole, i);
+        const double mass = whole_mass(whole, i);
         const double r = whole->packing->radius[i] / whole->length;
         const struct vector push = scale(mass, now->velocity[i]);
         const struct vector own =
             scale(0.4 * mass * r * r * whole->length, now->spin[i]);
         sum.force = add(sum.force, push);
-        sum.moment = add(sum.moment, add(cross(place_of(whole, i), push), own));
+        sum.moment = add(sum.moment, add(cross(whole_place(whole, i), push), own));
     }
     const double unit = now->density * 4 * M_PI / 3 * pow(whole->length, 3) / now->time;
     return (struct net_load){scale(unit, sum.force), scale(unit, sum.moment)};
@@ -131,13 +118,14 @@ struct net_load take_off_net_load(const struct packing *packing, const bool *is_
         whole_of(packing, is_gone, now ? now->displacement : NULL);
     const struct net_load net = about_centre(&whole, force);
     if (whole.mass == 0) return about_corner(&whole, net); // all have left
-    const struct net_load stop =
-        now ? stopping(&whole, now) : (struct net_load){{0, 0, 0}, {0, 0, 0}};
-    const struct vector turn = turn_of(&whole, add(net.moment, stop.moment));
+    const struct net_load stop = now && now->velocity
+                                     ? stopping(&whole, now)
+                                     : (struct net_load){{0, 0, 0}, {0, 0, 0}};
+    const struct vector turn = whole_turn(&whole, add(net.moment, stop.moment));
     const struct vector push = scale(1 / whole.mass, add(net.force, stop.force));
     for (int i = 0; i < packing->n_particle; i++) {
-        const struct vector each = add(push, cross(turn, place_of(&whole, i)));
-        force[i] = subtract(force[i], scale(mass_of(&whole, i), each));
+        const struct vector each = add(push, cross(turn, whole_place(&whole, i)));
+        force[i] = subtract(force[i], scale(whole_mass(&whole, i), each));
     }
     return about_corner(&whole, net);
 }

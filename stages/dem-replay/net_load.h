@@ -14,7 +14,7 @@ struct net_load {
 // Grains on their way; of one density.
 struct moving_grains {
     const struct vector *displacement;    // (n_particle) m
-    const struct vector *velocity, *spin; // (n_particle) m/s, rad/s
+    const struct vector *velocity, *spin; // (n_particle) m/s, rad/s; NULL: at rest
     double density;                       // kg/m3
     double time; // s, > 0: within which motion as one is stopped
 };
@@ -28,5 +28,25 @@ struct moving_grains {
 struct net_load take_off_net_load(const struct packing *packing, const bool *is_gone,
                                   const struct moving_grains *now,
                                   struct vector *force);
+
+// Grains as one body. Masses in units of the first grain's, lengths of its radius, from
+// the lower corner of the box: no large numbers.
+struct whole {
+    const struct packing *packing;
+    const bool *is_gone;               // NULL: none is
+    const struct vector *displacement; // (n_particle) m, kept, not copied; NULL: none
+    double length, mass;               // unit, and sum
+    struct vector centre;              // of mass
+    struct vector inertia[3];          // rows of the tensor about it
+};
+
+struct whole whole_of(const struct packing *packing, const bool *is_gone,
+                      const struct vector *displacement);
+double whole_mass(const struct whole *whole, int grain);         // 0 if it is gone
+struct vector whole_place(const struct whole *whole, int grain); // from the centre
+
+// What MOMENT turns the grains with, by the principal axes of the inertia: nothing
+// about an axis across which the box repeats, nor for grains in a line about that.
+struct vector whole_turn(const struct whole *whole, struct vector moment);
 
 #endif

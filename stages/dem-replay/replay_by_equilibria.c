@@ -24,10 +24,6 @@ static struct equilibrium *last(const struct run *run)
 
 static enum status check(const struct replay_settings *settings, struct reason *reason)
 {
-    if (settings->large_displacements && settings->support == SUPPORT_FREE)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "dem-replay.quasi_static.large_displacements: is for "
-                      "support=fixed and wall: something must hold the grains");
     if (settings->liquid.volume > 0)
         return refuse(reason, STATUS_BAD_DATA,
                       "dem-replay.bridges.volume: equilibria know no liquid "

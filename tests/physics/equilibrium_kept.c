@@ -11,7 +11,7 @@ enum { LOADS = 12 };
 
 struct scene {
     const char *name;
-    bool is_large;
+    bool is_large, is_free;
     enum dem_bond_kind bond;
     double friction, strength; // N/m2, or N of contact bonds
     double size;               // N
@@ -36,6 +36,7 @@ static struct equilibrium *begin(const struct scene *scene, const struct block *
     struct equilibrium_setup setup = block->setup;
     setup.relative_strength = strength;
     setup.material.friction = scene->friction;
+    setup.is_free = scene->is_free;
     setup.bond.kind = scene->bond;
     setup.bond.normal_strength = setup.bond.shear_strength = scene->strength;
     setup.tolerance = 1e-8;
@@ -76,6 +77,7 @@ static void assert_same(const struct scene *scene, int load, struct equilibrium 
 static void in_pieces(const struct scene *scene, int between)
 {
     struct block *block = new_block();
+    if (scene->is_free) memset(block->fixed, 0, sizeof block->fixed);
     struct equilibrium *whole = begin(scene, block), *cut = begin(scene, block);
     for (int load = 0; load < LOADS; load++) {
         struct vector force[BLOCK];
@@ -104,14 +106,15 @@ static void the_same_bytes(void **state)
 {
     (void)state;
     const struct scene scene[] = {
-        {"small, nothing breaks", false, DEM_PARALLEL_BOND, 0.5, INFINITY, 2e-9},
-        {"large, nothing breaks", true, DEM_PARALLEL_BOND, 0.5, INFINITY, 1e-7},
-        {"small, friction", false, DEM_PARALLEL_BOND, 0.5, 2e5, 2e-9},
-        {"large", true, DEM_PARALLEL_BOND, 0, 1e5, 2e-9},
-        {"large, friction", true, DEM_PARALLEL_BOND, 0.5, 2e5, 2e-9},
-        {"large, friction, far", true, DEM_PARALLEL_BOND, 0.5, 4e7, 1e-6},
-        {"small, contact bonds", false, DEM_CONTACT_BOND, 0.5, 2e-8, 2e-9},
-        {"large, contact bonds", true, DEM_CONTACT_BOND, 0.5, 2e-8, 2e-9}};
+        {"small, nothing breaks", false, false, DEM_PARALLEL_BOND, 0.5, INFINITY, 2e-9},
+        {"large, nothing breaks", true, false, DEM_PARALLEL_BOND, 0.5, INFINITY, 1e-7},
+        {"small, friction", false, false, DEM_PARALLEL_BOND, 0.5, 2e5, 2e-9},
+        {"large", true, false, DEM_PARALLEL_BOND, 0, 1e5, 2e-9},
+        {"large, friction", true, false, DEM_PARALLEL_BOND, 0.5, 2e5, 2e-9},
+        {"large, friction, far", true, false, DEM_PARALLEL_BOND, 0.5, 4e7, 1e-6},
+        {"large, nothing held", true, true, DEM_PARALLEL_BOND, 0.5, 6e5, 5e-8},
+        {"small, contact bonds", false, false, DEM_CONTACT_BOND, 0.5, 2e-8, 2e-9},
+        {"large, contact bonds", true, false, DEM_CONTACT_BOND, 0.5, 2e-8, 2e-9}};
     for (size_t k = 0; k < sizeof scene / sizeof *scene; k++)
         for (int between = 1; between <= 3; between += 2)
             in_pieces(&scene[k], between);
