@@ -542,7 +542,7 @@ for before, after, command in [("smaller", "a", ["tessellate"]), ("a", "b", ["me
 refused("responses of two studies are not counted together", BAD_DATA,
         ["crackstats", "response", "e"],
         "e: has 12 bonds, the runs before have 20: not one study "
-        "(same_bonds=false takes runs of other packings)")
+        r"\(same_bonds=false takes runs of other packings\)")
 refused("the same artifact twice from one pipe is refused", BAD_DATA,
         ["crackstats", "-", "-"], "standard input: is empty", input=contents("response"))
 
@@ -949,6 +949,9 @@ make("bridge", *ONE_BRIDGE, "--set", "volume=2.4e-17")
 setting("a time step past the stability limit is refused", UNSTABLE, "time_step_safety=10",
         r"forces: time step \S+ s is past the stability limit of \S+ s: .*must be below .*"
         "got 10", program=REPLAY)
+setting("grains without mass to speak of are refused", BAD_DATA, "density=5e-324",
+        "forces: density and stiffness must leave a time step that numbers hold, got 0 s",
+        program=REPLAY)
 setting("a tolerance that is not met is reported", UNSTABLE, "tolerance=1e-12",
         r"forces: step \d of the load .*: unbalanced ratio \S+ is not below 1e-12 after 9 "
         "cycles", program=(*REPLAY, "--set", "time_step_safety=0.02", "--set", "cycles=9",

@@ -233,6 +233,7 @@ with scratch() as folder:
 
     for title, arguments, status, says in [
             ("standard output is no place for it", ["--checkpoint", "-"], 64, "standard output"),
+            ("nor a device", ["--checkpoint", "/dev/full", "-o", "x"], 64, "must be a file"),
             ("nor is the output", ["--checkpoint", "x", "-o", "x"], 64, "another file"),
             ("nor a folder that is not there", ["--checkpoint", "/no/such/x"], 73, "/no/such/x"),
             ("the time between must be a number", ["--checkpoint-every", "soon"], 64, "soon")]:

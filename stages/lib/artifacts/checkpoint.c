@@ -156,10 +156,10 @@ static void check_same(const struct artifact *artifact, const char *what,
     char *theirs = artifact_get_text(artifact, what);
     if (!theirs || strcmp(theirs, ours))
         die(STATUS_BAD_DATA,
-            "%s: is of another run: its %s differs from that of this call; name "
-            "another "
-            "file, or remove it to begin anew",
-            artifact->path, what);
+            "%s: is of another run: its %s differ%s from this call's; name another "
+            "file, or "
+            "remove it to begin anew",
+            artifact->path, what, what[strlen(what) - 1] == 's' ? "" : "s");
     free(theirs);
 }
 

@@ -348,6 +348,11 @@ static enum status check_time_step(const struct dem *dem, const struct dem_setup
                                    struct reason *reason)
 {
     const double step = dem_time_step(dem), limit = dem_time_step_limit(dem);
+    if (!(step > 0 && limit > 0))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "density and stiffness must leave a time step that numbers hold, "
+                      "got %g s",
+                      step);
     if (step <= limit) return STATUS_OK;
     if (setup->time_step > 0)
         return refuse(reason, STATUS_NOT_CONVERGED,

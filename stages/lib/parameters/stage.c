@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 // Sections a scene may hold: the stages, whether this one or another.
@@ -286,6 +287,10 @@ static void check_checkpoint(const struct invocation *invocation)
     if (!path) return;
     if (!strcmp(path, "-"))
         die(STATUS_USAGE, "--checkpoint: must be a file, not standard output");
+    struct stat there;
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode))
+        die(STATUS_USAGE, "--checkpoint %s: must be a file, not a device or pipe",
+            path);
     if (invocation->report && is_same_place(path, invocation->report))
         die(STATUS_USAGE,
             "--checkpoint %s: is where the report goes: name another file", path);
