@@ -157,6 +157,11 @@ static struct slip slip_at(const struct sliding *sliding, double angle)
     return slip_along(sliding, (double[]){cos(angle), sin(angle)});
 }
 
+static bool is_along(const struct slip *slip)
+{
+    return fabs(slip->turned) <= 1e-6 * slip->along;
+}
+
 // From the way the spring lies to where the slip turns it, again and again.
 static bool follow_slip(const struct sliding *sliding, double x[3])
 {
@@ -169,8 +174,8 @@ static bool follow_slip(const struct sliding *sliding, double x[3])
         const struct slip slip = slip_along(sliding, unit);
         if (!(slip.along > 0)) return false;
         memcpy(way, slip.stretch, sizeof way);
-        if (fabs(slip.turned) > 1e-6 * slip.along) continue;
-        if (slip.beyond < 0) return false;
+        if (!is_along(&slip)) continue;
+        if (!(slip.beyond >= 0)) return false;
         memcpy(x, slip.x, sizeof slip.x);
         return true;
     }
@@ -201,7 +206,7 @@ static bool seek_slip(const struct sliding *sliding, double first, double x[3])
         const double at_high = slip_at(sliding, low + part).turned;
         if ((at_low > 0) == (at_high > 0)) continue;
         const struct slip slip = halve(sliding, low, at_low, low + part);
-        if (slip.beyond < 0) continue;
+        if (!is_along(&slip) || !(slip.beyond >= 0)) continue; // no root, but a pole
         memcpy(x, slip.x, sizeof slip.x);
         return true;
     }
