@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cmocka, with what it wants included before it.
+// cmocka, with what it wants included before it, and numbers that are to be near each
+// other.
 #ifndef CRAQUELURE_TEST_H
 #define CRAQUELURE_TEST_H
 
@@ -10,5 +11,18 @@
 #include <stdint.h>
 #include <cmocka.h>
 // clang-format on
+#include <math.h>
+
+static inline void assert_within(double got, double wanted, double tolerance)
+{
+    if (!(fabs(got - wanted) <= tolerance))
+        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, tolerance);
+}
+
+// Within a fraction of |WANTED|.
+static inline void assert_close(double got, double wanted, double fraction)
+{
+    assert_within(got, wanted, fraction * fabs(wanted));
+}
 
 #endif

@@ -48,7 +48,7 @@ static void assert_facts(const struct study *study, int of)
                {FRAGMENTS_LARGEST, 7}, {FRAGMENTS_SINGLE, 1}, {SHRINKAGE_LARGEST, 0.1},
                {SHRINKAGE_LAST, 0.05}, {SPRING_BACK, 0.5}};
     for (size_t k = 0; k < sizeof row / sizeof *row; k++)
-        assert_close(study->facts[of].value[row[k].fact], row[k].wanted, 1e-12);
+        assert_within(study->facts[of].value[row[k].fact], row[k].wanted, 1e-12);
     assert_true(isnan(study->facts[of].value[FRONT_SATURATION]));
 }
 
@@ -61,25 +61,25 @@ static void test_facts_and_sums_of_two_runs(void **state)
         study_add(&study, &run, NULL);
         assert_facts(&study, k);
     }
-    assert_close(study.bonds, 20, 0);
-    assert_close(study.deformation[0].shrinkage, 0.2, 1e-12);
-    assert_close(study.deformation[1].shrinkage, 0.1, 1e-12);
-    assert_close(study.deformation[1].strain[2], -0.1, 1e-12);
-    assert_close(study.snapshot_saturation[0], 1, 1e-15);
+    assert_within(study.bonds, 20, 0);
+    assert_within(study.deformation[0].shrinkage, 0.2, 1e-12);
+    assert_within(study.deformation[1].shrinkage, 0.1, 1e-12);
+    assert_within(study.deformation[1].strain[2], -0.1, 1e-12);
+    assert_within(study.snapshot_saturation[0], 1, 1e-15);
     // Middles of upright bonds lie on the borders of slices, and belong to the lower
     // one.
     static const double slice[4][MODE_COUNT] = {{0, 2}, {2, 0}, {2, 0}, {0, 2}};
     for (int s = 0; s < 4; s++)
         for (int mode = 0; mode < MODE_COUNT; mode++)
-            assert_close(study.counts.slice[s][mode], slice[s][mode], 0);
+            assert_within(study.counts.slice[s][mode], slice[s][mode], 0);
     for (int half = 0; half < 2; half++) {
-        assert_close(study.counts.saturation[half][MODE_NORMAL], 2, 0);
-        assert_close(study.counts.time[half][MODE_NORMAL], 2, 0);
+        assert_within(study.counts.saturation[half][MODE_NORMAL], 2, 0);
+        assert_within(study.counts.time[half][MODE_NORMAL], 2, 0);
     }
-    assert_close(study.counts.place[0 * 4 + 0], 2, 0);
-    assert_close(study.counts.place[0 * 4 + 1], 2, 0);
-    assert_close(study.counts.place[1 * 4 + 2], 2, 0);
-    assert_close(study.counts.place[1 * 4 + 3], 2, 0);
+    assert_within(study.counts.place[0 * 4 + 0], 2, 0);
+    assert_within(study.counts.place[0 * 4 + 1], 2, 0);
+    assert_within(study.counts.place[1 * 4 + 2], 2, 0);
+    assert_within(study.counts.place[1 * 4 + 3], 2, 0);
     study_free(&study);
     run_free(&run);
 }
@@ -143,7 +143,7 @@ static void test_slices_over_time(void **state)
     for (int m = 0; m < 7; m++)
         for (int s = 0; s < 4; s++) {
             const double left = s == 0 ? 1 : 1 - (time[m] - (3 - s));
-            assert_close(found[4 * m + s], fmin(1, fmax(0, left)), 1e-15);
+            assert_within(found[4 * m + s], fmin(1, fmax(0, left)), 1e-15);
         }
     free(found);
     found = slice_saturations(&liquid, 5, time, 1); // one slice has no throat's middle
@@ -155,7 +155,7 @@ static void test_slices_over_time(void **state)
     static const double level[] = {2, 1, 0.9, 0.5, 0.25, 0.1};
     static const double when[] = {0, 0, 0.4, 2, 3, 3};
     for (int k = 0; k < 6; k++)
-        assert_close(time_of_saturation(&liquid, level[k]), when[k], 1e-15);
+        assert_within(time_of_saturation(&liquid, level[k]), when[k], 1e-15);
     liquid_free(&liquid);
 }
 
@@ -173,17 +173,18 @@ static void test_cracks_beside_their_liquid(void **state)
     struct study study = study_new(2, classes);
     for (int k = 0; k < 2; k++) {
         study_add(&study, &run, &liquid);
-        assert_close(study.facts[k].value[FRONT_SATURATION], 0.5 * (0.75 + 0.5), 1e-15);
+        assert_within(study.facts[k].value[FRONT_SATURATION], 0.5 * (0.75 + 0.5),
+                      1e-15);
     }
     assert_int_equal(study.n_liquid, 2);
-    assert_close(study.front.cracks, 4, 0);
-    assert_close(study.front.local_sum, 2.5, 1e-15);
-    assert_close(study.front.local[2], 2, 0); // from 0.8 to 0.7
-    assert_close(study.front.local[4], 2, 0); // a border belongs above
+    assert_within(study.front.cracks, 4, 0);
+    assert_within(study.front.local_sum, 2.5, 1e-15);
+    assert_within(study.front.local[2], 2, 0); // from 0.8 to 0.7
+    assert_within(study.front.local[4], 2, 0); // a border belongs above
     // At a saturation of 1/2, and in the end.
     static const double slice[8] = {2, 2, 0, 0, 2, 0, 0, 0};
     for (int k = 0; k < 8; k++)
-        assert_close(study.front.slice[k], slice[k], 1e-15);
+        assert_within(study.front.slice[k], slice[k], 1e-15);
     study_free(&study);
     run_free(&run);
     liquid_free(&liquid);
@@ -214,7 +215,7 @@ static void test_correlation_by_its_definition(void **state)
     const double wanted =
         (n * sum[4] - sum[0] * sum[1]) /
         sqrt((n * sum[2] - sum[0] * sum[0]) * (n * sum[3] - sum[1] * sum[1]));
-    assert_close(front_correlation(slice, place, few, RUNS), wanted, 1e-13);
+    assert_within(front_correlation(slice, place, few, RUNS), wanted, 1e-13);
     static const double nothing[N];
     assert_true(isnan(front_correlation(slice, nothing, few, RUNS)));
     gsl_rng_free(rng);

@@ -12,12 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static inline void assert_close(double got, double wanted, double tolerance)
-{
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, tolerance);
-}
-
 // ---- a lattice of grains ------------------------------------------------------------
 
 // NX x NY x NZ grains of radius 1/2; bonded to their neighbours, around the box along x

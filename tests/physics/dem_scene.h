@@ -120,13 +120,6 @@ static inline void push(struct dem *dem, int particle, struct vector force)
     free(all);
 }
 
-// |GOT - WANTED| within a fraction of |WANTED|.
-static inline void assert_close(double got, double wanted, double fraction)
-{
-    if (!(fabs(got - wanted) <= fraction * fabs(wanted)))
-        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, fraction);
-}
-
 // Evenly distributed in [-1,1); advances STATE.
 static inline double next_signed(uint64_t *state)
 {

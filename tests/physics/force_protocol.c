@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void assert_close(double got, double wanted)
+static void assert_same(double got, double wanted)
 {
     if (!(fabs(got - wanted) <= 1e-14 * fmax(1, fabs(wanted))))
         fail_msg("got %.17g, wanted %.17g", got, wanted);
@@ -91,22 +91,22 @@ static void forces_at_uniform_times(void **state)
     for (int m = 0; m < 7; m++) {
         const double t = 0.5 * m, first = fmax(0, 1 - t);
         const double second = t < 1 ? 1 : (3 - t) / 2;
-        assert_close(protocol.time[m], t);
-        assert_close(protocol.saturation[m], 0.5 * (first + second));
+        assert_same(protocol.time[m], t);
+        assert_same(protocol.saturation[m], 0.5 * (first + second));
         const struct vector *force = protocol.force + 2 * m;
         const struct vector wanted[2] = {{5 * first, 0, -2.5 * second},
                                          {0, 2.5 * second, 0}};
         for (int i = 0; i < 2; i++)
-            assert_close(distance(force[i], wanted[i]), 0);
+            assert_same(distance(force[i], wanted[i]), 0);
     }
-    assert_close(largest_force(&protocol, 2), 5 * sqrt(1.25));
-    assert_close(largest_change(&protocol, 2), 2.5);
-    assert_close(interpolation_error(&process, &protocol), 0);
+    assert_same(largest_force(&protocol, 2), 5 * sqrt(1.25));
+    assert_same(largest_change(&protocol, 2), 2.5);
+    assert_same(interpolation_error(&process, &protocol), 0);
     protocol_free(&protocol);
 
     // Only the ends: at time 1 a third of the way has gone, and F_0 = (0, 0, -2.5).
     protocol = make_protocol(&process, uniform_times(&pair.record, 2), 2);
-    assert_close(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
+    assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
     protocol_free(&protocol);
     pair_free(&pair);
 }
@@ -127,14 +127,14 @@ static void what_jumps_is_missed(void **state)
         make_protocol(&process, uniform_times(&pair.record, 4), 4);
     static const double pull[] = {0, 8, 8, 0};
     for (int m = 0; m < 4; m++)
-        assert_close(protocol.force[2 * m + 1].x, pull[m]);
-    assert_close(interpolation_error(&process, &protocol), 8);
+        assert_same(protocol.force[2 * m + 1].x, pull[m]);
+    assert_same(interpolation_error(&process, &protocol), 8);
     protocol_free(&protocol);
 
     // Beside jumps what bends without one counts as well: F_0 at time 1, as above.
     pair.law.contact_line = 0.016;
     protocol = make_protocol(&process, uniform_times(&pair.record, 2), 2);
-    assert_close(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
+    assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
     protocol_free(&protocol);
     pair_free(&pair);
 }
@@ -157,13 +157,13 @@ static void as_few_times_as_it_takes(void **state)
     for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
         double count;
         double *times = adaptive_times(&process, row[k].bound, row[k].count, &count);
-        assert_close(count, row[k].count);
+        assert_same(count, row[k].count);
         assert_non_null(times);
         for (int m = 0; m < row[k].count; m++)
-            assert_close(times[m], row[k].time[m]);
+            assert_same(times[m], row[k].time[m]);
         free(times);
         assert_null(adaptive_times(&process, row[k].bound, row[k].count - 1, &count));
-        assert_close(count, row[k].count);
+        assert_same(count, row[k].count);
     }
     pair_free(&pair);
 }
@@ -179,11 +179,11 @@ static void net_force_and_moment(void **state)
         make_protocol(&process, uniform_times(&pair.record, 4), 4);
     double force, moment;
     net_load(&protocol, &pair.network.packing, &force, &moment);
-    assert_close(force, sqrt(37.5) / (5 * sqrt(1.25) + 2.5));
-    assert_close(moment, sqrt(31.25) / (5 * sqrt(1.25) + 5));
+    assert_same(force, sqrt(37.5) / (5 * sqrt(1.25) + 2.5));
+    assert_same(moment, sqrt(31.25) / (5 * sqrt(1.25) + 5));
     pair.network.packing.periodic[1] = true;
     net_load(&protocol, &pair.network.packing, &force, &moment);
-    assert_close(moment, 0);
+    assert_same(moment, 0);
     protocol_free(&protocol);
     pair_free(&pair);
 }
@@ -205,15 +205,15 @@ static void a_field_is_linear_between_snapshots(void **state)
     static const double second[] = {8, 11, 14, 16, 20, 20};
     for (int k = 0; k < 6; k++) {
         filling_to(&filling, time[k]);
-        assert_close(filling.suction[0], first[k]);
-        assert_close(filling.suction[1], second[k]);
+        assert_same(filling.suction[0], first[k]);
+        assert_same(filling.suction[1], second[k]);
         double load[LOADS];
         filling_loads(&filling, 1, load);
         const double left = time[k] < 1 ? 1 : (3 - time[k]) / 2;
-        assert_close(load[LOAD_SUCTION], left * second[k]);
+        assert_same(load[LOAD_SUCTION], left * second[k]);
     }
     // In the middle, a quarter of the way: 10 for 9.5 and 14 for 11, of 10.
-    assert_close(field_error(&filling), 0.5 * (0.5 + 3) / 10);
+    assert_same(field_error(&filling), 0.5 * (0.5 + 3) / 10);
     filling_free(&filling);
     pair_free(&pair);
 }
@@ -243,10 +243,10 @@ static void auxiliary_grains_go(void **state)
     assert_int_equal(packing.n_bond, 1);
     assert_true(packing.bond[0][0] == 0 && packing.bond[0][1] == 1);
     for (int i = 0; i < 2; i++) {
-        assert_close(packing.position[i].x, 2 * i + 1);
-        assert_close(packing.radius[i], 2 * i + 1);
+        assert_same(packing.position[i].x, 2 * i + 1);
+        assert_same(packing.radius[i], 2 * i + 1);
         for (int m = 0; m < TIMES; m++)
-            assert_close(protocol.force[2 * m + i].y, 10 * m + 2 * i + 1);
+            assert_same(protocol.force[2 * m + i].y, 10 * m + 2 * i + 1);
     }
     protocol_free(&protocol);
     packing_free(&packing);
@@ -328,9 +328,9 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
         do {
             forces_now(&action, &walk.filling, anew);
             for (int i = 0; i < n; i++)
-                assert_close(distance(walk.force[i], anew[i]), 0);
+                assert_same(distance(walk.force[i], anew[i]), 0);
             for (int k = 0; steps > 1 && k < walk.n_changed; k++)
-                assert_close(distance(walk.former[k], before[walk.changed[k]]), 0);
+                assert_same(distance(walk.former[k], before[walk.changed[k]]), 0);
             memcpy(before, walk.force, (size_t)n * sizeof *before);
         } while (walk_advance(&walk) && ++steps);
         assert_int_equal(steps, record.n_step);

@@ -15,12 +15,6 @@
 
 static const double far = HUGE_VAL;
 
-static void assert_close(double got, double wanted, double tolerance)
-{
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("got %.17g, wanted %.17g within %g", got, wanted, tolerance);
-}
-
 // ---- cut spheres --------------------------------------------------------------------
 
 static double from(double x, double y, double z)
@@ -32,10 +26,10 @@ static void test_planes_through_the_middle_halve_a_sphere(void **state)
 {
     (void)state;
     const double whole = 4 * M_PI / 3;
-    assert_close(from(-far, -far, -far), whole, 1e-15);
-    assert_close(from(0, -far, -far), whole / 2, 1e-15);
-    assert_close(from(-far, 0, 0), whole / 4, 1e-15);
-    assert_close(from(0, 0, 0), whole / 8, 1e-15);
+    assert_within(from(-far, -far, -far), whole, 1e-15);
+    assert_within(from(0, -far, -far), whole / 2, 1e-15);
+    assert_within(from(-far, 0, 0), whole / 4, 1e-15);
+    assert_within(from(0, 0, 0), whole / 8, 1e-15);
 }
 
 static void test_caps(void **state)
@@ -43,9 +37,9 @@ static void test_caps(void **state)
     (void)state;
     for (double h = 0.05; h < 2; h += 0.05) {
         const double cap = M_PI * h * h * (3 - h) / 3;
-        assert_close(from(1 - h, -far, -far), cap, 1e-14);
-        assert_close(from(-far, 1 - h, -far), cap, 1e-14);
-        assert_close(from(-far, -far, 1 - h), cap, 1e-14);
+        assert_within(from(1 - h, -far, -far), cap, 1e-14);
+        assert_within(from(-far, 1 - h, -far), cap, 1e-14);
+        assert_within(from(-far, -far, 1 - h), cap, 1e-14);
     }
 }
 
@@ -55,12 +49,12 @@ static void test_touching_planes_cut_nothing(void **state)
     (void)state;
     const double whole = 4 * M_PI / 3, edge = sqrt(0.5), corner = sqrt(1. / 3);
     const struct vector one = {1, 1, 1};
-    assert_close(sphere_in_box(1, scale(-1, one), one), whole, 1e-15);
-    assert_close(from(1, -far, -far), 0, 0);
-    assert_close(from(edge, edge, -far), 0, 1e-14);
-    assert_close(from(corner, corner, corner), 0, 1e-14);
-    assert_close(from(0.9, 0.9, 0.9), 0, 0);
-    assert_close(from(-1, 0, 0), whole / 4, 1e-15);
+    assert_within(sphere_in_box(1, scale(-1, one), one), whole, 1e-15);
+    assert_within(from(1, -far, -far), 0, 0);
+    assert_within(from(edge, edge, -far), 0, 1e-14);
+    assert_within(from(corner, corner, corner), 0, 1e-14);
+    assert_within(from(0.9, 0.9, 0.9), 0, 0);
+    assert_within(from(-1, 0, 0), whole / 4, 1e-15);
 }
 
 // The cube inscribed in a sphere is all sphere; half of one not quite in it as well.
@@ -68,10 +62,10 @@ static void test_a_box_within_is_full(void **state)
 {
     (void)state;
     const struct vector half = {0.5, 0.3, 0.6};
-    assert_close(sphere_in_box(1, scale(-1, half), half), 8 * 0.5 * 0.3 * 0.6, 1e-14);
+    assert_within(sphere_in_box(1, scale(-1, half), half), 8 * 0.5 * 0.3 * 0.6, 1e-14);
     const double a = sqrt(1. / 3);
     const struct vector cube = {a, a, a};
-    assert_close(sphere_in_box(1, scale(-1, cube), cube), 8 * a * a * a, 1e-14);
+    assert_within(sphere_in_box(1, scale(-1, cube), cube), 8 * a * a * a, 1e-14);
 }
 
 // x > a, y > b, z > c by another road: what is left of the area of a disc.
@@ -101,7 +95,7 @@ static double slice_area(double x, void *data)
 static void test_corners_by_quadrature(void **state)
 {
     (void)state;
-    assert_close(height_above(0, 0, 0), 1, 0);
+    assert_within(height_above(0, 0, 0), 1, 0);
     gsl_integration_cquad_workspace *room = gsl_integration_cquad_workspace_alloc(200);
     uint64_t seed = 1;
     for (int k = 0; k < 200; k++) {
@@ -114,7 +108,7 @@ static void test_corners_by_quadrature(void **state)
         if (corner.a >= end) continue;
         const double start = fmax(corner.a, -end);
         gsl_integration_cquad(&area, start, end, 1e-13, 0, room, &volume, &error, NULL);
-        assert_close(from(corner.a, corner.b, corner.c), volume, 1e-11);
+        assert_within(from(corner.a, corner.b, corner.c), volume, 1e-11);
     }
     gsl_integration_cquad_workspace_free(room);
 }
@@ -136,7 +130,7 @@ static void test_parts_add_up_at_any_scale(void **state)
                 r, (struct vector){at[0][x], at[1][y], at[2][z]},
                 (struct vector){at[0][x + 1], at[1][y + 1], at[2][z + 1]});
         }
-        assert_close(sum / whole, 1, 1e-14);
+        assert_within(sum / whole, 1, 1e-14);
     }
 }
 
@@ -150,13 +144,13 @@ static double cap(double radius, double height)
 static void test_a_lens_is_two_caps(void **state)
 {
     (void)state;
-    assert_close(lens_volume(1, 1, 1), 5 * M_PI / 12, 1e-15);
-    assert_close(lens_volume(1, 1, 2), 0, 0);
-    assert_close(lens_volume(1, 1, 0), 4 * M_PI / 3, 1e-15);
-    assert_close(lens_volume(2, 0.5, 1), M_PI / 6, 1e-15);
-    assert_close(lens_volume(2, 0.5, 1.5), M_PI / 6, 1e-15); // just inside
+    assert_within(lens_volume(1, 1, 1), 5 * M_PI / 12, 1e-15);
+    assert_within(lens_volume(1, 1, 2), 0, 0);
+    assert_within(lens_volume(1, 1, 0), 4 * M_PI / 3, 1e-15);
+    assert_within(lens_volume(2, 0.5, 1), M_PI / 6, 1e-15);
+    assert_within(lens_volume(2, 0.5, 1.5), M_PI / 6, 1e-15); // just inside
     const double a = 1, b = 0.6, d = 1.3, x = (d * d + a * a - b * b) / (2 * d);
-    assert_close(lens_volume(a, b, d), cap(a, a - x) + cap(b, b - (d - x)), 1e-14);
+    assert_within(lens_volume(a, b, d), cap(a, a - x) + cap(b, b - (d - x)), 1e-14);
 }
 
 // Half a lens by another road: along its own axis its sections are discs, and a plane
@@ -205,8 +199,8 @@ static void test_cut_lenses_by_quadrature(void **state)
         gsl_integration_cquad(&area, d - b, plane, 0, 1e-10, room, &left, &error, NULL);
         gsl_integration_cquad(&area, plane, a, 0, 1e-10, room, &right, &error, NULL);
         const double spheres = 4 * M_PI / 3 * (a * a * a + b * b * b);
-        assert_close(lens_below(a, b, apart, z), left + right,
-                     1e-14 * spheres + 1e-9 * (left + right));
+        assert_within(lens_below(a, b, apart, z), left + right,
+                      1e-14 * spheres + 1e-9 * (left + right));
     }
     gsl_integration_cquad_workspace_free(room);
 }
@@ -216,16 +210,16 @@ static void test_lenses_cut_along_and_across(void **state)
     (void)state;
     const double whole = lens_volume(1, 1, 1.8);
     const struct vector along = {0, 0, 1.8}, across = {1.8, 0, 0};
-    assert_close(lens_below(1, 1, along, 0.9), whole / 2, 1e-13);
-    assert_close(lens_below(1, 1, along, 0.95), whole - cap(1, 0.05), 1e-13);
-    assert_close(lens_below(1, 1, across, 0), whole / 2, 1e-13);
-    assert_close(lens_below(1, 1, along, 0.8), 0, 1e-13);
-    assert_close(lens_below(1, 1, along, 1), whole, 0);
-    assert_close(lens_below(2, 0.5, (struct vector){0, 0, 1}, 1), M_PI / 12, 1e-14);
-    assert_close(lens_below(0.5, 2, (struct vector){0, 0, 1}, 0), M_PI / 12, 1e-14);
+    assert_within(lens_below(1, 1, along, 0.9), whole / 2, 1e-13);
+    assert_within(lens_below(1, 1, along, 0.95), whole - cap(1, 0.05), 1e-13);
+    assert_within(lens_below(1, 1, across, 0), whole / 2, 1e-13);
+    assert_within(lens_below(1, 1, along, 0.8), 0, 1e-13);
+    assert_within(lens_below(1, 1, along, 1), whole, 0);
+    assert_within(lens_below(2, 0.5, (struct vector){0, 0, 1}, 1), M_PI / 12, 1e-14);
+    assert_within(lens_below(0.5, 2, (struct vector){0, 0, 1}, 0), M_PI / 12, 1e-14);
     const struct vector low = {-far, 0, -far}, high = {far, far, 0}; // a quarter of it
     const struct lens lens = lens_between(1, 1, across);
-    assert_close(lens_in_box(&lens, low, high), whole / 4, 1e-13);
+    assert_within(lens_in_box(&lens, low, high), whole / 4, 1e-13);
 }
 
 // ---- lattices -----------------------------------------------------------------------
@@ -290,7 +284,7 @@ static void test_porosity_of_lattices(void **state)
     for (enum cell kind = CUBIC; kind <= FACE_CENTRED; kind++)
         for (int s = 0; s < 3; s++) {
             struct packing packing = lattice(kind, 4, scales[s]);
-            assert_close(bulk_porosity(&packing), wanted[kind], 2e-9); // contacts open
+            assert_within(bulk_porosity(&packing), wanted[kind], 2e-9); // contacts open
             packing_free(&packing);
         }
 }
@@ -307,7 +301,7 @@ static void test_porosity_between_walls(void **state)
     double porosity;
     memset(packing.periodic, 0, 3);
     slice_porosity(&packing, &contacts, &window, 1, &porosity);
-    assert_close(porosity, 1 - M_PI / sqrt(18), 1e-13);
+    assert_within(porosity, 1 - M_PI / sqrt(18), 1e-13);
     free_contacts(&contacts);
     packing_free(&packing);
 }
@@ -330,7 +324,7 @@ static void test_slices_of_a_cubic_lattice(void **state)
             const double low = 0.2 * (k % 10) - 1, high = low + 0.2;
             const double solid =
                 M_PI * (high - low - (pow(high, 3) - pow(low, 3)) / 3) / (4 * 0.2);
-            assert_close(porosity[k], 1 - solid, 1e-13);
+            assert_within(porosity[k], 1 - solid, 1e-13);
         }
         free_contacts(&contacts);
         packing_free(&packing);
@@ -349,13 +343,13 @@ static void test_slices_hold_the_solid_volume(void **state)
     assert_int_equal(contacts.count, 4 * packing.n_particle);
     const double solid = packing.n_particle *
                          (4 * M_PI / 3 * pow(1.03, 3) - 4 * lens_volume(1.03, 1.03, 2));
-    assert_close(solid_volume(&packing, &contacts) / solid, 1, 1e-12);
+    assert_within(solid_volume(&packing, &contacts) / solid, 1, 1e-12);
     const struct window window = {packing.lower, packing.upper};
     double porosity[SLICES], sum = 0;
     slice_porosity(&packing, &contacts, &window, SLICES, porosity);
     for (int k = 0; k < SLICES; k++)
         sum += (1 - porosity[k]) / SLICES;
-    assert_close(sum * pow(packing.upper.x, 3) / solid, 1, 1e-10);
+    assert_within(sum * pow(packing.upper.x, 3) / solid, 1, 1e-10);
     free_contacts(&contacts);
     packing_free(&packing);
 }
@@ -376,7 +370,7 @@ static void test_porosity_of_one_layer(void **state)
     memset(packing.periodic, 0, 3);
     assert_int_equal(n, 36);
     assert_true(packing_is_flat(&packing));
-    assert_close(bulk_porosity(&packing), 1 - M_PI / 6, 1e-9);
+    assert_within(bulk_porosity(&packing), 1 - M_PI / 6, 1e-9);
     packing_free(&packing);
 }
 
@@ -411,8 +405,8 @@ static void test_contacts_of_lattices(void **state)
             assert_int_equal(rattler[i], 0);
         }
         for (int c = 0; c < 9; c++)
-            assert_close(fabric[c], c % 4 ? 0 : 1. / 3, 1e-14);
-        assert_close(fabric_deviator(fabric, false), 0, 1e-14);
+            assert_within(fabric[c], c % 4 ? 0 : 1. / 3, 1e-14);
+        assert_within(fabric_deviator(fabric, false), 0, 1e-14);
         free(walls);
         free(count);
         free(rattler);
@@ -444,12 +438,12 @@ static void test_fabric_of_a_chain(void **state)
     double fabric[9], density[9];
     assert_true(fabric_tensor(&packing, &contacts, fabric));
     for (int c = 0; c < 9; c++)
-        assert_close(fabric[c], component(e, c / 3) * component(e, c % 3), 1e-14);
-    assert_close(fabric_deviator(fabric, false), 1, 1e-14);
+        assert_within(fabric[c], component(e, c / 3) * component(e, c % 3), 1e-14);
+    assert_within(fabric_deviator(fabric, false), 1, 1e-14);
     contact_inclination(&packing, &contacts, 9, density); // acos(6/7) = 31 degrees
     for (int k = 0; k < 9; k++)
-        assert_close(density[k], k == 3 ? 1 / (cos(M_PI / 6) - cos(4 * M_PI / 18)) : 0,
-                     1e-12);
+        assert_within(density[k], k == 3 ? 1 / (cos(M_PI / 6) - cos(4 * M_PI / 18)) : 0,
+                      1e-12);
     free_contacts(&contacts);
     packing_free(&packing);
 }
@@ -460,8 +454,8 @@ static void test_fabric_of_one_layer(void **state)
     (void)state;
     const double isotropic[9] = {0.5, 0, 0, 0, 0, 0, 0, 0, 0.5};
     const double line[9] = {[8] = 1};
-    assert_close(fabric_deviator(isotropic, true), 0, 0);
-    assert_close(fabric_deviator(line, true), 1, 1e-15);
+    assert_within(fabric_deviator(isotropic, true), 0, 0);
+    assert_within(fabric_deviator(line, true), 1, 1e-15);
     struct packing packing = chain(4, (struct vector){0, 0, 1});
     packing.lower.y = -1;
     packing.upper.y = 1;
@@ -469,7 +463,7 @@ static void test_fabric_of_one_layer(void **state)
     struct contacts contacts = contacts_of(&packing);
     double density[6];
     contact_inclination(&packing, &contacts, 6, density);
-    assert_close(density[0], 6, 1e-14); // all in one class of six
+    assert_within(density[0], 6, 1e-14); // all in one class of six
     free_contacts(&contacts);
     packing_free(&packing);
 }
@@ -543,11 +537,11 @@ static void test_shells_of_fcc(void **state)
         }
         for (int shell = 0; shell < 10; shell++) {
             const int k = (int)(20 * sqrt(shell + 1) + 0.5);
-            assert_close(found[k], wanted[shell], 1e-9);
+            assert_within(found[k], wanted[shell], 1e-9);
             sum += found[k];
         }
         // shells 11 and 12 end the range: 24 at sqrt(11), 24 at sqrt(12)
-        assert_close(all, sum + 24 + 24, 1e-9);
+        assert_within(all, sum + 24 + 24, 1e-9);
         packing_free(&packing);
     }
 }
@@ -592,7 +586,7 @@ static void check_poisson(const uint8_t periodic[3], bool flat)
     for (int k = 1; k < COUNT; k++) {
         const double error = sqrt((squares[k] - sum[k] * sum[k]) / (SAMPLES - 1));
         assert_true(error < 0.02);
-        assert_close(sum[k], 1, 4 * error);
+        assert_within(sum[k], 1, 4 * error);
     }
 }
 
@@ -619,7 +613,7 @@ static void test_nothing_is_said_of_nothing(void **state)
     assert_false(radial_distribution(&packing, &window, 0.1, 3, value));
     slice_porosity(&packing, &contacts, &window, 3, value);
     for (int k = 0; k < 3; k++)
-        assert_close(value[k], 1, 0);
+        assert_within(value[k], 1, 0);
     free_contacts(&contacts);
     packing_free(&packing);
 }

@@ -51,11 +51,6 @@ static void result_free(struct result *result)
     invasion_free(&result->invasion);
 }
 
-static void assert_near(double value, double expected, double tolerance)
-{
-    assert_true(fabs(value - expected) <= tolerance * fabs(expected));
-}
-
 // --- closed forms ------------------------------------------------------------------
 
 enum { TUBES = 200 };
@@ -126,9 +121,9 @@ static void test_bundle_of_tubes(void **state)
                         1e-12);
         }
     }
-    assert_near(transport->material[DIFFUSIVITY], M_PI * section / 2e-12, 1e-13);
-    assert_near(transport->material[PERMEABILITY],
-                M_PI * moment_from(&network, 0, 4) / 8 / 2e-12, 1e-13);
+    assert_close(transport->material[DIFFUSIVITY], M_PI * section / 2e-12, 1e-13);
+    assert_close(transport->material[PERMEABILITY],
+                 M_PI * moment_from(&network, 0, 4) / 8 / 2e-12, 1e-13);
     result_free(&result);
     network_free(&network);
 }
@@ -145,15 +140,15 @@ static void test_lattice_of_equal_throats(void **state)
     const struct transport *transport = &result.transport;
     const double columns = n[0] * n[1];
     const double section = (n[0] - 1) * (n[1] - 1) * spacing * spacing;
-    assert_near(transport->material[DIFFUSIVITY], columns * M_PI * r * r / section,
-                1e-13);
-    assert_near(transport->material[PERMEABILITY],
-                columns * M_PI * r * r * r * r / 8 / section, 1e-13);
+    assert_close(transport->material[DIFFUSIVITY], columns * M_PI * r * r / section,
+                 1e-13);
+    assert_close(transport->material[PERMEABILITY],
+                 columns * M_PI * r * r * r * r / 8 / section, 1e-13);
     const int last = transport->n - 1;
     assert_true(transport->saturation[0] == 1 && transport->saturation[last] == 0);
     for (int p = 0; p < PROPERTIES; p++) {
-        assert_near(transport->relative[GAS][p][last], 1, 1e-13);
-        assert_near(transport->relative[LIQUID_PHASE][p][0], 1, 1e-13);
+        assert_close(transport->relative[GAS][p][last], 1, 1e-13);
+        assert_close(transport->relative[LIQUID_PHASE][p][0], 1, 1e-13);
         assert_true(transport->relative[GAS][p][0] == 0);
         assert_true(transport->relative[LIQUID_PHASE][p][last] == 0);
         for (int k = 1; k <= last; k++)
@@ -181,8 +176,8 @@ static void test_chain_of_tubes(void **state)
     struct result result = invaded(&network, WALL_Z_UPPER, WALL_Z_LOWER, true);
     assert_int_equal(result.status, 0);
     for (int p = 0; p < PROPERTIES; p++)
-        assert_near(result.transport.conductance[p], (double)(1 / resistance[p]),
-                    1e-13);
+        assert_close(result.transport.conductance[p], (double)(1 / resistance[p]),
+                     1e-13);
     result_free(&result);
     network_free(&network);
 }
@@ -302,7 +297,7 @@ static void test_ends_may_change_places(void **state)
     struct result down = invaded(&network, WALL_Z_UPPER, WALL_Z_LOWER, true);
     struct result up = invaded(&network, WALL_Z_LOWER, WALL_Z_UPPER, true);
     for (int p = 0; p < PROPERTIES; p++)
-        assert_near(up.transport.conductance[p], down.transport.conductance[p], 1e-13);
+        assert_close(up.transport.conductance[p], down.transport.conductance[p], 1e-13);
     for (int i = 0; i < network.n_node; i++) { // upside down
         const unsigned walls = network.node_walls[i];
         network.node_walls[i] =
@@ -333,7 +328,7 @@ static void test_large_networks_conduct_alike_both_ways(void **state)
     struct result down = invaded(&network, WALL_Z_UPPER, WALL_Z_LOWER, true);
     struct result up = invaded(&network, WALL_Z_LOWER, WALL_Z_UPPER, true);
     for (int p = 0; p < PROPERTIES; p++)
-        assert_near(up.transport.conductance[p], down.transport.conductance[p], 1e-13);
+        assert_close(up.transport.conductance[p], down.transport.conductance[p], 1e-13);
     result_free(&down);
     result_free(&up);
     network_free(&network);
