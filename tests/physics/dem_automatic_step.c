@@ -152,13 +152,19 @@ static void goes_on_to_the_same_bytes(struct dem *dem, const struct dem_setup *s
 static void scenes_that_change(void **state)
 {
     (void)state;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 6; k++) {
         struct packing packing = cluster(120, k & 1);
         struct dem_setup setup = automatic(&packing);
         setup.material.damping_ratio = 0.1;
         setup.material.local_damping = k & 2 ? 0.5 : 0;
+        if (k & 4) setup.law = DEM_HERTZ;
+        setup.material.young_modulus = 6e10;
+        setup.material.poisson_ratio = 0.3;
+        setup.material.restitution = 0.7;
+        setup.largest_overlap = 0.1;
         setup.bond.normal_strength = setup.bond.shear_strength = 1e6;
-        struct dem *dem = shaken(&setup, 300, 7);
+        const double speed = k & 4 ? 30 : 300; // no deeper than the overlap above
+        struct dem *dem = shaken(&setup, speed, 7);
         const double begin = energy(dem), first = dem_time_step(dem);
         for (int portion = 0; portion < 20; portion++) {
             run(dem, 1000);
@@ -168,7 +174,7 @@ static void scenes_that_change(void **state)
         int cracks;
         dem_cracks(dem, &cracks);
         if (k & 1) assert_in_range(cracks, 10, packing.n_bond);
-        assert_true(dem_time_step(dem) < first);
+        if (!(k & 4)) assert_true(dem_time_step(dem) < first);
         goes_on_to_the_same_bytes(dem, &setup);
         dem_free(dem);
         packing_free(&packing);

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rings in equilibrium with a suction: where one is found it has that suction, and
 // where none is, no bridge of any volume has as much.
+#include "../test.h"
 #include "bridges/bridges.h"
 #include "force-protocol/rings.h"
-
-// clang-format off
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
-// clang-format on
 #include <math.h>
 #include <stdio.h>
 
