@@ -79,6 +79,7 @@ struct response {
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
     int n_gone, first_gone;            // grains that left an equilibrium
+    int n_unsettled;                   // loads at whose end not all was at rest
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last
     int n_snap, snapped; // ends of equilibrium gone through in time, and the grain that

@@ -246,9 +246,17 @@ static void note_time_step(const struct run *run)
         isinf(limit) ? response->time_step / (isnan(safety) ? 1 : safety) : limit;
 }
 
+static void note_unsettled(const struct run *run)
+{
+    static const double settled = 1e-4; // [K 5.2]
+    for (int k = 0; k < run->load->n_time; k++)
+        run->response->n_unsettled += run->response->unbalanced_ratio[k] >= settled;
+}
+
 static void end(struct run *run)
 {
     if (run->state) note_time_step(run);
+    note_unsettled(run);
     dem_free(run->state);
 }
 

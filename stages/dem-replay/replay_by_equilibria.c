@@ -190,6 +190,7 @@ static void end(struct run *run)
         response->n_gone = equilibrium_gone(state->last, &response->first_gone);
         response->n_restless = equilibrium_restless(state->last, &response->restless) -
                                state->restless_before;
+        response->n_unsettled = response->n_restless;
         response->n_snap =
             equilibrium_snaps(state->last, &response->snapped) - state->snaps_before;
     }

@@ -168,19 +168,6 @@ double largest_displacement(const struct packing *packing,
     return most;
 }
 
-static const double settled = 1e-4; // [K 5.2]
-
-static int steps_unsettled(const struct load *load,
-                           const struct replay_settings *settings,
-                           const struct response *response)
-{
-    if (settings->engine == ENGINE_QUASI_STATIC) return response->n_restless;
-    int count = 0;
-    for (int k = 0; k < load->n_time; k++)
-        count += response->unbalanced_ratio[k] >= settled;
-    return count;
-}
-
 static double largest(const double *values, int count)
 {
     double most = 0;
@@ -202,8 +189,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
-    artifact_put_number(artifact, "/summary/steps_unsettled",
-                        steps_unsettled(load, settings, response));
+    artifact_put_number(artifact, "/summary/steps_unsettled", response->n_unsettled);
     artifact_put_number(artifact, "/summary/largest_displacement",
                         largest_displacement(packing, response));
     artifact_put_number(artifact, "/summary/time_step", response->time_step);
