@@ -105,10 +105,10 @@ with scratch() as folder:
                at("late"), at("early-uneven")]
     subprocess.run([*command, "-o", at("unstopped")], check=True)
     stopped = kept = 0
-    for _ in range(100):
+    for turn in range(100):
         part = subprocess.Popen([*command, "--checkpoint", at("kept"), "-o", at("stopped")], stderr=subprocess.DEVNULL)
         try:
-            if part.wait(0.15) == 0:
+            if part.wait(0.15 * 1.05**turn) == 0:
                 break
         except subprocess.TimeoutExpired:
             part.terminate()
@@ -242,13 +242,16 @@ with scratch() as folder:
     refused += [refusal(64, word, "none", "2", word) for word in ("demreplay.cycles=2", "dry=3")]
     refused += [refusal(64, "most_change", "none", "2", f"most_change={word}") for word in ("abc", "-1", "")]
     refused += [refusal(73, "other/7", "other", "2")]
+    end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), "2", "/dev/null"],
+                         env=os.environ | {"BIN": BIN}, capture_output=True, text=True)
+    refused += [end.returncode == 73 and end.stderr.count("\n") == 1 and "must be a file" in end.stderr]
     ok(all(refused) and os.path.exists(at("other/7/precious")) and not os.path.exists(at("none")),
        "refused in a line, and nothing lost", refused)
 
     still = {"engine": "quasi-static"}
     loop("equilibria", "samples/stiff-5x5x10.json",
          {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 30}, "dem-replay": still}, False)
-    loop("irregular", "samples/soft-300.json", quick | {"pack": {"count": 120}}, True)
+    loop("irregular", "samples/soft-300.json", quick | {"pack": {"count": 120}, "dry": {"liquid_density": 800}}, True)
     drawn = {"throat_radius": {"distribution": "normal", "mean": 1e-7, "standard_deviation": 2e-8}}
     loop("irregular, radii drawn", "samples/soft-300.json", quick | {"pack": {"count": 120}, "dry": drawn}, True)
 done()
