@@ -185,6 +185,8 @@ refused("an empty file is not an artifact", BAD_DATA,
         ["tessellate", text_file("empty", "")], "empty: is empty")
 refused("three bytes are not an artifact", BAD_DATA,
         ["tessellate", text_file("short", b"\x89HD")], "short: is not an HDF5 file")
+refused("an input without end is refused", BAD_DATA, ["crackstats", "/dev/zero"],
+        "/dev/zero: is not an HDF5 file")
 refused("a signature alone is not an artifact", BAD_DATA,
         ["tessellate", text_file("signature", b"\x89HDF\r\n\x1a\n")],
         "signature: is a truncated or damaged HDF5 file")

@@ -44,6 +44,7 @@ struct bytes read_whole(const char *path)
         if (got < 0) die(STATUS_IO, "%s: %s", input_name(path), strerror(errno));
         if (got == 0) break;
         bytes.size += (size_t)got;
+        if (bytes.data[0] == 0) break; // /dev/zero has no end
         if (bytes.size == capacity)
             bytes.data = reallocate(bytes.data, capacity *= 2, 1);
     }

@@ -11,8 +11,9 @@ struct bytes {
     size_t size;
 };
 
-// All of PATH, or of standard input for "-". Exits 66 when there is no such file, 74
-// when reading fails. The caller frees .data.
+// All of PATH, or of standard input for "-"; the beginning where the first byte is 0,
+// as of nothing that we read. Exits 66 when there is no such file, 74 when reading
+// fails. The caller frees .data.
 struct bytes read_whole(const char *path);
 
 // Writes all of it or nothing: beside PATH under another name, synced, then renamed.
