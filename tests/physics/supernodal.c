@@ -233,7 +233,7 @@ static void vectors_of_any_width(void **state)
     enum { M = 51, COLUMNS = 13, K = 17 };
     if (!has_wide_vectors()) skip();
     double a[M * K + 8], sum[2][LANES][LANES] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
-    double d[2][M * M] = {{0}};
+    double d[2][M * M] = {{0}}, left[2][K * LANES];
     double work[M * PACKED];
     double matrix[2][M * M];
     int order[2][M];
@@ -247,6 +247,9 @@ static void vectors_of_any_width(void **state)
         both[wide]->multiply_transposed(M - 1, M - 1, K, a, M, a, M, d[wide], M, true,
                                         work);
         both[wide]->add_product_of_eight(K, a, 8, a + 9, sum[wide]);
+        for (int k = 0; k < K * LANES; k++)
+            left[wide][k] = cos(k);
+        both[wide]->take_off_eight(K, a, LANES, a + 3, 7, left[wide]);
         for (int k = 0; k < M * M; k++)
             matrix[wide][k] = sin(k * k);
         assert_true(both[wide]->factor_dense(M, matrix[wide], M, order[wide], work));
@@ -254,6 +257,14 @@ static void vectors_of_any_width(void **state)
     assert_memory_equal(matrix[0], matrix[1], sizeof matrix[0]);
     assert_memory_equal(order[0], order[1], sizeof order[0]);
     assert_memory_equal(c[0], c[1], sizeof c[0]);
+    assert_memory_equal(left[0], left[1], sizeof left[0]);
+    for (int k = 0; k < K * LANES; k++) {
+        double expected = cos(k);
+        for (int column = 0; column < 7; column++)
+            expected -=
+                a[k / LANES * LANES + column] * a[3 + column * LANES + k % LANES];
+        assert_true(fabs(left[1][k] - expected) < 1e-12);
+    }
     assert_memory_equal(sum[0], sum[1], sizeof sum[0]);
     for (int i = 0; i < M; i++)
         for (int j = 0; j < COLUMNS; j++) {
