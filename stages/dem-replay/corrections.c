@@ -115,33 +115,17 @@ static void fill_compliance(struct corrections *c, int first)
             fill_between(c, &c->addition[k], &c->addition[l]);
 }
 
-// Rows for strains of one joint; how many.
-static int add_rows(struct corrections *c, const struct correction *new,
-                    struct unit_load *load)
+static struct entry *entry_for(struct corrections *c, int joint)
 {
-    struct entry *entry = &c->entry[c->of[new->joint]];
-    int count = 0;
-    for (; entry->count < new->strains; entry->count++, c->count++) {
-        load[count++] = (struct unit_load){new->joint, entry->count};
-        entry->row[entry->count] = c->count;
-        c->entry_of[c->count] = c->of[new->joint];
-        c->strain_of[c->count] = entry->count;
-    }
-    return count;
-}
-
-static int rows_of(struct corrections *c, const struct correction *new)
-{
-    if (c->of[new->joint] < 0) {
+    if (c->of[joint] < 0) {
         GROW_ARRAY(c->entry, c->n_entry, c->entry_capacity);
-        c->entry[c->n_entry] = (struct entry){.joint = new->joint, .is_new = true};
-        c->of[new->joint] = c->n_entry++;
+        c->entry[c->n_entry] = (struct entry){.joint = joint, .is_new = true};
+        c->of[joint] = c->n_entry++;
     }
-    const int more = new->strains - c->entry[c->of[new->joint]].count;
-    return more > 0 ? more : 0;
+    return &c->entry[c->of[joint]];
 }
 
-// Groups of rows that go through the factor together.
+// Groups of rows that go through the factor together, the first GROUPS of them full.
 struct batch {
     int groups, first[HALVES], count[HALVES];
     struct unit_load load[HALVES][LANES];
@@ -157,29 +141,38 @@ static void add_batch(struct corrections *c, struct batch *batch)
         c->addition[c->n_addition++] = (struct addition){batch->first[g], halves[g]};
     }
     fill_compliance(c, before);
-    batch->groups = 0;
+    *batch = (struct batch){0};
+}
+
+// For the next strain of a joint.
+static void add_row(struct corrections *c, struct batch *batch, struct entry *entry)
+{
+    const int group = batch->groups;
+    if (c->count == c->capacity) make_room(c);
+    if (batch->count[group] == 0) batch->first[group] = c->count;
+    batch->load[group][batch->count[group]++] =
+        (struct unit_load){entry->joint, entry->count};
+    c->entry_of[c->count] = c->of[entry->joint];
+    c->strain_of[c->count] = entry->count;
+    entry->row[entry->count++] = c->count++;
+    if (batch->count[group] == LANES) batch->groups++;
 }
 
 // As many in a group as there are lanes.
 bool corrections_add(struct corrections *c, int count, const struct correction *new)
 {
     struct batch batch = {0};
-    for (int k = 0; k < count;) {
-        struct unit_load *load = batch.load[batch.groups];
-        const int first = c->count;
-        int loads = 0;
-        for (; k < count && loads + rows_of(c, &new[k]) <= LANES; k++) {
-            if (c->count + LANES > MOST) return false;
-            if (c->count + LANES > c->capacity) make_room(c);
-            loads += add_rows(c, &new[k], load + loads);
+    bool fits = true;
+    for (int k = 0; k < count && fits; k++) {
+        struct entry *entry = entry_for(c, new[k].joint);
+        while (entry->count < new[k].strains && (fits = c->count < MOST)) {
+            add_row(c, &batch, entry);
+            if (batch.groups == HALVES) add_batch(c, &batch);
         }
-        if (loads == 0) continue;
-        batch.first[batch.groups] = first;
-        batch.count[batch.groups++] = loads;
-        if (batch.groups == HALVES) add_batch(c, &batch);
     }
+    if (batch.count[batch.groups] > 0) batch.groups++;
     if (batch.groups > 0) add_batch(c, &batch);
-    return true;
+    return fits;
 }
 
 struct unit_load corrections_row(const struct corrections *c, int row)
