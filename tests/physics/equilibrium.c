@@ -220,6 +220,26 @@ static void a_wall_is_rigid(void **state)
     packing_free(&packing);
 }
 
+// Of FORCE on the first COUNT grains, and what held ones give them.
+static struct vector net_force(const struct block *block,
+                               const struct equilibrium *equilibrium,
+                               const struct vector *force, int count)
+{
+    struct vector sum = {0, 0, 0};
+    for (int i = 0; i < count; i++)
+        if (!block->fixed[i]) sum = add(sum, force[i]);
+    int n;
+    struct dem_contact *contact = equilibrium_contacts(equilibrium, &n);
+    for (int c = 0; c < n; c++) {
+        const int32_t *pair = contact[c].particle;
+        if (block->fixed[pair[0]] == block->fixed[pair[1]]) continue;
+        const double sign = block->fixed[pair[0]] ? 1 : -1; // on the one that moves
+        sum = add(sum, scale(sign, contact[c].force));
+    }
+    free(contact);
+    return sum;
+}
+
 // What the grains carry to the held ones is the load at every step: with friction, slip
 // and bonds that break.
 static void the_whole_balances(void **state)
@@ -231,25 +251,15 @@ static void the_whole_balances(void **state)
     block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1e5;
     struct equilibrium *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
-    int count, first, gone = 0;
+    int first, gone = 0;
     for (int step = 1; step <= 12; step++) {
         load_block(force, step * 1e-9);
         for (int i = 0; i < BLOCK; i++)
             force[i].z = i == BLOCK - 1 ? step * 1e-9 : 0;
         next_equilibrium(equilibrium, force);
         gone = equilibrium_gone(equilibrium, &first);
-        struct vector sum = {0, 0, 0};
-        for (int i = 0; i < BLOCK - gone; i++)
-            if (!block->fixed[i]) sum = add(sum, force[i]);
-        struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
-        for (int c = 0; c < count; c++) {
-            const int32_t *pair = contact[c].particle;
-            if (block->fixed[pair[0]] == block->fixed[pair[1]]) continue;
-            const double sign = block->fixed[pair[0]] ? 1 : -1; // on the one that moves
-            sum = add(sum, scale(sign, contact[c].force));
-        }
-        free(contact);
-        assert_true(norm(sum) <= 1e-10 * step * 1e-9);
+        const struct vector net = net_force(block, equilibrium, force, BLOCK - gone);
+        assert_true(norm(net) <= 1e-10 * step * 1e-9);
     }
     assert_int_equal(gone, 1);
     assert_int_equal(first, BLOCK - 1); // the corner that was pulled out
@@ -353,6 +363,34 @@ static void stiffnesses_over_twelve_decades(void **state)
     packing_free(&packing);
 }
 
+// A block of them, with friction: at rest, and the whole in balance.
+static void a_block_over_twelve_decades(void **state)
+{
+    (void)state;
+    for (int decade = -6; decade <= 6; decade++) {
+        struct block *block = new_block();
+        const double glue = contact_stiffness / 2 * pow(10, decade) / bond_area();
+        block->setup.bond.normal_stiffness = block->setup.bond.shear_stiffness = glue;
+        block->setup.material.friction = 0.5;
+        block->setup.tolerance = 1e-8;
+        struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+        struct vector force[BLOCK];
+        for (int step = 1; step <= 4; step++) {
+            load_block(force, step * 1e-9 * fmin(1, pow(10, decade)));
+            next_equilibrium(equilibrium, force);
+            const double left = norm(net_force(block, equilibrium, force, BLOCK));
+            double load = 0;
+            for (int i = 0; i < BLOCK; i++)
+                load += norm(force[i]);
+            int grain;
+            if (equilibrium_restless(equilibrium, &grain) || !(left < 1e-10 * load))
+                fail_msg("1e%d, step %d: %g of the load", decade, step, left / load);
+        }
+        equilibrium_free(equilibrium);
+        free_block(block);
+    }
+}
+
 // A chain without bonds, loaded across, holds nothing: it leaves, and the grain that is
 // held stays. So does a grain that touches no other.
 static void a_mechanism_leaves(void **state)
@@ -432,6 +470,7 @@ int main(void)
         cmocka_unit_test(one_bond_breaks),
         cmocka_unit_test(every_bond_breaks),
         cmocka_unit_test(stiffnesses_over_twelve_decades),
+        cmocka_unit_test(a_block_over_twelve_decades),
         cmocka_unit_test(a_mechanism_leaves),
         cmocka_unit_test(a_wall_is_rigid),
         cmocka_unit_test(twist_and_bending_break),
