@@ -197,7 +197,8 @@ bool improve(struct equilibrium *e, bool *is_fresh)
         let_go_beyond(e, e->step, furthest))
         return true;
     if (outcome != FOUND) {
-        if (*is_fresh) return false;
+        if (*is_fresh || (e->large && corrections_are_costly(e->corrections)))
+            return false;
         resist(e);
         *is_fresh = true;
         return factor(e);

@@ -58,6 +58,12 @@ double corrections_work(const struct corrections *c)
     return c->work;
 }
 
+bool corrections_are_costly(const struct corrections *c)
+{
+    const double most = 1e10, most_factors = 100;
+    return c->work > fmax(most, most_factors * stiffness_work(c->stiffness));
+}
+
 void corrections_count_work(struct corrections *c, double more)
 {
     c->work += more;
@@ -267,6 +273,7 @@ bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
     guess_strains(c, guess);
     if (resist_entries(c, false) <= enough) return true;
     for (int round = 0; round < ROUNDS; round++) {
+        if (round > 0 && corrections_are_costly(c)) return false;
         if (round > 0) settle_in_turn(c, enough);
         if (settle_together(c, round % 2 == 0, enough)) return true;
     }

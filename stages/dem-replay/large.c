@@ -25,6 +25,7 @@ struct large *large_new(struct equilibrium *e)
     large->withheld = NEW_ARRAY(struct displacement, e->n);
     e->soft[0] *= 1e-3;
     large->share = 1;
+    large->most_tried = 20000 + 20. * e->n_joint;
     large->is_stale = true;
     return large;
 }

@@ -24,6 +24,8 @@ struct large {
     double share;                  // of that let in
     double ended;                  // so much of a load was balanced at the last snap
     double drag;                   // of dashpots at each grain, besides those at joints
+    double tried, most_tried;      // increments and steps in time of this load, and the
+                                   // most there may be [large_way.c]
     double hold;      // against motion as one, in the factor [large_free.c]
     bool is_stale;    // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored

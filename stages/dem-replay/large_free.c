@@ -55,11 +55,12 @@ void take_off_as_one(struct equilibrium *e)
 
 // ---- motion -------------------------------------------------------------------------
 
-// Of a grain about its own centre, a sphere: so a row has a direction about itself.
-static double own_inertia(const struct whole *whole, int i)
+// Of a grain of MASS about its own centre, a sphere: so a row has a direction about
+// itself.
+static double own_inertia(const struct whole *whole, int i, double mass)
 {
     const double radius = whole->packing->radius[i] / whole->length;
-    return 0.4 * whole_mass(whole, i) * radius * radius;
+    return 0.4 * mass * radius * radius;
 }
 
 // Of the places where grains began and where they are: how the mean direction answers a
@@ -69,7 +70,7 @@ static void mix_inertia(struct whole *there, const struct whole *start)
     for (int axis = 0; axis < 3; axis++)
         there->inertia[axis] = (struct vector){0, 0, 0};
     for (int i = 0; i < there->packing->n_particle; i++) {
-        const double mass = whole_mass(there, i), own = own_inertia(there, i);
+        const double mass = whole_mass(there, i), own = own_inertia(there, i, mass);
         const struct vector x = whole_place(start, i), r = whole_place(there, i);
         for (int axis = 0; axis < 3; axis++) {
             struct vector part = add(scale(-0.5 * mass * component(x, axis), r),
@@ -87,8 +88,9 @@ static struct displacement mean_motion(const struct whole *there,
 {
     struct vector shift = {0, 0, 0}, moment = {0, 0, 0};
     for (int i = 0; i < there->packing->n_particle; i++) {
-        const struct vector part = scale(whole_mass(there, i), step[i].shift);
-        const struct vector own = scale(own_inertia(there, i), step[i].turn);
+        const double mass = whole_mass(there, i);
+        const struct vector part = scale(mass, step[i].shift);
+        const struct vector own = scale(own_inertia(there, i, mass), step[i].turn);
         shift = add(shift, part);
         moment = add(moment, scale(1 / unit, cross(whole_place(start, i), part)));
         moment = add(moment, own);

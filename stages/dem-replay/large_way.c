@@ -17,6 +17,9 @@ static const double least_increment = 1e-6;
 // Without a sign that it ends, equilibrium is not looked for in smaller ones than this.
 static const double rough_increment = 1e-3;
 
+// Nor after so many that took long and were not found.
+static const int most_costly = 3;
+
 // ---- one increment ------------------------------------------------------------------
 
 // Mean radii that a grain may move in an increment, so that others do not pass it.
@@ -88,13 +91,22 @@ bool large_approach(struct equilibrium *e)
     return largest_left(e) <= e->enough;
 }
 
+// One whose dense systems take as long as others altogether counts as so many more.
+static void note_try(struct equilibrium *e)
+{
+    const double usual = 4e7; // multiplications
+    e->large->tried += 1 + corrections_work(e->corrections) / usual;
+}
+
 enum advance large_advance(struct equilibrium *e, double damping, double *moved)
 {
     go_back(e);
     e->damping = damping;
     e->large->is_unstable = false;
     *moved = 4; // if it is not known
-    if (!large_approach(e)) return e->large->is_unstable ? UNSTABLE : NOT_FOUND;
+    const bool is_found = large_approach(e);
+    note_try(e);
+    if (!is_found) return e->large->is_unstable ? UNSTABLE : NOT_FOUND;
     *moved = furthest_since(e) / e->setup.increment;
     if (*moved > 1) return TOO_FAR;
     if (large_meet(e)) return MEETS;
@@ -118,6 +130,7 @@ struct way {
     double reached, increment;
     double widest; // increment so far, 0: none
     double before; // of the load, balanced when this began
+    int costly;    // increments not found that took long
 };
 
 static struct way begin_way(struct equilibrium *e, double before)
@@ -141,6 +154,7 @@ static enum advance try_increment(struct equilibrium *e, struct way *way)
     large->share = fmin(1, way->reached + way->increment);
     const enum advance outcome = large_advance(e, 0, &moved);
     large->is_stale = outcome != ADVANCED;
+    if (outcome == NOT_FOUND && corrections_are_costly(e->corrections)) way->costly++;
     if (outcome == ADVANCED) {
         keep_history(e);
         way->widest = fmax(way->widest, large->share - way->reached);
@@ -186,6 +200,22 @@ static enum status refuse_end(double balanced, int softest, struct reason *reaso
                   "most, and dashpots do not bring it to rest (engine=explicit follows "
                   "what comes then)",
                   balanced, softest);
+}
+
+static enum status refuse_long(struct equilibrium *e, const struct way *way,
+                               struct reason *reason)
+{
+    e->damping = 0;
+    e->large->share = 1;
+    go_back(e);
+    resist(e);
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "no end of the way to equilibrium: %.6f of what this load changes is "
+        "balanced after as many increments and steps in time as %.0f easy "
+        "ones, grain %d is furthest from it (more steps of the load, a larger "
+        "quasi_static.increment, or engine=explicit)",
+        balanced(way), e->large->most_tried, least_balanced(e));
 }
 
 // Something went on moving, and does so under the next load.
@@ -275,12 +305,14 @@ enum status large_balance(struct equilibrium *e, struct reason *reason)
 {
     struct way way = begin_way(e, 0);
     while (way.reached < 1) {
+        if (e->large->tried > e->large->most_tried) return refuse_long(e, &way, reason);
         const double usual = way.widest > 0 ? way.widest : 1;
         const bool is_least = way.increment <= least_increment;
         const bool is_rough = way.increment <= rough_increment * usual;
         const enum advance outcome = try_increment(e, &way);
         const bool goes_on = outcome == ADVANCED || outcome == MEETS;
-        const bool ends = is_least ? !goes_on : outcome == NOT_FOUND && is_rough;
+        const bool is_enough = is_rough || way.costly >= most_costly;
+        const bool ends = is_least ? !goes_on : outcome == NOT_FOUND && is_enough;
         if (!ends) continue;
         const enum status status = go_beyond(e, &way, outcome == UNSTABLE, reason);
         if (status) return status;

@@ -6,8 +6,9 @@
 
 double whole_mass(const struct whole *whole, int i)
 {
+    const double radius = whole->packing->radius[i];
     if (whole->is_gone && whole->is_gone[i]) return 0;
-    return pow(whole->packing->radius[i] / whole->length, 3);
+    return radius == whole->length ? 1 : pow(radius / whole->length, 3);
 }
 
 struct vector whole_place(const struct whole *whole, int i)
@@ -27,17 +28,18 @@ struct whole whole_of(const struct packing *packing, const bool *is_gone,
                           .length = packing->n_particle ? packing->radius[0] : 1};
     struct vector sum = {0, 0, 0};
     for (int i = 0; i < packing->n_particle; i++) {
-        sum = add(sum, scale(whole_mass(&whole, i), whole_place(&whole, i)));
-        whole.mass += whole_mass(&whole, i);
+        const double mass = whole_mass(&whole, i);
+        sum = add(sum, scale(mass, whole_place(&whole, i)));
+        whole.mass += mass;
     }
     if (whole.mass > 0) whole.centre = scale(1 / whole.mass, sum);
     for (int i = 0; i < packing->n_particle; i++) {
         const struct vector r = whole_place(&whole, i);
+        const double mass = whole_mass(&whole, i);
         for (int axis = 0; axis < 3; axis++) {
             struct vector part = scale(-component(r, axis), r);
             set_component(&part, axis, component(part, axis) + dot(r, r));
-            whole.inertia[axis] =
-                add(whole.inertia[axis], scale(whole_mass(&whole, i), part));
+            whole.inertia[axis] = add(whole.inertia[axis], scale(mass, part));
         }
     }
     return whole;

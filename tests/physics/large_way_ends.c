@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The way to an equilibrium with large displacements ends in sensible time: where dense
+// systems take long without being solved, and where nothing else would end it.
+#include "equilibrium_scene.h"
+
+#include "dem-replay/equilibrium_state.h"
+
+// ---- all contacts at once -----------------------------------------------------------
+
+enum { WIDE = 5, TALL = 8, MANY = WIDE * WIDE * TALL };
+
+// Squeezed and let go, all 465 contacts with friction come to the point where they may
+// open, slide or stick, which Newton's method does not see through however near it
+// begins. It comes to rest by steps in time, after few tries that take long.
+static void a_block_that_is_let_go(void **state)
+{
+    (void)state;
+    struct packing packing = cubic_lattice(WIDE, WIDE, TALL, false);
+    uint8_t fixed[MANY] = {0};
+    memset(fixed, 1, WIDE * WIDE);
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.material.friction = 0.5;
+    setup.large_displacements = true;
+    setup.increment = 0.02;
+    setup.tolerance = 1e-8;
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct vector force[MANY] = {{0, 0, 0}};
+    for (int i = 0; i < MANY; i++) {
+        const int x = i % WIDE, y = i / WIDE % WIDE;
+        const double size = 1e-7 * (1 + 0.1 * (i * 7 % 5));
+        force[i].x = size * (2 - x) / 2;
+        force[i].y = size * (2 - y) / 2;
+        force[i].z = i >= MANY - WIDE * WIDE ? -size : 0;
+    }
+    next_equilibrium(equilibrium, force);
+    memset(force, 0, sizeof force);
+    next_equilibrium(equilibrium, force);
+    int last;
+    print_message("# let go: %.0f tries\n", equilibrium->large->tried);
+    assert_int_equal(equilibrium_restless(equilibrium, &last), 0);
+    assert_true(largest_left(equilibrium) <= 1e-8 * equilibrium->largest_load);
+    assert_true(equilibrium->large->tried < 1500);
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+// ---- a limit ------------------------------------------------------------------------
+
+// A row that is drawn across takes more increments than it is given here.
+static void a_way_that_is_too_long(void **state)
+{
+    (void)state;
+    enum { ROW = 10 };
+    struct packing packing = cubic_lattice(ROW, 1, 1, false);
+    const uint8_t fixed[ROW] = {1};
+    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    setup.large_displacements = true;
+    setup.increment = 0.001;
+    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct vector force[ROW] = {{0, 0, 0}};
+    struct reason reason = {""};
+    force[ROW - 1].z = 1e-8;
+    equilibrium->large->most_tried = 5;
+    assert_int_equal(equilibrium_find(equilibrium, force, &reason),
+                     STATUS_NOT_CONVERGED);
+    print_message("# %s\n", reason.text);
+    double share = 0;
+    assert_non_null(strstr(reason.text, "no end of the way to equilibrium: "));
+    assert_int_equal(sscanf(strchr(reason.text, ':'), ": %lf", &share), 1);
+    assert_true(share > 0 && share < 1);
+    assert_non_null(strstr(reason.text, "grain 9 "));
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_block_that_is_let_go),
+        cmocka_unit_test(a_way_that_is_too_long),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests_name("large ways end", tests, NULL, NULL);
+}
