@@ -60,9 +60,11 @@ double largest_left(const struct equilibrium *e)
 
 // As everything is now; what slips, and begins to touch, is left to corrections. Then
 // the bond alone is in the factor across the contact, or else the contact as if it
-// stuck: so that a grain that slips wherever it touches is not free there.
+// stuck: so that a grain that slips wherever it touches is not free there. Nor where
+// dashpots are to slow it that are like the factor, and its bond is soft by decades.
 bool factor(struct equilibrium *e)
 {
+    const double soft = 1e-4; // of the contact
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         const enum touch touch = e->resistance[j].contact.touch;
@@ -72,7 +74,9 @@ bool factor(struct equilibrium *e)
         for (int k = 0; k < STRAINS; k++)
             e->tangent[j][k] = is_bonded ? joint->bond_stiffness[k] : 0;
         if (touch) e->tangent[j][STRAIN_ALONG] += joint->contact_along;
-        const bool is_stiff = touch && !(touch == TOUCH_SLIPS && is_bonded);
+        const bool is_held = e->damping == 0 || joint->bond_stiffness[STRAIN_ACROSS] >
+                                                    soft * joint->contact_across;
+        const bool is_stiff = touch && !(touch == TOUCH_SLIPS && is_bonded && is_held);
         for (int k = 0; k < 2 && is_stiff; k++)
             e->tangent[j][STRAIN_ACROSS + k] += joint->contact_across;
     }
@@ -270,7 +274,12 @@ static bool creep(struct equilibrium *e)
 bool come_to_rest(struct equilibrium *e)
 {
     e->damping = 0;
-    if (!e->kind->approach(e)) return creep(e);
-    keep_history(e);
-    return true;
+    if (e->kind->approach(e)) {
+        keep_history(e);
+        return true;
+    }
+    if (!e->is_restless) return creep(e);
+    go_back(e);
+    resist(e);
+    return false;
 }

@@ -223,6 +223,7 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
     load_grains(e);
     measure_load(e);
     if (e->large) e->large->tried = 0;
+    e->is_restless = false;
     do {
         const enum status status = e->kind->balance(e, reason);
         if (status) return status;

@@ -84,6 +84,8 @@ struct equilibrium {
     double enough;             // what may be left
     int iterations;
     int factors, n_load; // since all that speeds things up was forgotten
+    bool is_restless;    // no walk in time came to rest under this load: there is none
+                         // again as its bonds break
     int n_restless;      // loads under which not all came to rest
     int restless;        // grain that had most left to balance under the last of them
     int n_snap, snapped; // ends of equilibrium gone through in time; the grain that

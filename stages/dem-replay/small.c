@@ -58,7 +58,8 @@ static enum status balance_small(struct equilibrium *e, struct reason *reason)
     } while (let_go_beyond(e, e->trial, furthest) ||
              (!rests && let_go_beyond(e, e->left, enough)));
     if (!rests) {
-        e->n_restless++;
+        if (!e->is_restless) e->n_restless++;
+        e->is_restless = true;
         e->restless = least_balanced(e);
         keep_history(e);
     }

@@ -12,7 +12,7 @@ static const double glue = 40; // N/m of a bond, along and across
 static const double radius_fraction = 0.5858;
 
 static struct equilibrium *make(const struct packing *packing, const uint8_t *fixed,
-                                bool has_wall)
+                                bool has_wall, double strength)
 {
     const double per_area = glue / (M_PI * pow(radius_fraction * RADIUS, 2));
     const struct equilibrium_setup setup = {
@@ -24,8 +24,8 @@ static struct equilibrium *make(const struct packing *packing, const uint8_t *fi
                      .friction = friction},
         .bond = {.normal_stiffness = per_area,
                  .shear_stiffness = per_area,
-                 .normal_strength = INFINITY,
-                 .shear_strength = INFINITY,
+                 .normal_strength = strength,
+                 .shear_strength = strength,
                  .radius_fraction = radius_fraction},
         .tolerance = 1e-10,
         .most_iterations = 40};
@@ -80,7 +80,7 @@ static void a_loop_of_hysteresis(void **state)
     (void)state;
     uint8_t fixed[3];
     struct packing packing = pressed_rows(1, fixed, across);
-    struct equilibrium *equilibrium = make(&packing, fixed, false);
+    struct equilibrium *equilibrium = make(&packing, fixed, false, INFINITY);
     const double course[] = {0.5, 0.9, 1.7, 3, 2.2, 1, -0.3, -1.1, -3, -1, 0, 2, 3};
     const struct vector way = {0, 0.6, -0.8};
     const double stuck = stiffness, bonds = 2 * glue; // both contacts, both bonds
@@ -134,7 +134,7 @@ static void a_front_of_slip(void **state)
     (void)state;
     uint8_t fixed[3 * ROW];
     struct packing packing = pressed_rows(ROW, fixed, along);
-    struct equilibrium *equilibrium = make(&packing, fixed, false);
+    struct equilibrium *equilibrium = make(&packing, fixed, false, INFINITY);
     int slid = 0;
     for (double pull = 0.7; pull < ROW - 1; pull += 0.7) {
         double expected[ROW];
@@ -164,7 +164,7 @@ static void a_block_on_a_slope(void **state)
     const double weight = 1e-8;
     for (int steep = 0; steep < 2; steep++) {
         const double slope = (steep ? 1.02 : 0.98) * friction;
-        struct equilibrium *equilibrium = make(&packing, fixed, true);
+        struct equilibrium *equilibrium = make(&packing, fixed, true, INFINITY);
         struct vector force[N], moved[N];
         int last;
         for (int part = 1; part <= 4; part++) {
@@ -175,6 +175,28 @@ static void a_block_on_a_slope(void **state)
         assert_int_equal(equilibrium_restless(equilibrium, &last), steep);
         equilibrium_free(equilibrium);
     }
+    packing_free(&packing);
+}
+
+// Where its bonds break as it slides, a load is without rest once, not once a bond.
+static void a_load_is_without_rest_once(void **state)
+{
+    (void)state;
+    enum { N = 18, LOADS = 3 };
+    struct packing packing = cubic_lattice(3, 3, 2, false);
+    const uint8_t fixed[N] = {0};
+    struct equilibrium *equilibrium = make(&packing, fixed, true, 1e-3);
+    struct vector force[N], moved[N];
+    int last, cracks;
+    for (int i = 0; i < N; i++)
+        force[i] = (struct vector){1.5 * friction * 1e-8, 0, -1e-8};
+    for (int load = 1; load <= LOADS; load++) {
+        find(equilibrium, force, moved);
+        assert_true(equilibrium_restless(equilibrium, &last) <= load);
+    }
+    equilibrium_cracks(equilibrium, &cracks);
+    assert_true(equilibrium_restless(equilibrium, &last) > 0 && cracks > 1);
+    equilibrium_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -196,8 +218,8 @@ static void any_order_of_joints(void **state)
         for (int end = 0; end < 2; end++)
             reversed.bond[straight.n_bond - 1 - b][end] =
                 BLOCK - 1 - straight.bond[b][1 - end];
-    struct equilibrium *one = make(&straight, fixed[0], false);
-    struct equilibrium *other = make(&reversed, fixed[1], false);
+    struct equilibrium *one = make(&straight, fixed[0], false, INFINITY);
+    struct equilibrium *other = make(&reversed, fixed[1], false, INFINITY);
     for (int step = 1; step <= 8; step++) {
         struct vector force[2][BLOCK], moved[2][BLOCK];
         double apart = 0, size = 0;
@@ -223,9 +245,11 @@ static void any_order_of_joints(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_loop_of_hysteresis), cmocka_unit_test(a_front_of_slip),
-        cmocka_unit_test(a_block_on_a_slope), cmocka_unit_test(any_order_of_joints)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_loop_of_hysteresis),
+                                       cmocka_unit_test(a_front_of_slip),
+                                       cmocka_unit_test(a_block_on_a_slope),
+                                       cmocka_unit_test(a_load_is_without_rest_once),
+                                       cmocka_unit_test(any_order_of_joints)};
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
