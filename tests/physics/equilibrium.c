@@ -73,14 +73,7 @@ static void a_block_as_the_discrete_elements(void **state)
     next_equilibrium(equilibrium, force);
     equilibrium_displacements(equilibrium, moved);
 
-    struct dem_setup slow = {.packing = &block->packing,
-                             .material = block->setup.material,
-                             .bond = block->setup.bond,
-                             .fixed = block->fixed,
-                             .time_step_safety = 0.04,
-                             .threads = 1};
-    slow.material.density = 3230;
-    slow.material.damping_ratio = 0.7;
+    const struct dem_setup slow = cycles_of(&block->setup, 0.04);
     struct dem *dem;
     struct reason reason = {""};
     if (dem_create(&dem, &slow, &reason)) fail_msg("%s", reason.text);

@@ -121,14 +121,7 @@ static void grow_to_rest(const struct equilibrium_setup *setup,
 {
     const bool is_point = setup->bond.kind == DEM_CONTACT_BOND;
     const int n = setup->packing->n_particle;
-    struct dem_setup slow = {.packing = setup->packing,
-                             .material = setup->material,
-                             .bond = setup->bond,
-                             .fixed = setup->fixed,
-                             .time_step_safety = is_point ? 0.03 : 0.045,
-                             .threads = 1};
-    slow.material.density = 3230;
-    slow.material.damping_ratio = 0.7;
+    struct dem_setup slow = cycles_of(setup, is_point ? 0.03 : 0.045);
     // Dashpots do not see rolling, and are at contacts only.
     slow.material.local_damping =
         is_point || !(setup->material.normal_stiffness > 0) ? 0.5 : 0;

@@ -269,14 +269,7 @@ static void take_off(const struct equilibrium_setup *setup, struct dem *dem,
 static void cycles_to_rest(const struct equilibrium_setup *setup,
                            const struct vector *full, struct vector still[BLOCK])
 {
-    struct dem_setup slow = {.packing = setup->packing,
-                             .material = setup->material,
-                             .bond = setup->bond,
-                             .fixed = setup->fixed,
-                             .time_step_safety = 0.045,
-                             .threads = 1};
-    slow.material.density = 3230;
-    slow.material.damping_ratio = 0.7;
+    const struct dem_setup slow = cycles_of(setup, 0.045);
     struct dem *dem;
     struct reason reason = {""};
     if (dem_create(&dem, &slow, &reason)) fail_msg("%s", reason.text);

@@ -26,3 +26,16 @@ struct response replay_or_fail(const struct packing *packing, const struct load 
         fail_msg("%s", reason.text);
     return response;
 }
+
+struct dem_setup cycles_of(const struct equilibrium_setup *setup, double safety)
+{
+    struct dem_setup cycles = {.packing = setup->packing,
+                               .material = setup->material,
+                               .bond = setup->bond,
+                               .fixed = setup->fixed,
+                               .time_step_safety = safety,
+                               .threads = 1};
+    cycles.material.density = 3230;
+    cycles.material.damping_ratio = 0.7;
+    return cycles;
+}

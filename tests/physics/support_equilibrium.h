@@ -11,4 +11,8 @@ void next_equilibrium(struct equilibrium *equilibrium, const struct vector *forc
 struct response replay_or_fail(const struct packing *packing, const struct load *load,
                                const struct replay_settings *settings);
 
+// Cycles of the same grains and joints, with dashpots, whose steps are SAFETY of
+// [K 4.47].
+struct dem_setup cycles_of(const struct equilibrium_setup *setup, double safety);
+
 #endif

@@ -13,10 +13,12 @@ struct barrier {
     atomic_int waiting, round;
 };
 
-// Returns when all SIZE threads have come; what they wrote before can be read then.
+// Returns when all SIZE threads have come, at once for one; what they wrote before can
+// be read then.
 static inline void barrier_wait(struct barrier *barrier)
 {
     enum { PATIENCE = 2000 }; // looks, some microseconds
+    if (barrier->size == 1) return;
     const int round = atomic_load(&barrier->round);
     if (atomic_fetch_add(&barrier->waiting, 1) + 1 == barrier->size) {
         atomic_store(&barrier->waiting, 0);

@@ -155,7 +155,7 @@ static struct outcome sweep_part(struct dem *dem, struct crew *crew, int me)
         mine.n_broken += part.n_broken;
         add_pace(&mine, part.pace);
     }
-    if (n_share > 1 && crew->barrier.size > 1) barrier_wait(&crew->barrier);
+    barrier_wait(&crew->barrier);
     for (int t = me; t < n_share && n_share > 1; t += crew->barrier.size) {
         const int begin = smaller(t * late_share, dem->n_late);
         const int end = smaller(begin + late_share, dem->n_late);
@@ -257,7 +257,7 @@ static void follow(struct dem *dem, struct crew *crew, int me, struct course *co
 {
     do {
         crew->part[me] = sweep_part(dem, crew, me);
-        if (crew->barrier.size > 1) barrier_wait(&crew->barrier);
+        barrier_wait(&crew->barrier);
         if (me == 0) {
             struct outcome total = crew->part[0];
             for (int t = 1; t < crew->barrier.size; t++) { // in any order the same
@@ -268,7 +268,7 @@ static void follow(struct dem *dem, struct crew *crew, int me, struct course *co
             if (goes_on(course)) approach_cycle(dem, course);
             if (goes_on(course) && !course->pairs_are_due) begin_cycle(dem, course);
         }
-        if (crew->barrier.size > 1) barrier_wait(&crew->barrier);
+        barrier_wait(&crew->barrier);
     } while (goes_on(course) && !course->pairs_are_due);
 }
 

@@ -20,8 +20,10 @@ static void flush_standard_output(void)
 error_t parse_common_option(int key, struct argp_state *state, const char *program,
                             int version)
 {
-    if (key == ARGP_KEY_INIT) state->err_stream = NULL; // one line, getopt's own
-    if (key == ARGP_KEY_INIT) return 0;
+    if (key == ARGP_KEY_INIT) {
+        state->err_stream = NULL; // one line, getopt's own
+        return 0;
+    }
     if (key != 'V') return ARGP_ERR_UNKNOWN;
     printf("%s (craquelure %s) stage version %d\n", program, CRAQUELURE_VERSION,
            version);
