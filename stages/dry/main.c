@@ -186,7 +186,7 @@ int main(int argc, char **argv)
     const struct mass_transfer transfer =
         give_mass_transfer(&network, &parameters, invocation.quiet);
     struct reason reason;
-    if (give_radii(&network, &parameters.radii, &reason))
+    if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "dry.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);
     if (parameters.imposed_empty)

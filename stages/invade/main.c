@@ -205,7 +205,7 @@ int main(int argc, char **argv)
     struct network network = artifact_get_periodic_network(input);
 
     struct reason reason;
-    if (give_radii(&network, &parameters.radii, &reason))
+    if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "invade.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);
     struct entry entry;

@@ -242,9 +242,11 @@ with scratch() as folder:
     refused += [refusal(64, word, "none", "2", word) for word in ("demreplay.cycles=2", "dry=3")]
     refused += [refusal(64, "most_change", "none", "2", f"most_change={word}") for word in ("abc", "-1", "")]
     refused += [refusal(73, "other/7", "other", "2")]
-    end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), "2", "/dev/null"],
-                         env=os.environ | {"BIN": BIN}, capture_output=True, text=True)
-    refused += [end.returncode == 73 and end.stderr.count("\n") == 1 and "must be a file" in end.stderr]
+    for device in "/dev/null", "/dev/stdout": # the second is a file here
+        with open(at("printed"), "w", encoding="utf-8") as file:
+            end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), "2", device],
+                                 env=os.environ | {"BIN": BIN}, stdout=file, stderr=subprocess.PIPE, text=True)
+        refused += [end.returncode == 73 and end.stderr.count("\n") == 1 and "must be a file" in end.stderr]
     ok(all(refused) and os.path.exists(at("other/7/precious")) and not os.path.exists(at("none")),
        "refused in a line, and nothing lost", refused)
 

@@ -13,10 +13,11 @@ struct drawn_radii {
     struct radius_distribution how;
 };
 
-// Gives NETWORK the radii that were asked for, if any were; STATUS_BAD_DATA as
-// draw_radii.
+// Gives NETWORK the radii that were asked for, if any were. STATUS_BAD_DATA as
+// draw_radii, and where none are drawn but PARAMETERS, the stage's effective ones, say
+// how.
 enum status give_radii(struct network *network, const struct drawn_radii *radii,
-                       struct reason *reason);
+                       const json_t *parameters, struct reason *reason);
 
 // AT: where struct drawn_radii lies in the stage's parameter struct.
 #define DRAWN_RADII_AT(at, member) (at) + offsetof(struct drawn_radii, member)
