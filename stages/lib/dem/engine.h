@@ -20,13 +20,9 @@
 
 #include "bridges/table.h"
 #include "dem/dem.h"
+#include "dem/pairs.h"
 
 #include <stddef.h>
-
-enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
-// Groups name grains and rows by so many times their number: processors find a record
-// of 32 or 64 bytes by that in one step.
-enum { NUMBER_STEP = 8 };
 
 // A grain may move half of this (in mean radii) before the pairs are sought again; at
 // the start, later tuned to how fast grains move (neighbours.c).
@@ -59,99 +55,6 @@ struct place {
 struct motion {
     _Alignas(CACHE_LINE) double linear[4];
     double angular[4];
-};
-
-// Eight pairs as the kernel takes them. Unused ones at the end pair the grain that is
-// not there (index n_particle) with itself, far apart.
-struct pair_group {
-    _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
-    uint32_t second[PAIRS_IN_GROUP];
-    double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
-    double distance[PAIRS_IN_GROUP];      // |separation|
-    double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance; 0 if that is at rest
-    double inverse_distance[PAIRS_IN_GROUP]; // for parallel bonds
-};
-
-// Where the loads on the two grains of each pair are added up: rows of dem->sum.
-struct sum_group {
-    _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
-    uint32_t second[PAIRS_IN_GROUP];
-};
-
-// What the pairs of a group did in the last cycle, if that is kept. Force on the second
-// grain, the first feels the opposite; of the moments, less that on the first and that
-// on the second.
-struct load_group {
-    _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
-};
-struct moment_group {
-    _Alignas(CACHE_LINE) double first[3][PAIRS_IN_GROUP];
-    double second[3][PAIRS_IN_GROUP];
-};
-
-// What a group has besides, where the scene needs it.
-struct shear_group {
-    _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
-};
-struct own_group {
-    _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
-    double shear_stiffness[PAIRS_IN_GROUP];
-    double normal_damping[PAIRS_IN_GROUP];
-    double shear_damping[PAIRS_IN_GROUP];
-    double friction[PAIRS_IN_GROUP];
-};
-struct bond_group {
-    _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without an intact bond
-    double normal_strength[PAIRS_IN_GROUP];             // -1 without an intact bond
-    double shear_strength[PAIRS_IN_GROUP]; // of parallel bonds, both times A R
-    double shear_force[3][PAIRS_IN_GROUP]; // of parallel bonds, as all below
-    double bending[3][PAIRS_IN_GROUP];     // M^s
-    double twist[PAIRS_IN_GROUP];          // M^n along n
-    int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
-};
-struct loss_group {
-    _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
-    double slip[PAIRS_IN_GROUP];
-    double broken[PAIRS_IN_GROUP];
-    double bridges[PAIRS_IN_GROUP];
-};
-struct liquid_group {
-    _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
-    double radius[PAIRS_IN_GROUP];                    // effective [G 1]
-    double volume[PAIRS_IN_GROUP];                    // over its cube; 0: no bridge
-    double rupture[PAIRS_IN_GROUP]; // the gap at which it ruptures, over the radius
-};
-
-// The numbers of a contact with overlap U. Linear: normal force = stiffness U, shear
-// stiffness and damping as they are. Hertz: stiffness U^1.5, shear stiffness times
-// U^0.5, both dampings times U^0.25.
-struct contact_law {
-    double normal_stiffness; // of a contact, K^n_ij
-    double shear_stiffness;
-    double friction;
-    double normal_damping; // force per velocity
-    double shear_damping;
-};
-
-struct pair_list {
-    int n_pair;
-    int32_t (*particle)[2]; // (n_pair) sorted by first, then second
-    int32_t *bond;          // (n_pair) the bond of the packing, broken or not; or -1
-    int n_group;
-    struct pair_group *group; // (n_group)
-    struct sum_group *sum;    // (n_group)
-    struct load_group *load;  // (n_group)
-    // (n_group) with a late grain: `sum` says where loads are added up; otherwise at
-    // the grains' numbers.
-    uint8_t *elsewhere;
-    uint8_t *idle; // (n_group) no pair touches or is bonded, and all loads kept are 0
-    // (n_group) or NULL where not needed
-    struct moment_group *moment;
-    struct shear_group *shear;
-    struct own_group *own;
-    struct bond_group *bonds;
-    struct loss_group *loss;
-    struct liquid_group *liquid;
 };
 
 // A material in scaled units.
@@ -313,12 +216,12 @@ static inline bool has_direction(enum dem_wall_shape shape)
 // Seeks the pairs anew, with the history of those that stay [neighbours.c].
 void find_pairs(struct dem *dem);
 // Makes these the pairs, sorted, with all that is told from them; takes over both
-// arrays. Those that were there before keep their history.
+// arrays. Those that were there before keep their history [pairs.c].
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
 // Whether they must be sought, as a grain may have moved further than half the skin.
 bool pairs_are_due(struct dem *dem);
 void renew_pairs(struct dem *dem);
-// Makes rows to add up in for the pairs that are swept.
+// Makes rows to add up in for the pairs that are swept [sums.c].
 void arrange_sums(struct dem *dem);
 // Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them in again
 // before they can, and for the last cycle [resting.c].
@@ -328,11 +231,6 @@ void wake_pairs(struct dem *dem);
 void close_pair_books(struct dem *dem);
 // Empty lists of N_PAIR pairs, with what the scene needs; takes over both arrays.
 void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
-void free_pairs(struct pair_list *pairs);
-// History and image of a pair that was there before, if SWAPPED with its grains in the
-// other order.
-void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
-                int old_pair, bool swapped);
 // Sets how the pair in lane LANE of GROUP lies as of where its grains began.
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);
 // Makes lane PAIR one that holds no pair.
@@ -417,22 +315,6 @@ double automatic_time_step(const struct dem *dem);
 // An automatic step that is too long for the pairs that have been found.
 void shorten_time_step(struct dem *dem);
 
-static inline int first_grain(const struct pair_group *group, int lane)
-{
-    return (int)(group->first[lane] / NUMBER_STEP);
-}
-
-static inline int second_grain(const struct pair_group *group, int lane)
-{
-    return (int)(group->second[lane] / NUMBER_STEP);
-}
-
-static inline void set_grains(struct pair_group *group, int lane, int first, int second)
-{
-    group->first[lane] = NUMBER_STEP * (uint32_t)first;
-    group->second[lane] = NUMBER_STEP * (uint32_t)second;
-}
-
 static inline int groups_in_share(const struct dem *dem)
 {
     return (dem->pairs.n_group + dem->n_share - 1) / dem->n_share;
@@ -441,11 +323,6 @@ static inline int groups_in_share(const struct dem *dem)
 static inline struct vector as_vector(const double a[3])
 {
     return (struct vector){a[0], a[1], a[2]};
-}
-
-static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int lane)
-{
-    return (struct vector){a[0][lane], a[1][lane], a[2][lane]};
 }
 
 static inline struct vector position_now(const struct dem *dem, int particle)

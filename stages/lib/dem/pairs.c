@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of pairs: how each lies, what it is made of, and its history from list to
+// list.
+#include "dem/engine.h"
+
+#include "basics/memory.h"
+#include "geometry/neighbours.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// From grain I to J where they are now, to the nearest image.
+static struct vector separation_now(const struct dem *dem, int i, int j)
+{
+    struct vector apart = subtract(position_now(dem, j), position_now(dem, i));
+    for (int axis = 0; axis < 3; axis++) {
+        const double period = dem->period[axis];
+        if (period <= 0) continue;
+        const double length = component(apart, axis);
+        set_component(&apart, axis, length - period * rint(length / period));
+    }
+    return apart;
+}
+
+struct lane {
+    int group, at;
+};
+
+static struct lane lane_of(int pair)
+{
+    return (struct lane){pair / PAIRS_IN_GROUP, pair % PAIRS_IN_GROUP};
+}
+
+void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
+{
+    const int i = first_grain(group, lane), j = second_grain(group, lane);
+    const struct vector now = subtract(position_now(dem, j), position_now(dem, i));
+    const struct vector periods = subtract(separation_now(dem, i, j), now);
+    const struct vector separation =
+        add(subtract(dem->start[j], dem->start[i]), periods);
+    for (int axis = 0; axis < 3; axis++)
+        group->separation[axis][lane] = component(separation, axis);
+    const double distance = norm(separation);
+    group->distance[lane] = distance;
+    group->inverse_distance[lane] = 1 / distance;
+    group->overlap[lane] =
+        given_overlap(dem, dem->place[i].radius + dem->place[j].radius - distance);
+}
+
+void set_pair_law(struct dem *dem, int pair)
+{
+    const struct lane to = lane_of(pair);
+    const struct contact_law law =
+        pair_law(dem, dem->pairs.particle[pair][0], dem->pairs.particle[pair][1]);
+    struct own_group *own = &dem->pairs.own[to.group];
+    own->normal_stiffness[to.at] = law.normal_stiffness;
+    own->shear_stiffness[to.at] = law.shear_stiffness;
+    own->normal_damping[to.at] = law.normal_damping;
+    own->shear_damping[to.at] = law.shear_damping;
+    own->friction[to.at] = law.friction;
+}
+
+struct contact_law law_of_pair(const struct dem *dem, int pair)
+{
+    if (!dem->pairs.own) return dem->law;
+    const struct lane at = lane_of(pair);
+    const struct own_group *own = &dem->pairs.own[at.group];
+    return (struct contact_law){.normal_stiffness = own->normal_stiffness[at.at],
+                                .shear_stiffness = own->shear_stiffness[at.at],
+                                .friction = own->friction[at.at],
+                                .normal_damping = own->normal_damping[at.at],
+                                .shear_damping = own->shear_damping[at.at]};
+}
+
+static void set_bond(struct dem *dem, struct lane to, int bond)
+{
+    struct bond_group *bonds = &dem->pairs.bonds[to.group];
+    bonds->normal_strength[to.at] = -1;
+    bonds->shear_strength[to.at] = -1;
+    bonds->crack[to.at] = -1;
+    if (bond < 0 || dem->bond_strength[DEM_CRACK_NORMAL][bond] < 0) return;
+    const double radius = dem->bond_radius[bond];
+    const double unit =
+        dem->features & FEATURE_PARALLEL_BOND ? M_PI * radius * radius * radius : 1;
+    bonds->radius[to.at] = radius;
+    bonds->normal_strength[to.at] = unit * dem->bond_strength[DEM_CRACK_NORMAL][bond];
+    bonds->shear_strength[to.at] = unit * dem->bond_strength[DEM_CRACK_SHEAR][bond];
+}
+
+void set_nobody(struct dem *dem, int pair)
+{
+    const struct lane to = lane_of(pair);
+    struct pair_group *group = &dem->pairs.group[to.group];
+    set_grains(group, to.at, dem->n_particle, dem->n_particle);
+    group->separation[0][to.at] = 1;
+    group->distance[to.at] = group->inverse_distance[to.at] = 1;
+    group->overlap[to.at] = -1;
+    if (dem->pairs.liquid) dem->pairs.liquid[to.group].radius[to.at] = 1;
+    if (dem->pairs.bonds) set_bond(dem, to, -1);
+}
+
+void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
+                int old_pair, bool swapped)
+{
+    const struct lane to = lane_of(new_pair), from = lane_of(old_pair);
+    const double sign = swapped ? -1 : 1;
+    struct pair_group *group = &new->group[to.group];
+    const struct pair_group *was = &old->group[from.group];
+    for (int axis = 0; axis < 3; axis++) {
+        group->separation[axis][to.at] = sign * was->separation[axis][from.at];
+        if (new->shear)
+            new->shear[to.group].force[axis][to.at] =
+                sign * old->shear[from.group].force[axis][from.at];
+        if (!new->bonds) continue;
+        struct bond_group *bonds = &new->bonds[to.group];
+        const struct bond_group *were = &old->bonds[from.group];
+        bonds->shear_force[axis][to.at] = sign * were->shear_force[axis][from.at];
+        bonds->bending[axis][to.at] = sign * were->bending[axis][from.at];
+        bonds->twist[to.at] = were->twist[from.at];
+    }
+    group->distance[to.at] = was->distance[from.at];
+    group->inverse_distance[to.at] = was->inverse_distance[from.at];
+    group->overlap[to.at] = was->overlap[from.at];
+    if (!new->liquid) return;
+    struct liquid_group *liquid = &new->liquid[to.group];
+    liquid->volume[to.at] = old->liquid[from.group].volume[from.at];
+    liquid->rupture[to.at] = old->liquid[from.group].rupture[from.at];
+}
+
+static void fill_pairs(struct dem *dem, const struct pair_list *old)
+{
+    struct pair_list *pairs = &dem->pairs;
+    int before = 0;
+    for (int p = 0; p < pairs->n_pair; p++) {
+        const struct lane to = lane_of(p);
+        struct pair_group *group = &pairs->group[to.group];
+        set_grains(group, to.at, pairs->particle[p][0], pairs->particle[p][1]);
+        if (pairs->own) set_pair_law(dem, p);
+        if (pairs->liquid) set_bridge_radius(dem, p);
+        if (pairs->bonds) set_bond(dem, to, pairs->bond[p]);
+        int order = -1;
+        while (before < old->n_pair && order < 0) {
+            order = compare_pairs(old->particle[before], pairs->particle[p]);
+            before += order < 0;
+        }
+        if (before < old->n_pair && order == 0)
+            carry_over(pairs, p, old, before, false);
+        else
+            set_pair_place(dem, group, to.at);
+    }
+    for (int p = pairs->n_pair; p < PAIRS_IN_GROUP * pairs->n_group; p++)
+        set_nobody(dem, p);
+}
+
+// Lists of what the scene needs, and of nothing else.
+void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond)
+{
+    const int n_group = (n_pair + PAIRS_IN_GROUP - 1) / PAIRS_IN_GROUP;
+    const size_t n = (size_t)n_group;
+    struct pair_list *pairs = &dem->pairs;
+    *pairs = (struct pair_list){.n_pair = n_pair,
+                                .particle = particle,
+                                .bond = bond,
+                                .n_group = n_group,
+                                .group = allocate_aligned(n, sizeof *pairs->group),
+                                .sum = allocate_aligned(n, sizeof *pairs->sum),
+                                .load = allocate_aligned(n, sizeof *pairs->load),
+                                .elsewhere = NEW_ARRAY(uint8_t, n),
+                                .idle = NEW_ARRAY(uint8_t, n)};
+    if (dem->features & FEATURE_TURN) {
+        pairs->moment = allocate_aligned(n, sizeof *pairs->moment);
+        pairs->shear = allocate_aligned(n, sizeof *pairs->shear);
+    }
+    if (dem->features & FEATURE_OWN)
+        pairs->own = allocate_aligned(n, sizeof *pairs->own);
+    if (dem->features & FEATURE_BOND)
+        pairs->bonds = allocate_aligned(n, sizeof *pairs->bonds);
+    if (dem->balance_energy) pairs->loss = allocate_aligned(n, sizeof *pairs->loss);
+    if (dem->liquid) pairs->liquid = allocate_aligned(n, sizeof *pairs->liquid);
+}
+
+void free_pairs(struct pair_list *pairs)
+{
+    free(pairs->particle);
+    free(pairs->bond);
+    free(pairs->group);
+    free(pairs->sum);
+    free(pairs->load);
+    free(pairs->elsewhere);
+    free(pairs->idle);
+    free(pairs->moment);
+    free(pairs->shear);
+    free(pairs->own);
+    free(pairs->bonds);
+    free(pairs->loss);
+    free(pairs->liquid);
+}
+
+void close_pair_books(struct dem *dem)
+{
+    if (!dem->pairs.loss) return;
+    for (int p = 0; p < dem->pairs.n_pair; p++) {
+        const struct lane at = lane_of(p);
+        const struct loss_group *loss = &dem->pairs.loss[at.group];
+        dem->books.dashpots += loss->dashpots[at.at];
+        dem->books.slip += loss->slip[at.at];
+        dem->books.broken += loss->broken[at.at];
+        dem->books.bridges += loss->bridges[at.at];
+    }
+    memset(dem->pairs.loss, 0, (size_t)dem->pairs.n_group * sizeof *dem->pairs.loss);
+}
+
+// The pairs of each grain. As they are sorted, those of which it is the second come
+// first.
+static void list_pairs_of_grains(struct dem *dem)
+{
+    const int n = dem->n_particle, n_pair = dem->pairs.n_pair;
+    memset(dem->pair_offset, 0, ((size_t)n + 1) * sizeof *dem->pair_offset);
+    for (int p = 0; p < n_pair; p++)
+        for (int end = 0; end < 2; end++)
+            dem->pair_offset[dem->pairs.particle[p][end] + 1]++;
+    for (int i = 0; i < n; i++)
+        dem->pair_offset[i + 1] += dem->pair_offset[i];
+
+    free(dem->pair_of);
+    dem->pair_of = allocate(2 * (size_t)n_pair, sizeof *dem->pair_of);
+    int *next = duplicate(dem->pair_offset, (size_t)n + 1, sizeof *next);
+    for (int p = 0; p < n_pair; p++)
+        for (int end = 0; end < 2; end++)
+            dem->pair_of[next[dem->pairs.particle[p][end]]++] = p;
+    free(next);
+}
+
+void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond)
+{
+    struct pair_list old = dem->pairs;
+    new_pairs(dem, n_pair, particle, bond);
+    fill_pairs(dem, &old);
+    free_pairs(&old);
+    list_pairs_of_grains(dem);
+    arrange_sums(dem);
+    if (dem->liquid) count_bridges(dem);
+}

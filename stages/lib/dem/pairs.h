@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pairs of an engine as the kernel takes them: in groups of eight, each number of
+// all eight side by side. All in scaled units.
+#ifndef CRAQUELURE_DEM_PAIRS_H
+#define CRAQUELURE_DEM_PAIRS_H
+
+#include "geometry/vector.h"
+
+#include <stdint.h>
+
+enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
+// Groups name grains and rows by so many times their number: processors find a record
+// of 32 or 64 bytes by that in one step.
+enum { NUMBER_STEP = 8 };
+
+// Eight pairs as the kernel takes them. Unused ones at the end pair the grain that is
+// not there (index n_particle) with itself, far apart.
+struct pair_group {
+    _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
+    uint32_t second[PAIRS_IN_GROUP];
+    double separation[3][PAIRS_IN_GROUP]; // x_j - x_i where both began
+    double distance[PAIRS_IN_GROUP];      // |separation|
+    double overlap[PAIRS_IN_GROUP];       // R_i + R_j - distance; 0 if that is at rest
+    double inverse_distance[PAIRS_IN_GROUP]; // for parallel bonds
+};
+
+// Where the loads on the two grains of each pair are added up: rows of dem->sum.
+struct sum_group {
+    _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
+    uint32_t second[PAIRS_IN_GROUP];
+};
+
+// What the pairs of a group did in the last cycle, if that is kept. Force on the second
+// grain, the first feels the opposite; of the moments, less that on the first and that
+// on the second.
+struct load_group {
+    _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
+};
+struct moment_group {
+    _Alignas(CACHE_LINE) double first[3][PAIRS_IN_GROUP];
+    double second[3][PAIRS_IN_GROUP];
+};
+
+// What a group has besides, where the scene needs it.
+struct shear_group {
+    _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
+};
+struct own_group {
+    _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
+    double shear_stiffness[PAIRS_IN_GROUP];
+    double normal_damping[PAIRS_IN_GROUP];
+    double shear_damping[PAIRS_IN_GROUP];
+    double friction[PAIRS_IN_GROUP];
+};
+struct bond_group {
+    _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without an intact bond
+    double normal_strength[PAIRS_IN_GROUP];             // -1 without an intact bond
+    double shear_strength[PAIRS_IN_GROUP]; // of parallel bonds, both times A R
+    double shear_force[3][PAIRS_IN_GROUP]; // of parallel bonds, as all below
+    double bending[3][PAIRS_IN_GROUP];     // M^s
+    double twist[PAIRS_IN_GROUP];          // M^n along n
+    int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
+};
+struct loss_group {
+    _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
+    double slip[PAIRS_IN_GROUP];
+    double broken[PAIRS_IN_GROUP];
+    double bridges[PAIRS_IN_GROUP];
+};
+struct liquid_group {
+    _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
+    double radius[PAIRS_IN_GROUP];                    // effective [G 1]
+    double volume[PAIRS_IN_GROUP];                    // over its cube; 0: no bridge
+    double rupture[PAIRS_IN_GROUP]; // the gap at which it ruptures, over the radius
+};
+
+// The numbers of a contact with overlap U. Linear: normal force = stiffness U, shear
+// stiffness and damping as they are. Hertz: stiffness U^1.5, shear stiffness times
+// U^0.5, both dampings times U^0.25.
+struct contact_law {
+    double normal_stiffness; // of a contact, K^n_ij
+    double shear_stiffness;
+    double friction;
+    double normal_damping; // force per velocity
+    double shear_damping;
+};
+
+struct pair_list {
+    int n_pair;
+    int32_t (*particle)[2]; // (n_pair) sorted by first, then second
+    int32_t *bond;          // (n_pair) the bond of the packing, broken or not; or -1
+    int n_group;
+    struct pair_group *group; // (n_group)
+    struct sum_group *sum;    // (n_group)
+    struct load_group *load;  // (n_group)
+    // (n_group) with a late grain: `sum` says where loads are added up; otherwise at
+    // the grains' numbers.
+    uint8_t *elsewhere;
+    uint8_t *idle; // (n_group) no pair touches or is bonded, and all loads kept are 0
+    // (n_group) or NULL where not needed
+    struct moment_group *moment;
+    struct shear_group *shear;
+    struct own_group *own;
+    struct bond_group *bonds;
+    struct loss_group *loss;
+    struct liquid_group *liquid;
+};
+
+static inline int first_grain(const struct pair_group *group, int lane)
+{
+    return (int)(group->first[lane] / NUMBER_STEP);
+}
+
+static inline int second_grain(const struct pair_group *group, int lane)
+{
+    return (int)(group->second[lane] / NUMBER_STEP);
+}
+
+static inline void set_grains(struct pair_group *group, int lane, int first, int second)
+{
+    group->first[lane] = NUMBER_STEP * (uint32_t)first;
+    group->second[lane] = NUMBER_STEP * (uint32_t)second;
+}
+
+static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int lane)
+{
+    return (struct vector){a[0][lane], a[1][lane], a[2][lane]};
+}
+
+// What it owns.
+void free_pairs(struct pair_list *pairs);
+// History and image of a pair that was there before, if SWAPPED with its grains in the
+// other order.
+void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
+                int old_pair, bool swapped);
+
+#endif
