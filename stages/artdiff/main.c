@@ -17,8 +17,8 @@ struct options {
 static const struct argp_option option_table[] = {
     {"tolerance", 't', "T", 0,
      "Largest difference, of the largest value of a dataset, or of a number that "
-     "stands "
-     "alone, of 1 where that has no unit and is less [0]; whole numbers must be equal",
+     "stands alone, of 1 where that has no unit and is less [0]; whole numbers must be "
+     "equal",
      0},
     {"quiet", 'q', NULL, 0, "Only the exit status", 0},
     VERSION_OPTION,

@@ -30,10 +30,8 @@ static const struct parameter table[] = {
      AT(first_group)},
     {"paired", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "runs of the two groups belong together, the first of one and the first of the "
-     "other "
-     "and so on, as of one aggregate that dries in two ways: their differences are "
-     "tested "
-     "too",
+     "other and so on, as of one aggregate that dries in two ways: their differences "
+     "are tested too",
      AT(paired)},
     {"same_bonds", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
      "all runs must have as many bonds as the first; false: runs of other packings",

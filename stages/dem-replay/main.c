@@ -189,8 +189,7 @@ static void warn_if_loose(const struct packing *packing,
                response->n_restless, response->restless);
     if (moved > largest_radius)
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
-               "%.3g "
-               "of the largest radius",
+               "%.3g of the largest radius",
                response->n_crack, packing->n_bond, moved / largest_radius);
 }
 

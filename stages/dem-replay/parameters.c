@@ -18,8 +18,7 @@ const struct parameter replay_table[] = {
      AT(settings.material.damping_ratio)},
     {"local_damping", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 0.99, NULL,
      "share of the net force on a grain taken off while it moves its way, added while "
-     "it "
-     "moves against it; for statics",
+     "it moves against it; for statics",
      AT(settings.material.local_damping)},
     {"normal_stiffness", PARAMETER_NUMBER, "N m-1", "3e4", BOUND_MINIMUM, 0, 0, NULL,
      "of a grain; two in series make a contact [K 4.22]",
@@ -61,8 +60,7 @@ const struct parameter replay_table[] = {
     {"bond.kind", PARAMETER_CHOICE, "1", "\"parallel\"", BOUND_NONE, 0, 0,
      "parallel|contact",
      "parallel: cylinders of glue [K 4.31-4.44]; contact: the contact's own springs "
-     "also "
-     "in tension, without slip [K 4.2]",
+     "also in tension, without slip [K 4.2]",
      AT(bond)},
     {"bond.contact_strength", PARAMETER_NUMBER, "N", "null", BOUND_MINIMUM, 0, 0, NULL,
      "tension or shear force that breaks a contact bond; null: none does",

@@ -32,8 +32,7 @@ struct flow_parameters {
 static const struct parameter table[] = {
     {"along", PARAMETER_CHOICE, "1", "\"z\"", BOUND_NONE, 0, 0, "x|y|z|none",
      "direction in which the pressure falls, from the lower to the upper wall or, "
-     "where "
-     "the box repeats, from box to box; none: only what pressure and flux say",
+     "where the box repeats, from box to box; none: only what pressure and flux say",
      AT(imposed.along)},
     {"pressure_drop", PARAMETER_NUMBER, "Pa", "1", BOUND_NONE, 0, 0, NULL,
      "how far it falls over the box", AT(imposed.drop)},
@@ -80,20 +79,16 @@ static const struct parameter table[] = {
      "from three more flows, along x, y and z", AT(tensor)},
     {"stokes_drag", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "small grains that float in a pore get Stokes' drag too; the grains around them "
-     "lose "
-     "what they get",
+     "lose what they get",
      AT(stokes)},
     {"pore_stress", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
      "pressure and viscous stress, averaged over each pore and over the fluid; nothing "
-     "may "
-     "move",
+     "may move",
      AT(stress)},
     {"solver", PARAMETER_CHOICE, "1", "\"auto\"", BOUND_NONE, 0, 0,
      "auto|cholesky|iteration",
      "of the pressures: Cholesky's factor, or conjugate gradients with a sampled "
-     "factor; "
-     "auto: "
-     "the faster",
+     "factor; auto: the faster",
      AT(solver)},
     {"tolerance", PARAMETER_NUMBER, "1", "1e-12", BOUND_BETWEEN, 1e-14, 0.1, NULL,
      "on what does not flow out of a pore that flows in, and on the sum over all, of "
@@ -115,8 +110,7 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table,
     .notes = "Pores are the cells of the regular triangulation of the grains, throats "
-             "its facets. "
-             "With write=forces the output is a forces artifact.\n"};
+             "its facets. With write=forces the output is a forces artifact.\n"};
 
 // Everything a packing makes, and the flow through it.
 struct computation {

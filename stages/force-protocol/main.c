@@ -30,8 +30,7 @@ static const struct parameter table[] = {
      "of the liquid against the gas [K Table 3.1]", AT(surface_tension)},
     {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
      "imperfect wetting: menisci are less curved, and the contact line pulls the "
-     "grains "
-     "towards the middle of the throat [K 3.14-3.18]",
+     "grains towards the middle of the throat [K 3.14-3.18]",
      AT(contact_angle)},
     {"force_scale", PARAMETER_NUMBER, "1", "1", BOUND_MINIMUM, 0, 0, NULL,
      "factor on the physical force; K's own was chosen and is not given",
@@ -39,16 +38,14 @@ static const struct parameter table[] = {
     {"form", PARAMETER_CHOICE, "1", "\"solid-angle\"", BOUND_NONE, 0, 0,
      "solid-angle|faces|centres|arcs",
      "what the liquid of a throat pulls with: its suction on the part of the grain "
-     "that "
-     "faces it; that and the pull of the menisci, so that grains pull each other in "
-     "pairs; K's plain sums: towards the middles of the throats [K 5.1], or in a layer "
-     "over the arcs of a circle [K 3.20]",
+     "that faces it; that and the pull of the menisci, so that grains pull each other "
+     "in pairs; K's plain sums: towards the middles of the throats [K 5.1], or in a "
+     "layer over the arcs of a circle [K 3.20]",
      AT(form)},
     {"balanced", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
      "change the pulls of the form as little as it takes for each throat alone to "
-     "leave "
-     "the grains around it in balance, forces and moments; nothing changes on cubic "
-     "lattices",
+     "leave the grains around it in balance, forces and moments; nothing changes on "
+     "cubic lattices",
      AT(balanced)},
     {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", BOUND_NONE, 0, 0,
      "uniform|clusters|field",
@@ -58,18 +55,15 @@ static const struct parameter table[] = {
      AT(suction)},
     {"open_surface", PARAMETER_CHOICE, "1", "\"idle\"", BOUND_NONE, 0, 0, "idle|pulls",
      "throats that lie in the open wall: their liquid has its menisci over the grains "
-     "and "
-     "does not pull them outwards (K 5.4: a full network presses its open top as "
-     "well), or "
-     "it pulls like any other",
+     "and does not pull them outwards (K 5.4: a full network presses its open top as "
+     "well), or it pulls like any other",
      AT(open_surface)},
     {"steps", PARAMETER_INTEGER, "1", "550", BOUND_BETWEEN, 2, 1e7, NULL,
      "uniform times from the start to the end of drying, both included [K 5.2]",
      AT(steps)},
     {"largest_change", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
      "0: uniform times; else as few times as it takes for no force on a grain to "
-     "change "
-     "by more than this from one to the next, of the largest force",
+     "change by more than this from one to the next, of the largest force",
      AT(largest_change)},
     {"most_bytes", PARAMETER_NUMBER, "1", "4e9", BOUND_ABOVE, 0, 0, NULL,
      "largest forces to write, 24 bytes a grain and time: more are refused at once",

@@ -34,8 +34,7 @@ static const struct stage stage = {
     .parameters = table,
     .transcribes = true,
     .notes = "What `inspect --openpnm` wrote comes back as it was; other files give a "
-             "network "
-             "without grains and faces, and those of statoil always do."};
+             "network without grains and faces, and those of statoil always do."};
 
 // Reads a file and notes its digest. The caller frees the bytes.
 static struct bytes read_input(const char *path, const char *schema, json_t *inputs)

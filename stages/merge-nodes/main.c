@@ -31,8 +31,8 @@ static const struct parameter table[] = {
     {"volumes", PARAMETER_CHOICE, "1", "\"as_given\"", BOUND_NONE, 0, 0,
      "as_given|conserved",
      "as_given: where throats have volumes (/throats/volume) their sum stays, "
-     "cylinders "
-     "stay cylinders; conserved: the sum of cylinders stays as well, as volumes",
+     "cylinders stay cylinders; conserved: the sum of cylinders stays as well, as "
+     "volumes",
      offsetof(struct merge_parameters, volumes)},
     {0}};
 

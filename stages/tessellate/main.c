@@ -29,8 +29,8 @@ static const struct parameter table[] = {
     {"throat_volume", PARAMETER_CHOICE, "1", "\"cylinder\"", BOUND_NONE, 0, 0,
      "cylinder|void",
      "what a throat holds: the cylinder of its radius and length [K 3.3.4], or its "
-     "share "
-     "of the void between the grains (/throats/volume), the sum of which is exact",
+     "share of the void between the grains (/throats/volume), the sum of which is "
+     "exact",
      offsetof(struct tessellate_parameters, volume)},
     {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"", BOUND_NONE, 0, 0,
      "truncate|eliminate",
