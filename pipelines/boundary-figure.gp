@@ -3,9 +3,8 @@
 # pipelines/boundary-figure makes; columns, how many there are.
 wide = 440; high = 430
 rows = (columns + 1) / 2
-set terminal svg size (columns > 1 ? 2 : 1) * wide, rows * high + 44 font "Helvetica,14" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,14" size (columns > 1 ? 2 : 1) * wide, rows * high + 44
 set multiplot
-blue = "#0a4a96"; grey = "#777777"; red = "#d6201c"
 table(name, k) = sprintf("%s/%s-%d", tables, name, k)
 said(k, word) = int(system("cut -d' ' -f" . word . " " . table("said", k)))
 x(k) = (k % 2) / (columns > 1 ? 2.0 : 1.0)

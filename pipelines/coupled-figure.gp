@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-#     gnuplot -c pipelines/coupled-figure.gp ONE-WAY.tsv COUPLED.tsv ... OUT.svg
-# two files a sample, as pipelines/coupled-course makes them: a column of panels for each.
-set terminal svg size 1600,980 font "Helvetica,15" linewidth 1 background "#ffffff"
-set output ARGV[ARGC]
+# Variable: courses, two files a sample: a column of panels for each.
+set terminal @svg "Helvetica,15" size 1600,980
 set multiplot
-black = "#222222"; blue = "#0a4a96"; grey = "#999999"
+grey = "#999999"
 set border 3 linecolor "#555555"
 set xtics nomirror out scale 0.6 textcolor black
 set ytics nomirror out scale 0.6 textcolor black
@@ -16,7 +14,7 @@ panel = "set lmargin at screen 0.045 + 0.245 * c; set rmargin at screen 0.245 + 
     set tmargin at screen 0.93 - 0.23 * r; set bmargin at screen 0.765 - 0.23 * r; \
     set label 1 title at screen 0.045 + 0.245 * c, screen 0.945 - 0.23 * r left textcolor rgb black"
 do for [c = 0:3] {
-    one = ARGV[2 * c + 1]; two = ARGV[2 * c + 2]
+    one = word(courses, 2 * c + 1); two = word(courses, 2 * c + 2)
     set label 2 heading(c) at screen 0.145 + 0.245 * c, screen 0.98 center font ",17" textcolor rgb black
     r = 0; title = "Shrinkage of the volume, %"
     @panel

@@ -3,7 +3,7 @@
 wide = 260; high = 470
 columns = n < 4 ? n : 4
 rows = (n + columns - 1) / columns
-set terminal svg size wide * columns, high * rows font "Helvetica,14" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,14" size wide * columns, high * rows
 set multiplot
 thick = 3 < 75 / sqrt(bonds) ? 3 : 75 / sqrt(bonds)
 unset key

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Variables: tables, the folder of the tables that pipelines/cracks-figure makes; n files.
-set terminal svg size 1000,760 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1000,760
 set multiplot
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 array colour[6] = ["#0a4a96", "#d6201c", "#3a8a3a", "#b36b00", "#7a3a8a", "#777777"]
 table(name, k) = sprintf("%s/%s-%d", tables, name, k)
 rows(name, k) = int(system("grep -c . " . table(name, k) . " || true"))

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Capillary pressure, permeabilities and diffusivities over saturation. Variable: tables, the
 # folder that pipelines/curves makes.
-set terminal svg size 1260,440 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1260,440
 set multiplot layout 1,3
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
-blue = "#0a4a96"; pale = "#7fa4cf"; red = "#d6201c"; rose = "#eda29f"
+@axes
+pale = "#7fa4cf"; rose = "#eda29f"
 set xrange [0:1]; set xtics 0.2; set xlabel "saturation"
 
 set title "capillary pressure, MPa"

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # [C Figs. 10-12] and lattices against Stokes flow. Variable: tables, the folder of pipelines/drag.
-set terminal svg size 1000,760 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1000,760
 set multiplot layout 2,2
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
-blue = "#0a4a96"; pale = "#a9c1dd"; red = "#d6201c"; grey = "#777777"
+@axes
+pale = "#a9c1dd"
 file(name) = tables . "/" . name
 
 set title "Nine spheres: permeability [C Fig. 10]"

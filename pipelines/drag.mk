@@ -7,5 +7,5 @@
 drag: all ## flow through few spheres, lattices and random packings next to [C] and Stokes
 	@mkdir -p $(RUNS)/drag
 	@pipelines/drag tests/physics/flow_reference $(RUNS)/drag
-	@gnuplot -e 'tables="$(RUNS)/drag"' pipelines/drag.gp >$(RUNS)/drag/drag.svg
+	@gnuplot -e 'tables="$(RUNS)/drag"' pipelines/style.gp pipelines/drag.gp >$(RUNS)/drag/drag.svg
 	@cat $(RUNS)/drag/table.md

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Variables: tables, the folder of the tables that pipelines/force-history makes; strength of the
 # bond, nN.
-set terminal svg size 1000,380 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1000,380
 set multiplot
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 set xrange [1:0]
 set xlabel "saturation" offset 0,0.4
 set xzeroaxis linetype 1 linecolor "#888888" linewidth 1

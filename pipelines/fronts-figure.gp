@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Variable: tables, the folder of the tables that pipelines/fronts-figure makes.
 wide = 330; high = 250; total = 40.0 + 4 * high + 2 * 300
-set terminal svg size 70 + 3 * wide, total font "Helvetica,14" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,14" size 70 + 3 * wide, total
 set multiplot
 liquid = "inviscid viscous immobile"
 level = "0.9 0.7 0.5 0.3"
@@ -44,9 +44,7 @@ unset label 2
 set size noratio
 
 # --- profiles -----------------------------------------------------------------------------
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 set xrange [0:1]
 set yrange [0:1]
 set xtics 0.2

@@ -2,7 +2,7 @@
 # Variable: tables, the folder of the tables that pipelines/fronts-k makes.
 wide = 250; high = 190; chart = 300
 across = 75 + 4 * wide; total = 40.0 + 5 * high + 2 * chart
-set terminal svg size across, total font "Helvetica,14" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,14" size across, total
 set multiplot
 level = "0.9 0.7 0.5 0.3"
 array colour[5] = ["#0a4a96", "#d6201c", "#3a8a3a", "#8a4fb0", "#c07a00"]
@@ -36,9 +36,7 @@ unset label 2
 set size noratio
 
 # --- rates and profiles ---------------------------------------------------------------------
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 set xrange [0:1]
 set yrange [0:1.02]
 set xtics 0.2

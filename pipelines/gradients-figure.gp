@@ -2,7 +2,7 @@
 # Variables: tables, the folder of the tables that pipelines/gradients-figure makes;
 # saturation, of the upper row.
 wide = 460; high = 470; low = 330; total = 40.0 + high + low; across = 30.0 + 2 * wide + 90
-set terminal svg size across, total font "Helvetica,14" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,14" size across, total
 set multiplot
 stats tables . "/level" using 1 nooutput
 level = STATS_mean
@@ -44,9 +44,7 @@ unset colorbox
 set size noratio
 
 # --- loads ----------------------------------------------------------------------------
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 array colour[3] = ["#666666", "#e08a00", "#0a4a96"]
 array name[3] = ["uniform", "clusters", "field"]
 set tmargin at screen (low - 26.0) / total

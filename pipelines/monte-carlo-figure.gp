@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Variables: tables, the folder of the tables that pipelines/monte-carlo-figure makes; levels
 # of saturation; p, of the three tests, with | between.
-set terminal svg size 1180,440 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1180,440
 set multiplot
 set border 3 linecolor "#555555"
 set tics nomirror out scale 0.6 textcolor "#222222"

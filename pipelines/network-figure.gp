@@ -2,9 +2,8 @@
 # Pore networks, a column each, in four rows. Variables: tables, the folder of the tables that
 # pipelines/network-figure makes; columns; unit, what lengths are given in.
 wide = columns < 3 ? 400 : 300
-set terminal svg size 70 + wide * columns, 330 + 3 * 230 font "Helvetica,14" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,14" size 70 + wide * columns, 330 + 3 * 230
 set multiplot
-blue = "#0a4a96"; grey = "#777777"
 
 table(name, k) = sprintf("%s/%s-%d", tables, name, k)
 total = 330.0 + 3 * 230
@@ -53,9 +52,7 @@ unset label 2
 set size noratio
 
 # --- distributions ----------------------------------------------------------------------
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 set style fill solid 1 noborder
 words = "coordination length radius"
 labels = "'throats at a node' 'throat length / " . unit . "' 'throat radius / " . unit . "'"

@@ -1,26 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The structure of a packing in four panels. Variables: tables, the folder of the tables
 # that pipelines/packing-figure makes; the numbers of the summary it passes on.
-set terminal svg size 1000,760 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1000,760
 set multiplot
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 unset key
 set style fill solid 1 noborder
 
 table(name) = tables . "/" . name
 rows(name) = int(system("grep -c . " . table(name) . " || true"))
-blue = "#0a4a96"; pale = "#a9c1dd"; red = "#d6201c"; grey = "#777777"
+pale = "#a9c1dd"
 left(column) = 0.085 + 0.5 * column
 panel = "set lmargin at screen left(c); set rmargin at screen left(c) + 0.395; \
     set tmargin at screen 0.945 - 0.5 * r; set bmargin at screen 0.59 - 0.5 * r; \
     set label 1 title at screen left(c), screen 0.975 - 0.5 * r left textcolor '#222222'"
 nothing = "set xrange [0:1]; set yrange [0:1]; unset tics; unset grid; unset xlabel; unset ylabel; set border 0; \
     set label 2 'not known for this packing' at graph 0.5, graph 0.5 center textcolor rgb grey; \
-    plot NaN; unset label 2; set border 3; set tics nomirror out scale 0.6 textcolor '#222222'; \
-    set xtics autofreq; set ytics autofreq; \
-    set grid xtics ytics linetype 1 linecolor '#e4e4e4' linewidth 1; set autoscale"
+    plot NaN; unset label 2; @axes; set xtics autofreq; set ytics autofreq; set autoscale"
 
 # --- porosity in slices -----------------------------------------------------------------
 c = 0; r = 0

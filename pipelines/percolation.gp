@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Thresholds, masses and fronts of invasion percolation. Variable: tables, the folder of
 # pipelines/percolation.
-set terminal svg size 1260,440 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1260,440
 set multiplot layout 1,3
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
-blue = "#0a4a96"; pale = "#7fa4cf"; red = "#d6201c"; grey = "#777777"
+@axes
+pale = "#7fa4cf"
 file(name) = tables . "/" . name . ".tsv"
 set errorbars 0.6
 set style line 1 linewidth 1.5 pointtype 7 pointsize 0.5 linecolor rgb blue

@@ -15,6 +15,6 @@ endif
 percolation: $(percolation_study) ## thresholds and exponents of invasion percolation (minutes)
 	@mkdir -p $(RUNS)/percolation
 	@pipelines/percolation $(percolation_study) $(RUNS)/percolation $(SHARE)
-	@gnuplot -e 'tables="$(RUNS)/percolation"' pipelines/percolation.gp \
+	@gnuplot -e 'tables="$(RUNS)/percolation"' pipelines/style.gp pipelines/percolation.gp \
 		>$(RUNS)/percolation/percolation.svg
 	@cat $(RUNS)/percolation/table.md

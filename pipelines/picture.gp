@@ -14,7 +14,7 @@ set tmargin at screen 0.92
 set bmargin at screen 0.2
 
 table(limit, name) = tables . "/" . limit . "/" . name
-blue = "#0a4a96"; black = "#101014"; gold = "#e0a000"; red = "#d6201c"
+black = "#101014"; gold = "#e0a000"
 set style line 1 linewidth 2.5
 set style line 2 linewidth 2.5 dashtype (8, 5)
 set style line 3 pointtype 7 pointsize 0.9 linecolor rgb red

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Drying rates over saturation under many assumptions. Variable: tables, the folder that
 # pipelines/rate-drop makes.
-set terminal svg size 1260,560 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1260,560
 set multiplot layout 1,2
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 set xrange [0:1]; set yrange [0:1.02]; set xtics 0.2; set ytics 0.2
 set xlabel "saturation"; set key outside bottom center Left reverse maxrows 3
 set label 1 "K: 0.6" at 0.02, 0.63 textcolor "#777777" font ",13"

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Variable: tables, the folder of the tables that pipelines/soft-figure makes.
-set terminal svg size 1000,960 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1000,960
 set multiplot
 unset key
-black = "#222222"; red = "#d6201c"; blue = "#0a4a96"; green = "#3a8a3a"
 
 # --- contact forces in the middle row: black pushes, red pulls --------------------------
 most = 0

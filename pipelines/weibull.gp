@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Cracks against the scatter of strengths. Variable: tables, the folder of the curves that
 # pipelines/weibull makes.
-set terminal svg size 1000,420 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1000,420
 set multiplot layout 1,2 margins 0.07,0.985,0.18,0.91 spacing 0.08
-set border 3 linecolor "#555555"
-set tics nomirror out scale 0.6 textcolor "#222222"
-set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
+@axes
 set xlabel "standard deviation over mean of the strengths" offset 0,0.3
 set xrange [-0.02:0.53]
 set yrange [0:*]
 set key top left reverse Left samplen 2 textcolor "#222222"
 curve(name) = tables . "/" . name
-blue = "#0a4a96"; red = "#d6201c"; grey = "#777777"
 
 do for [panel = 0:1] {
     mean = 2 + 2 * panel

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # K's Table 5.2. Variable: tables, the folder of the columns that pipelines/strength-figure makes.
-set terminal svg size 1100,330 font "Helvetica,15" linewidth 1 background "#ffffff"
+set terminal @svg "Helvetica,15" size 1100,330
 set multiplot layout 1,5 margins 0.05,0.99,0.2,0.87 spacing 0.045
 set border 3 linecolor "#555555"
 set tics nomirror out scale 0.6 textcolor "#222222"
