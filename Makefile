@@ -166,6 +166,10 @@ include $(wildcard $(BUILD)/obj/*/*/*.d $(BUILD)/obj/*/*/*/*.d)
 # when it, or what it is made from, is stale, and every prerequisite is order-only. It is
 # asked again in the recipe, when all inputs are there: if those came out as they were,
 # nothing runs.
+#
+# A study is a file pipelines/*.mk, as pipelines/curves.mk: each `step` is an artifact that a
+# stage makes, each `report` a table or picture that a program beside it makes, and `study`
+# the goal.
 
 RUNS ?= $(BUILD)/runs
 RUN ?=# a launcher for the stages: RUN='srun -n1'
@@ -189,6 +193,20 @@ artifact = $(if $(filter $1,$(artifacts)),,$(eval artifacts += $1)$(eval \
 step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),version=$(call \
 	version_of,$2),program='$3') $(5:%=set='%'),$6,$(RUN) $3 -p $4 $(5:%=--set '%') \
 	$(THREADS:%=--threads %) $6 -o $1,$3)
+
+# $1 is a table or a picture that pipelines/$2 makes of the files $3. It is called with these, or
+# with the words $4 where they are given, and with $1.
+report = $(call artifact,$1,stage=$2 version=1,$(wildcard pipelines/$2 pipelines/$2.gp \
+	pipelines/$2-*.awk pipelines/$2.awk pipelines/common.sh pipelines/style.gp) $3,pipelines/$2 \
+	$(or $4,$3) $1,$(BUILD)/bin/inspect)
+
+# Whether goal $1, or a file in its folder $2, is asked for.
+asked = $(filter $1 $2/%,$(MAKECMDGOALS))
+
+# Goal $1 makes the tables and pictures $2, shows the tables and says where the pictures are.
+study = $(eval .PHONY: $1)$(eval pipeline_goals += $1)$(eval $1: $2 ; \
+	$(if $(really),$(call shown,$(filter %.md,$2),$(filter %.svg %.png,$2))))
+shown = @$(if $1,cat $1;) $(if $2,echo 'picture$(if $(word 2,$2),s): $2')
 
 include $(wildcard pipelines/*.mk)
 

@@ -4,7 +4,6 @@
 #
 #     make bridges                           ->  build/runs/bridges/ratios.md, ranges.md, pictures
 
-pipeline_goals += bridges
 bridges_folder := $(RUNS)/bridges
 # Code, radii in m, surface tension in N/m, contact angle in degrees, volume in m3.
 bridges_cases := \
@@ -19,22 +18,17 @@ bridges_json := $(foreach c,$(bridges_cases),$(bridges_folder)/$(firstword $(sub
 bridges_key = stage=bridge version=$(call version_of,bridge) set=pipeline=1
 bridges_errors := $(BUILD)/tests/bench/bridge_errors
 
-.PHONY: bridges
 bridges: ## every capillary bridge model against the exact solution (two minutes of one core)
 
-ifneq ($(filter bridges,$(MAKECMDGOALS)),)
-$(foreach c,$(bridges_cases),$(call artifact,$(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(bridges_key) set=case=$c,pipelines/bridges,pipelines/bridges case $c $(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(BUILD)/bin/bridge))
-$(call artifact,$(bridges_folder)/cases.svg,$(bridges_key),pipelines/bridges $(bridges_json),pipelines/bridges curves $(bridges_json) $(bridges_folder)/cases.svg,)
-$(call artifact,$(bridges_folder)/ratios.md,$(bridges_key),pipelines/bridges $(bridges_json),pipelines/bridges ratios $(bridges_json) $(bridges_folder)/ratios.md,)
-$(call artifact,$(bridges_folder)/ratios.svg,$(bridges_key),pipelines/bridges $(bridges_json),pipelines/bridges ratios-picture $(bridges_json) $(bridges_folder)/ratios.svg,)
+ifneq ($(call asked,bridges,$(bridges_folder)),)
+$(foreach c,$(bridges_cases),$(call artifact,$(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(bridges_key) set=case=$c,pipelines/bridges pipelines/common.sh,pipelines/bridges case $c $(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(BUILD)/bin/bridge))
+$(call report,$(bridges_folder)/cases.svg,bridges,$(bridges_json),curves $(bridges_json))
+$(call report,$(bridges_folder)/ratios.md,bridges,$(bridges_json),ratios $(bridges_json))
+$(call report,$(bridges_folder)/ratios.svg,bridges,$(bridges_json),ratios-picture $(bridges_json))
 $(call artifact,$(bridges_folder)/errors.txt,$(bridges_key),pipelines/bridges,pipelines/bridges errors $(bridges_errors) $(bridges_folder)/errors.txt,)
-$(call artifact,$(bridges_folder)/ranges.md,$(bridges_key),pipelines/bridges $(bridges_folder)/errors.txt,pipelines/bridges ranges $(bridges_folder)/errors.txt $(bridges_folder)/ranges.md,)
-$(call artifact,$(bridges_folder)/maps.png,$(bridges_key),pipelines/bridges $(bridges_folder)/errors.txt,pipelines/bridges maps $(bridges_folder)/errors.txt $(bridges_folder)/maps.png,)
+$(call report,$(bridges_folder)/ranges.md,bridges,$(bridges_folder)/errors.txt,ranges $(bridges_folder)/errors.txt)
+$(call report,$(bridges_folder)/maps.png,bridges,$(bridges_folder)/errors.txt,maps $(bridges_folder)/errors.txt)
 
 $(bridges_folder)/errors.txt: | $(bridges_errors)
-bridges: $(bridges_folder)/cases.svg $(bridges_folder)/ratios.md $(bridges_folder)/ratios.svg \
-		$(bridges_folder)/ranges.md $(bridges_folder)/maps.png
-ifdef really
-	@cat $(bridges_folder)/ratios.md $(bridges_folder)/ranges.md
-endif
+$(call study,bridges,$(addprefix $(bridges_folder)/,ratios.md ranges.md cases.svg ratios.svg maps.png))
 endif

@@ -90,17 +90,14 @@ demo_counts := $(demo_limits:%=$(demo_folder)/%/crackstats.json)
 demo_drawn := $(foreach limit,$(demo_limits),$(addprefix \
 	$(demo_folder)/$(limit)/,drying.h5 forces.h5 response.h5 crackstats.json))
 ifneq ($(demo_picture),)
-$(call artifact,$(demo_picture),stage=picture version=1,$(wildcard \
-	pipelines/picture*) $(demo_drawn),pipelines/picture $(demo_folder) $(demo_picture),$(BUILD)/bin/inspect)
+$(call report,$(demo_picture),picture,$(demo_drawn),$(demo_folder))
 endif
 
 # What has broken at four saturations [K Figs. 5.14, 5.16].
 demo_patterns := $(demo_folder)/patterns.svg
 demo_moments := $(foreach limit,$(demo_limits),$(foreach s,0.9 0.6 0.3 \
 	0,'$(limit), saturation $s=$(demo_folder)/$(limit)/response.h5@$s'))
-$(call artifact,$(demo_patterns),stage=crack-patterns version=2,$(wildcard \
-	pipelines/crack-patterns*) $(demo_limits:%=$(demo_folder)/%/response.h5),pipelines/crack-patterns \
-	$(demo_moments) $(demo_patterns),$(BUILD)/bin/inspect)
+$(call report,$(demo_patterns),crack-patterns,$(demo_limits:%=$(demo_folder)/%/response.h5),$(demo_moments))
 
 demo: $(demo_counts) $(demo_picture) $(demo_patterns)
 ifdef really

@@ -3,16 +3,14 @@
 #
 #     make force-history    ->  build/runs/force-history/force-history.svg
 
-pipeline_goals += force-history
 force_history_scene := samples/stiff-5x5x10.json
 force_history_folder := $(RUNS)/force-history
 force_history_limits := inviscid immobile
 force_history_snapshots := snapshots=[1$(shell seq -s '' -f ',%.2f' 0.98 -0.02 0.02),0]
 
-.PHONY: force-history
 force-history: ## the force of one contact over the drying, K's Fig. 5.12
 
-ifneq ($(filter force-history,$(MAKECMDGOALS)),)
+ifneq ($(call asked,force-history,$(force_history_folder)),)
 $(call crack_network,$(force_history_folder),$(force_history_scene))
 define force_history_limit
 $(call step,$(force_history_folder)/$1/drying.h5,dry,$(DRY),$(force_history_scene),liquid=$1,$(force_history_folder)/network.h5)
@@ -21,12 +19,7 @@ $(call step,$(force_history_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(fo
 endef
 $(foreach limit,$(force_history_limits),$(call force_history_limit,$(limit)))
 force_history_responses := $(force_history_limits:%=$(force_history_folder)/%/response.h5)
-$(call artifact,$(force_history_folder)/force-history.svg,stage=force-history version=1,$(wildcard \
-	pipelines/force-history pipelines/force-history.gp) $(force_history_responses),pipelines/force-history \
-	$(force_history_responses) $(force_history_folder)/force-history.svg,$(BUILD)/bin/inspect)
+$(call report,$(force_history_folder)/force-history.svg,force-history,$(force_history_responses))
 
-force-history: $(force_history_folder)/force-history.svg
-ifdef really
-	@echo 'picture: $<'
-endif
+$(call study,force-history,$(force_history_folder)/force-history.svg)
 endif

@@ -3,22 +3,15 @@
 #
 #     make fronts    ->  build/runs/fronts/fronts.svg       [K Figs. 3.29, 3.30, 3.31, 3.38]
 
-pipeline_goals += fronts
 fronts_folder := $(RUNS)/fronts
 fronts_liquids := inviscid viscous immobile
 
-.PHONY: fronts
 fronts: ## pictures of drying fronts in inviscid, viscous and immobile liquid (minutes)
 
-ifneq ($(filter fronts $(fronts_folder)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,fronts,$(fronts_folder)),)
 $(foreach d,2d 3d,$(call crack_network,$(fronts_folder)/$d,samples/fronts-$d.json)\
 $(foreach l,$(fronts_liquids),$(call step,$(fronts_folder)/$d-$l.h5,dry,$(DRY),samples/fronts-$d.json,liquid=$l,$(fronts_folder)/$d/network.h5)))
-$(call artifact,$(fronts_folder)/fronts.svg,stage=fronts-figure version=1,$(wildcard \
-	pipelines/fronts-figure*) $(foreach d,2d 3d,$(fronts_liquids:%=$(fronts_folder)/$d-%.h5)),pipelines/fronts-figure \
-	$(foreach d,2d 3d,$(fronts_liquids:%=$(fronts_folder)/$d-%.h5)) $(fronts_folder)/fronts.svg,$(BUILD)/bin/inspect)
+$(call report,$(fronts_folder)/fronts.svg,fronts-figure,$(foreach d,2d 3d,$(fronts_liquids:%=$(fronts_folder)/$d-%.h5)))
 
-fronts: $(fronts_folder)/fronts.svg
-ifdef really
-	@echo 'picture: $(fronts_folder)/fronts.svg'
-endif
+$(call study,fronts,$(fronts_folder)/fronts.svg)
 endif

@@ -8,7 +8,6 @@
 AGGREGATES ?= 6# packings, each in all arms
 IRREGULAR_VISCOSITY ?= 1e-4# m2/s, of viscous liquid; water: 1e-6
 
-pipeline_goals += irregular
 irregular_scene := samples/irregular-1000.json
 irregular_folder := $(RUNS)/irregular
 
@@ -32,10 +31,9 @@ $(foreach l,inviscid immobile viscous,$(call step,$(irregular_folder)/$1/$l.h5,d
 $(foreach arm,$(irregular_arms),$(call irregular_run,$1,$(arm)))
 endef
 
-.PHONY: irregular
 irregular: ## cracks in irregular aggregates of 1000 grains, pressure gradients on and off (minutes)
 
-ifneq ($(filter irregular,$(MAKECMDGOALS)),)
+ifneq ($(call asked,irregular,$(irregular_folder)),)
 $(call must,AGGREGATES,$(whole),a whole number)
 $(call must,IRREGULAR_VISCOSITY,$(number),a number)
 irregular_seeds := $(shell seq $(AGGREGATES))
@@ -50,13 +48,8 @@ irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(i
 $(call irregular_test,limits.json,inviscid-uniform immobile-uniform)
 $(call irregular_test,gradient.json,viscous-uniform viscous-field)
 irregular_tests := $(irregular_folder)/limits.json $(irregular_folder)/gradient.json
-$(call artifact,$(irregular_folder)/irregular.md,stage=irregular version=2,pipelines/irregular pipelines/counts pipelines/monte-carlo $(irregular_tables) $(irregular_tests),pipelines/irregular $(irregular_folder) $(irregular_folder)/irregular.md,)
-$(call artifact,$(irregular_folder)/irregular.svg,stage=cracks-figure version=1,$(wildcard pipelines/cracks-figure*) $(irregular_tables),pipelines/cracks-figure \
-	$(foreach arm,$(irregular_arms),$(arm)=$(irregular_folder)/$(arm).json) $(irregular_folder)/irregular.svg,)
+$(call report,$(irregular_folder)/irregular.md,irregular,pipelines/counts pipelines/monte-carlo $(irregular_tables) $(irregular_tests),$(irregular_folder))
+$(call report,$(irregular_folder)/irregular.svg,cracks-figure,$(irregular_tables),$(foreach arm,$(irregular_arms),$(arm)=$(irregular_folder)/$(arm).json))
 
-irregular: $(irregular_folder)/irregular.md $(irregular_folder)/irregular.svg
-ifdef really
-	@cat $<
-	@echo 'picture: $(irregular_folder)/irregular.svg'
-endif
+$(call study,irregular,$(irregular_folder)/irregular.md $(irregular_folder)/irregular.svg)
 endif

@@ -6,17 +6,15 @@
 
 GRAINS ?= 50000
 
-pipeline_goals += large
 large_scene := samples/irregular-50000.json
 large_folder := $(RUNS)/large
 
 # Stage $2, program $3, of the scene, with overrides $4 and inputs $5; its cost is kept.
 large_step = $(call step,$(large_folder)/$1,$2,pipelines/timed $3,$(large_scene),$4,$(5:%=$(large_folder)/%))
 
-.PHONY: large
 large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (an hour)
 
-ifneq ($(filter large $(large_folder)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,large,$(large_folder)),)
 $(call must,GRAINS,$(whole),a whole number)
 $(call large_step,packing.h5,pack,$(PACK),count=$(GRAINS),)
 $(call large_step,tessellation.h5,tessellate,$(TESSELLATE),,packing.h5)
@@ -26,14 +24,8 @@ $(call large_step,forces.h5,force-protocol,$(FORCE_PROTOCOL),,drying.h5)
 $(call large_step,response.h5,dem-replay,$(DEM_REPLAY),,forces.h5)
 $(call large_step,crackstats.json,crackstats,$(CRACKSTATS),,response.h5 drying.h5)
 large_results := $(addprefix $(large_folder)/,network.h5 drying.h5 response.h5 crackstats.json)
-$(call artifact,$(large_folder)/large.md,stage=large version=1,pipelines/large $(large_results),pipelines/large $(large_folder) $(large_folder)/large.md,$(BUILD)/bin/inspect)
-$(call artifact,$(large_folder)/large.png,stage=large-figure version=1,$(wildcard \
-	pipelines/large-figure*) $(large_folder)/response.h5,pipelines/large-figure \
-	$(large_folder)/response.h5 $(large_folder)/large.png,$(BUILD)/bin/inspect)
+$(call report,$(large_folder)/large.md,large,$(large_results),$(large_folder))
+$(call report,$(large_folder)/large.png,large-figure,$(large_folder)/response.h5)
 
-large: $(large_folder)/large.md $(large_folder)/large.png
-ifdef really
-	@cat $<
-	@echo 'picture: $(large_folder)/large.png'
-endif
+$(call study,large,$(large_folder)/large.md $(large_folder)/large.png)
 endif

@@ -14,7 +14,6 @@ ENGINE ?= explicit
 DRYING_INTERVAL ?=# of saturation, between recorded steps of the drying; none: each event
 MONTE_CARLO_SCENE ?= samples/stiff-10x10x20.json
 
-pipeline_goals += monte-carlo
 monte_carlo_top := $(RUNS)/monte-carlo/$(basename $(notdir $(MONTE_CARLO_SCENE)))$(DRYING_INTERVAL:%=-%)
 monte_carlo_folder := $(monte_carlo_top)/$(ENGINE)
 monte_carlo_limits := inviscid immobile
@@ -30,10 +29,9 @@ $(call step,$(monte_carlo_top)/drying/$2-$1.h5,dry,$(DRY),$(MONTE_CARLO_SCENE),l
 $(call realisation,$(monte_carlo_folder)/$2-$1.h5,$(monte_carlo_top)/drying/$2-$1.h5,$(MONTE_CARLO_SCENE))
 endef
 
-.PHONY: monte-carlo
 monte-carlo: ## cracks over 10 realisations in both drying limits, tested against each other (minutes)
 
-ifneq ($(filter monte-carlo,$(MAKECMDGOALS)),)
+ifneq ($(call asked,monte-carlo,$(monte_carlo_folder)),)
 $(call must,REALISATIONS,$(whole),a whole number)
 $(call must,ENGINE,explicit|quasi-static,explicit or quasi-static)
 $(if $(DRYING_INTERVAL),$(call must,DRYING_INTERVAL,0?\.[0-9]+|[0-9](\.[0-9]+)?[eE]-[0-9]+|[01],a number from 0 to 1))
@@ -46,16 +44,9 @@ $(foreach limit,$(monte_carlo_limits),$(call step,$(monte_carlo_folder)/$(limit)
 $(call step,$(monte_carlo_folder)/test.json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),first_group=$(REALISATIONS),$(foreach \
 	limit,$(monte_carlo_limits),$(call monte_carlo_runs,$(limit))))
 monte_carlo_counts := $(monte_carlo_limits:%=$(monte_carlo_folder)/%.json) $(monte_carlo_folder)/test.json
-$(call artifact,$(monte_carlo_folder)/table.md,stage=monte-carlo version=1,pipelines/monte-carlo $(monte_carlo_counts),pipelines/monte-carlo $(monte_carlo_counts) $(monte_carlo_folder)/table.md,)
-$(call artifact,$(monte_carlo_folder)/counts.svg,stage=monte-carlo-figure version=1,$(wildcard \
-	pipelines/monte-carlo-figure*) $(monte_carlo_counts),pipelines/monte-carlo-figure $(monte_carlo_counts) $(monte_carlo_folder)/counts.svg,)
-$(call artifact,$(monte_carlo_folder)/patterns.svg,stage=crack-patterns version=1,$(wildcard \
-	pipelines/crack-patterns*) $(monte_carlo_limits:%=$(monte_carlo_folder)/%-1.h5),pipelines/crack-patterns \
-	$(foreach limit,$(monte_carlo_limits),$(limit)=$(monte_carlo_folder)/$(limit)-1.h5) $(monte_carlo_folder)/patterns.svg,$(BUILD)/bin/inspect)
+$(call report,$(monte_carlo_folder)/table.md,monte-carlo,$(monte_carlo_counts))
+$(call report,$(monte_carlo_folder)/counts.svg,monte-carlo-figure,$(monte_carlo_counts))
+$(call report,$(monte_carlo_folder)/patterns.svg,crack-patterns,$(monte_carlo_limits:%=$(monte_carlo_folder)/%-1.h5),$(foreach limit,$(monte_carlo_limits),$(limit)=$(monte_carlo_folder)/$(limit)-1.h5))
 
-monte-carlo: $(addprefix $(monte_carlo_folder)/,table.md counts.svg patterns.svg)
-ifdef really
-	@cat $<
-	@echo 'pictures: $(monte_carlo_folder)/counts.svg, patterns.svg'
-endif
+$(call study,monte-carlo,$(addprefix $(monte_carlo_folder)/,table.md counts.svg patterns.svg))
 endif

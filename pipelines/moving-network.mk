@@ -10,7 +10,6 @@ COUPLED_PORTIONS ?= 1 5 10 20# how often; 1 is one way; the last one is drawn
 
 COLLAPSE_PORTIONS ?= 340# in which the load rises to 1.02 of the whole
 
-pipeline_goals += coupled collapse
 coupled_folder := $(RUNS)/coupled
 coupled_samples := soft weak irregular stiff
 # Scenes, and what they change. Under its whole load the soft aggregate collapses (docs/coupling.md).
@@ -26,22 +25,16 @@ define coupled_run
 $(call artifact,$(coupled_folder)/$1/$2/course.tsv,stage=coupled version=$(coupled_version) $(coupled_scene_$1:%=set='%'),pipelines/coupled-run pipelines/coupled-course $(firstword $(coupled_scene_$1)),pipelines/coupled-run $(firstword $(coupled_scene_$1)) $2 $(wordlist 2,99,$(coupled_scene_$1)) $(coupled_folder)/$1/$2/course.tsv,$(coupled_stages:%=$(BUILD)/bin/%))
 endef
 
-.PHONY: coupled
 coupled: ## drying and shrinking in turns, beside one way, and their picture (minutes)
 
-ifneq ($(filter coupled $(coupled_folder)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,coupled,$(coupled_folder)),)
 $(call must,COUPLED_PORTIONS,[0-9]+(\+[0-9]+)?,numbers N or N+M)
 coupled_courses := $(foreach s,$(coupled_samples),$(foreach n,$(COUPLED_PORTIONS),$(coupled_folder)/$s/$n/course.tsv))
 coupled_drawn := $(foreach s,$(coupled_samples),$(foreach n,$(firstword $(COUPLED_PORTIONS)) $(lastword $(COUPLED_PORTIONS)),$(coupled_folder)/$s/$n/course.tsv))
 $(foreach s,$(coupled_samples),$(foreach n,$(COUPLED_PORTIONS),$(call coupled_run,$s,$n)))
-$(call artifact,$(coupled_folder)/coupled.md,stage=coupled version=1,pipelines/coupled $(coupled_courses),pipelines/coupled $(coupled_courses) $(coupled_folder)/coupled.md,)
-$(call artifact,$(coupled_folder)/coupled.svg,stage=coupled-figure version=1,pipelines/coupled-figure.gp $(coupled_drawn),gnuplot -c pipelines/coupled-figure.gp $(coupled_drawn) $(coupled_folder)/coupled.svg,)
-
-coupled: $(coupled_folder)/coupled.md $(coupled_folder)/coupled.svg
-ifdef really
-	@cat $(coupled_folder)/coupled.md
-	@echo 'picture: $(coupled_folder)/coupled.svg'
-endif
+$(call report,$(coupled_folder)/coupled.md,coupled,$(coupled_courses))
+$(call report,$(coupled_folder)/coupled.svg,coupled-figure,$(coupled_drawn))
+$(call study,coupled,$(coupled_folder)/coupled.md $(coupled_folder)/coupled.svg)
 endif
 
 # Short portions and grains that come to rest at once, so that forces follow the body.
@@ -49,15 +42,10 @@ collapse_scene := samples/soft-10x5x5.json
 collapse_settings := dem-replay.local_damping=0.7 dem-replay.time_step_safety=0.025 dem-replay.cycles=100
 collapse_folder := $(RUNS)/collapse
 
-.PHONY: collapse
 collapse: ## the load that the soft aggregate bears as its throats narrow (minutes)
 
-ifneq ($(filter collapse $(collapse_folder)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,collapse,$(collapse_folder)),)
 $(call must,COLLAPSE_PORTIONS,$(whole),a whole number)
 $(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/collapse pipelines/coupled-run $(collapse_scene),pipelines/collapse $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
-
-collapse: $(collapse_folder)/collapse.md
-ifdef really
-	@cat $(collapse_folder)/collapse.md
-endif
+$(call study,collapse,$(collapse_folder)/collapse.md)
 endif

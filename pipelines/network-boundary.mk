@@ -4,7 +4,7 @@
 #     make boundary-layers  ->  build/runs/boundary-layers/picture.svg [K Figs. 3.17, 3.18, 3.44]
 #     make boundary-study       what the number of layers changes, and no lattice at all
 
-pipeline_goals += boundary-layers boundary-study
+pipeline_goals += boundary-study
 boundary_folder := $(RUNS)/boundary-layers
 boundary_dryings := 2d-surface 2d-auxiliary 3d-surface 3d-auxiliary
 boundary_drawn := $(boundary_dryings:%=$(boundary_folder)/%/drying.h5)
@@ -27,7 +27,7 @@ boundary_law := throat_radius.distribution=normal boundary_layer.columns=surface
 boundary_row := "\(.summary.boundary_layers)\t\($$t)\t\($$r)\t" + \
 	"\(.summary.first_period_end_saturation)"
 
-.PHONY: boundary-layers boundary-study
+.PHONY: boundary-study
 boundary-layers: ## pictures of boundary layers, and of their exchange areas
 
 boundary-study: ## what the number of layers of a boundary layer changes
@@ -36,9 +36,7 @@ ifneq ($(filter boundary-layers boundary-study $(boundary_folder)/%,$(MAKECMDGOA
 $(foreach n,2d 3d,$(call boundary_drying,$n,surface,extra_layer=false,))
 $(call boundary_drying,2d,auxiliary,,boundary=eliminate)
 $(call boundary_drying,3d,auxiliary,,)
-$(call artifact,$(boundary_folder)/picture.svg,stage=boundary-figure version=1,$(wildcard \
-	pipelines/boundary-figure*) $(boundary_drawn),pipelines/boundary-figure $(boundary_drawn) \
-	$(boundary_folder)/picture.svg,$(BUILD)/bin/inspect)
+$(call report,$(boundary_folder)/picture.svg,boundary-figure,$(boundary_drawn))
 
 $(foreach n,$(boundary_counts),$(call step,$(boundary_3d)/layers-$n.h5,dry,$(DRY),samples/boundary-3d.json,$(boundary_law) boundary_layer.layers=$n,$(boundary_3d)/network.h5))
 $(call step,$(boundary_3d)/lumped.h5,dry,$(DRY),samples/boundary-3d.json,$(boundary_law) boundary_layer.exchange=lumped,$(boundary_3d)/network.h5)
@@ -55,8 +53,5 @@ ifdef really
 	@echo 'The last row is lumped.'
 endif
 
-boundary-layers: $(boundary_folder)/picture.svg
-ifdef really
-	@echo 'picture: $(boundary_folder)/picture.svg'
-endif
+$(call study,boundary-layers,$(boundary_folder)/picture.svg)
 endif

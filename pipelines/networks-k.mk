@@ -4,7 +4,6 @@
 #
 #     make networks-k    ->  build/runs/networks-k/table.md, layer.svg, grains.svg
 
-pipeline_goals += networks-k
 k_folder := $(RUNS)/networks-k
 k_shares := 0.06 0.13 0.28
 k_frictions := 0 0.5
@@ -25,25 +24,20 @@ k_networks := $(foreach f,$(k_frictions),$(k_names:%=%-$f))
 # Network $1, of $2 grains with friction $3, from scene $4: in folder $5.
 define k_network
 $(call step,$5/packing.h5,pack,$(PACK),$4,count=$2 dynamics.friction=$3,)
-$(if $(findstring open,$1),$(call artifact,$5/open.h5,stage=networks-k version=1,pipelines/networks-k $5/packing.h5,pipelines/networks-k open $5/packing.h5 $5/open.h5,$(BUILD)/bin/pack))
+$(if $(findstring open,$1),$(call artifact,$5/open.h5,stage=networks-k version=1,pipelines/networks-k pipelines/common.sh $5/packing.h5,pipelines/networks-k open $5/packing.h5 $5/open.h5,$(BUILD)/bin/pack))
 $(call step,$5/network.h5,tessellate,$(TESSELLATE),$4,boundary=$(if $(findstring truncate,$1),truncate,eliminate),$5/$(if $(findstring open,$1),open,packing).h5)
 $(foreach s,$(k_shares),$(call step,$5/merged-$s.h5,merge-nodes,$(MERGE_NODES),$4,threshold=$s,$5/network.h5))
 endef
 k_files = $(k_folder)/$1/network.h5 $(k_shares:%=$(k_folder)/$1/merged-%.h5)
 
-.PHONY: networks-k
 networks-k: ## the networks of K 3.5 and 3.7: counts, merging, distributions (about two minutes)
 
-ifneq ($(filter networks-k $(k_folder)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,networks-k,$(k_folder)),)
 $(foreach n,$(k_names),$(call k_network,$n,$(word 1,$(k_counts/$n)),0,samples/networks-k-$(firstword $(subst -, ,$n))d.json,$(k_folder)/$n-0))
 $(foreach n,$(k_names),$(call k_network,$n,$(word 2,$(k_counts/$n)),0.5,samples/networks-k-$(firstword $(subst -, ,$n))d.json,$(k_folder)/$n-0.5))
-$(call artifact,$(k_folder)/table.md,stage=networks-k version=2,pipelines/networks-k $(foreach n,$(k_networks),$(call k_files,$n)),pipelines/networks-k table $(k_folder) $(k_folder)/table.md,$(BUILD)/bin/inspect)
-$(call network_picture,$(k_folder)/layer.svg,$(call k_files,2-267-truncate-0))
-$(call network_picture,$(k_folder)/grains.svg,$(wordlist 1,2,$(call k_files,3-1220-eliminate-0.5)))
+$(call report,$(k_folder)/table.md,networks-k,$(foreach n,$(k_networks),$(call k_files,$n)),table $(k_folder))
+$(call report,$(k_folder)/layer.svg,network-figure,$(call k_files,2-267-truncate-0))
+$(call report,$(k_folder)/grains.svg,network-figure,$(wordlist 1,2,$(call k_files,3-1220-eliminate-0.5)))
 
-networks-k: $(k_folder)/table.md $(k_folder)/layer.svg $(k_folder)/grains.svg
-ifdef really
-	@cat $<
-	@echo 'pictures: $(k_folder)/layer.svg $(k_folder)/grains.svg'
-endif
+$(call study,networks-k,$(addprefix $(k_folder)/,table.md layer.svg grains.svg))
 endif

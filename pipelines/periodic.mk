@@ -8,7 +8,6 @@
 PERIODIC_SEEDS ?= $(shell seq 10)
 PERIODIC_SCALES ?= 0.25 9.6# of the physical force: fitted to K's total in each of the two limits
 
-pipeline_goals += periodic
 periodic_scene := samples/periodic-5x5x10.json
 periodic_folder := $(RUNS)/periodic
 periodic_limits := inviscid immobile
@@ -24,10 +23,9 @@ endef
 periodic_counts = $(call step,$(periodic_folder)/$1-$2.json,crackstats,$(CRACKSTATS),$(periodic_scene),,$(foreach \
 	seed,$(PERIODIC_SEEDS),$(periodic_folder)/$1/$(seed)/response-$2.h5 $(periodic_folder)/$1/$(seed)/drying.h5))
 
-.PHONY: periodic
 periodic: ## cracks in a box that repeats sideways, K's Table 5.3 and Fig. 5.24 (about two minutes)
 
-ifneq ($(filter periodic,$(MAKECMDGOALS)),)
+ifneq ($(call asked,periodic,$(periodic_folder)),)
 $(call must,PERIODIC_SEEDS,$(whole),whole numbers)
 $(call must,PERIODIC_SCALES,$(number),numbers)
 $(call crack_network,$(periodic_folder),$(periodic_scene))
@@ -42,12 +40,8 @@ inviscid_published := 5,91
 immobile_published := 5,82
 periodic_rows := $(foreach f,$(PERIODIC_SCALES),$(foreach l,$(periodic_limits),'$l, force × $f=$(periodic_folder)/$l-$f.json=$($l_published)'))
 periodic_titles := $(foreach f,$(PERIODIC_SCALES),$(foreach l,$(periodic_limits),'$l, force × $f=$(periodic_folder)/$l/$(firstword $(PERIODIC_SEEDS))/response-$f.h5'))
-$(call artifact,$(periodic_folder)/periodic.md,stage=counts version=1,pipelines/counts $(periodic_tables),pipelines/counts $(periodic_rows) $(periodic_folder)/periodic.md,)
-$(call artifact,$(periodic_folder)/periodic.svg,stage=crack-patterns version=1,$(wildcard pipelines/crack-patterns*) $(periodic_drawn),pipelines/crack-patterns $(periodic_titles) $(periodic_folder)/periodic.svg,$(BUILD)/bin/inspect)
+$(call report,$(periodic_folder)/periodic.md,counts,$(periodic_tables),$(periodic_rows))
+$(call report,$(periodic_folder)/periodic.svg,crack-patterns,$(periodic_drawn),$(periodic_titles))
 
-periodic: $(periodic_folder)/periodic.md $(periodic_folder)/periodic.svg
-ifdef really
-	@cat $<
-	@echo 'picture: $(periodic_folder)/periodic.svg'
-endif
+$(call study,periodic,$(periodic_folder)/periodic.md $(periodic_folder)/periodic.svg)
 endif

@@ -5,7 +5,6 @@
 #
 #     make rate-drop  ->  build/runs/rate-drop/rate-drop.svg, table.md
 
-pipeline_goals += rate-drop
 rate_drop := $(RUNS)/rate-drop
 rate_drop_seeds := 1 2 3 4 5
 rate_drop_water := liquid=viscous step_interval=0
@@ -43,10 +42,9 @@ rate_drop_names := ten layers-1 layers-40 two one half fifth tenth lumped square
 rate_drop_seeded := $(foreach f,0 0.5,$(rate_drop_seeds:%=$f-%))
 rate_drop_files := $(rate_drop_names:%=$(rate_drop)/%.h5) $(rate_drop_seeded:%=$(rate_drop)/seed-%.h5)
 
-.PHONY: rate-drop
 rate-drop: ## what the first fall of the drying rate hangs on (minutes)
 
-ifneq ($(filter rate-drop $(rate_drop)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,rate-drop,$(rate_drop)),)
 # Folder $1: grains with overrides $2, their network with overrides $3.
 define rate_drop_network
 $(call step,$1/packing.h5,pack,$(PACK),samples/networks-k-3d.json,$2,)
@@ -65,14 +63,8 @@ rate_drop_run = $(call step,$(rate_drop)/$1.h5,dry,$(DRY),samples/fronts-3d.json
 	boundary_layer.layers=10 step_interval=0.002 $2,$(rate_drop)/$3.h5)
 $(foreach n,$(rate_drop_names),$(call rate_drop_run,$n,$(wordlist 2,99,$(rate_drop/$n)),$(firstword $(rate_drop/$n))))
 $(foreach n,$(rate_drop_seeded),$(call rate_drop_run,seed-$n,,$n/merged))
-$(call artifact,$(rate_drop)/table.md,stage=rate-drop version=1,pipelines/rate-drop $(rate_drop_files),pipelines/rate-drop \
-	table $(rate_drop) $(rate_drop)/table.md,$(BUILD)/bin/inspect)
-$(call artifact,$(rate_drop)/rate-drop.svg,stage=rate-drop version=1,$(wildcard pipelines/rate-drop pipelines/rate-drop.gp) \
-	$(rate_drop_files),pipelines/rate-drop figure $(rate_drop) $(rate_drop)/rate-drop.svg,$(BUILD)/bin/inspect)
+$(call report,$(rate_drop)/table.md,rate-drop,$(rate_drop_files),table $(rate_drop))
+$(call report,$(rate_drop)/rate-drop.svg,rate-drop,$(rate_drop_files),figure $(rate_drop))
 
-rate-drop: $(rate_drop)/table.md $(rate_drop)/rate-drop.svg
-ifdef really
-	@cat $(rate_drop)/table.md
-	@echo 'picture: $(rate_drop)/rate-drop.svg'
-endif
+$(call study,rate-drop,$(rate_drop)/table.md $(rate_drop)/rate-drop.svg)
 endif

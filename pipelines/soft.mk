@@ -9,7 +9,6 @@
 SOFT_SCALES ?= 0.01 0.03 0.1 0.3 1# of the physical force; the last one is drawn
 SOFT_SET ?=# more parameters of dem-replay
 
-pipeline_goals += soft
 soft_scene := samples/soft-10x5x5.json
 soft_folder := $(RUNS)/soft
 
@@ -20,22 +19,17 @@ $(call step,$(soft_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(soft_scene)
 $(call step,$(soft_folder)/$1/crackstats.json,crackstats,$(CRACKSTATS),$(soft_scene),,$(soft_folder)/$1/response.h5 $(soft_folder)/drying.h5)
 endef
 
-.PHONY: soft
 soft: ## shrinkage and spring-back of the soft aggregate, and their picture
 
-ifneq ($(filter soft,$(MAKECMDGOALS)),)
+ifneq ($(call asked,soft,$(soft_folder)),)
 $(call must,SOFT_SCALES,$(number),numbers)
 $(call crack_network,$(soft_folder),$(soft_scene))
 $(call step,$(soft_folder)/drying.h5,dry,$(DRY),$(soft_scene),,$(soft_folder)/network.h5)
 $(foreach scale,$(SOFT_SCALES),$(call soft_arm,$(scale)))
 soft_counts := $(SOFT_SCALES:%=$(soft_folder)/%/crackstats.json)
 soft_drawn := $(soft_folder)/$(lastword $(SOFT_SCALES))/response.h5
-$(call artifact,$(soft_folder)/soft.svg,stage=soft-figure version=1,$(wildcard pipelines/soft-figure*) $(soft_drawn) $(soft_counts),pipelines/soft-figure $(soft_drawn) $(soft_counts) $(soft_folder)/soft.svg,$(BUILD)/bin/inspect)
-$(call artifact,$(soft_folder)/soft.md,stage=soft version=1,pipelines/soft $(soft_counts),pipelines/soft $(soft_counts) $(soft_folder)/soft.md,)
+$(call report,$(soft_folder)/soft.svg,soft-figure,$(soft_drawn) $(soft_counts))
+$(call report,$(soft_folder)/soft.md,soft,$(soft_counts))
 
-soft: $(soft_folder)/soft.svg $(soft_folder)/soft.md
-ifdef really
-	@cat $(soft_folder)/soft.md
-	@echo 'picture: $(soft_folder)/soft.svg'
-endif
+$(call study,soft,$(soft_folder)/soft.md $(soft_folder)/soft.svg)
 endif

@@ -9,7 +9,6 @@
 SEEDS ?= $(shell seq 20)
 FORCE_SCALE ?= 1.03# fitted on one row: 81 cracks at 1.6e4 N/m2
 
-pipeline_goals += strength
 strength_scene := samples/stiff-5x5x10.json
 strength_folder := $(RUNS)/strength/$(FORCE_SCALE)
 strengths := 0.4e4 0.8e4 1.6e4 2e4
@@ -24,10 +23,9 @@ endef
 strength_responses = $(foreach seed,$(SEEDS),$(strength_folder)/$1/$(seed)/response-$2.h5)
 strength_counts = $(call step,$(strength_folder)/$1-$2.json,crackstats,$(CRACKSTATS),$(strength_scene),,$(call strength_responses,$1,$2))
 
-.PHONY: strength
 strength: ## K's Table 5.2 over 20 seeds (about three minutes)
 
-ifneq ($(filter strength,$(MAKECMDGOALS)),)
+ifneq ($(call asked,strength,$(strength_folder)),)
 $(call must,SEEDS,$(whole),whole numbers)
 $(call must,FORCE_SCALE,$(number),a number)
 $(call crack_network,$(strength_folder),$(strength_scene))
@@ -36,18 +34,14 @@ $(foreach seed,$(SEEDS),$(call strength_history,$(seed),immobile,1.6e4))
 $(foreach s,$(strengths),$(call strength_counts,inviscid,$s))
 $(call strength_counts,immobile,1.6e4)
 strength_tables := $(strengths:%=$(strength_folder)/inviscid-%.json) $(strength_folder)/immobile-1.6e4.json
-$(call artifact,$(strength_folder)/table.md,stage=strength version=1,pipelines/strength $(strength_tables),pipelines/strength $(strength_folder) $(strength_folder)/table.md,)
+$(call report,$(strength_folder)/table.md,strength,$(strength_tables),$(strength_folder))
 
-$(call artifact,$(strength_folder)/cracks.svg,stage=strength-figure version=1,pipelines/strength-figure pipelines/strength.gp $(strength_folder)/table.md,pipelines/strength-figure $(strength_folder)/table.md $(strength_folder)/cracks.svg,)
+$(call report,$(strength_folder)/cracks.svg,strength-figure,$(strength_folder)/table.md)
 
 # Where bonds of each strength broke, in the first of the seeds.
 strength_drawn := $(foreach s,$(strengths),$(strength_folder)/inviscid/$(firstword $(SEEDS))/response-$s.h5)
 strength_titles := $(foreach s,$(strengths),'$s N/m²=$(strength_folder)/inviscid/$(firstword $(SEEDS))/response-$s.h5')
-$(call artifact,$(strength_folder)/patterns.svg,stage=crack-patterns version=2,$(wildcard pipelines/crack-patterns*) $(strength_drawn),pipelines/crack-patterns $(strength_titles) $(strength_folder)/patterns.svg,$(BUILD)/bin/inspect)
+$(call report,$(strength_folder)/patterns.svg,crack-patterns,$(strength_drawn),$(strength_titles))
 
-strength: $(strength_folder)/table.md $(strength_folder)/cracks.svg $(strength_folder)/patterns.svg
-ifdef really
-	@cat $<
-	@echo 'pictures: $(strength_folder)/cracks.svg, patterns.svg'
-endif
+$(call study,strength,$(addprefix $(strength_folder)/,table.md cracks.svg patterns.svg))
 endif

@@ -5,18 +5,17 @@
 #
 #     make fronts-k  ->  build/runs/fronts-k/fronts-k.svg, table.md
 
-pipeline_goals += fronts-k
 fronts_k := $(RUNS)/fronts-k
 fronts_k_seeds := 1 2 3 4 5
 fronts_k_layers := $(fronts_k_seeds:%=$(fronts_k)/layer-%/drying.h5)
 fronts_k_grains := $(foreach f,$(k_frictions),$(fronts_k)/grains-$f/viscous.h5)
 fronts_k_inviscid := $(fronts_k)/grains-$(lastword $(k_frictions))/inviscid.h5
+fronts_k_drawn := $(fronts_k_layers) $(fronts_k_grains) $(fronts_k_inviscid)
 fronts_k_narrow := throat_radius.distribution=normal throat_radius.mean=100e-9 throat_radius.standard_deviation=14e-9
 
-.PHONY: fronts-k
 fronts-k: ## drying fronts of water in networks as Kharaghani's (minutes)
 
-ifneq ($(filter fronts-k $(fronts_k)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,fronts-k,$(fronts_k)),)
 define fronts_k_layer
 $(call step,$1/packing.h5,pack,$(PACK),samples/fronts-2d.json,seed=$2,)
 $(call step,$1/tessellation.h5,tessellate,$(TESSELLATE),samples/fronts-2d.json,,$1/packing.h5)
@@ -27,16 +26,8 @@ $(foreach s,$(fronts_k_seeds),$(call fronts_k_layer,$(fronts_k)/layer-$s,$s))
 $(call k_network,3-1220-eliminate,$(word 1,$(k_counts/3-1220-eliminate)),0,samples/networks-k-3d.json,$(fronts_k)/grains-0)
 $(call k_network,3-1220-eliminate,$(word 2,$(k_counts/3-1220-eliminate)),0.5,samples/networks-k-3d.json,$(fronts_k)/grains-0.5)
 $(foreach f,$(k_frictions),$(foreach l,viscous inviscid,$(call step,$(fronts_k)/grains-$f/$l.h5,dry,$(DRY),samples/fronts-3d.json,liquid=$l boundary_layer.layers=10,$(fronts_k)/grains-$f/merged-0.06.h5)))
-$(call artifact,$(fronts_k)/fronts-k.svg,stage=fronts-k version=1,$(wildcard \
-	pipelines/fronts-k*) $(fronts_k_layers) $(fronts_k_grains) $(fronts_k_inviscid),pipelines/fronts-k figure \
-	$(fronts_k_layers) $(fronts_k_grains) $(fronts_k_inviscid) $(fronts_k)/fronts-k.svg,$(BUILD)/bin/inspect)
-$(call artifact,$(fronts_k)/table.md,stage=fronts-k version=1,pipelines/fronts-k $(fronts_k_layers) \
-	$(fronts_k_grains) $(fronts_k_inviscid),pipelines/fronts-k table \
-	$(fronts_k_layers) $(fronts_k_grains) $(fronts_k_inviscid) $(fronts_k)/table.md,$(BUILD)/bin/inspect)
+$(call report,$(fronts_k)/fronts-k.svg,fronts-k,$(fronts_k_drawn),figure $(fronts_k_drawn))
+$(call report,$(fronts_k)/table.md,fronts-k,$(fronts_k_drawn),table $(fronts_k_drawn))
 
-fronts-k: $(fronts_k)/fronts-k.svg $(fronts_k)/table.md
-ifdef really
-	@cat $(fronts_k)/table.md
-	@echo 'picture: $(fronts_k)/fronts-k.svg'
-endif
+$(call study,fronts-k,$(fronts_k)/table.md $(fronts_k)/fronts-k.svg)
 endif

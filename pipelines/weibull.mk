@@ -7,7 +7,6 @@
 
 WEIBULL_SEEDS ?= $(shell seq 10)
 
-pipeline_goals += weibull
 weibull_scene := samples/stiff-5x5x10.json
 weibull_folder := $(RUNS)/weibull
 # Standard deviation over mean, and the modulus of a Weibull distribution that has it.
@@ -37,21 +36,16 @@ $(foreach seed,$(WEIBULL_SEEDS),$(call step,$(call weibull_response,$1,$(seed)),
 $(call step,$(weibull_folder)/$1.json,crackstats,$(CRACKSTATS),$(weibull_scene),,$(foreach seed,$(WEIBULL_SEEDS),$(call weibull_response,$1,$(seed))))
 endef
 
-.PHONY: weibull
 weibull: ## cracks against the scatter of strengths, 10 seeds (about ten minutes of one core)
 
-ifneq ($(filter weibull $(weibull_folder)/%,$(MAKECMDGOALS)),)
+ifneq ($(call asked,weibull,$(weibull_folder)),)
 $(call must,WEIBULL_SEEDS,$(whole),whole numbers)
 $(call crack_network,$(weibull_folder),$(weibull_scene))
 $(foreach liquid,inviscid immobile,$(foreach seed,$(WEIBULL_SEEDS),$(call weibull_drying,$(liquid),$(seed))))
 $(foreach row,$(weibull_rows),$(call weibull_row,$(row)))
 weibull_counts := $(weibull_rows:%=$(weibull_folder)/%.json)
-$(call artifact,$(weibull_folder)/table.md,stage=weibull version=1,pipelines/weibull $(weibull_counts),pipelines/weibull table $(weibull_counts) $(weibull_folder)/table.md,)
-$(call artifact,$(weibull_folder)/cracks.svg,stage=weibull-figure version=1,pipelines/weibull pipelines/weibull.gp $(weibull_counts),pipelines/weibull figure $(weibull_counts) $(weibull_folder)/cracks.svg,)
+$(call report,$(weibull_folder)/table.md,weibull,$(weibull_counts),table $(weibull_counts))
+$(call report,$(weibull_folder)/cracks.svg,weibull,$(weibull_counts),figure $(weibull_counts))
 
-weibull: $(weibull_folder)/table.md $(weibull_folder)/cracks.svg
-ifdef really
-	@cat $<
-	@echo 'picture: $(weibull_folder)/cracks.svg'
-endif
+$(call study,weibull,$(weibull_folder)/table.md $(weibull_folder)/cracks.svg)
 endif
