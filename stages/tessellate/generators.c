@@ -140,8 +140,8 @@ enum status check_distinct(const struct generators *generators, struct reason *r
     return status;
 }
 
-struct vector moved(const struct generators *generators, struct vector position,
-                    struct image image)
+struct vector position_in_image(const struct generators *generators,
+                                struct vector position, struct image image)
 {
     return add(position, (struct vector){image.along[0] * generators->box.x,
                                          image.along[1] * generators->box.y,

@@ -60,8 +60,8 @@ void generators_free(struct generators *generators);
 enum status check_distinct(const struct generators *generators, struct reason *reason);
 
 // POSITION in another repetition of the box.
-struct vector moved(const struct generators *generators, struct vector position,
-                    struct image image);
+struct vector position_in_image(const struct generators *generators,
+                                struct vector position, struct image image);
 
 // Whether there are copies.
 static inline bool has_copies(const struct generators *generators)

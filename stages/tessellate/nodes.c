@@ -173,7 +173,7 @@ static bool put_cell(const struct generators *generators, const struct places *p
     triangulation->seen[c] = repeats(generators) || places->walls[i] ? SHARES_NODE : 0;
     if (triangulation->image) triangulation->image[c] = image;
     return is_complete(generators, &triangulation->cell[c],
-                       moved(generators, places->position[i], image));
+                       position_in_image(generators, places->position[i], image));
 }
 
 // Where the first cell of a name has its node, when its first corner is one of the
@@ -184,14 +184,15 @@ static struct image find_place(const struct generators *generators,
 {
     const struct image none = {0}, first = generators->origin[corner[0]].image;
     struct vector at = power_centre(generators, corner);
-    at = moved(generators, at, image_difference(none, first));
+    at = position_in_image(generators, at, image_difference(none, first));
     places->walls[i] = snap_to_walls(generators, &at, outside);
     struct image within = none;
     for (int axis = 0; axis < 3 && repeats(generators); axis++)
         if (generators->repeats[axis])
             within.along[axis] =
                 (int8_t)floor(component(at, axis) / component(generators->box, axis));
-    places->position[i] = moved(generators, at, image_difference(none, within));
+    places->position[i] =
+        position_in_image(generators, at, image_difference(none, within));
     return within;
 }
 
@@ -321,13 +322,14 @@ static void unite_on_walls(const struct generators *generators,
     for (int c = 0; c < triangulation->n_cell; c++) {
         if (!triangulation->seen[c] || !places->walls[place[c]]) continue;
         const struct image image = node_image(triangulation, c);
-        const struct vector at = moved(generators, places->position[place[c]], image);
+        const struct vector at =
+            position_in_image(generators, places->position[place[c]], image);
         for (int k = 0; k < 4; k++) {
             const int32_t d = triangulation->cell[c].neighbour[k];
             if (d < c || place[d] < 0 || !places->walls[place[d]]) continue;
             const struct image other = node_image(triangulation, d);
             const struct vector there =
-                moved(generators, places->position[place[d]], other);
+                position_in_image(generators, places->position[place[d]], other);
             if (distance(at, there) <= coincide)
                 unite(places, place[c], image, place[d], other);
         }

@@ -42,7 +42,7 @@ static int compare_ends(const int32_t *first, const int32_t *second)
     return (first[1] > second[1]) - (first[1] < second[1]);
 }
 
-int first_throat(const struct network *network, const int32_t ends[2])
+int first_throat_between(const struct network *network, const int32_t ends[2])
 {
     int low = 0, high = network->n_throat;
     while (low < high) {
@@ -63,7 +63,7 @@ static void keep_throats(const struct network *network, int64_t from, int64_t to
     const int32_t a = network->face_nodes[from], b = network->face_nodes[to];
     const int32_t ends[2] = {a < b ? a : b, a < b ? b : a};
     const int64_t low = a < b ? from : to, high = a < b ? to : from;
-    for (int t = first_throat(network, ends);
+    for (int t = first_throat_between(network, ends);
          t < network->n_throat && !compare_ends(network->throat_nodes[t], ends); t++) {
         if (!network->throat_image) {
             stays[t] = true;

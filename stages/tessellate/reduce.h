@@ -30,6 +30,6 @@ void reduce_to_plane(struct network *network);
 void pack_nodes(struct network *network, int *number);
 
 // The first throat whose nodes do not come before these two.
-int first_throat(const struct network *network, const int32_t ends[2]);
+int first_throat_between(const struct network *network, const int32_t ends[2]);
 
 #endif

@@ -98,7 +98,8 @@ static struct vector node_of(const struct assembly *assembly, int c)
 {
     const struct triangulation *cells = assembly->triangulation;
     const struct vector at = assembly->nodes->position[cells->node[c]];
-    return cells->image ? moved(assembly->generators, at, cells->image[c]) : at;
+    return cells->image ? position_in_image(assembly->generators, at, cells->image[c])
+                        : at;
 }
 
 // What is seen from the facets of a cell, and how many.

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where throats lie beside grains: in diagrams of unequal grains, in walls and in boxes
+// that repeat, with all cells and without those that walls would cut.
+#include "../random.h"
+#include "../test.h"
+#include "basics/memory.h"
+#include "force-protocol/wedges.h"
+#include "tessellate/diagram.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// ---- scenes -------------------------------------------------------------------------
+
+struct scene {
+    bool layer, repeats;
+    enum boundary boundary;
+};
+
+static const struct scene scenes[] = {
+    {false, false, BOUNDARY_TRUNCATE},  {false, true, BOUNDARY_TRUNCATE},
+    {false, false, BOUNDARY_ELIMINATE}, {false, true, BOUNDARY_ELIMINATE},
+    {true, false, BOUNDARY_TRUNCATE},   {true, true, BOUNDARY_TRUNCATE},
+    {true, false, BOUNDARY_ELIMINATE},  {true, true, BOUNDARY_ELIMINATE}};
+enum { N_SCENE = sizeof scenes / sizeof *scenes };
+
+// Of x from the nearest copy of y.
+static struct vector nearest(const struct packing *packing, struct vector y,
+                             struct vector x)
+{
+    struct vector apart = subtract(x, y);
+    for (int axis = 0; axis < 3; axis++) {
+        const double edge = component(packing->upper, axis);
+        const double way = component(apart, axis);
+        if (packing->periodic[axis])
+            set_component(&apart, axis, way - edge * rint(way / edge));
+    }
+    return apart;
+}
+
+// Far enough from the others, and from walls that the box does not repeat at.
+static bool is_free(const struct packing *packing, struct vector x, double radius)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const double at = component(x, axis), edge = component(packing->upper, axis);
+        if (!packing->periodic[axis] && fmin(at, edge - at) < radius) return false;
+    }
+    for (int j = 0; j < packing->n_particle; j++)
+        if (norm(nearest(packing, packing->position[j], x)) <
+            packing->radius[j] + radius)
+            return false;
+    return true;
+}
+
+// Grains of radii from 0.25 to 0.5 that do not touch.
+static struct packing scattered(const struct scene *scene)
+{
+    const int n = scene->layer ? 60 : 110;
+    uint64_t seed = 7;
+    struct packing packing = {.position = NEW_ARRAY(struct vector, n),
+                              .radius = NEW_ARRAY(double, n),
+                              .upper = {5, 5, 6},
+                              .periodic = {scene->repeats, scene->repeats, false}};
+    if (scene->layer) {
+        packing.upper = (struct vector){8, 1, 9};
+        packing.periodic[1] = false;
+    }
+    const struct vector edge = packing.upper;
+    while (packing.n_particle < n) {
+        const double radius = 0.25 * (1 + next_random(&seed));
+        const struct vector x = {edge.x * next_random(&seed),
+                                 scene->layer ? 0.5 : edge.y * next_random(&seed),
+                                 edge.z * next_random(&seed)};
+        if (!is_free(&packing, x, radius)) continue;
+        packing.position[packing.n_particle] = x;
+        packing.radius[packing.n_particle++] = radius;
+    }
+    return packing;
+}
+
+static struct network diagram_of(const struct scene *scene)
+{
+    struct packing packing = scattered(scene);
+    const struct tessellation how = {
+        .power = true, .boundary = scene->boundary, .layer = scene->layer};
+    struct network network;
+    struct tessellation_report report;
+    struct reason reason;
+    if (tessellate(&packing, &how, &network, &report, &reason))
+        fail_msg("%s", reason.text);
+    packing_free(&packing);
+    return network;
+}
+
+// ---- one wedge ----------------------------------------------------------------------
+
+static double power(const struct packing *packing, int grain, struct vector apart)
+{
+    const double radius = packing->radius[grain];
+    return dot(apart, apart) - radius * radius;
+}
+
+static void assert_zero(double value)
+{
+    if (!(fabs(value) < 1e-9)) fail_msg("got %g, wanted 0", value);
+}
+
+static void assert_equal(struct vector got, struct vector wanted)
+{
+    assert_zero(distance(got, wanted));
+}
+
+// Grains are where they are, in one repetition of the box or another.
+static void check_places(const struct wedges *wedges, const struct wedge *wedge)
+{
+    const struct packing *packing = &wedges->network->packing;
+    struct vector there[2] = {wedge->centre, wedge->across};
+    const int grain[2] = {wedge->grain, wedge->beyond};
+    for (int k = 0; k < 2; k++) {
+        if (grain[k] < 0) continue;
+        if (wedges->layer) there[k].y = packing->position[grain[k]].y;
+        assert_zero(norm(nearest(packing, packing->position[grain[k]], there[k])));
+    }
+    assert_equal(there[1], wedge->beyond < 0 ? wedge->foot : there[1]);
+}
+
+// [K 3.2] On the line between the grains, where both have the same power.
+static void check_foot(const struct wedges *wedges, const struct wedge *wedge)
+{
+    const struct packing *packing = &wedges->network->packing;
+    const struct vector apart = subtract(wedge->across, wedge->centre);
+    const struct vector here = subtract(wedge->foot, wedge->centre);
+    const struct vector there = subtract(wedge->foot, wedge->across);
+    if (wedges->layer) {
+        assert_equal(wedge->foot, scale(0.5, add(wedge->from, wedge->to)));
+    } else if (wedge->beyond < 0) {
+        const int wall = -1 - wedge->beyond;
+        struct vector wanted = wedge->centre;
+        set_component(&wanted, wall / 2,
+                      wall % 2 ? component(packing->upper, wall / 2) : 0);
+        assert_equal(wedge->foot, wanted);
+    } else {
+        assert_zero(norm(cross(here, apart)));
+        assert_zero(power(packing, wedge->grain, here) -
+                    power(packing, wedge->beyond, there));
+    }
+}
+
+// Both grains have the same power along the throat, and no grain has less.
+static void check_throat(const struct wedges *wedges, const struct wedge *wedge)
+{
+    const struct packing *packing = &wedges->network->packing;
+    const struct vector at[3] = {wedge->from, wedge->to,
+                                 scale(0.5, add(wedge->from, wedge->to))};
+    for (int k = 0; k < 3; k++) {
+        const double own = power(packing, wedge->grain, subtract(at[k], wedge->centre));
+        if (wedge->beyond >= 0)
+            assert_zero(own -
+                        power(packing, wedge->beyond, subtract(at[k], wedge->across)));
+        for (int j = 0; j < packing->n_particle; j++) {
+            struct vector centre = packing->position[j];
+            if (wedges->layer) centre.y = at[k].y;
+            assert_true(power(packing, j, nearest(packing, centre, at[k])) >
+                        own - 1e-9);
+        }
+    }
+    const struct vector along = subtract(wedge->to, wedge->from), y = {0, 1, 0};
+    const struct vector outwards = subtract(wedge->foot, wedge->centre);
+    assert_true(norm(along) > 0);
+    if (wedges->layer) assert_true(dot(cross(along, y), outwards) > 0);
+}
+
+// ---- the wedges of one throat -------------------------------------------------------
+
+// From A's grain the throat runs as it does, the other way, in B from its own.
+static bool run_opposite(const struct wedge *a, struct vector from_a,
+                         const struct wedge *b, struct vector from_b)
+{
+    return distance(subtract(a->from, from_a), subtract(b->to, from_b)) < 1e-9 &&
+           distance(subtract(a->to, from_a), subtract(b->from, from_b)) < 1e-9;
+}
+
+// What the grain beyond sees of it is the mirror image.
+static bool are_mates(const struct wedge *a, const struct wedge *b)
+{
+    return a->grain == b->beyond && a->beyond == b->grain &&
+           run_opposite(a, a->centre, b, b->across) &&
+           run_opposite(a, a->across, b, b->centre) &&
+           run_opposite(a, a->foot, b, b->foot);
+}
+
+// Grains follow one another around a throat: in space each has the throat in two of its
+// faces, whose loops run along it in opposite directions.
+static void check_around(const struct wedges *wedges, int n)
+{
+    for (int a = 0; a < n; a++) {
+        const struct wedge *wedge = &wedges->wedge[a];
+        int mates = 0, others = 0;
+        for (int b = 0; b < n; b++) {
+            const struct wedge *other = &wedges->wedge[b];
+            mates += are_mates(wedge, other);
+            if (b == a || other->grain != wedge->grain) continue;
+            assert_true(run_opposite(wedge, wedge->centre, other, other->centre));
+            others++;
+        }
+        assert_int_equal(mates, wedge->beyond >= 0);
+        assert_int_equal(others, !wedges->layer);
+    }
+}
+
+// Bits of the walls in which both ends of the throat lie.
+static void check_surface(const struct wedges *wedges, int throat)
+{
+    const struct network *network = wedges->network;
+    for (int wall = 0; wall < 6; wall++) {
+        const int axis = wall / 2;
+        if (network->packing.periodic[axis] || (wedges->layer && axis == 1)) continue;
+        const double level = wall % 2 ? component(network->packing.upper, axis) : 0;
+        bool lies = true;
+        for (int end = 0; end < 2; end++) {
+            const struct vector x =
+                network->node_position[network->throat_nodes[throat][end]];
+            lies = lies && fabs(component(x, axis) - level) < 1e-9;
+        }
+        assert_int_equal(wedges->surface[throat] >> wall & 1, lies);
+    }
+}
+
+// ---- all of them --------------------------------------------------------------------
+
+static void wedges_lie_where_powers_are_equal(void **state)
+{
+    (void)state;
+    for (int s = 0; s < N_SCENE; s++) {
+        struct network network = diagram_of(&scenes[s]);
+        struct wedges wedges;
+        struct reason reason;
+        if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);
+        int count = 0, found = 0;
+        for (int t = 0; t < network.n_throat; t++) {
+            const int n = wedges_at(&wedges, t);
+            for (int k = 0; k < n; k++) {
+                assert_int_equal(wedges.wedge[k].throat, t);
+                check_places(&wedges, &wedges.wedge[k]);
+                check_foot(&wedges, &wedges.wedge[k]);
+                check_throat(&wedges, &wedges.wedge[k]);
+                found += wedges.wedge[k].face < 0;
+            }
+            check_around(&wedges, n);
+            check_surface(&wedges, t);
+            count += n;
+        }
+        assert_true(count > 200);
+        assert_true((scenes[s].boundary == BOUNDARY_ELIMINATE) == (found > 20));
+        wedges_free(&wedges);
+        network_free(&network);
+    }
+}
+
+// The solid angle of the triangle A B C from the origin (Van Oosterom, Strackee).
+static double solid_angle(struct vector a, struct vector b, struct vector c)
+{
+    const double size[3] = {norm(a), norm(b), norm(c)};
+    const double beneath = size[0] * size[1] * size[2] + dot(a, b) * size[2] +
+                           dot(b, c) * size[0] + dot(c, a) * size[1];
+    return 2 * atan2(dot(a, cross(b, c)), beneath);
+}
+
+// Counter-clockwise from outside: cells fill the box, and each surrounds its grain.
+static void wedges_close_around_grains(void **state)
+{
+    (void)state;
+    for (int s = 0; s < 2; s++) {
+        struct network network = diagram_of(&scenes[s]);
+        struct wedges wedges;
+        struct reason reason;
+        if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);
+        double volume = 0;
+        double *angle = NEW_ARRAY(double, network.packing.n_particle);
+        for (int t = 0; t < network.n_throat; t++)
+            for (int k = wedges_at(&wedges, t); k-- > 0;) {
+                const struct wedge *w = &wedges.wedge[k];
+                const struct vector foot = subtract(w->foot, w->centre);
+                const struct vector from = subtract(w->from, w->centre);
+                const struct vector to = subtract(w->to, w->centre);
+                volume += dot(foot, cross(from, to)) / 6;
+                angle[w->grain] += solid_angle(foot, from, to);
+            }
+        assert_zero(volume - 5 * 5 * 6);
+        for (int i = 0; i < network.packing.n_particle; i++)
+            assert_zero(angle[i] - 4 * M_PI);
+        free(angle);
+        wedges_free(&wedges);
+        network_free(&network);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wedges_lie_where_powers_are_equal),
+        cmocka_unit_test(wedges_close_around_grains),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
