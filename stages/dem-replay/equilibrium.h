@@ -36,6 +36,9 @@ struct equilibrium_setup {
     bool large_displacements; // found on the geometry as it is
     double increment; // then: turn of a grain or joint at a time, rad, or grains come
                       // closer, mean radii
+    // Then: told on the way which share of a load is balanced; may be NULL.
+    void (*report)(void *context, double balanced);
+    void *context;
 };
 
 struct equilibrium;

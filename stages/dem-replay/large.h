@@ -22,6 +22,7 @@ struct large {
     struct vector *searched;       // (n) shifts when grains near each other were sought
     struct displacement *withheld; // (n) what was not balanced when the way began
     double share;                  // of that let in
+    double balanced;               // so much of this load is
     double ended;                  // so much of a load was balanced at the last snap
     double drag;                   // of dashpots at each grain, besides those at joints
     double tried, most_tried;      // increments and steps in time of this load, and the

@@ -96,6 +96,7 @@ static void note_try(struct equilibrium *e)
 {
     const double usual = 4e7; // multiplications
     e->large->tried += 1 + corrections_work(e->corrections) / usual;
+    if (e->setup.report) e->setup.report(e->setup.context, e->large->balanced);
 }
 
 enum advance large_advance(struct equilibrium *e, double damping, double *moved)
@@ -305,6 +306,7 @@ enum status large_balance(struct equilibrium *e, struct reason *reason)
 {
     struct way way = begin_way(e, 0);
     while (way.reached < 1) {
+        e->large->balanced = balanced(&way);
         if (e->large->tried > e->large->most_tried) return refuse_long(e, &way, reason);
         const double usual = way.widest > 0 ? way.widest : 1;
         const bool is_least = way.increment <= least_increment;

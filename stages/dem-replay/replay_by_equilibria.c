@@ -42,6 +42,16 @@ static void describe(const struct replay_settings *settings, char *text, size_t 
 
 // ---- begin --------------------------------------------------------------------------
 
+// Within a step of the load.
+static void tell(void *context, double balanced)
+{
+    const struct run *run = context;
+    const struct replay_progress *progress = run->progress;
+    if (progress && progress->report)
+        progress->report(progress->context,
+                         (run->place.step + balanced) / run->load->n_time);
+}
+
 static enum status create(struct run *run, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
@@ -58,7 +68,9 @@ static enum status create(struct run *run, struct reason *reason)
         .most_iterations = settings->most_iterations,
         .rolling = settings->rolling,
         .large_displacements = settings->large_displacements,
-        .increment = settings->increment};
+        .increment = settings->increment,
+        .report = tell,
+        .context = run};
     struct equilibria *state = run->state = NEW_ARRAY(struct equilibria, 1);
     return equilibrium_new(&state->last, &setup, reason);
 }

@@ -10,6 +10,7 @@ struct run {
     const struct packing *packing;
     const struct load *load;
     const struct replay_settings *settings;
+    const struct replay_progress *progress; // may be NULL
     const struct keeper *keeper;
     struct response *response;
     const struct replay_engine *engine;
