@@ -52,6 +52,7 @@ void foresight_expect(struct foresight *f, int count, const struct vector *force
     f->n_expected = count;
     f->force = force;
     f->n_lane = f->found = f->used = 0;
+    f->path.count = f->passed = 0;
     f->sight = LANES;
 }
 
@@ -66,6 +67,7 @@ void foresight_go_on(struct foresight *f)
 {
     if (!f || f->n_expected == 0) return;
     f->n_expected--;
+    f->passed++;
     f->force += f->of->n;
     if (f->used < f->n_lane) f->used++;
 }
@@ -77,25 +79,41 @@ static bool holds(const struct joint *joint)
     return joint->is_bonded && !joint->is_gone;
 }
 
-static void apply_loads(struct equilibrium *e, int count)
+// The load FORCE (n), into a lane TO of so many numbers.
+static struct net_load apply_load(struct equilibrium *e, const struct vector *force,
+                                  double *to)
+{
+    const struct vector *load = e->foresight->load;
+    const struct net_load taken_off = loads_of(e, force, e->foresight->load);
+    for (long i = 0; i < e->n; i++) {
+        to[i * GRAIN] = load[i].x;
+        to[i * GRAIN + LANES] = load[i].y;
+        to[i * GRAIN + 2 * LANES] = load[i].z;
+    }
+    return taken_off;
+}
+
+// Of the path, its load K.
+static const struct vector *force_of(const struct foresight *f, int k)
+{
+    return f->force + (k - f->passed) * (long)f->of->n;
+}
+
+static void apply_loads(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
     double largest = e->largest_load;
     memset(f->applied, 0, (size_t)e->n * GRAIN * sizeof *f->applied);
-    for (int l = 0; l < count; l++) {
-        f->taken_off[l] = loads_of(e, f->force + (long)l * e->n, f->load);
-        for (int i = 0; i < e->n; i++) {
-            double *to = f->applied + (long)i * GRAIN + l;
-            to[0] = f->load[i].x;
-            to[LANES] = f->load[i].y;
-            to[2 * LANES] = f->load[i].z;
-            largest = fmax(largest, norm(f->load[i]));
-        }
+    for (int l = 0; l < f->n_lane; l++) {
+        f->taken_off[l] = apply_load(e, force_of(f, f->first + l), f->applied + l);
+        for (int i = 0; i < e->n; i++)
+            if (dot(f->load[i], f->load[i]) > largest * largest)
+                largest = norm(f->load[i]);
         f->largest_load[l] = largest;
     }
 }
 
-// What joints resisted with when these lanes began if all were as in the factor.
+// What joints resisted with when all began if they were as in the factor.
 static void resist_as_factored(const struct equilibrium *e, struct displacement *sum)
 {
     memset(sum, 0, (size_t)e->n * sizeof *sum);
@@ -118,25 +136,43 @@ static void resist_as_factored(const struct equilibrium *e, struct displacement 
     }
 }
 
-static bool is_free(const struct equilibrium *e, int grain)
+// OFF from each lane of a grain.
+static void take_off_lanes(const struct displacement *off, double *grain)
 {
-    return !e->setup.fixed[grain] && !e->is_gone[grain];
+    double number[DEGREES];
+    memcpy(number, off, sizeof number);
+    for (int k = 0; k < DEGREES; k++)
+        for (int l = 0; l < LANES; l++)
+            grain[k * LANES + l] -= number[k];
+}
+
+static void begin_corners(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    memset(f->left, 0, (size_t)e->n * GRAIN * sizeof *f->left);
+    for (int k = 0; k < f->path.corners; k++)
+        apply_load(e, force_of(f, f->path.corner[k]), f->left + k);
+    resist_as_factored(e, e->step);
+    for (int i = 0; i < e->n; i++) {
+        double *left = f->left + (long)i * GRAIN;
+        if (e->is_gone[i])
+            memset(left, 0, GRAIN * sizeof *left);
+        else
+            take_off_lanes(&e->step[i], left);
+    }
+    stiffness_begin_lanes(e->matrix, f->left);
+    stiffness_keep_lanes(e->matrix);
+    f->has_begun = true;
 }
 
 static void begin_lanes(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
-    resist_as_factored(e, e->step);
-    for (int i = 0; i < e->n; i++) {
-        double number[DEGREES];
-        memcpy(number, &e->step[i], sizeof number);
-        for (int k = 0; k < GRAIN; k++)
-            f->left[(long)i * GRAIN + k] =
-                is_free(e, i) ? f->applied[(long)i * GRAIN + k] - number[k / LANES] : 0;
-    }
-    stiffness_begin_lanes(e->matrix, f->left);
+    double share[LANES][LANES];
+    path_shares(&f->path, f->first, share);
+    stiffness_combine_lanes(e->matrix, share);
     f->n_given = 0;
-    f->has_begun = true;
+    f->has_begun_lanes = true;
 }
 
 // ---- rows ---------------------------------------------------------------------------
@@ -277,7 +313,7 @@ void polish(struct equilibrium *e, int first, int end)
     struct foresight *f = e->foresight;
     stiffness_begin_lanes(e->matrix, f->left);
     f->n_given = 0;
-    f->has_begun = false;
+    f->has_begun_lanes = false;
     if (settle_lanes(e, first, end, false, false) < end) return;
     memset(f->step, 0, (size_t)e->n * GRAIN * sizeof *f->step);
     finish_lanes(e, first, end, f->step);
@@ -335,9 +371,11 @@ static void begin_as_factored(struct equilibrium *e)
     if (f->factors != e->factors) {
         settler_forget(f->settler);
         f->n_row = 0;
+        f->has_begun = f->has_begun_lanes = false;
         find_touching(e);
     }
-    if (f->factors != e->factors || !f->has_begun) begin_lanes(e);
+    if (!f->has_begun) begin_corners(e);
+    if (!f->has_begun_lanes) begin_lanes(e);
     f->factors = e->factors;
 }
 
@@ -355,17 +393,48 @@ int look(struct equilibrium *e, int first, int end)
     return found;
 }
 
-void begin_lanes_anew(struct equilibrium *e)
+// All begins anew, from the last equilibrium: as many loads as lie on a few lines, but
+// where bonds broke and grains may lie loose no more than are looked at together.
+static void begin_path(struct equilibrium *e)
 {
     struct foresight *f = e->foresight;
-    f->n_lane = f->n_expected < LANES ? f->n_expected : LANES;
-    f->used = f->found = 0;
-    f->n_crack = e->n_crack;
+    const int most = e->n_crack > 0 ? LANES : f->n_expected;
+    find_load_path(&f->path, e->n, most < f->n_expected ? most : f->n_expected,
+                   f->force);
+    f->passed = 0;
     f->n_gone = e->n_gone;
     f->has_begun = false;
     memcpy(f->from, e->before, (size_t)e->n * sizeof *f->from);
     for (int j = 0; j < e->n_joint; j++)
         memcpy(f->strain[j], e->joint[j].strain, sizeof f->strain[j]);
+}
+
+// Lanes and rows as at the last equilibrium.
+static void go_to_last(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
     memset(f->moved, 0, (size_t)e->n * GRAIN * sizeof *f->moved);
-    apply_loads(e, f->n_lane);
+    for (int i = 0; i < e->n; i++) {
+        struct displacement back = f->from[i];
+        pull(&back, e->before[i]);
+        take_off_lanes(&back, f->moved + (long)i * GRAIN);
+    }
+    find_touching(e);
+    f->n_row = 0;
+}
+
+void begin_lanes_anew(struct equilibrium *e)
+{
+    struct foresight *f = e->foresight;
+    const int most = f->n_expected < LANES ? f->n_expected : LANES;
+    if (f->path.count - f->passed < most || f->n_crack != e->n_crack ||
+        f->n_gone != e->n_gone)
+        begin_path(e);
+    f->first = f->passed;
+    f->n_lane = most;
+    f->used = f->found = 0;
+    f->n_crack = e->n_crack;
+    f->has_begun_lanes = false;
+    go_to_last(e);
+    apply_loads(e);
 }

@@ -5,6 +5,7 @@
 
 #include "equilibrium_state.h"
 #include "joint_lanes.h"
+#include "load_path.h"
 #include "settle_lane.h"
 
 struct foresight {
@@ -17,7 +18,9 @@ struct foresight {
     int sight;     // lanes to look at
     bool has_hint; // the next lane leads near its equilibrium
     int n_crack, n_gone, factors;     // that there were when these were
-    bool has_begun;                   // the way through the factor
+    struct load_path path;            // of the loads since all began, and of these
+    int passed, first;                // that are past, and before the lanes
+    bool has_begun, has_begun_lanes;  // the way through the factor: corners, lanes
     struct vector *load;              // (n)
     struct net_load taken_off[LANES]; // of the loads
     double largest_load[LANES];       // up to and with each
@@ -25,7 +28,7 @@ struct foresight {
     double *left;         // (n * GRAIN) to begin with, by the law of the factor; then
                           // what is left, and what joints do to held grains
     double *moved, *step; // (n * GRAIN)
-    struct displacement *from;        // (n) the last equilibrium when these began
+    struct displacement *from;        // (n) the last equilibrium when all began
     double (*strain)[STRAINS];        // (n_joint) there
     struct lane_sums sums;            // where they moved
     uint8_t *touches_now;             // (n_joint) a bit a lane

@@ -114,9 +114,12 @@ static bool find_next(struct equilibrium *e)
             is_polished = false;
         }
         f->has_hint = is_hint(f);
-        if (!f->has_hint || !is_balanced(e, f->used, 1)) return false;
-        if (break_in_lane(e, f->used)) continue;
-        if (is_polished || is_balanced(e, f->used, well_below)) return true;
+        if (!f->has_hint) return false;
+        const bool is_near = is_balanced(e, f->used, 1);
+        if (is_near && break_in_lane(e, f->used)) continue;
+        if (is_near && (is_polished || is_balanced(e, f->used, well_below)))
+            return true;
+        if (is_polished) return false;
         polish(e, f->used, f->found);
         is_polished = true;
     }

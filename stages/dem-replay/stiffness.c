@@ -2,6 +2,7 @@
 #include "stiffness.h"
 
 #include "basics/memory.h"
+#include "sparse/vector_kernels.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,7 @@ struct stiffness {
     double *begun, *left;             // the same, halves of answers
     int *place;                       // (n_moving * DEGREES) of all degrees of freedom
     double *begun_lanes, *left_lanes; // of LANES of each; NULL: not yet
+    double *kept_lanes;               // of begun ones
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -121,10 +123,10 @@ void stiffness_free(struct stiffness *s)
 {
     if (!s) return;
     supernodal_free(s->factor);
-    void *const owned[] = {s->number,    s->block, s->block_of, s->diagonal,
-                           s->start,     s->row,   s->value,    s->load,
-                           s->begun,     s->left,  s->place,    s->begun_lanes,
-                           s->left_lanes};
+    void *const owned[] = {s->number,     s->block,     s->block_of, s->diagonal,
+                           s->start,      s->row,       s->value,    s->load,
+                           s->begun,      s->left,      s->place,    s->begun_lanes,
+                           s->left_lanes, s->kept_lanes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -310,6 +312,7 @@ static void make_lanes(struct stiffness *s)
     const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
     s->begun_lanes = allocate_aligned(numbers, sizeof(double));
     s->left_lanes = allocate_aligned(numbers, sizeof(double));
+    s->kept_lanes = allocate_aligned(numbers, sizeof(double));
     s->place = NEW_ARRAY(int, s->n_moving *DEGREES);
     for (int i = 0; i < s->n; i++)
         for (int k = 0; k < DEGREES && s->number[i] >= 0; k++)
@@ -321,6 +324,26 @@ void stiffness_begin_lanes(struct stiffness *s, const double *load)
     if (s->n_moving == 0) return;
     if (!s->begun_lanes) make_lanes(s);
     supernodal_forward_lanes(s->factor, s->place, load, s->begun_lanes);
+}
+
+void stiffness_keep_lanes(struct stiffness *s)
+{
+    double *const begun = s->begun_lanes;
+    s->begun_lanes = s->kept_lanes;
+    s->kept_lanes = begun;
+}
+
+void stiffness_combine_lanes(struct stiffness *s, const double share[LANES][LANES])
+{
+    if (s->n_moving == 0) return;
+    double minus[LANES][LANES];
+    for (int k = 0; k < LANES; k++)
+        for (int l = 0; l < LANES; l++)
+            minus[k][l] = -share[k][l];
+    const int n = s->n_moving * DEGREES;
+    memset(s->begun_lanes, 0, (size_t)n * LANES * sizeof *s->begun_lanes);
+    vector_kernels()->take_off_eight(n, s->kept_lanes, LANES, minus[0], LANES,
+                                     s->begun_lanes);
 }
 
 void stiffness_take_lanes(struct stiffness *s)

@@ -53,6 +53,10 @@ void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves
 // LOAD of halves (columns * LANES). They are taken as they were begun, loads taken off
 // these, and finished.
 void stiffness_begin_lanes(struct stiffness *stiffness, const double *load);
+// Keeps what was begun with; begins with SHARE[k][l] of each lane k of that in lane l.
+void stiffness_keep_lanes(struct stiffness *stiffness);
+void stiffness_combine_lanes(struct stiffness *stiffness,
+                             const double share[LANES][LANES]);
 void stiffness_take_lanes(struct stiffness *stiffness);
 void stiffness_finish_lanes(struct stiffness *stiffness, double *answer);
 void stiffness_strain_lanes(const struct stiffness *stiffness,

@@ -133,6 +133,29 @@ static void contacts_open_and_close(void **state)
     free_scene(s);
 }
 
+// Between events loads lie on lines: from events of uneven distance on, and all the
+// same after the last. The shares are not those that numbers hold exactly.
+static void loads_lie_on_lines(void **state)
+{
+    (void)state;
+    const int event[] = {0, 1, 2, 14, 15, 19, 22, LAST};
+    struct scene *s = make_scene(3, -1, false);
+    s->setup.bond.normal_strength = s->setup.bond.shear_strength = INFINITY;
+    memcpy(s->force[LAST], s->force[22], sizeof s->force[LAST]);
+    for (int k = 0, after = 0; k < LOADS; k++) {
+        if (k >= event[after + 1] && k < LAST) after++;
+        const int from = event[after], to = event[after + 1];
+        for (int i = 0; i < N && k > from && k < to; i++)
+            s->force[k][i] = add(s->force[from][i],
+                                 scale((double)(k - from) / (to - from),
+                                       subtract(s->force[to][i], s->force[from][i])));
+    }
+    assert_int_equal(compare(s, LOADS), 0);
+    s->force[8][38].z += 1e-9 * s->force[8][38].z; // off the line, by little
+    assert_int_equal(compare(s, LOADS), 0);
+    free_scene(s);
+}
+
 // The loads are looked at eight at a time: at the first, within, at the last of these,
 // and after them. Under the earlier one bond breaks, under the later so many that all
 // falls apart.
@@ -210,6 +233,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_open_and_close),
+        cmocka_unit_test(loads_lie_on_lines),
         cmocka_unit_test(a_bond_breaks_at_any_of_them),
         cmocka_unit_test(the_weak_one_breaks_at_its_load),
         cmocka_unit_test(nothing_holds_them),
