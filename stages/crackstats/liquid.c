@@ -9,12 +9,12 @@
 
 double time_of_saturation(const struct liquid *liquid, double level)
 {
-    const double *saturation = liquid->saturation, *time = liquid->time;
+    const double *saturation = liquid->record.saturation, *time = liquid->record.time;
     int k = 0;
-    while (k < liquid->n_step && saturation[k] > level)
+    while (k < liquid->record.n_step && saturation[k] > level)
         k++;
     if (k == 0) return time[0];
-    if (k == liquid->n_step) return time[k - 1];
+    if (k == liquid->record.n_step) return time[k - 1];
     const double share =
         (saturation[k - 1] - level) / (saturation[k - 1] - saturation[k]);
     return time[k - 1] + share * (time[k] - time[k - 1]);
@@ -27,30 +27,22 @@ struct interval {
     double *before, *after; // (n_throat) saturations
 };
 
-static void apply_changes(const struct liquid *liquid, int step, double *saturation)
-{
-    for (int64_t k = liquid->offset[step]; k < liquid->offset[step + 1]; k++)
-        saturation[liquid->throat[k]] = liquid->throat_saturation[k];
-}
-
 static struct interval begin(const struct liquid *liquid)
 {
-    const int n = liquid->network.n_throat;
-    struct interval interval = {liquid, 0, NEW_ARRAY(double, n), NEW_ARRAY(double, n)};
-    for (int t = 0; t < n; t++)
-        interval.before[t] = liquid->network.throat_kind[t] == THROAT_NETWORK;
-    apply_changes(liquid, 0, interval.before);
-    memcpy(interval.after, interval.before, (size_t)n * sizeof(double));
-    if (liquid->n_step > 1) apply_changes(liquid, 1, interval.after);
-    return interval;
+    const struct drying_record *record = &liquid->record;
+    double *before = full_saturations(&liquid->network);
+    apply_changes(record, 0, before);
+    double *after = duplicate(before, (size_t)liquid->network.n_throat, sizeof *before);
+    if (record->n_step > 1) apply_changes(record, 1, after);
+    return (struct interval){liquid, 0, before, after};
 }
 
 static void advance(struct interval *interval)
 {
-    const struct liquid *liquid = interval->liquid;
-    apply_changes(liquid, ++interval->step, interval->before);
-    if (interval->step + 1 < liquid->n_step)
-        apply_changes(liquid, interval->step + 1, interval->after);
+    const struct drying_record *record = &interval->liquid->record;
+    apply_changes(record, ++interval->step, interval->before);
+    if (interval->step + 1 < record->n_step)
+        apply_changes(record, interval->step + 1, interval->after);
 }
 
 // The slice of each throat's middle. (n_throat); the caller frees it.
@@ -88,7 +80,8 @@ static void sum_slices(const struct interval *interval, double share, const int 
 double *slice_saturations(const struct liquid *liquid, int n_slice, const double *time,
                           int n_time)
 {
-    const double *at = liquid->time;
+    const double *at = liquid->record.time;
+    const int n_step = liquid->record.n_step;
     double *saturation = NEW_ARRAY(double, (size_t)n_time *(size_t)n_slice);
     int *slice = throat_slices(&liquid->network, n_slice);
     struct interval interval = begin(liquid);
@@ -98,10 +91,10 @@ double *slice_saturations(const struct liquid *liquid, int n_slice, const double
             memcpy(row, row - n_slice, (size_t)n_slice * sizeof *row);
             continue;
         }
-        while (interval.step + 1 < liquid->n_step && at[interval.step + 1] <= time[m])
+        while (interval.step + 1 < n_step && at[interval.step + 1] <= time[m])
             advance(&interval);
         const int step = interval.step;
-        const double length = step + 1 < liquid->n_step ? at[step + 1] - at[step] : 0;
+        const double length = step + 1 < n_step ? at[step + 1] - at[step] : 0;
         const double share = length > 0 ? (time[m] - at[step]) / length : 0;
         sum_slices(&interval, share, slice, n_slice, row);
     }
@@ -114,10 +107,6 @@ double *slice_saturations(const struct liquid *liquid, int n_slice, const double
 void liquid_free(struct liquid *liquid)
 {
     network_free(&liquid->network);
-    free(liquid->time);
-    free(liquid->saturation);
-    free(liquid->offset);
-    free(liquid->throat);
-    free(liquid->throat_saturation);
+    drying_record_free(&liquid->record);
     *liquid = (struct liquid){0};
 }

@@ -3,17 +3,13 @@
 #ifndef CRAQUELURE_CRACKSTATS_LIQUID_H
 #define CRAQUELURE_CRACKSTATS_LIQUID_H
 
-#include "network/network.h"
+#include "network/drying_record.h"
 
 // What drying.h5 holds.
 struct liquid {
     struct network network;
-    int n_step;
-    double *time, *saturation; // (n_step) s; of the network
-    int64_t *offset;           // (n_step+1) into the two below
-    int32_t *throat;           // whose saturation changes in a step
-    double *throat_saturation; // to what, linearly in time
-    double first_period_end;   // s
+    struct drying_record record; // at least one step
+    double first_period_end;     // s
 };
 
 // When the saturation of the network first is LEVEL, s.

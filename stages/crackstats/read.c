@@ -53,16 +53,12 @@ struct run read_run(const struct artifact *response)
 
 struct liquid read_liquid(const struct artifact *drying)
 {
-    struct liquid liquid = {.network = artifact_get_periodic_network(drying)};
-    liquid.time = artifact_get(drying, "/history/time", &liquid.n_step);
-    if (liquid.n_step < 1)
+    struct liquid liquid = {.network = artifact_get_periodic_network(drying),
+                            .record = artifact_get_drying(drying),
+                            .first_period_end = artifact_get_number(
+                                drying, "/summary/first_period_end_time")};
+    if (liquid.record.n_step < 1)
         die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
             input_name(drying->path));
-    liquid.saturation = artifact_get(drying, "/history/saturation", NULL);
-    liquid.offset = artifact_get(drying, "/changes/offset", NULL);
-    liquid.throat = artifact_get(drying, "/changes/throat", NULL);
-    liquid.throat_saturation = artifact_get(drying, "/changes/saturation", NULL);
-    liquid.first_period_end =
-        artifact_get_number(drying, "/summary/first_period_end_time");
     return liquid;
 }

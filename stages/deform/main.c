@@ -112,19 +112,13 @@ static void check_box(const struct packing *after, const char *path)
 static double *last_saturations(const struct artifact *drying,
                                 const struct network *network)
 {
-    int n_step;
-    int64_t *offset = artifact_get(drying, "/changes/offset", &n_step);
-    int32_t *throat = artifact_get(drying, "/changes/throat", NULL);
-    double *changed = artifact_get(drying, "/changes/saturation", NULL);
-    double *saturation = NEW_ARRAY(double, network->n_throat);
-    for (int t = 0; t < network->n_throat; t++)
-        saturation[t] = network->throat_kind[t] == THROAT_NETWORK;
-    for (int64_t k = 0; k < offset[n_step - 1]; k++)
-        if (network->throat_kind[throat[k]] == THROAT_NETWORK)
-            saturation[throat[k]] = changed[k];
-    free(offset);
-    free(throat);
-    free(changed);
+    struct drying_record record = artifact_get_drying(drying);
+    double *saturation = full_saturations(network);
+    for (int step = 0; step < record.n_step; step++)
+        apply_changes(&record, step, saturation);
+    for (int t = 0; t < network->n_throat; t++) // whatever a foreign one says
+        if (network->throat_kind[t] != THROAT_NETWORK) saturation[t] = 0;
+    drying_record_free(&record);
     return saturation;
 }
 

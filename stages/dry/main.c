@@ -68,28 +68,19 @@ static double *read_start(const struct artifact *input, const struct network *ne
     if (artifact_has_dataset(input, "/throats/saturation"))
         return artifact_get(input, "/throats/saturation", NULL);
     if (strcmp(input->schema->name, "drying")) return NULL;
-    int n_step;
-    double *history = artifact_get(input, "/history/saturation", &n_step);
-    int64_t *offset = artifact_get(input, "/changes/offset", NULL);
-    int32_t *throat = artifact_get(input, "/changes/throat", NULL);
-    double *throat_saturation = artifact_get(input, "/changes/saturation", NULL);
-    if (n_step < 1 || !(saturation <= history[0]))
+    struct drying_record record = artifact_get_drying(input);
+    const int n_step = record.n_step;
+    if (n_step < 1 || !(saturation <= record.saturation[0]))
         die(STATUS_BAD_DATA,
             "dry.start_saturation: must be at most that at which %s begins, %g, is %g",
-            input_name(input->path), n_step > 0 ? history[0] : 0, saturation);
-    double *start = recorded_saturations(
-        network,
-        &(struct drying_record){n_step, history, offset, throat, throat_saturation},
-        saturation);
+            input_name(input->path), n_step > 0 ? record.saturation[0] : 0, saturation);
+    double *start = recorded_saturations(network, &record, saturation);
     if (!holds_liquid(network, start))
         die(STATUS_BAD_DATA,
             "%s: /changes/saturation: no throat holds liquid any more at "
             "dry.start_saturation %g",
             input_name(input->path), saturation);
-    free(history);
-    free(offset);
-    free(throat);
-    free(throat_saturation);
+    drying_record_free(&record);
     return start;
 }
 

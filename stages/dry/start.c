@@ -75,19 +75,11 @@ enum status invaded_saturations(const struct phases *phases, double saturation,
 
 // --- from a record -----------------------------------------------------------------
 
-static void apply_changes(const struct drying_record *record, int step, double *to)
-{
-    for (int64_t k = record->offset[step]; k < record->offset[step + 1]; k++)
-        to[record->throat[k]] = record->throat_saturation[k];
-}
-
 double *recorded_saturations(const struct network *network,
                              const struct drying_record *record, double saturation)
 {
     const size_t n = (size_t)network->n_throat;
-    double *before = NEW_ARRAY(double, n), *now = NEW_ARRAY(double, n);
-    for (size_t t = 0; t < n; t++)
-        now[t] = network->throat_kind[t] == THROAT_NETWORK;
+    double *before = NEW_ARRAY(double, n), *now = full_saturations(network);
     apply_changes(record, 0, now);
     int step = 0;
     while (record->saturation[step] > saturation && step < record->n_step - 1) {

@@ -3,6 +3,7 @@
 #ifndef CRAQUELURE_START_H
 #define CRAQUELURE_START_H
 
+#include "network/drying_record.h"
 #include "phases.h"
 
 // LEFT (n_throat; 0 where none takes part): what is left in each throat when gas has
@@ -17,15 +18,7 @@ enum status invaded_saturations(const struct phases *phases, double saturation,
                                 bool trapping, double *left, struct reason *reason);
 
 // The state of a run when the liquid was SATURATION of all, between two steps linear in
-// time as the run was. Starts at step 0 from a full NETWORK with what changed then.
-// The caller frees the result.
-struct drying_record {
-    int n_step;
-    const double *saturation;        // (n_step) of the network
-    const int64_t *offset;           // (n_step+1) as in struct drying_history
-    const int32_t *throat;           // (offset[n_step])
-    const double *throat_saturation; // (offset[n_step])
-};
+// time as the run was. The caller frees the result.
 double *recorded_saturations(const struct network *network,
                              const struct drying_record *record, double saturation);
 

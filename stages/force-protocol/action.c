@@ -84,7 +84,7 @@ static void look_at(struct walk *walk, int throat)
 
 static void update(struct walk *walk)
 {
-    const struct drying_record *record = walk->filling.record;
+    const struct drying_record *record = &walk->filling.record->drying;
     const int step = walk->filling.step;
     walk->n_changed = 0;
     if (walk->far_reaching)
@@ -102,7 +102,7 @@ static void update(struct walk *walk)
 }
 
 struct walk walk_begin(const struct action *action, const struct network *network,
-                       const struct drying_record *record,
+                       const struct filling_record *record,
                        const struct suction_law *law)
 {
     const int n = network->packing.n_particle;
@@ -131,7 +131,7 @@ void walk_to_end_of_step(struct walk *walk)
 
 bool walk_advance(struct walk *walk)
 {
-    if (walk->filling.step + 1 >= walk->filling.record->n_step) return false;
+    if (walk->filling.step + 1 >= walk->filling.record->drying.n_step) return false;
     filling_advance(&walk->filling);
     update(walk);
     return true;

@@ -37,7 +37,7 @@ struct walk {
 
 // At the first step. The caller frees with walk_free.
 struct walk walk_begin(const struct action *action, const struct network *network,
-                       const struct drying_record *record,
+                       const struct filling_record *record,
                        const struct suction_law *law);
 void walk_free(struct walk *walk);
 

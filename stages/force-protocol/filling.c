@@ -9,12 +9,12 @@
 
 static bool is_at_last_step(const struct filling *filling)
 {
-    return filling->step + 1 >= filling->record->n_step;
+    return filling->step + 1 >= filling->record->drying.n_step;
 }
 
 static double step_time(const struct filling *filling, int step)
 {
-    return filling->record->time[step];
+    return filling->record->drying.time[step];
 }
 
 static bool has_meniscus_at(const struct filling *filling, int node)
@@ -137,7 +137,7 @@ double field_error(const struct filling *filling)
 
 static double *field_of(const struct filling *filling)
 {
-    const struct drying_record *record = filling->record;
+    const struct filling_record *record = filling->record;
     const size_t n_throat = (size_t)filling->network->n_throat;
     const size_t n_node = (size_t)filling->network->n_node;
     double *field = NEW_ARRAY(double, (size_t)record->n_snapshot *n_throat);
@@ -150,7 +150,7 @@ static double *field_of(const struct filling *filling)
 
 static void interpolate_field(const struct filling *filling, double time)
 {
-    const struct drying_record *record = filling->record;
+    const struct filling_record *record = filling->record;
     const size_t n = (size_t)filling->network->n_throat;
     int after = 0;
     while (after < record->n_snapshot && record->snapshot_time[after] <= time)
@@ -168,17 +168,10 @@ static void interpolate_field(const struct filling *filling, double time)
 
 // --- time --------------------------------------------------------------------------
 
-static void apply_changes(const struct filling *filling, int step, double *saturation)
-{
-    const struct drying_record *record = filling->record;
-    for (int64_t k = record->offset[step]; k < record->offset[step + 1]; k++)
-        saturation[record->throat[k]] = record->throat_saturation[k];
-}
-
 // What has emptied by this step leaves gas in its nodes.
 static void note_gas(struct filling *filling)
 {
-    const struct drying_record *record = filling->record;
+    const struct drying_record *record = &filling->record->drying;
     const int step = filling->step;
     for (int64_t k = record->offset[step]; k < record->offset[step + 1]; k++) {
         const int throat = record->throat[k];
@@ -206,11 +199,11 @@ static void find_suction(struct filling *filling)
 static void step_on(struct filling *filling)
 {
     filling->step++;
-    apply_changes(filling, filling->step, filling->before);
+    apply_changes(&filling->record->drying, filling->step, filling->before);
     note_gas(filling);
     filling->share = 0;
     if (!is_at_last_step(filling))
-        apply_changes(filling, filling->step + 1, filling->after);
+        apply_changes(&filling->record->drying, filling->step + 1, filling->after);
 }
 
 void filling_advance(struct filling *filling)
@@ -241,7 +234,7 @@ void filling_to(struct filling *filling, double time)
 
 double filling_saturation(const struct filling *filling)
 {
-    const double *saturation = filling->record->saturation;
+    const double *saturation = filling->record->drying.saturation;
     const double before = saturation[filling->step];
     if (is_at_last_step(filling)) return before;
     return before + filling->share * (saturation[filling->step + 1] - before);
@@ -272,25 +265,22 @@ void filling_loads(const struct filling *filling, int throat, double load[LOADS]
 }
 
 struct filling filling_begin(const struct network *network,
-                             const struct drying_record *record,
+                             const struct filling_record *record,
                              const struct suction_law *law)
 {
     const int n = network->n_throat;
     struct filling filling = {.network = network,
                               .record = record,
                               .law = *law,
-                              .before = NEW_ARRAY(double, n),
-                              .after = NEW_ARRAY(double, n),
+                              .before = full_saturations(network),
                               .gas = NEW_ARRAY(bool, network->n_node),
                               .stale = true};
     if (law->rule != SUCTION_UNIFORM) filling.suction = NEW_ARRAY(double, n);
     if (law->rule == SUCTION_FIELD) filling.field = field_of(&filling);
-    for (int t = 0; t < n; t++)
-        filling.before[t] = network->throat_kind[t] == THROAT_NETWORK;
-    apply_changes(&filling, 0, filling.before);
+    apply_changes(&record->drying, 0, filling.before);
     note_gas(&filling);
-    memcpy(filling.after, filling.before, (size_t)n * sizeof(double));
-    if (!is_at_last_step(&filling)) apply_changes(&filling, 1, filling.after);
+    filling.after = duplicate(filling.before, (size_t)n, sizeof *filling.after);
+    if (!is_at_last_step(&filling)) apply_changes(&record->drying, 1, filling.after);
     find_suction(&filling);
     return filling;
 }

@@ -4,16 +4,12 @@
 #ifndef CRAQUELURE_FILLING_H
 #define CRAQUELURE_FILLING_H
 
-#include "network/network.h"
+#include "network/drying_record.h"
 
-// What the drying artifact says happened, as it lies there (schemas/drying.json).
-struct drying_record {
-    int n_step;
-    double *time, *saturation; // (n_step)
-    int64_t *offset;           // (n_step+1)
-    int32_t *throat;           // (offset[n_step])
-    double *throat_saturation; // (offset[n_step])
-    bool *exposed;             // (n_node) gas is above the node from the beginning
+// What the drying artifact says happened.
+struct filling_record {
+    struct drying_record drying; // at least one step
+    bool *exposed;               // (n_node) gas is above the node from the beginning
     int n_snapshot;
     double *snapshot_time; // (n_snapshot)
     double *pressure;      // (n_snapshot * n_node) Pa, of the liquid less that of the
@@ -51,7 +47,7 @@ enum load {
 // are linear in time, and nothing else changes but the pressures of SUCTION_FIELD.
 struct filling {
     const struct network *network;
-    const struct drying_record *record;
+    const struct filling_record *record;
     struct suction_law law;
     int step;
     double share;           // of the way to the next step
@@ -65,7 +61,7 @@ struct filling {
 // At the first step. Keeps NETWORK and RECORD, which must live as long. The caller
 // frees with filling_free.
 struct filling filling_begin(const struct network *network,
-                             const struct drying_record *record,
+                             const struct filling_record *record,
                              const struct suction_law *law);
 void filling_free(struct filling *filling);
 

@@ -193,7 +193,7 @@ static struct protocol find_protocol(const struct process *process,
     if (parameters->largest_change > 0)
         times = adaptive_times(process, parameters->largest_change, most, &count);
     else if (count <= most)
-        times = uniform_times(process->record, (int)count);
+        times = uniform_times(&process->record->drying, (int)count);
     if (!times) refuse_size(parameters, count, grains);
     return make_protocol(process, times, (int)count);
 }
@@ -298,9 +298,9 @@ int main(int argc, char **argv)
     omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_periodic_network(input);
-    struct drying_record record =
+    struct filling_record record =
         read_record(input, &network, parameters.suction == SUCTION_FIELD);
-    check_end(&record, (double)parameters.steps, input->path);
+    check_end(&record.drying, (double)parameters.steps, input->path);
     const struct suction_law law = find_law(&network, &parameters, input->path);
 
     struct wedges wedges;

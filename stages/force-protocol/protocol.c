@@ -104,9 +104,9 @@ static double worst_deviation(const struct walk *walk, const struct protocol *pr
 double interpolation_error(const struct process *process,
                            const struct protocol *protocol)
 {
-    const struct drying_record *record = process->record;
+    const struct drying_record *record = &process->record->drying;
     struct walk walk =
-        walk_begin(process->action, process->network, record, process->law);
+        walk_begin(process->action, process->network, process->record, process->law);
     double worst = 0;
     struct moment now = moment_at(protocol, (struct moment){0, 1}, record->time[0]);
     for (int step = 0; step + 1 < record->n_step; step++) {

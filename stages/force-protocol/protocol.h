@@ -8,7 +8,7 @@
 // Everything that the forces of one run follow from.
 struct process {
     const struct network *network;
-    const struct drying_record *record;
+    const struct filling_record *record;
     const struct suction_law *law;
     const struct action *action;
 };

@@ -25,7 +25,7 @@ static bool *find_exposed(const struct artifact *input, const struct network *ne
     return exposed;
 }
 
-static void read_pressures(const struct artifact *input, struct drying_record *record)
+static void read_pressures(const struct artifact *input, struct filling_record *record)
 {
     static const char *const needed[] = {"/snapshots/liquid_pressure",
                                          "/snapshots/time"};
@@ -43,32 +43,23 @@ static void read_pressures(const struct artifact *input, struct drying_record *r
             input_name(input->path), needed[0]);
 }
 
-struct drying_record read_record(const struct artifact *input,
-                                 const struct network *network, bool field)
+struct filling_record read_record(const struct artifact *input,
+                                  const struct network *network, bool field)
 {
-    struct drying_record record = {0};
-    record.time = artifact_get(input, "/history/time", &record.n_step);
-    record.saturation = artifact_get(input, "/history/saturation", NULL);
-    record.offset = artifact_get(input, "/changes/offset", NULL);
-    record.throat = artifact_get(input, "/changes/throat", NULL);
-    record.throat_saturation = artifact_get(input, "/changes/saturation", NULL);
-    record.exposed = find_exposed(input, network);
-    if (record.n_step < 1)
+    struct filling_record record = {.drying = artifact_get_drying(input),
+                                    .exposed = find_exposed(input, network)};
+    if (record.drying.n_step < 1)
         die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
             input_name(input->path));
     if (field) read_pressures(input, &record);
     return record;
 }
 
-void free_record(struct drying_record *record)
+void free_record(struct filling_record *record)
 {
-    free(record->time);
-    free(record->saturation);
-    free(record->offset);
-    free(record->throat);
-    free(record->throat_saturation);
+    drying_record_free(&record->drying);
     free(record->exposed);
     free(record->snapshot_time);
     free(record->pressure);
-    *record = (struct drying_record){0};
+    *record = (struct filling_record){0};
 }

@@ -102,9 +102,10 @@ static double largest_at_steps(const struct process *process)
 double *adaptive_times(const struct process *process, double bound, int most,
                        double *count)
 {
-    const struct drying_record *record = process->record;
+    const struct drying_record *record = &process->record->drying;
     struct choice choice = {
-        .walk = walk_begin(process->action, process->network, record, process->law),
+        .walk = walk_begin(process->action, process->network, process->record,
+                           process->law),
         .bound = bound * largest_at_steps(process),
         .last = NEW_ARRAY(struct vector, process->network->packing.n_particle),
         .most = most};

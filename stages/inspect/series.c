@@ -46,17 +46,9 @@ static void drying_series(const struct artifact *artifact, struct series *series
 {
     struct network network = artifact_get_periodic_network(artifact);
     int32_t(*drawn)[2] = drawn_throats(&network);
-    int n_step;
-    double *time = artifact_get(artifact, "/history/time", &n_step);
-    double *saturation = artifact_get(artifact, "/history/saturation", NULL);
-    int64_t *offset = artifact_get(artifact, "/changes/offset", NULL);
-    int32_t *throat = artifact_get(artifact, "/changes/throat", NULL);
-    double *changed = artifact_get(artifact, "/changes/saturation", NULL);
-    double *liquid = NEW_ARRAY(double, network.n_throat);
+    struct drying_record record = artifact_get_drying(artifact);
+    double *liquid = full_saturations(&network);
     double *kind = as_doubles(network.throat_kind, network.n_throat);
-    for (int t = 0; t < network.n_throat; t++)
-        liquid[t] = network.throat_kind[t] == THROAT_NETWORK;
-
     const struct vtu_array cells[] = {{"saturation", liquid, 1},
                                       {"radius", network.throat_radius, 1},
                                       {"kind", kind, 1},
@@ -66,20 +58,16 @@ static void drying_series(const struct artifact *artifact, struct series *series
                                   .n_line = network.n_throat,
                                   .line = (const int32_t(*)[2])drawn,
                                   .cells = cells};
-    for (int step = 0, frame = 0; step < n_step; step++) {
-        for (int64_t k = offset[step]; k < offset[step + 1]; k++)
-            liquid[throat[k]] = changed[k];
-        if (saturation[step] > frame_saturation(frame, n_frame)) continue;
-        add_frame(series, time[step], &grid);
-        while (frame < n_frame && saturation[step] <= frame_saturation(frame, n_frame))
+    for (int step = 0, frame = 0; step < record.n_step; step++) {
+        const double saturation = record.saturation[step];
+        apply_changes(&record, step, liquid);
+        if (saturation > frame_saturation(frame, n_frame)) continue;
+        add_frame(series, record.time[step], &grid);
+        while (frame < n_frame && saturation <= frame_saturation(frame, n_frame))
             frame++;
         if (frame == n_frame) break;
     }
-    free(time);
-    free(saturation);
-    free(offset);
-    free(throat);
-    free(changed);
+    drying_record_free(&record);
     free(liquid);
     free(kind);
     free(drawn);

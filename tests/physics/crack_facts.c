@@ -109,22 +109,22 @@ static struct liquid column(void)
                                         .throat_nodes = allocate(4, sizeof(int32_t[2])),
                                         .throat_volume = NEW_ARRAY(double, 4),
                                         .throat_kind = NEW_ARRAY(uint8_t, 4)},
-                            .n_step = 4,
-                            .time = NEW_ARRAY(double, 4),
-                            .saturation = NEW_ARRAY(double, 4),
-                            .offset = NEW_ARRAY(int64_t, 5),
-                            .throat = NEW_ARRAY(int32_t, 4),
-                            .throat_saturation = NEW_ARRAY(double, 4)};
+                            .record = {.n_step = 4,
+                                       .time = NEW_ARRAY(double, 4),
+                                       .saturation = NEW_ARRAY(double, 4),
+                                       .offset = NEW_ARRAY(int64_t, 5),
+                                       .throat = NEW_ARRAY(int32_t, 4),
+                                       .throat_saturation = NEW_ARRAY(double, 4)}};
     for (int k = 0; k < 5; k++)
         liquid.network.node_position[k] = add(corner, (struct vector){0.5, 0.5, k});
     for (int k = 0; k < 4; k++) {
         liquid.network.throat_nodes[k][0] = k;
         liquid.network.throat_nodes[k][1] = k + 1;
         liquid.network.throat_volume[k] = 2;
-        liquid.time[k] = k;
-        liquid.saturation[k] = 1 - 0.25 * k;
-        liquid.offset[k + 1] = k; // nothing changes in step 0
-        liquid.throat[k] = 4 - k - 1;
+        liquid.record.time[k] = k;
+        liquid.record.saturation[k] = 1 - 0.25 * k;
+        liquid.record.offset[k + 1] = k; // nothing changes in step 0
+        liquid.record.throat[k] = 4 - k - 1;
     }
     free(run.bond);
     free(run.mode);

@@ -63,9 +63,12 @@ static void test_on_from_the_middle(void **state)
             const struct drying_conditions conditions =
                 kharaghani_conditions((enum liquid_limit)limit);
             struct drying_history whole = dry_and_check(&network, &conditions);
-            const struct drying_record record = {
-                whole.n_step, whole.saturation, whole.change_offset,
-                whole.change_throat, whole.change_saturation};
+            const struct drying_record record = {.n_step = whole.n_step,
+                                                 .saturation = whole.saturation,
+                                                 .offset = whole.change_offset,
+                                                 .throat = whole.change_throat,
+                                                 .throat_saturation =
+                                                     whole.change_saturation};
             double *start = recorded_saturations(&network, &record, level);
             assert_true(fabs(liquid_in(&network, start) - level) < 1e-13);
             struct drying_history rest = dry_from(&network, &conditions, start);

@@ -10,7 +10,7 @@
 struct dried {
     struct network network;
     struct drying_history history;
-    struct drying_record record;
+    struct filling_record record;
 };
 
 static struct dried dry_lattice(uint64_t seed)
@@ -20,14 +20,14 @@ static struct dried dry_lattice(uint64_t seed)
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     dried.history = dry_and_check(&dried.network, &conditions);
     struct drying_history *history = &dried.history;
-    dried.record =
-        (struct drying_record){.n_step = history->n_step,
-                               .time = history->time,
-                               .saturation = history->saturation,
-                               .offset = history->change_offset,
-                               .throat = history->change_throat,
-                               .throat_saturation = history->change_saturation,
-                               .exposed = NEW_ARRAY(bool, dried.network.n_node)};
+    dried.record = (struct filling_record){
+        .drying = {.n_step = history->n_step,
+                   .time = history->time,
+                   .saturation = history->saturation,
+                   .offset = history->change_offset,
+                   .throat = history->change_throat,
+                   .throat_saturation = history->change_saturation},
+        .exposed = NEW_ARRAY(bool, dried.network.n_node)};
     for (int i = 0; i < dried.network.n_node; i++)
         dried.record.exposed[i] = dried.network.node_walls[i] & WALL_Z_UPPER;
     return dried;
@@ -51,7 +51,7 @@ static void clusters_are_those_of_the_drying(void **state)
         struct filling filling =
             filling_begin(&dried.network, &dried.record, &by_clusters);
         int *cluster = NEW_ARRAY(int, dried.network.n_throat);
-        for (int step = 0; step < dried.record.n_step; step++) {
+        for (int step = 0; step < dried.record.drying.n_step; step++) {
             if (step > 0) filling_advance(&filling);
             assert_int_equal(filling_clusters(&filling, cluster),
                              dried.history.clusters[step]);
@@ -70,12 +70,12 @@ static void a_cluster_has_the_suction_of_what_empties_next(void **state)
     struct dried dried = dry_lattice(7);
     struct filling filling = filling_begin(&dried.network, &dried.record, &by_clusters);
     int checked = 0;
-    for (int step = 0; step + 1 < dried.record.n_step; step++) {
+    for (int step = 0; step + 1 < dried.record.drying.n_step; step++) {
         if (step > 0) filling_advance(&filling);
-        for (int64_t k = dried.record.offset[step + 1];
-             k < dried.record.offset[step + 2]; k++) {
-            if (dried.record.throat_saturation[k] > 0) continue;
-            const int throat = dried.record.throat[k];
+        for (int64_t k = dried.record.drying.offset[step + 1];
+             k < dried.record.drying.offset[step + 2]; k++) {
+            if (dried.record.drying.throat_saturation[k] > 0) continue;
+            const int throat = dried.record.drying.throat[k];
             double load[LOADS];
             filling_to_end_of_step(&filling);
             filling_loads(&filling, throat, load);

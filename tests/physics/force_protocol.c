@@ -24,7 +24,7 @@ static void assert_same(double got, double wanted)
 // which counts: F_0 = (5 s_0, 0, -2.5 s_1), F_1 = (0, 2.5 s_1, 0).
 struct pair {
     struct network network;
-    struct drying_record record;
+    struct filling_record record;
     struct suction_law law;
     struct action action;
 };
@@ -44,12 +44,12 @@ static struct pair two_throats(void)
                                     .throat_nodes = allocate(2, sizeof(int32_t[2])),
                                     .throat_radius = NEW_ARRAY(double, 2),
                                     .throat_kind = NEW_ARRAY(uint8_t, 2)},
-                        .record = {.n_step = 3,
-                                   .time = time,
-                                   .saturation = saturation,
-                                   .offset = offset,
-                                   .throat = throat,
-                                   .throat_saturation = left,
+                        .record = {.drying = {.n_step = 3,
+                                              .time = time,
+                                              .saturation = saturation,
+                                              .offset = offset,
+                                              .throat = throat,
+                                              .throat_saturation = left},
                                    .exposed = exposed},
                         .law = {.rule = SUCTION_UNIFORM, .uniform = 10, .meniscus = 3},
                         .action = {.scale = 0.5}};
@@ -87,7 +87,7 @@ static void forces_at_uniform_times(void **state)
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     struct protocol protocol =
-        make_protocol(&process, uniform_times(&pair.record, 7), 7);
+        make_protocol(&process, uniform_times(&pair.record.drying, 7), 7);
     for (int m = 0; m < 7; m++) {
         const double t = 0.5 * m, first = fmax(0, 1 - t);
         const double second = t < 1 ? 1 : (3 - t) / 2;
@@ -105,7 +105,7 @@ static void forces_at_uniform_times(void **state)
     protocol_free(&protocol);
 
     // Only the ends: at time 1 a third of the way has gone, and F_0 = (0, 0, -2.5).
-    protocol = make_protocol(&process, uniform_times(&pair.record, 2), 2);
+    protocol = make_protocol(&process, uniform_times(&pair.record.drying, 2), 2);
     assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
     protocol_free(&protocol);
     pair_free(&pair);
@@ -124,7 +124,7 @@ static void what_jumps_is_missed(void **state)
     patches_sort(lines, 2);
     const struct process process = process_of(&pair);
     struct protocol protocol =
-        make_protocol(&process, uniform_times(&pair.record, 4), 4);
+        make_protocol(&process, uniform_times(&pair.record.drying, 4), 4);
     static const double pull[] = {0, 8, 8, 0};
     for (int m = 0; m < 4; m++)
         assert_same(protocol.force[2 * m + 1].x, pull[m]);
@@ -133,7 +133,7 @@ static void what_jumps_is_missed(void **state)
 
     // Beside jumps what bends without one counts as well: F_0 at time 1, as above.
     pair.law.contact_line = 0.016;
-    protocol = make_protocol(&process, uniform_times(&pair.record, 2), 2);
+    protocol = make_protocol(&process, uniform_times(&pair.record.drying, 2), 2);
     assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
     protocol_free(&protocol);
     pair_free(&pair);
@@ -176,7 +176,7 @@ static void net_force_and_moment(void **state)
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     struct protocol protocol =
-        make_protocol(&process, uniform_times(&pair.record, 4), 4);
+        make_protocol(&process, uniform_times(&pair.record.drying, 4), 4);
     double force, moment;
     net_load(&protocol, &pair.network.packing, &force, &moment);
     assert_same(force, sqrt(37.5) / (5 * sqrt(1.25) + 2.5));
@@ -308,13 +308,14 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     struct drying_history history = dry_and_check(&network, &conditions);
     bool *exposed = NEW_ARRAY(bool, network.n_node);
-    const struct drying_record record = {.n_step = history.n_step,
-                                         .time = history.time,
-                                         .saturation = history.saturation,
-                                         .offset = history.change_offset,
-                                         .throat = history.change_throat,
-                                         .throat_saturation = history.change_saturation,
-                                         .exposed = exposed};
+    const struct filling_record record = {
+        .drying = {.n_step = history.n_step,
+                   .time = history.time,
+                   .saturation = history.saturation,
+                   .offset = history.change_offset,
+                   .throat = history.change_throat,
+                   .throat_saturation = history.change_saturation},
+        .exposed = exposed};
     const int n = network.packing.n_particle;
     struct vector *anew = NEW_ARRAY(struct vector, n);
     struct vector *before = NEW_ARRAY(struct vector, n);
@@ -333,7 +334,7 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
                 assert_same(distance(walk.former[k], before[walk.changed[k]]), 0);
             memcpy(before, walk.force, (size_t)n * sizeof *before);
         } while (walk_advance(&walk) && ++steps);
-        assert_int_equal(steps, record.n_step);
+        assert_int_equal(steps, record.drying.n_step);
         walk_free(&walk);
         action_free(&action);
     }

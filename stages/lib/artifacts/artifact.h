@@ -11,6 +11,7 @@
 #include "artifacts/schema.h"
 #include "basics/file.h"
 #include "geometry/packing.h"
+#include "network/drying_record.h"
 #include "network/network.h"
 #include "parameters/stage.h"
 
@@ -75,6 +76,9 @@ struct packing artifact_get_packing(const struct artifact *artifact);
 // box.
 struct network artifact_get_network(const struct artifact *artifact);
 struct network artifact_get_periodic_network(const struct artifact *artifact);
+
+// What happened in a drying. A foreign one may have no step.
+struct drying_record artifact_get_drying(const struct artifact *artifact);
 
 // ---- writing ------------------------------------------------------------------------
 

@@ -339,3 +339,14 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     check_throats_lead_away(artifact, &network);
     return network;
 }
+
+struct drying_record artifact_get_drying(const struct artifact *artifact)
+{
+    struct drying_record record;
+    record.time = artifact_get(artifact, "/history/time", &record.n_step);
+    record.saturation = artifact_get(artifact, "/history/saturation", NULL);
+    record.offset = artifact_get(artifact, "/changes/offset", NULL);
+    record.throat = artifact_get(artifact, "/changes/throat", NULL);
+    record.throat_saturation = artifact_get(artifact, "/changes/saturation", NULL);
+    return record;
+}
