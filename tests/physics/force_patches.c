@@ -432,8 +432,8 @@ static void broken_cells_are_refused(void **state)
 {
     (void)state;
     struct network network = lattice_network(2, 2, 2, 1);
-    network.n_throat--;
-    is_refused(&network, "no throat between nodes");
+    network.n_throat--; // between nodes 6 and 7
+    is_refused(&network, "no throat between nodes 6 and 7");
     network = two_cells();
     network.face_particles[network.n_face - 1][1] = -6; // one grain is open there
     is_refused(&network, "is open at throat");
