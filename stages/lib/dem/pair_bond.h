@@ -80,9 +80,38 @@ INLINE void let_go(struct carried *c, mask whole)
     c->bending = only_where3(whole, c->bending);
 }
 
-// Adds the bonds of the lanes HELD, and breaks them [K 4.31-4.44]. Stresses are
-// compared times A R: sigma_max A R = -F^n R + 4 |M^s| as A R^2 = 4 I, and tau_max A R
-// = |F^s| R + 2 |M^n| as A R^2 = 2 J. Squares spare the roots.
+// Breaks the bonds of the lanes HELD that carry more than they can; how many. Stresses
+// are compared times A R: sigma_max A R = -F^n R + 4 |M^s| as A R^2 = 4 I, and
+// tau_max A R = |F^s| R + 2 |M^n| as A R^2 = 2 J. Squares spare the roots.
+INLINE int break_overloaded(struct carried *c, const struct dem *dem, int k, int at,
+                            mask held, lanes radius)
+{
+    struct bond_group *g = dem->pairs.bonds + k;
+    const lanes square = radius * radius;
+    const lanes bending_left =
+        less_fused(c->tension, radius, load(g->normal_strength + at));
+    const lanes twist_size = magnitude(c->twist);
+    const lanes shear_left =
+        less_fused(splat(2), twist_size, load(g->shear_strength + at));
+    const lanes bending_square = 16.0 * dot3(c->bending, c->bending);
+    const lanes shear_square = square * dot3(c->shear, c->shear);
+    // Also where nothing is left: then the right side is not positive.
+    const mask by_normal =
+        both(held, at_least(bending_square, bending_left * magnitude(bending_left)));
+    const mask by_shear =
+        both(held, at_least(shear_square, shear_left * magnitude(shear_left)));
+    const mask broken = either(by_normal, by_shear);
+    if (!any(broken)) return 0;
+    const lanes normal_load = square_root(bending_square) + c->tension * radius;
+    const lanes shear_load = 2.0 * twist_size + square_root(shear_square);
+    const int count = break_bonds(g, at, by_normal, by_shear, normal_load, shear_load);
+    if (dem->pairs.loss)
+        book(dem->pairs.loss[k].broken + at, broken, bond_energy(dem, c, square));
+    let_go(c, without(held, broken));
+    return count;
+}
+
+// Adds the bonds of the lanes HELD, and breaks them [K 4.31-4.44].
 INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, int at,
                          const struct meeting *m, mask held, const struct bond_law *law)
 {
@@ -90,52 +119,24 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
     const struct lanes3 n = m->turning.normal;
     const lanes radius = load(g->radius + at), square = radius * radius;
     const lanes fourth = square * square;
-
-    const lanes tension = law->tension * square * m->stretch;
-    struct lanes3 shear =
-        turn(m->turning, load3(g->shear_force, at), FEATURE_PARALLEL_BOND);
-    shear = subtract_scaled3(shear, law->shear * square, m->shear_velocity);
-
     const lanes twisting = dot3(m->turning_apart, n);
-    lanes twist = load(g->twist + at);
-    twist = less_fused(law->twist * fourth, twisting, twist);
-    struct lanes3 bending =
-        turn(m->turning, load3(g->bending, at), FEATURE_PARALLEL_BOND);
-    bending = subtract_scaled3(bending, law->bending * fourth,
-                               subtract_scaled3(m->turning_apart, twisting, n));
 
-    const lanes bending_left =
-        less_fused(tension, radius, load(g->normal_strength + at));
-    const lanes twist_size = magnitude(twist);
-    const lanes shear_left =
-        less_fused(splat(2), twist_size, load(g->shear_strength + at));
-    const lanes bending_square = 16.0 * dot3(bending, bending);
-    const lanes shear_square = square * dot3(shear, shear);
-    // Also where nothing is left: then the right side is not positive.
-    const mask by_normal =
-        both(held, at_least(bending_square, bending_left * magnitude(bending_left)));
-    const mask by_shear =
-        both(held, at_least(shear_square, shear_left * magnitude(shear_left)));
+    struct carried c = {
+        .tension = law->tension * square * m->stretch,
+        .twist = less_fused(law->twist * fourth, twisting, load(g->twist + at)),
+        .shear = turn(m->turning, load3(g->shear_force, at), FEATURE_PARALLEL_BOND),
+        .bending = turn(m->turning, load3(g->bending, at), FEATURE_PARALLEL_BOND)};
+    c.shear = subtract_scaled3(c.shear, law->shear * square, m->shear_velocity);
+    c.bending = subtract_scaled3(c.bending, law->bending * fourth,
+                                 subtract_scaled3(m->turning_apart, twisting, n));
+    const int count = break_overloaded(&c, dem, k, at, held, radius);
 
-    const mask broken = either(by_normal, by_shear);
-    struct carried carried = {tension, twist, shear, bending};
-    int count = 0;
-    if (any(broken)) {
-        const lanes normal_load = square_root(bending_square) + tension * radius;
-        const lanes shear_load = 2.0 * twist_size + square_root(shear_square);
-        count = break_bonds(g, at, by_normal, by_shear, normal_load, shear_load);
-        if (dem->pairs.loss)
-            book(dem->pairs.loss[k].broken + at, broken,
-                 bond_energy(dem, &carried, square));
-        let_go(&carried, without(held, broken));
-    }
-
-    store3(g->shear_force, at, carried.shear);
-    store3(g->bending, at, carried.bending);
-    store(g->twist + at, carried.twist);
-    total->normal -= carried.tension;
-    total->shear = add3(total->shear, carried.shear);
-    total->moment = add_scaled3(carried.bending, carried.twist, n);
+    store3(g->shear_force, at, c.shear);
+    store3(g->bending, at, c.bending);
+    store(g->twist + at, c.twist);
+    total->normal -= c.tension;
+    total->shear = add3(total->shear, c.shear);
+    total->moment = add_scaled3(c.bending, c.twist, n);
     return count;
 }
 
