@@ -49,5 +49,5 @@ wet_throats() { # DRYING TABLE
 # Has NAME.gp, called as the program, draw OUT from the tables and its VARIABLES.
 draw() { # OUT [VARIABLES]
     gnuplot -e "tables = '$tables'; ${2-}" "$here/style.gp" "$here/${0##*/}.gp" >"$tables/picture"
-    mv "$tables/picture" "$1"
+    cp "$tables/picture" "$1" # which may lead elsewhere
 }

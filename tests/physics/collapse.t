@@ -66,6 +66,12 @@ with scratch() as folder:
         wanted = lowest + (1 - lowest) * math.sqrt(1 - share)
         ok(status == 0 and max(abs(stretch - wanted)) < 3e-6, f"at {share} of the critical load they lie as in closed form",
            (status, stretch, wanted))
+    # What goes beside OUT does not go beside what OUT leads to, nor to the root.
+    os.symlink(at("moved"), at("link"))
+    ends = [subprocess.run([os.path.abspath("pipelines/collapse"), "no-such-scene", "1", "1", name], cwd=folder,
+                           capture_output=True, text=True) for name in ("link", "/dev/stdout", "/dev/null")]
+    ok(all(end.returncode == 73 and end.stderr.count("\n") == 1 for end in ends), "a link or a device is refused as OUT",
+       [end.stderr for end in ends])
     status, says = settle(1.1, 30)
     ok(status in (3, 65) and ("diverged" in says or "close" in says), "at 1.1 of it they collapse", (status, says))
 done()
