@@ -4,7 +4,6 @@
 #include "basics/status.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static void compare_json(struct comparison *comparison, const char *name, json_t *one,
                          json_t *other);

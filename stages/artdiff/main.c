@@ -6,7 +6,6 @@
 #include "parameters/command_line.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct options {
     const char *input[2];

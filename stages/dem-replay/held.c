@@ -4,7 +4,6 @@
 #include "basics/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const double touching = 1e-6; // of the radius
 

@@ -4,7 +4,6 @@
 #include "basics/memory.h"
 #include "equilibrium_state.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

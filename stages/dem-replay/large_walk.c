@@ -7,7 +7,6 @@
 #include "equilibrium_state.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 // ---- how it begins ------------------------------------------------------------------

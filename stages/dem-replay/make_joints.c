@@ -5,7 +5,6 @@
 #include "geometry/neighbours.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static void find_axes(struct joint *joint, struct vector separation)
 {

@@ -4,7 +4,6 @@
 
 #include "basics/memory.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 const struct dem_crack *equilibrium_cracks(const struct equilibrium *e, int *count)

@@ -5,7 +5,6 @@
 #include "basics/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static bool is_at_last_step(const struct filling *filling)
 {

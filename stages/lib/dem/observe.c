@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 int64_t dem_cycle(const struct dem *dem)
 {

@@ -14,8 +14,6 @@
 #include "basics/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 struct block {
     double a[6][6];
