@@ -17,6 +17,13 @@ double height_share(const struct packing *packing, double z)
     return (z - packing->lower.z) / (packing->upper.z - packing->lower.z);
 }
 
+int slice_of_bond(const struct packing *packing, int bond, int n)
+{
+    const double z = packing->position[packing->bond[bond][0]].z +
+                     0.5 * bond_vector(packing, bond).z;
+    return class_of(height_share(packing, z), n);
+}
+
 struct counts counts_new(struct classes classes)
 {
     const size_t n_slice = (size_t)classes.n_slice;
@@ -40,12 +47,9 @@ void counts_free(struct counts *counts)
 
 void count_cracks(struct counts *counts, const struct run *run, struct classes classes)
 {
-    const struct packing *packing = &run->packing;
     for (int k = 0; k < run->n_crack; k++) {
-        const int mode = run->mode[k], bond = run->bond[k];
-        const double z = packing->position[packing->bond[bond][0]].z +
-                         0.5 * bond_vector(packing, bond).z;
-        const int slice = class_of(height_share(packing, z), classes.n_slice);
+        const int mode = run->mode[k];
+        const int slice = slice_of_bond(&run->packing, run->bond[k], classes.n_slice);
         const int drier = class_of(1 - run->saturation[k], classes.n_interval);
         const double elapsed = run->end > 0 ? run->time[k] / run->end : 0;
         counts->period[run->time[k] <= run->first_period_end ? PERIOD_FIRST

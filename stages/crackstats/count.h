@@ -30,12 +30,15 @@ int class_of(double share, int n);
 // Height in the box, 0 to 1.
 double height_share(const struct packing *packing, double z);
 
+// The slice, of N, that a crack of BOND counts in: by the height of the bond before
+// anything moved, so that one between two layers stays on their border however the
+// grains have shifted since.
+int slice_of_bond(const struct packing *packing, int bond, int n);
+
 struct counts counts_new(struct classes classes);
 void counts_free(struct counts *counts);
 
-// Adds the cracks of RUN. Heights are those of the bonds before anything moved: a bond
-// between two layers stays on their border however the grains have shifted since. A
-// crack at the very end of the first period counts there.
+// Adds the cracks of RUN. One at the very end of the first period counts there.
 void count_cracks(struct counts *counts, const struct run *run, struct classes classes);
 
 #endif

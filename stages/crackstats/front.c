@@ -38,13 +38,10 @@ static void add_slices(struct front *front, const struct liquid *liquid,
 void add_front(struct front *front, const struct run *run, const struct liquid *liquid,
                struct classes classes)
 {
-    const struct packing *packing = &run->packing;
     add_slices(front, liquid, classes);
     double *slice = slice_saturations(liquid, classes.n_slice, run->time, run->n_crack);
     for (int k = 0; k < run->n_crack; k++) {
-        const double z = packing->position[packing->bond[run->bond[k]][0]].z +
-                         0.5 * bond_vector(packing, run->bond[k]).z;
-        const int place = class_of(height_share(packing, z), classes.n_slice);
+        const int place = slice_of_bond(&run->packing, run->bond[k], classes.n_slice);
         const double local = slice[(size_t)k * (size_t)classes.n_slice + (size_t)place];
         if (isnan(local)) continue; // never any liquid there
         front->local[class_of(1 - local, LOCAL_CLASSES)]++;

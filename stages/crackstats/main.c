@@ -4,6 +4,7 @@
 #include "read.h"
 #include "report.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -178,20 +179,21 @@ int main(int argc, char **argv)
     check_classes(&parameters);
     json_t *inputs = json_array();
     struct study study = read_study(&invocation, inputs, &parameters);
-    json_t *report =
+    json_t *counted =
         json_pack("{s:s,s:i,s:o}", "schema", "craquelure/crackstats/1", "runs",
                   study.n_run, "bonds", json_value(study.bonds / study.n_run));
-    report_tables(report, &study, parameters.confidence);
-    report_facts(report, &study, parameters.confidence,
+    report_tables(counted, &study, parameters.confidence);
+    report_facts(counted, &study, parameters.confidence,
                  (struct groups){(int)parameters.first_group, parameters.paired});
-    finish_json(report, &invocation, inputs,
-                study.n_liquid == study.n_run
-                    ? "counts by mode, drying period, slice, saturation and time; "
-                      "connected cracks, fragments, orientation, strain\n"
-                      "cracks against the liquid of their slices\n"
-                    : "counts by mode, drying period, slice, saturation and time; "
-                      "connected cracks, fragments, orientation, strain\n"
-                      "left out: the liquid, whose drying was not given\n");
+    char model[250];
+    snprintf(model, sizeof model,
+             "counts by mode, drying period, slice, saturation and time; connected "
+             "cracks, fragments, orientation, strain\n"
+             "%s\n",
+             study.n_liquid == study.n_run
+                 ? "cracks against the liquid of their slices"
+                 : "left out: the liquid, whose drying was not given");
+    finish_json(counted, &invocation, inputs, model);
     study_free(&study);
     invocation_free(&invocation);
     return STATUS_OK;
