@@ -37,7 +37,7 @@ static enum status check_region(const struct held *held, struct reason *reason)
         if (held->lower[axis] > held->upper[axis])
             return refuse(reason, STATUS_BAD_DATA,
                           "held.upper: %c must be >= %g, of held.lower, got %g",
-                          "xyz"[axis], held -> lower[axis], held -> upper[axis]);
+                          'x' + axis, held->lower[axis], held->upper[axis]);
     return STATUS_OK;
 }
 

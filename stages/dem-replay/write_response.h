@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A response as an artifact.
 #ifndef CRAQUELURE_WRITE_RESPONSE_H
 #define CRAQUELURE_WRITE_RESPONSE_H
 

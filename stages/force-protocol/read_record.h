@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What forces need to know of a drying, out of its artifact.
 #ifndef CRAQUELURE_READ_RECORD_H
 #define CRAQUELURE_READ_RECORD_H
 
