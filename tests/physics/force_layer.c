@@ -7,15 +7,19 @@
 
 #include <math.h>
 
-static const struct vector box = {3, 1.5, 4}, grain = {1.2, 0.75, 2.3};
+static const struct vector lower = {-1, 2, 5}, upper = {2, 3.5, 9},
+                           grain = {0.2, 2.75, 7.3};
 static const double radius = 0.7;
 
 static struct network layer(void)
 {
     struct vector position = grain;
     double size = radius;
-    const struct packing packing = {
-        .n_particle = 1, .position = &position, .radius = &size, .upper = box};
+    const struct packing packing = {.n_particle = 1,
+                                    .position = &position,
+                                    .radius = &size,
+                                    .lower = lower,
+                                    .upper = upper};
     const struct tessellation how = {.power = true, .layer = true};
     struct network network;
     struct tessellation_report report;
@@ -84,7 +88,7 @@ static void throats_of_one_grain(void **state)
         const double square = radius * radius;
         check(&form[FORM_SOLID_ANGLE], t, scale(M_PI / 2 * square, arc(&view)));
         check(&form[FORM_ARCS], t, scale(square, arc(&view)));
-        check(&form[FORM_FACES], t, scale(box.y * view.length, view.out));
+        check(&form[FORM_FACES], t, scale((upper.y - lower.y) * view.length, view.out));
         check(&form[FORM_CENTRES], t, scale(square / norm(view.middle), view.middle));
         check(&lines, t, scale(2, view.out));
     }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pulls of throats on grains, for the tests of them.
+#ifndef CRAQUELURE_TEST_FORCE_SCENE_H
+#define CRAQUELURE_TEST_FORCE_SCENE_H
+
+#include "../test.h"
+#include "force-protocol/patches.h"
+#include "support_lattice.h"
+
+// Sums of the absolute errors of what should vanish.
+static inline double size(struct vector a)
+{
+    return fabs(a.x) + fabs(a.y) + fabs(a.z);
+}
+
+static inline struct vector sum_of(const struct patches *patches, int grain)
+{
+    struct vector sum = {0};
+    for (int k = patches->begin[grain]; k < patches->begin[grain + 1]; k++)
+        sum = add(sum, patches->patch[k].pull);
+    return sum;
+}
+
+static inline struct patches patches_of(const struct network *network, enum form form)
+{
+    struct wedges wedges;
+    struct reason reason;
+    assert_int_equal(wedges_find(network, &wedges, &reason), STATUS_OK);
+    struct patches patches = find_patches(&wedges, form);
+    assert_int_equal(check_patches(&patches, &reason), STATUS_OK);
+    wedges_free(&wedges);
+    return patches;
+}
+
+#endif
