@@ -168,8 +168,8 @@ include $(wildcard $(BUILD)/obj/*/*/*.d $(BUILD)/obj/*/*/*/*.d)
 # nothing runs.
 #
 # A study is a file pipelines/*.mk, as pipelines/curves.mk: each `step` is an artifact that a
-# stage makes, each `report` a table or picture that a program beside it makes, and `study`
-# the goal.
+# stage makes (pipelines/crack.mk has one for each stage), each `report` a table or picture
+# that a program beside it makes, and `study` the goal.
 
 RUNS ?= $(BUILD)/runs
 RUN ?=# a launcher for the stages: RUN='srun -n1'

@@ -17,6 +17,15 @@ FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
 DEM_REPLAY ?= $(BUILD)/bin/dem-replay
 CRACKSTATS ?= $(BUILD)/bin/crackstats
 
+# $1 is made by the stage of that name from scene $2, with the overrides $3, and the files $4.
+pack = $(call step,$1,pack,$(PACK),$2,$3,$4)
+tessellate = $(call step,$1,tessellate,$(TESSELLATE),$2,$3,$4)
+merge-nodes = $(call step,$1,merge-nodes,$(MERGE_NODES),$2,$3,$4)
+dry = $(call step,$1,dry,$(DRY),$2,$3,$4)
+force-protocol = $(call step,$1,force-protocol,$(FORCE_PROTOCOL),$2,$3,$4)
+dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
+crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
+
 # What make or its shell would take apart.
 hash := \#
 unfit := $(strip $(word 2,$(value SCENE)) $(foreach sign,' " ` ; & < > | * ? [ ] { } ! $$ $(hash),$(findstring \
@@ -27,19 +36,20 @@ endif
 
 pipeline_goals += demo run
 
-# packing, tessellation and network of scene $2 in folder $1.
+# packing, tessellation and network of scene $2 in folder $1, with the overrides $3 of the packing
+# and $4 of the tessellation.
 define crack_network
-$(call step,$1/packing.h5,pack,$(PACK),$2,,$(IMPORT))
-$(call step,$1/tessellation.h5,tessellate,$(TESSELLATE),$2,,$1/packing.h5)
-$(call step,$1/network.h5,merge-nodes,$(MERGE_NODES),$2,,$1/tessellation.h5)
+$(call pack,$1/packing.h5,$2,$3,$(IMPORT))
+$(call tessellate,$1/tessellation.h5,$2,$4,$1/packing.h5)
+$(call merge-nodes,$1/network.h5,$2,,$1/tessellation.h5)
 endef
 
 # The rest, in folder $1, from network $3, with the overrides $4 of the drying.
 define crack_history
-$(call step,$1/drying.h5,dry,$(DRY),$2,$4,$3)
-$(call step,$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$2,,$1/drying.h5)
-$(call step,$1/response.h5,dem-replay,$(DEM_REPLAY),$2,,$1/forces.h5)
-$(call step,$1/crackstats.json,crackstats,$(CRACKSTATS),$2,,$1/response.h5 $1/drying.h5)
+$(call dry,$1/drying.h5,$2,$4,$3)
+$(call force-protocol,$1/forces.h5,$2,,$1/drying.h5)
+$(call dem-replay,$1/response.h5,$2,,$1/forces.h5)
+$(call crackstats,$1/crackstats.json,$2,,$1/response.h5 $1/drying.h5)
 endef
 
 crack_words := "\(.cracks.total) of \(.bonds) bonds broke," + \

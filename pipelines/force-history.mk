@@ -13,9 +13,9 @@ force-history: ## the force of one contact over the drying, K's Fig. 5.12
 ifneq ($(call asked,force-history,$(force_history_folder)),)
 $(call crack_network,$(force_history_folder),$(force_history_scene))
 define force_history_limit
-$(call step,$(force_history_folder)/$1/drying.h5,dry,$(DRY),$(force_history_scene),liquid=$1,$(force_history_folder)/network.h5)
-$(call step,$(force_history_folder)/$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$(force_history_scene),,$(force_history_folder)/$1/drying.h5)
-$(call step,$(force_history_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(force_history_scene),$(force_history_snapshots),$(force_history_folder)/$1/forces.h5)
+$(call dry,$(force_history_folder)/$1/drying.h5,$(force_history_scene),liquid=$1,$(force_history_folder)/network.h5)
+$(call force-protocol,$(force_history_folder)/$1/forces.h5,$(force_history_scene),,$(force_history_folder)/$1/drying.h5)
+$(call dem-replay,$(force_history_folder)/$1/response.h5,$(force_history_scene),$(force_history_snapshots),$(force_history_folder)/$1/forces.h5)
 endef
 $(foreach limit,$(force_history_limits),$(call force_history_limit,$(limit)))
 force_history_responses := $(force_history_limits:%=$(force_history_folder)/%/response.h5)

@@ -10,7 +10,7 @@ fronts: ## pictures of drying fronts in inviscid, viscous and immobile liquid (m
 
 ifneq ($(call asked,fronts,$(fronts_folder)),)
 $(foreach d,2d 3d,$(call crack_network,$(fronts_folder)/$d,samples/fronts-$d.json)\
-$(foreach l,$(fronts_liquids),$(call step,$(fronts_folder)/$d-$l.h5,dry,$(DRY),samples/fronts-$d.json,liquid=$l,$(fronts_folder)/$d/network.h5)))
+$(foreach l,$(fronts_liquids),$(call dry,$(fronts_folder)/$d-$l.h5,samples/fronts-$d.json,liquid=$l,$(fronts_folder)/$d/network.h5)))
 $(call report,$(fronts_folder)/fronts.svg,fronts-figure,$(foreach d,2d 3d,$(fronts_liquids:%=$(fronts_folder)/$d-%.h5)))
 
 $(call study,fronts,$(fronts_folder)/fronts.svg)

@@ -11,9 +11,8 @@ gradients: ## forces with liquid pressure gradients on and off, and their pictur
 
 ifneq ($(call asked,gradients,$(gradients_folder)),)
 $(call crack_network,$(gradients_folder),$(gradients_scene))
-$(call step,$(gradients_folder)/drying.h5,dry,$(DRY),$(gradients_scene),,$(gradients_folder)/network.h5)
-$(foreach p,$(gradients_pressures),$(call \
-	step,$(gradients_folder)/$p.h5,force-protocol,$(FORCE_PROTOCOL),$(gradients_scene),pressure=$p,$(gradients_folder)/drying.h5))
+$(call dry,$(gradients_folder)/drying.h5,$(gradients_scene),,$(gradients_folder)/network.h5)
+$(foreach p,$(gradients_pressures),$(call force-protocol,$(gradients_folder)/$p.h5,$(gradients_scene),pressure=$p,$(gradients_folder)/drying.h5))
 gradients_drawn := $(gradients_folder)/drying.h5 $(gradients_pressures:%=$(gradients_folder)/%.h5)
 $(call report,$(gradients_folder)/gradients.svg,gradients-figure,$(gradients_drawn))
 

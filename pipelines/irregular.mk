@@ -18,16 +18,14 @@ irregular_pressure = $(lastword $(subst -, ,$1))
 
 # Packing $1 in arm $2.
 define irregular_run
-$(call step,$(irregular_folder)/$1/$2-forces.h5,force-protocol,$(FORCE_PROTOCOL),$(irregular_scene),pressure=$(call irregular_pressure,$2),$(irregular_folder)/$1/$(call irregular_liquid,$2).h5)
-$(call step,$(irregular_folder)/$1/$2.h5,dem-replay,$(DEM_REPLAY),$(irregular_scene),,$(irregular_folder)/$1/$2-forces.h5)
+$(call force-protocol,$(irregular_folder)/$1/$2-forces.h5,$(irregular_scene),pressure=$(call irregular_pressure,$2),$(irregular_folder)/$1/$(call irregular_liquid,$2).h5)
+$(call dem-replay,$(irregular_folder)/$1/$2.h5,$(irregular_scene),,$(irregular_folder)/$1/$2-forces.h5)
 endef
 
 # Packing $1, its network, and how it dries with each of the three liquids.
 define irregular_aggregate
-$(call step,$(irregular_folder)/$1/packing.h5,pack,$(PACK),$(irregular_scene),seed=$1,)
-$(call step,$(irregular_folder)/$1/tessellation.h5,tessellate,$(TESSELLATE),$(irregular_scene),,$(irregular_folder)/$1/packing.h5)
-$(call step,$(irregular_folder)/$1/network.h5,merge-nodes,$(MERGE_NODES),$(irregular_scene),,$(irregular_folder)/$1/tessellation.h5)
-$(foreach l,inviscid immobile viscous,$(call step,$(irregular_folder)/$1/$l.h5,dry,$(DRY),$(irregular_scene),liquid=$l viscosity=$(IRREGULAR_VISCOSITY),$(irregular_folder)/$1/network.h5))
+$(call crack_network,$(irregular_folder)/$1,$(irregular_scene),seed=$1)
+$(foreach l,inviscid immobile viscous,$(call dry,$(irregular_folder)/$1/$l.h5,$(irregular_scene),liquid=$l viscosity=$(IRREGULAR_VISCOSITY),$(irregular_folder)/$1/network.h5))
 $(foreach arm,$(irregular_arms),$(call irregular_run,$1,$(arm)))
 endef
 
@@ -41,10 +39,10 @@ $(foreach seed,$(irregular_seeds),$(call irregular_aggregate,$(seed)))
 irregular_tables := $(irregular_arms:%=$(irregular_folder)/%.json)
 # The aggregates in arm $1, each with its drying.
 irregular_runs = $(foreach seed,$(irregular_seeds),$(irregular_folder)/$(seed)/$1.h5 $(irregular_folder)/$(seed)/$(call irregular_liquid,$1).h5)
-$(foreach arm,$(irregular_arms),$(call step,$(irregular_folder)/$(arm).json,crackstats,$(CRACKSTATS),$(irregular_scene),,$(call irregular_runs,$(arm))))
+$(foreach arm,$(irregular_arms),$(call crackstats,$(irregular_folder)/$(arm).json,$(irregular_scene),,$(call irregular_runs,$(arm))))
 # Whether slow and fast drying differ, and whether the gradient does anything: aggregate by
 # aggregate.
-irregular_test = $(call step,$(irregular_folder)/$1,crackstats,$(CRACKSTATS),$(irregular_scene),first_group=$(AGGREGATES) paired=true,$(foreach arm,$2,$(call irregular_runs,$(arm))))
+irregular_test = $(call crackstats,$(irregular_folder)/$1,$(irregular_scene),first_group=$(AGGREGATES) paired=true,$(foreach arm,$2,$(call irregular_runs,$(arm))))
 $(call irregular_test,limits.json,inviscid-uniform immobile-uniform)
 $(call irregular_test,gradient.json,viscous-uniform viscous-field)
 irregular_tests := $(irregular_folder)/limits.json $(irregular_folder)/gradient.json

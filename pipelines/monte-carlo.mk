@@ -25,7 +25,7 @@ realisation = $(call artifact,$1,stage=realisation version=$(call version_of,for
 
 # Realisation $1 in limit $2.
 define monte_carlo_run
-$(call step,$(monte_carlo_top)/drying/$2-$1.h5,dry,$(DRY),$(MONTE_CARLO_SCENE),liquid=$2 throat_radius.seed=$1 $(DRYING_INTERVAL:%=step_interval=%),$(monte_carlo_top)/network.h5)
+$(call dry,$(monte_carlo_top)/drying/$2-$1.h5,$(MONTE_CARLO_SCENE),liquid=$2 throat_radius.seed=$1 $(DRYING_INTERVAL:%=step_interval=%),$(monte_carlo_top)/network.h5)
 $(call realisation,$(monte_carlo_folder)/$2-$1.h5,$(monte_carlo_top)/drying/$2-$1.h5,$(MONTE_CARLO_SCENE))
 endef
 
@@ -40,8 +40,8 @@ monte_carlo_seeds := $(shell seq $(REALISATIONS))
 $(foreach limit,$(monte_carlo_limits),$(foreach seed,$(monte_carlo_seeds),$(call monte_carlo_run,$(seed),$(limit))))
 # The realisations of limit $1, each with its drying.
 monte_carlo_runs = $(foreach seed,$(monte_carlo_seeds),$(monte_carlo_folder)/$1-$(seed).h5 $(monte_carlo_top)/drying/$1-$(seed).h5)
-$(foreach limit,$(monte_carlo_limits),$(call step,$(monte_carlo_folder)/$(limit).json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),,$(call monte_carlo_runs,$(limit))))
-$(call step,$(monte_carlo_folder)/test.json,crackstats,$(CRACKSTATS),$(MONTE_CARLO_SCENE),first_group=$(REALISATIONS),$(foreach \
+$(foreach limit,$(monte_carlo_limits),$(call crackstats,$(monte_carlo_folder)/$(limit).json,$(MONTE_CARLO_SCENE),,$(call monte_carlo_runs,$(limit))))
+$(call crackstats,$(monte_carlo_folder)/test.json,$(MONTE_CARLO_SCENE),first_group=$(REALISATIONS),$(foreach \
 	limit,$(monte_carlo_limits),$(call monte_carlo_runs,$(limit))))
 monte_carlo_counts := $(monte_carlo_limits:%=$(monte_carlo_folder)/%.json) $(monte_carlo_folder)/test.json
 $(call report,$(monte_carlo_folder)/table.md,monte-carlo,$(monte_carlo_counts))

@@ -12,10 +12,8 @@ boundary_drawn := $(boundary_dryings:%=$(boundary_folder)/%/drying.h5)
 # Drying of sample $1 ($2: surface, auxiliary) with the overrides $3 of its packing, $4 of
 # its tessellation.
 define boundary_drying
-$(call step,$(boundary_folder)/$1-$2/packing.h5,pack,$(PACK),samples/boundary-$1.json,$3,)
-$(call step,$(boundary_folder)/$1-$2/tessellation.h5,tessellate,$(TESSELLATE),samples/boundary-$1.json,$4,$(boundary_folder)/$1-$2/packing.h5)
-$(call step,$(boundary_folder)/$1-$2/network.h5,merge-nodes,$(MERGE_NODES),samples/boundary-$1.json,,$(boundary_folder)/$1-$2/tessellation.h5)
-$(call step,$(boundary_folder)/$1-$2/drying.h5,dry,$(DRY),samples/boundary-$1.json,boundary_layer.columns=$2 throat_radius.distribution=normal,$(boundary_folder)/$1-$2/network.h5)
+$(call crack_network,$(boundary_folder)/$1-$2,samples/boundary-$1.json,$3,$4)
+$(call dry,$(boundary_folder)/$1-$2/drying.h5,samples/boundary-$1.json,boundary_layer.columns=$2 throat_radius.distribution=normal,$(boundary_folder)/$1-$2/network.h5)
 endef
 
 boundary_counts := 1 2 5 10 20 40 80 160
@@ -38,8 +36,8 @@ $(call boundary_drying,2d,auxiliary,,boundary=eliminate)
 $(call boundary_drying,3d,auxiliary,,)
 $(call report,$(boundary_folder)/picture.svg,boundary-figure,$(boundary_drawn))
 
-$(foreach n,$(boundary_counts),$(call step,$(boundary_3d)/layers-$n.h5,dry,$(DRY),samples/boundary-3d.json,$(boundary_law) boundary_layer.layers=$n,$(boundary_3d)/network.h5))
-$(call step,$(boundary_3d)/lumped.h5,dry,$(DRY),samples/boundary-3d.json,$(boundary_law) boundary_layer.exchange=lumped,$(boundary_3d)/network.h5)
+$(foreach n,$(boundary_counts),$(call dry,$(boundary_3d)/layers-$n.h5,samples/boundary-3d.json,$(boundary_law) boundary_layer.layers=$n,$(boundary_3d)/network.h5))
+$(call dry,$(boundary_3d)/lumped.h5,samples/boundary-3d.json,$(boundary_law) boundary_layer.exchange=lumped,$(boundary_3d)/network.h5)
 
 boundary-study: $(boundary_studied)
 ifdef really

@@ -12,9 +12,9 @@ regular_names := 2d-3 2d-4 2d-6 3d-4 3d-6 3d-8
 networks: ## pictures of pore networks, merged ever more, and regular ones
 
 ifneq ($(call asked,networks,$(networks_folder)),)
-$(call step,$(networks_folder)/packing.h5,pack,$(PACK),$(merging_scene),,)
-$(call step,$(networks_folder)/tessellation.h5,tessellate,$(TESSELLATE),$(merging_scene),,$(networks_folder)/packing.h5)
-$(foreach s,$(merging_shares),$(call step,$(networks_folder)/merged-$s.h5,merge-nodes,$(MERGE_NODES),$(merging_scene),threshold=$s,$(networks_folder)/tessellation.h5))
+$(call pack,$(networks_folder)/packing.h5,$(merging_scene),,)
+$(call tessellate,$(networks_folder)/tessellation.h5,$(merging_scene),,$(networks_folder)/packing.h5)
+$(foreach s,$(merging_shares),$(call merge-nodes,$(networks_folder)/merged-$s.h5,$(merging_scene),threshold=$s,$(networks_folder)/tessellation.h5))
 $(foreach n,$(regular_names),$(call crack_network,$(networks_folder)/regular-$n,samples/regular-$n.json))
 $(call report,$(networks_folder)/merging.svg,network-figure,$(merging_shares:%=$(networks_folder)/merged-%.h5))
 $(call report,$(networks_folder)/regular.svg,network-figure,$(regular_names:%=$(networks_folder)/regular-%/network.h5))

@@ -23,10 +23,10 @@ k_networks := $(foreach f,$(k_frictions),$(k_names:%=%-$f))
 
 # Network $1, of $2 grains with friction $3, from scene $4: in folder $5.
 define k_network
-$(call step,$5/packing.h5,pack,$(PACK),$4,count=$2 dynamics.friction=$3,)
+$(call pack,$5/packing.h5,$4,count=$2 dynamics.friction=$3,)
 $(if $(findstring open,$1),$(call artifact,$5/open.h5,stage=networks-k version=1,pipelines/networks-k pipelines/common.sh $5/packing.h5,pipelines/networks-k open $5/packing.h5 $5/open.h5,$(BUILD)/bin/pack))
-$(call step,$5/network.h5,tessellate,$(TESSELLATE),$4,boundary=$(if $(findstring truncate,$1),truncate,eliminate),$5/$(if $(findstring open,$1),open,packing).h5)
-$(foreach s,$(k_shares),$(call step,$5/merged-$s.h5,merge-nodes,$(MERGE_NODES),$4,threshold=$s,$5/network.h5))
+$(call tessellate,$5/network.h5,$4,boundary=$(if $(findstring truncate,$1),truncate,eliminate),$5/$(if $(findstring open,$1),open,packing).h5)
+$(foreach s,$(k_shares),$(call merge-nodes,$5/merged-$s.h5,$4,threshold=$s,$5/network.h5))
 endef
 k_files = $(k_folder)/$1/network.h5 $(k_shares:%=$(k_folder)/$1/merged-%.h5)
 

@@ -14,13 +14,13 @@ periodic_limits := inviscid immobile
 
 # Seed $1 dries in limit $2; its forces are replayed at every scale.
 define periodic_history
-$(call step,$(periodic_folder)/$2/$1/drying.h5,dry,$(DRY),$(periodic_scene),liquid=$2 throat_radius.seed=$1,$(periodic_folder)/network.h5)
-$(foreach f,$(PERIODIC_SCALES),$(call step,$(periodic_folder)/$2/$1/forces-$f.h5,force-protocol,$(FORCE_PROTOCOL),$(periodic_scene),force_scale=$f,$(periodic_folder)/$2/$1/drying.h5)\
-$(call step,$(periodic_folder)/$2/$1/response-$f.h5,dem-replay,$(DEM_REPLAY),$(periodic_scene),,$(periodic_folder)/$2/$1/forces-$f.h5))
+$(call dry,$(periodic_folder)/$2/$1/drying.h5,$(periodic_scene),liquid=$2 throat_radius.seed=$1,$(periodic_folder)/network.h5)
+$(foreach f,$(PERIODIC_SCALES),$(call force-protocol,$(periodic_folder)/$2/$1/forces-$f.h5,$(periodic_scene),force_scale=$f,$(periodic_folder)/$2/$1/drying.h5)\
+$(call dem-replay,$(periodic_folder)/$2/$1/response-$f.h5,$(periodic_scene),,$(periodic_folder)/$2/$1/forces-$f.h5))
 endef
 
 # Counts of all seeds in limit $1 at scale $2.
-periodic_counts = $(call step,$(periodic_folder)/$1-$2.json,crackstats,$(CRACKSTATS),$(periodic_scene),,$(foreach \
+periodic_counts = $(call crackstats,$(periodic_folder)/$1-$2.json,$(periodic_scene),,$(foreach \
 	seed,$(PERIODIC_SEEDS),$(periodic_folder)/$1/$(seed)/response-$2.h5 $(periodic_folder)/$1/$(seed)/drying.h5))
 
 periodic: ## cracks in a box that repeats sideways, K's Table 5.3 and Fig. 5.24 (about two minutes)

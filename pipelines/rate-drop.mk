@@ -47,9 +47,9 @@ rate-drop: ## what the first fall of the drying rate hangs on (minutes)
 ifneq ($(call asked,rate-drop,$(rate_drop)),)
 # Folder $1: grains with overrides $2, their network with overrides $3.
 define rate_drop_network
-$(call step,$1/packing.h5,pack,$(PACK),samples/networks-k-3d.json,$2,)
-$(call step,$1/network.h5,tessellate,$(TESSELLATE),samples/networks-k-3d.json,$3,$1/packing.h5)
-$(call step,$1/merged.h5,merge-nodes,$(MERGE_NODES),samples/networks-k-3d.json,threshold=0.06,$1/network.h5)
+$(call pack,$1/packing.h5,samples/networks-k-3d.json,$2,)
+$(call tessellate,$1/network.h5,samples/networks-k-3d.json,$3,$1/packing.h5)
+$(call merge-nodes,$1/merged.h5,samples/networks-k-3d.json,threshold=0.06,$1/network.h5)
 endef
 rate_drop_rough := count=$(word 2,$(k_counts/3-1220-eliminate)) dynamics.friction=0.5
 rate_drop_smooth := count=$(word 1,$(k_counts/3-1220-eliminate)) dynamics.friction=0
@@ -59,7 +59,7 @@ $(call rate_drop_network,$(rate_drop)/auxiliary,$(rate_drop_rough) extra_layer=t
 $(call rate_drop_network,$(rate_drop)/cut,count=1220 dynamics.friction=0.5,boundary=truncate)
 $(foreach s,$(rate_drop_seeds),$(call rate_drop_network,$(rate_drop)/0.5-$s,$(rate_drop_rough) seed=$s,boundary=eliminate)\
 $(call rate_drop_network,$(rate_drop)/0-$s,$(rate_drop_smooth) seed=$s,boundary=eliminate))
-rate_drop_run = $(call step,$(rate_drop)/$1.h5,dry,$(DRY),samples/fronts-3d.json,liquid=inviscid \
+rate_drop_run = $(call dry,$(rate_drop)/$1.h5,samples/fronts-3d.json,liquid=inviscid \
 	boundary_layer.layers=10 step_interval=0.002 $2,$(rate_drop)/$3.h5)
 $(foreach n,$(rate_drop_names),$(call rate_drop_run,$n,$(wordlist 2,99,$(rate_drop/$n)),$(firstword $(rate_drop/$n))))
 $(foreach n,$(rate_drop_seeded),$(call rate_drop_run,seed-$n,,$n/merged))

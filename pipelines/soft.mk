@@ -14,9 +14,9 @@ soft_folder := $(RUNS)/soft
 
 # The aggregate under $1 times the force; its strength is twice the force too.
 define soft_arm
-$(call step,$(soft_folder)/$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$(soft_scene),force_scale=$1,$(soft_folder)/drying.h5)
-$(call step,$(soft_folder)/$1/response.h5,dem-replay,$(DEM_REPLAY),$(soft_scene),bond.contact_strength=$(shell awk 'BEGIN { print 5.3e-7 * $1 }') $(SOFT_SET),$(soft_folder)/$1/forces.h5)
-$(call step,$(soft_folder)/$1/crackstats.json,crackstats,$(CRACKSTATS),$(soft_scene),,$(soft_folder)/$1/response.h5 $(soft_folder)/drying.h5)
+$(call force-protocol,$(soft_folder)/$1/forces.h5,$(soft_scene),force_scale=$1,$(soft_folder)/drying.h5)
+$(call dem-replay,$(soft_folder)/$1/response.h5,$(soft_scene),bond.contact_strength=$(shell awk 'BEGIN { print 5.3e-7 * $1 }') $(SOFT_SET),$(soft_folder)/$1/forces.h5)
+$(call crackstats,$(soft_folder)/$1/crackstats.json,$(soft_scene),,$(soft_folder)/$1/response.h5 $(soft_folder)/drying.h5)
 endef
 
 soft: ## shrinkage and spring-back of the soft aggregate, and their picture
@@ -24,7 +24,7 @@ soft: ## shrinkage and spring-back of the soft aggregate, and their picture
 ifneq ($(call asked,soft,$(soft_folder)),)
 $(call must,SOFT_SCALES,$(number),numbers)
 $(call crack_network,$(soft_folder),$(soft_scene))
-$(call step,$(soft_folder)/drying.h5,dry,$(DRY),$(soft_scene),,$(soft_folder)/network.h5)
+$(call dry,$(soft_folder)/drying.h5,$(soft_scene),,$(soft_folder)/network.h5)
 $(foreach scale,$(SOFT_SCALES),$(call soft_arm,$(scale)))
 soft_counts := $(SOFT_SCALES:%=$(soft_folder)/%/crackstats.json)
 soft_drawn := $(soft_folder)/$(lastword $(SOFT_SCALES))/response.h5

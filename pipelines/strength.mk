@@ -15,13 +15,13 @@ strengths := 0.4e4 0.8e4 1.6e4 2e4
 
 # Seed $1 dries in limit $2; its forces are replayed with each of the strengths $3.
 define strength_history
-$(call step,$(strength_folder)/$2/$1/drying.h5,dry,$(DRY),$(strength_scene),liquid=$2 throat_radius.seed=$1,$(strength_folder)/network.h5)
-$(call step,$(strength_folder)/$2/$1/forces.h5,force-protocol,$(FORCE_PROTOCOL),$(strength_scene),force_scale=$(FORCE_SCALE),$(strength_folder)/$2/$1/drying.h5)
-$(foreach s,$3,$(call step,$(strength_folder)/$2/$1/response-$s.h5,dem-replay,$(DEM_REPLAY),$(strength_scene),bond.normal_strength=$s bond.shear_strength=$s,$(strength_folder)/$2/$1/forces.h5))
+$(call dry,$(strength_folder)/$2/$1/drying.h5,$(strength_scene),liquid=$2 throat_radius.seed=$1,$(strength_folder)/network.h5)
+$(call force-protocol,$(strength_folder)/$2/$1/forces.h5,$(strength_scene),force_scale=$(FORCE_SCALE),$(strength_folder)/$2/$1/drying.h5)
+$(foreach s,$3,$(call dem-replay,$(strength_folder)/$2/$1/response-$s.h5,$(strength_scene),bond.normal_strength=$s bond.shear_strength=$s,$(strength_folder)/$2/$1/forces.h5))
 endef
 
 strength_responses = $(foreach seed,$(SEEDS),$(strength_folder)/$1/$(seed)/response-$2.h5)
-strength_counts = $(call step,$(strength_folder)/$1-$2.json,crackstats,$(CRACKSTATS),$(strength_scene),,$(call strength_responses,$1,$2))
+strength_counts = $(call crackstats,$(strength_folder)/$1-$2.json,$(strength_scene),,$(call strength_responses,$1,$2))
 
 strength: ## K's Table 5.2 over 20 seeds (about three minutes)
 

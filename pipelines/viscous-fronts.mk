@@ -17,15 +17,13 @@ fronts-k: ## drying fronts of water in networks as Kharaghani's (minutes)
 
 ifneq ($(call asked,fronts-k,$(fronts_k)),)
 define fronts_k_layer
-$(call step,$1/packing.h5,pack,$(PACK),samples/fronts-2d.json,seed=$2,)
-$(call step,$1/tessellation.h5,tessellate,$(TESSELLATE),samples/fronts-2d.json,,$1/packing.h5)
-$(call step,$1/network.h5,merge-nodes,$(MERGE_NODES),samples/fronts-2d.json,,$1/tessellation.h5)
-$(call step,$1/drying.h5,dry,$(DRY),samples/fronts-2d.json,liquid=viscous $(fronts_k_narrow) throat_radius.seed=$2,$1/network.h5)
+$(call crack_network,$1,samples/fronts-2d.json,seed=$2)
+$(call dry,$1/drying.h5,samples/fronts-2d.json,liquid=viscous $(fronts_k_narrow) throat_radius.seed=$2,$1/network.h5)
 endef
 $(foreach s,$(fronts_k_seeds),$(call fronts_k_layer,$(fronts_k)/layer-$s,$s))
 $(call k_network,3-1220-eliminate,$(word 1,$(k_counts/3-1220-eliminate)),0,samples/networks-k-3d.json,$(fronts_k)/grains-0)
 $(call k_network,3-1220-eliminate,$(word 2,$(k_counts/3-1220-eliminate)),0.5,samples/networks-k-3d.json,$(fronts_k)/grains-0.5)
-$(foreach f,$(k_frictions),$(foreach l,viscous inviscid,$(call step,$(fronts_k)/grains-$f/$l.h5,dry,$(DRY),samples/fronts-3d.json,liquid=$l boundary_layer.layers=10,$(fronts_k)/grains-$f/merged-0.06.h5)))
+$(foreach f,$(k_frictions),$(foreach l,viscous inviscid,$(call dry,$(fronts_k)/grains-$f/$l.h5,samples/fronts-3d.json,liquid=$l boundary_layer.layers=10,$(fronts_k)/grains-$f/merged-0.06.h5)))
 $(call report,$(fronts_k)/fronts-k.svg,fronts-k,$(fronts_k_drawn),figure $(fronts_k_drawn))
 $(call report,$(fronts_k)/table.md,fronts-k,$(fronts_k_drawn),table $(fronts_k_drawn))
 

@@ -28,12 +28,12 @@ weibull_settings = bond.strength.distribution=$(call weibull_part,2,$1) bond.str
 
 # The forces of seed $2 in liquid $1, replayed with the strengths of row $1.
 define weibull_drying
-$(call step,$(weibull_folder)/drying/$1-$2.h5,dry,$(DRY),$(weibull_scene),liquid=$1 throat_radius.seed=$2,$(weibull_folder)/network.h5)
-$(call step,$(call weibull_forces,$1,$2),force-protocol,$(FORCE_PROTOCOL),$(weibull_scene),,$(weibull_folder)/drying/$1-$2.h5)
+$(call dry,$(weibull_folder)/drying/$1-$2.h5,$(weibull_scene),liquid=$1 throat_radius.seed=$2,$(weibull_folder)/network.h5)
+$(call force-protocol,$(call weibull_forces,$1,$2),$(weibull_scene),,$(weibull_folder)/drying/$1-$2.h5)
 endef
 define weibull_row
-$(foreach seed,$(WEIBULL_SEEDS),$(call step,$(call weibull_response,$1,$(seed)),dem-replay,$(DEM_REPLAY),$(weibull_scene),$(call weibull_settings,$1,$(seed)),$(call weibull_forces,$1,$(seed))))
-$(call step,$(weibull_folder)/$1.json,crackstats,$(CRACKSTATS),$(weibull_scene),,$(foreach seed,$(WEIBULL_SEEDS),$(call weibull_response,$1,$(seed))))
+$(foreach seed,$(WEIBULL_SEEDS),$(call dem-replay,$(call weibull_response,$1,$(seed)),$(weibull_scene),$(call weibull_settings,$1,$(seed)),$(call weibull_forces,$1,$(seed))))
+$(call crackstats,$(weibull_folder)/$1.json,$(weibull_scene),,$(foreach seed,$(WEIBULL_SEEDS),$(call weibull_response,$1,$(seed))))
 endef
 
 weibull: ## cracks against the scatter of strengths, 10 seeds (about ten minutes of one core)
