@@ -41,9 +41,10 @@ static void choose_grains(const struct replay_parameters *parameters,
     struct reason reason;
     const enum status status = find_held(packing, &held, &settings->held, &reason);
     if (status) die(status, "dem-replay.%s", reason.text);
-    if (settings->support != SUPPORT_FIXED || packing->n_particle == 0 ||
-        memchr(settings->held, 1, (size_t)packing->n_particle))
-        return;
+    if (settings->support != SUPPORT_FIXED || packing->n_particle == 0) return;
+    const bool one_moves = memchr(settings->held, 0, (size_t)packing->n_particle);
+    if (!one_moves && !quiet) report("all grains are held, so that none moves");
+    if (memchr(settings->held, 1, (size_t)packing->n_particle)) return;
     if (replay_engine(settings)->needs_support)
         die(STATUS_BAD_DATA,
             "dem-replay.held: none of the grains is held, without which "
@@ -167,6 +168,20 @@ static void write_response(const struct packing *packing, const struct load *loa
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
+static void warn_if_restless(const struct load *load, const struct response *response)
+{
+    if (response->n_restless > 0)
+        report("under %d of the loads not all came to rest within "
+               "quasi_static.tolerance, under the last of them grain %d",
+               response->n_restless, response->restless);
+    else if (response->n_unsettled > load->n_time / 2)
+        report(
+            "%d of %d steps of the load did not come to rest, to an unbalanced ratio "
+            "of 1e-4: cycles and tolerance say how long a step lasts, "
+            "engine=quasi-static finds the rest itself",
+            response->n_unsettled, load->n_time);
+}
+
 // What cracked may still hang together; what has moved by its own size does not.
 static void warn_if_loose(const struct packing *packing,
                           const struct response *response)
@@ -183,10 +198,6 @@ static void warn_if_loose(const struct packing *packing,
         report("it snapped through or buckled %d time%s, and dashpots brought it to "
                "rest; grain %d moved most at the last",
                response->n_snap, response->n_snap > 1 ? "s" : "", response->snapped);
-    if (response->n_restless > 0)
-        report("under %d of the loads not all came to rest within "
-               "quasi_static.tolerance, under the last of them grain %d",
-               response->n_restless, response->restless);
     if (moved > largest_radius)
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
                "%.3g of the largest radius",
@@ -214,6 +225,7 @@ int main(int argc, char **argv)
     struct response response;
     run(&packing, &load, settings, &invocation, input->path, &checkpoint.keeper,
         &response);
+    if (!invocation.quiet) warn_if_restless(&load, &response);
     if (!invocation.quiet) warn_if_loose(&packing, &response);
     write_response(&packing, &load, settings, &response, &invocation, input, digest);
 

@@ -27,7 +27,7 @@ while (( $# )); do
 done
 echo "$name" >>ran
 [[ -e fail-$name ]] && exit 3
-[[ -e slow-$name ]] && { touch slow; sleep 1; }
+[[ -e slow-$name ]] && { touch slow; sleep 3; }
 [[ -e hang-$name ]] && { echo half >"$output"; touch hangs; sleep 60; }
 {
     echo "$name ${sets[*]}"
