@@ -6,6 +6,7 @@
 
 #include "geometry/vector.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
