@@ -167,7 +167,7 @@ include $(wildcard $(BUILD)/obj/*/*/*.d $(BUILD)/obj/*/*/*/*.d)
 # asked again in the recipe, when all inputs are there: if those came out as they were,
 # nothing runs.
 #
-# A study is a file pipelines/*.mk, as pipelines/curves.mk: each `step` is an artifact that a
+# A study is a file pipelines/GOAL.mk, as pipelines/curves.mk: each `step` is an artifact that a
 # stage makes (pipelines/crack.mk has one for each stage), each `report` a table or picture
 # that a program beside it makes, and `study` the goal.
 
@@ -208,7 +208,9 @@ study = $(eval .PHONY: $1)$(eval pipeline_goals += $1)$(eval $1: $2 ; \
 	$(if $(really),$(call shown,$(filter %.md,$2),$(filter %.svg %.png,$2))))
 shown = @$(if $1,cat $1;) $(if $2,echo 'picture$(if $(word 2,$2),s): $2')
 
-include $(wildcard pipelines/*.mk)
+# Others use what these two define.
+first_pipelines := $(wildcard pipelines/crack.mk pipelines/networks-k.mk)
+include $(first_pipelines) $(filter-out $(first_pipelines),$(wildcard pipelines/*.mk))
 
 ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # A file, for there may be more recipes than a command line holds; this make's own, for there may

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # How far the drying rate of 1220 grains falls at first, and when gas reaches their bottom, by
-# what one assumes of the boundary layer, the network and the liquid [K Fig. 3.48] (after
-# networks-k.mk):
+# what one assumes of the boundary layer, the network and the liquid [K Fig. 3.48]:
 #
 #     make rate-drop  ->  build/runs/rate-drop/rate-drop.svg, table.md
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Drying fronts of water in networks as K's (after networks-k.mk, which makes them): five layers
+# Drying fronts of water in networks as K's (networks-k.mk makes them): five layers
 # whose radii are drawn as narrow as his [K Figs. 3.30, 3.31], and
 # 1220 grains of his count and about as many throats [K Fig. 3.48]:
 #
