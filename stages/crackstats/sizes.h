@@ -6,7 +6,7 @@
 #include "basics/memory.h"
 
 struct sizes {
-    int *size;
+    int *size; // (count) the caller frees it
     int count, capacity;
 };
 

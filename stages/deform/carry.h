@@ -16,9 +16,8 @@ struct carried {
 // new throat has the saturation of the old one whose middle is then nearest to its own;
 // the liquid of an old throat, SATURATION (n_throat of BEFORE) of its volume, goes to
 // the nearest new throat that has any. Throats of ANEW in walls where the old ones are
-// imposed empty become so,
-// and so do those that these then shut in from OPEN_WALLS (bits of enum wall). The
-// caller frees both arrays.
+// imposed empty become so, and so do those that these then shut in from OPEN_WALLS
+// (bits of enum wall). The caller frees both arrays.
 struct carried carry_liquid(const struct network *before,
                             const struct surroundings *around,
                             const struct packing *moved, const double *saturation,

@@ -7,10 +7,9 @@
 
 // Where liquid is and how much of it.
 struct held_liquid {
-    const double *liquid; // (n_throat) m3
-    const double
-        *saturation;     // (n_throat) 0 to 1: what throats keep of their room first
-    unsigned open_walls; // bits of enum wall: their nodes touch the air
+    const double *liquid;     // (n_throat) m3
+    const double *saturation; // (n_throat) 0 to 1: what they keep of their room first
+    unsigned open_walls;      // bits of enum wall: their nodes touch the air
 };
 
 // SATURATION (n_throat, to be filled) of NETWORK, whose throats of kind THROAT_NETWORK

@@ -30,9 +30,8 @@ enum status move_throats(const struct network *before, enum clearance how,
                          struct network *after, struct reason *reason);
 
 // Where throats have volumes: those that were their shares of the void are so again,
-// unless the diagram has CHANGED;
-// others change as the cylinder of the throat, and all by one factor, so that their sum
-// changes as much as the void of the box.
+// unless the diagram has CHANGED; others change as the cylinder of the throat, and all
+// by one factor, so that their sum changes as much as the void of the box.
 enum status move_volumes(const struct network *before, bool changed,
                          struct network *after, struct reason *reason);
 
