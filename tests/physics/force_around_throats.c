@@ -2,6 +2,7 @@
 // What each throat does to the grains around it, also those whose cells were left out:
 // pairs in balance, contact lines, menisci and rings in closed form.
 #include "basics/memory.h"
+#include "bridges/bridges.h"
 #include "force-protocol/balance.h"
 #include "force-protocol/rings.h"
 #include "force_scene.h"
@@ -257,14 +258,16 @@ static const struct ring_law law = {
 static struct vector ring_towards(const struct packing *packing, int a, int b)
 {
     const struct vector apart = subtract(packing->position[b], packing->position[a]);
-    const double radius[2] = {packing->radius[a < b ? a : b],
-                              packing->radius[a < b ? b : a]};
-    double volume, force;
+    const double ra = packing->radius[a], rb = packing->radius[b];
+    const struct bridge bridge = {.radius = {ra, rb},
+                                  .contact_angle = {0.2, 0.2},
+                                  .surface_tension = 1,
+                                  .volume = 0.5 * pow(2 * ra * rb / (ra + rb), 3)};
+    struct bridge_state ring;
     struct reason reason;
-    assert_int_equal(solve_ring(radius, norm(apart) - radius[0] - radius[1], &law,
-                                &volume, &force, &reason),
+    assert_int_equal(bridge_solve(&bridge, norm(apart) - ra - rb, &ring, &reason),
                      STATUS_OK);
-    return scale(force / norm(apart), apart);
+    return scale(ring.force / norm(apart), apart);
 }
 
 // Of a full turn around the line from A to B, seen from where powers are equal on it.
