@@ -7,7 +7,7 @@ gradients_folder := $(RUNS)/gradients
 gradients_scene := samples/gradient-2d.json
 gradients_pressures := uniform clusters field
 
-gradients: ## forces with liquid pressure gradients on and off, and their picture (a minute)
+gradients: ## forces with liquid pressure gradients on and off, and their picture (seconds)
 
 ifneq ($(call asked,gradients,$(gradients_folder)),)
 $(call crack_network,$(gradients_folder),$(gradients_scene))
