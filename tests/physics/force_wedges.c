@@ -4,7 +4,7 @@
 #include "../random.h"
 #include "../test.h"
 #include "basics/memory.h"
-#include "force-protocol/wedges.h"
+#include "force-protocol/rings.h"
 #include "tessellate/diagram.h"
 
 #include <math.h>
@@ -343,6 +343,49 @@ static void wedges_close_around_grains(void **state)
     }
 }
 
+// In the end each ring is whole, also where the line between two grains passes beside
+// their face.
+static void rings_are_whole_in_the_end(void **state)
+{
+    (void)state;
+    const struct ring_law law = {
+        .rule = RING_VOLUME, .volume = 1, .surface_tension = 1};
+    struct network network = diagram_of(&scenes[1], 1);
+    struct wedges wedges;
+    struct rings rings;
+    struct reason reason;
+    if (wedges_find(&network, &wedges, &reason) ||
+        find_rings(&wedges, &law, &rings, &reason))
+        fail_msg("%s", reason.text);
+    struct vector *left = NEW_ARRAY(struct vector, network.packing.n_particle);
+    for (int k = 0; k < rings.patches.n; k++) {
+        struct vector *sum = &left[rings.patches.patch[k].particle];
+        *sum = add(*sum, rings.patches.patch[k].pull);
+    }
+    for (int face = 0; face < network.n_face; face++) {
+        const int32_t *grain = network.face_particles[face];
+        if (grain[1] < 0) continue;
+        const struct vector apart =
+            subtract(second_grain(&network, face), network.packing.position[grain[0]]);
+        const double radius[2] = {network.packing.radius[grain[0]],
+                                  network.packing.radius[grain[1]]};
+        double volume, force;
+        if (solve_ring(radius, norm(apart) - radius[0] - radius[1], &law, &volume,
+                       &force, &reason))
+            fail_msg("%s", reason.text);
+        const struct vector ring = scale(force / norm(apart), apart);
+        left[grain[0]] = subtract(left[grain[0]], ring);
+        left[grain[1]] = add(left[grain[1]], ring);
+    }
+    for (int i = 0; i < network.packing.n_particle; i++)
+        assert_zero(norm(left[i]));
+    assert_true(rings.count > 100);
+    free(left);
+    patches_free(&rings.patches);
+    wedges_free(&wedges);
+    network_free(&network);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -350,6 +393,7 @@ int main(void)
         cmocka_unit_test(wedges_lie_where_powers_are_equal),
         cmocka_unit_test(walls_are_as_far_in_nanometres),
         cmocka_unit_test(wedges_close_around_grains),
+        cmocka_unit_test(rings_are_whole_in_the_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
