@@ -219,21 +219,24 @@ static void describe_rows(struct equilibrium *e)
 }
 
 // The first lane, from FIRST to END - 1, that was not settled, or END; whether contacts
-// MAY CHANGE, or go on as they are; where it IS FRESH each begins as the one before
-// ended.
+// MAY CHANGE, or go on as they are; of those lanes that UNLIKE joints are in, of which
+// the others need no more; NULL: all, and where contacts may change each begins as the
+// one before ended.
 static int settle_lanes(struct equilibrium *e, int first, int end, bool may_change,
-                        bool is_fresh)
+                        const int unlike[LANES])
 {
     struct foresight *f = e->foresight;
+    const long begin = unlike ? (long)f->n_given * LANES : 0, all = f->n_row * LANES;
     corrections_strain_lanes(e->corrections, f->n_given, f->given);
+    memset(f->more + begin, 0, (size_t)(all - begin) * sizeof *f->more);
     f->n_given = f->n_row;
-    memset(f->more, 0, (size_t)f->n_row * LANES * sizeof *f->more);
     for (int l = first; l < end; l++) {
+        if (unlike && unlike[l] == 0) continue;
         if (!settle_lane(f->settler, e->corrections, f->row, may_change, f->given + l,
                          f->touches + l, f->more + l))
             end = l;
-        for (int k = 0; k < f->n_row && is_fresh && l + 1 < end; k++)
-            f->touches[(long)k * LANES + l + 1] = f->touches[(long)k * LANES + l];
+        for (long k = l; k < all && may_change && !unlike && l + 1 < end; k += LANES)
+            f->touches[k + 1] = f->touches[k];
     }
     return end;
 }
@@ -314,7 +317,7 @@ void polish(struct equilibrium *e, int first, int end)
     stiffness_begin_lanes(e->matrix, f->left);
     f->n_given = 0;
     f->has_begun_lanes = false;
-    if (settle_lanes(e, first, end, false, false) < end) return;
+    if (settle_lanes(e, first, end, false, NULL) < end) return;
     memset(f->step, 0, (size_t)e->n * GRAIN * sizeof *f->step);
     finish_lanes(e, first, end, f->step);
     for (long k = 0; k < (long)e->n * GRAIN; k++)
@@ -342,13 +345,14 @@ static int correct_lanes(struct equilibrium *e, int first, int end)
     enum { ROUNDS = 10 };
     struct foresight *f = e->foresight;
     if (!corrections_add(e->corrections, list_broken(e), e->unlike)) return first;
+    int in_lane[LANES];
     for (int round = 0; round < ROUNDS; round++) {
         describe_rows(e);
-        end = settle_lanes(e, first, end, true, round == 0);
+        end = settle_lanes(e, first, end, true, round > 0 ? in_lane : NULL);
         if (end == first) return first;
         finish_lanes(e, first, end, f->moved);
         find_touching(e);
-        int in_lane[LANES], unlike = list_unlike(e, first, end, in_lane);
+        int unlike = list_unlike(e, first, end, in_lane);
         if (unlike == 0) return end;
         const int few = first_with_many(e, first, end, in_lane);
         if (few == first) return first;

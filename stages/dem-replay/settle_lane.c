@@ -129,6 +129,22 @@ static bool factor_acting(struct settler *s, struct corrections *corrections, in
     return same > 0 && factor(s, corrections, list_acting(s, count, row, touches));
 }
 
+// What WIDE of the acting rows, from A on, do to the strains of all.
+static inline __attribute__((always_inline)) void
+take_off_answers(struct settler *s, const struct corrections *corrections, int count,
+                 int a, int wide)
+{
+    const double *compliance[4];
+    double minus[4], *restrict strain = s->strain;
+    for (int k = 0; k < wide; k++) {
+        compliance[k] = corrections_compliance(corrections, s->acting[a + k]);
+        minus[k] = -s->answer[a + k];
+    }
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < wide; k++)
+            strain[i] = fma(compliance[k][i], minus[k], strain[i]);
+}
+
 // The strains of all rows while those act.
 static void find_strains(struct settler *s, const struct corrections *corrections,
                          int count, const double *given)
@@ -138,14 +154,11 @@ static void find_strains(struct settler *s, const struct corrections *correction
     dense_symmetric_solve(s->n_acting, s->matrix, s->capacity, s->sign, s->answer);
     for (int k = 0; k < count; k++)
         s->strain[k] = given[(long)k * LANES];
-    for (int a = 0; a < s->n_acting; a++) {
-        const double *restrict compliance =
-            corrections_compliance(corrections, s->acting[a]);
-        const double minus = -s->answer[a];
-        double *restrict strain = s->strain;
-        for (int k = 0; k < count; k++)
-            strain[k] = fma(compliance[k], minus, strain[k]);
-    }
+    int a = 0;
+    for (; a + 4 <= s->n_acting; a += 4)
+        take_off_answers(s, corrections, count, a, 4);
+    for (; a < s->n_acting; a++)
+        take_off_answers(s, corrections, count, a, 1);
 }
 
 // Not where the factor is all but singular.

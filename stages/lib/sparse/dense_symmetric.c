@@ -31,25 +31,68 @@ static void update(int n, double *matrix, int stride, const double *sign, int fr
             matrix[(long)j * stride + i] -= product[(long)(j - first) * n + i - begin];
 }
 
+// Rows of the columns from FIRST to END - 1 themselves.
+static bool factor_triangle(double *matrix, int stride, const double *sign, int first,
+                            int end)
+{
+    for (int j = first; j < end; j++) {
+        double *column = matrix + (long)j * stride;
+        if (!(sign[j] * column[j] > 0)) return false;
+        const double inverse = 1 / sqrt(sign[j] * column[j]);
+        column[j] = inverse;
+        for (int i = j + 1; i < end; i++)
+            column[i] *= sign[j] * inverse;
+        for (int l = j + 1; l < end; l++)
+            for (int i = l; i < end; i++)
+                matrix[(long)l * stride + i] =
+                    fma(-sign[j] * column[l], column[i], matrix[(long)l * stride + i]);
+    }
+    return true;
+}
+
+// The rows of WIDE columns from BEGIN on, below that.
+static inline __attribute__((always_inline)) void
+finish_rows(int n, double *matrix, int stride, const double *sign, int wide, int begin,
+            int triangle)
+{
+    double share[WIDE][WIDE], inverse[WIDE];
+    for (int j = 0; j < wide; j++) {
+        for (int l = 0; l < j; l++)
+            share[j][l] = -sign[l] * matrix[(long)l * stride + triangle + j];
+        inverse[j] = sign[j] * matrix[(long)j * stride + triangle + j];
+    }
+    int i = begin;
+    for (; i + 4 <= n; i += 4) {
+        four x[WIDE];
+        for (int j = 0; j < wide; j++) {
+            x[j] = load_four(matrix + (long)j * stride + i);
+            for (int l = 0; l < j; l++)
+                x[j] = fused(all_four(share[j][l]), x[l], x[j]);
+            x[j] *= all_four(inverse[j]);
+            store_four(matrix + (long)j * stride + i, x[j]);
+        }
+    }
+    for (; i < n; i++)
+        for (int j = 0; j < wide; j++) {
+            double x = matrix[(long)j * stride + i];
+            for (int l = 0; l < j; l++)
+                x = fma(share[j][l], matrix[(long)l * stride + i], x);
+            matrix[(long)j * stride + i] = x * inverse[j];
+        }
+}
+
 // The rows from BEGIN on; those before are done with where that is not FIRST.
 static bool factor_columns(int n, double *matrix, int stride, const double *sign,
                            int first, int end, int begin)
 {
-    for (int j = first; j < end; j++) {
-        double *column = matrix + (long)j * stride;
-        if (begin <= j) {
-            if (!(sign[j] * column[j] > 0)) return false;
-            column[j] = sqrt(sign[j] * column[j]);
-        }
-        const double pivot = sign[j] * column[j];
-        for (int i = begin > j ? begin : j + 1; i < n; i++)
-            column[i] /= pivot;
-        for (int l = j + 1; l < end; l++) {
-            double *other = matrix + (long)l * stride;
-            for (int i = begin > l ? begin : l; i < n; i++)
-                other[i] = fma(-sign[j] * column[l], column[i], other[i]);
-        }
-    }
+    double *columns = matrix + (long)first * stride;
+    if (begin == first && !factor_triangle(matrix, stride, sign, first, end))
+        return false;
+    if (begin == first) begin = end;
+    if (end - first == WIDE)
+        finish_rows(n, columns, stride, sign + first, WIDE, begin, first);
+    else
+        finish_rows(n, columns, stride, sign + first, end - first, begin, first);
     return true;
 }
 
@@ -83,19 +126,65 @@ bool dense_symmetric_factor(int n, int done, double *matrix, int stride,
     return true;
 }
 
+// Some columns of L at a time, so that X is read as much less often.
+static inline __attribute__((always_inline)) void
+forward(int n, const double *matrix, int stride, int j, int wide, double *restrict x)
+{
+    const double *restrict column = matrix + (long)j * stride;
+    four all[4];
+    for (int k = 0; k < wide; k++) {
+        for (int l = 0; l < k; l++)
+            x[j + k] = fma(-column[(long)l * stride + j + k], x[j + l], x[j + k]);
+        x[j + k] *= column[(long)k * stride + j + k];
+        all[k] = all_four(-x[j + k]);
+    }
+    int i = j + wide;
+    for (; i + 4 <= n; i += 4) {
+        four left = load_four(x + i);
+        for (int k = 0; k < wide; k++)
+            left = fused(load_four(column + (long)k * stride + i), all[k], left);
+        store_four(x + i, left);
+    }
+    for (; i < n; i++)
+        for (int k = 0; k < wide; k++)
+            x[i] = fma(column[(long)k * stride + i], all[k][0], x[i]);
+}
+
+static inline __attribute__((always_inline)) void
+backward(int n, const double *matrix, int stride, int j, int wide, double *restrict x)
+{
+    const double *restrict column = matrix + (long)j * stride;
+    four sum[4] = {{0}};
+    double own[4];
+    int i = j + wide;
+    for (; i + 4 <= n; i += 4)
+        for (int k = 0; k < wide; k++)
+            sum[k] = fused(load_four(column + (long)k * stride + i), load_four(x + i),
+                           sum[k]);
+    for (int k = 0; k < wide; k++)
+        own[k] = x[j + k] - ((sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]));
+    for (; i < n; i++)
+        for (int k = 0; k < wide; k++)
+            own[k] = fma(-column[(long)k * stride + i], x[i], own[k]);
+    for (int k = wide - 1; k >= 0; k--) {
+        for (int l = k + 1; l < wide; l++)
+            own[k] = fma(-column[(long)k * stride + j + l], x[j + l], own[k]);
+        x[j + k] = own[k] * column[(long)k * stride + j + k];
+    }
+}
+
 void dense_symmetric_solve(int n, const double *matrix, int stride, const double *sign,
                            double *x)
 {
-    for (int j = 0; j < n; j++) {
-        const double *restrict column = matrix + (long)j * stride;
-        x[j] /= column[j];
-        const double minus = -x[j];
-        for (int i = j + 1; i < n; i++)
-            x[i] = fma(column[i], minus, x[i]);
-    }
-    for (int j = n - 1; j >= 0; j--) {
-        const double *column = matrix + (long)j * stride;
-        x[j] = sign[j] * x[j] - dot_product(n - 1 - j, column + j + 1, x + j + 1);
-        x[j] /= column[j];
-    }
+    int j = 0;
+    for (; j + 4 <= n; j += 4)
+        forward(n, matrix, stride, j, 4, x);
+    for (; j < n; j++)
+        forward(n, matrix, stride, j, 1, x);
+    for (int k = 0; k < n; k++)
+        x[k] *= sign[k];
+    while (j % 4)
+        backward(n, matrix, stride, --j, 1, x);
+    while (j > 0)
+        backward(n, matrix, stride, j -= 4, 4, x);
 }

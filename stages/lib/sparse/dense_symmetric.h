@@ -7,10 +7,11 @@
 #include <stdbool.h>
 
 // MATRIX (n by n, its lower triangle by columns STRIDE apart, eight numbers more at the
-// end) becomes L of L S L^T, S being the diagonal of SIGN (n), 1 or -1. WORK (DENSE_SYMMETRIC_WORK n).
-// False: a pivot has not that sign. The first DONE rows and columns are those of an
-// earlier one, of which the first dense_symmetric_kept(done) columns hold L in those
-// rows still, and the matrix in the others, as all other columns do.
+// end) becomes L of L S L^T, with what 1 over is on its diagonal; S is that of SIGN
+// (n), 1 or -1. WORK (DENSE_SYMMETRIC_WORK n). False: a pivot has not that sign. The
+// first DONE rows and columns are those of an earlier one, of which the first
+// dense_symmetric_kept(done) columns hold L in those rows still, and the matrix in the
+// others, as all other columns do.
 enum { DENSE_SYMMETRIC_WORK = 144 };
 bool dense_symmetric_factor(int n, int done, double *matrix, int stride,
                             const double *sign, double *work);
