@@ -140,9 +140,12 @@ take_off_answers(struct settler *s, const struct corrections *corrections, int c
         compliance[k] = corrections_compliance(corrections, s->acting[a + k]);
         minus[k] = -s->answer[a + k];
     }
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i++) {
+        double left = strain[i];
         for (int k = 0; k < wide; k++)
-            strain[i] = fma(compliance[k][i], minus[k], strain[i]);
+            left = fma(compliance[k][i], minus[k], left);
+        strain[i] = left;
+    }
 }
 
 // The strains of all rows while those act.
