@@ -14,6 +14,31 @@ static const double row_speed = 2;
 
 // ---- what is expected ---------------------------------------------------------------
 
+struct placed {
+    int place, joint;
+};
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct placed *p = a, *q = b;
+    if (p->place != q->place) return p->place < q->place ? -1 : 1;
+    return (p->joint > q->joint) - (p->joint < q->joint);
+}
+
+// So that rows that go through the factor side by side have most of the way in common.
+static int *order_joints(const struct equilibrium *e)
+{
+    struct placed *placed = NEW_ARRAY(struct placed, e->n_joint);
+    int *in_order = NEW_ARRAY(int, e->n_joint);
+    for (int j = 0; j < e->n_joint; j++)
+        placed[j] = (struct placed){stiffness_place(e->matrix, j), j};
+    qsort(placed, (size_t)e->n_joint, sizeof *placed, compare_places);
+    for (int j = 0; j < e->n_joint; j++)
+        in_order[j] = placed[j].joint;
+    free(placed);
+    return in_order;
+}
+
 struct foresight *foresight_new(struct equilibrium *e)
 {
     for (int j = 0; j < e->n_joint; j++)
@@ -29,6 +54,7 @@ struct foresight *foresight_new(struct equilibrium *e)
     f->from = NEW_ARRAY(struct displacement, e->n);
     f->strain = allocate((size_t)e->n_joint, sizeof *f->strain);
     f->touches_now = NEW_ARRAY(uint8_t, e->n_joint);
+    f->in_order = order_joints(e);
     f->settler = settler_new();
     return f;
 }
@@ -37,9 +63,9 @@ void foresight_free(struct foresight *f)
 {
     if (!f) return;
     settler_free(f->settler);
-    void *const owned[] = {f->load, f->applied, f->left,        f->moved,
-                           f->step, f->row,     f->touches,     f->given,
-                           f->more, f->from,    f->touches_now, f->strain};
+    void *const owned[] = {f->load,        f->applied, f->left,    f->moved, f->step,
+                           f->row,         f->touches, f->given,   f->more,  f->from,
+                           f->touches_now, f->strain,  f->in_order};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(f);
@@ -272,7 +298,8 @@ static int list_unlike(struct equilibrium *e, int first, int end, int in_lane[LA
     const int all = (1 << end) - (1 << first);
     int count = 0;
     memset(in_lane, 0, LANES * sizeof *in_lane);
-    for (int j = 0; j < e->n_joint; j++) {
+    for (int k = 0; k < e->n_joint; k++) {
+        const int j = f->in_order[k];
         const int unlike = (f->touches_now[j] ^ (e->factored[j].touch ? all : 0)) & all;
         if (!unlike || !(e->joint[j].contact_along > 0) || e->joint[j].is_gone ||
             corrections_of(e->corrections, j) > 0)

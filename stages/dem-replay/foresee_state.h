@@ -32,6 +32,7 @@ struct foresight {
     double (*strain)[STRAINS];        // (n_joint) there
     struct lane_sums sums;            // where they moved
     uint8_t *touches_now;             // (n_joint) a bit a lane
+    int *in_order;                    // (n_joint) joints, as the factor has them
     int n_row, row_capacity, n_given; // rows whose strains are given
     struct lane_row *row;
     bool *touches;        // (row_capacity * LANES)

@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "sparse/vector_kernels.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -388,6 +389,18 @@ void stiffness_finish_lane(struct stiffness *s, int lane, double *answer)
         for (int k = 0; k < DEGREES && s->number[i] >= 0; k++)
             answer[(long)i * GRAIN_LANES + k * LANES + lane] =
                 s->load[s->number[i] * DEGREES + k];
+}
+
+int stiffness_place(const struct stiffness *s, int j)
+{
+    int first = INT_MAX;
+    for (int end = 0; end < 2; end++) {
+        const int32_t grain = s->joint[j].grain[end];
+        if (grain < 0 || s->number[grain] < 0) continue;
+        const int place = supernodal_place(s->factor, s->number[grain] * DEGREES);
+        if (place < first) first = place;
+    }
+    return first;
 }
 
 double stiffness_work(const struct stiffness *s)

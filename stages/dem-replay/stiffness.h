@@ -68,6 +68,10 @@ void stiffness_take_off_lanes(struct stiffness *stiffness, const struct halves *
 void stiffness_take_lane(struct stiffness *stiffness, int lane);
 void stiffness_finish_lane(struct stiffness *stiffness, int lane, double *answer);
 
+// Where the way of a joint's loads through the factor begins: those that begin near
+// each other have more of it in common.
+int stiffness_place(const struct stiffness *stiffness, int joint);
+
 // Multiplications that a factor takes, and numbers in it.
 double stiffness_work(const struct stiffness *stiffness);
 double stiffness_numbers(const struct stiffness *stiffness);

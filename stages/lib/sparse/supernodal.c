@@ -117,6 +117,11 @@ void supernodal_free(struct supernodal *f)
     free(f);
 }
 
+int supernodal_place(const struct supernodal *f, int row)
+{
+    return f->place[row];
+}
+
 double supernodal_work(const struct supernodal *f)
 {
     double work = 0;

@@ -19,6 +19,9 @@ void supernodal_free(struct supernodal *factor);
 // is one that no number holds.
 bool supernodal_factor(struct supernodal *factor, const double *value);
 
+// Where ROW of the matrix is in the order of the factor.
+int supernodal_place(const struct supernodal *factor, int row);
+
 // Whether the matrix last factored, with that DIAGONAL (n), was positive: whether no
 // pivot was negative or what rounding leaves.
 bool supernodal_is_positive(const struct supernodal *factor, const double *diagonal);
