@@ -365,8 +365,8 @@ static int first_with_many(const struct equilibrium *e, int first, int end,
 }
 
 // Corrects what is not as factored in lanes from FIRST to END - 1 until nothing else
-// is. Where those end that are found; none if they begin with so much that a new factor
-// is better.
+// is, or for so many rounds. Where those end that are found; none if they begin with so
+// much that a new factor is better.
 static int correct_lanes(struct equilibrium *e, int first, int end)
 {
     enum { ROUNDS = 10 };
@@ -386,6 +386,8 @@ static int correct_lanes(struct equilibrium *e, int first, int end)
         if (few < end) unlike = list_unlike(e, first, end = few, in_lane);
         if (!corrections_add(e->corrections, unlike, e->unlike)) return first;
     }
+    while (first < end && in_lane[first] == 0)
+        first++;
     return first;
 }
 
