@@ -263,6 +263,7 @@ static void guess_strains(struct corrections *c, const double (*guess)[STRAINS])
 bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
                       const double (*guess)[STRAINS], double share, double enough)
 {
+    enum { ROUNDS = 5 };
     if (c->share != share) c->n_factored = 0;
     c->share = share;
     c->from = strain;
@@ -270,8 +271,13 @@ bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
     for (int row = 0; row < c->count; row++)
         enough = fmax(enough, 1e-14 * fabs(c->linear[row]));
     guess_strains(c, guess);
-    return resist_entries(c, false) <= enough || settle_entries(c, true, enough) ||
-           settle_entries(c, false, enough);
+    if (resist_entries(c, false) <= enough) return true;
+    for (int round = 0; round < ROUNDS; round++) {
+        if (round > 0 && corrections_are_costly(c)) return false;
+        if (round > 0) settle_in_turn(c, enough);
+        if (settle_together(c, round % 2 == 0, enough)) return true;
+    }
+    return false;
 }
 
 void corrections_take_off(const struct corrections *c, double share,

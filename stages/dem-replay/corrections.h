@@ -5,7 +5,7 @@
 // Under what is left to balance, r, grains move by K^-1 (r - B^T q), where K is what is
 // factored and q by how much such joints resist more than K says. Of q and their
 // strains, e = B K^-1 r - W q(e) with W = B K^-1 B^T, only these joints know: a small
-// dense system, solved by Newton's method.
+// dense system, solved by Newton's method, where that fails joint by joint in turn.
 #ifndef CRAQUELURE_CORRECTIONS_H
 #define CRAQUELURE_CORRECTIONS_H
 
@@ -50,8 +50,8 @@ void corrections_take_off_lane(const struct corrections *corrections, int lane,
 
 // Multiplications spent on dense systems since there were no corrections.
 double corrections_work(const struct corrections *corrections);
-// Whether that is more than 100 factors take, and more than 1e10 (a second or two):
-// then what is not found is not looked for in other ways.
+// Whether that is more than 100 factors take, and more than 1e10 (a second or two): then
+// what is not found is not looked for in other ways.
 bool corrections_are_costly(const struct corrections *corrections);
 void corrections_count_work(struct corrections *corrections, double more);
 

@@ -13,7 +13,7 @@ struct entry {
     int count, row[STRAINS];
     double load[STRAINS];     // that it begins with
     double pull[2];           // of the shear spring, so far
-    double overlap;           // 0: open
+    enum touch touch;         // so far
     bool is_new;              // since the last time
     double slope[STRAINS][3]; // of q with the first three strains; of the others, each
                               // with its own
@@ -57,12 +57,22 @@ static inline double *compliance_of(const struct corrections *c, int row)
 }
 
 // The loads at strains as they are; those of springs that slip as Newton's method wants
-// them (SOFTENED) or as they are. The largest of what is left of e - B K^-1 r + W q(e).
-double resist_entries(struct corrections *c, bool softened);
+// them (SOFTENED) or as they are. Then what is left of e - B K^-1 r + W q(e): the
+// largest of it.
+void resist_entry(struct corrections *c, struct entry *entry, bool softened);
 // Of the loads as they are: what the shear spring pulls with beside the bond.
 void note_pull(const struct corrections *c, struct entry *entry);
+double find_left(struct corrections *c);
+double resist_entries(struct corrections *c, bool softened);
+
+// Adds W MORE in ROW to SUM (count).
+void add_answer(const struct corrections *c, int row, double more, double *sum);
 
 // Newton's method from strains as they are: whether it is found, to ENOUGH.
-bool settle_entries(struct corrections *c, bool softened, double enough);
+bool settle_together(struct corrections *c, bool softened, double enough);
+
+// Joints in turn, each exactly while the others push as they do: as long as that brings
+// something, and no further than to ENOUGH.
+void settle_in_turn(struct corrections *c, double enough);
 
 #endif

@@ -37,7 +37,6 @@ static bool approach_small(struct equilibrium *e)
         const double left = largest_left(e);
         if (left <= well || (left <= e->enough && left >= 0.1 * before)) return true;
         before = left;
-        is_fresh |= left <= e->enough; // no need of another factor
         if (!improve(e, &is_fresh)) break;
     }
     resist(e);

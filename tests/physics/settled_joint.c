@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One contact settled among others (settle_joint.h): what is said to be found is one of
+// its equilibria, by the law that Newton's method goes by, whatever surrounds it.
+#include "../random.h"
+#include "../test.h"
+#include "dem-replay/settle_joint.h"
+
+#include <math.h>
+
+static double chance(uint64_t *state)
+{
+    return 2 * next_random(state) - 1;
+}
+
+// Softer and stiffer than the contact, and skew: shear opens it or presses it together.
+static struct surroundings any_surroundings(uint64_t *state)
+{
+    struct surroundings s = {.load = {0}};
+    const double soft = pow(10, 3 * chance(state));
+    double root[3][3];
+    for (int k = 0; k < 3; k++) {
+        s.given[k] = chance(state);
+        for (int l = 0; l < 3; l++)
+            root[k][l] = chance(state);
+    }
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+            for (int i = 0; i < 3; i++)
+                s.compliance[k][l] += soft * root[k][i] * root[l][i];
+    return s;
+}
+
+// How far X is from where its own load leads, of what that is a difference of.
+static double off(const struct joint *joint, const struct surroundings *s,
+                  const double x[3])
+{
+    double strain[STRAINS] = {0}, most = 0, size = 0;
+    for (int k = 0; k < 3; k++)
+        strain[k] = s->from[k] + x[k];
+    const struct resistance now = joint_resistance(joint, strain);
+    for (int k = 0; k < 3; k++) {
+        double there = s->given[k];
+        size = fmax(size, fmax(fabs(there), fabs(x[k])));
+        for (int l = 0; l < 3; l++) {
+            there -= s->compliance[k][l] * now.load[l];
+            size = fmax(size, fabs(s->compliance[k][l] * now.load[l]));
+        }
+        if (!isfinite(x[k])) return INFINITY;
+        most = fmax(most, fabs(there - x[k]));
+    }
+    return most / size;
+}
+
+static void what_is_found_is_an_equilibrium(void **state)
+{
+    (void)state;
+    uint64_t seed = 7;
+    int found = 0, slips = 0;
+    for (int k = 0; k < 100000; k++) {
+        const struct joint joint = {
+            .contact_along = 1,
+            .contact_across = 0.8,
+            .friction = pow(10, chance(&seed)),
+            .overlap = 0.1 * next_random(&seed),
+            .contact = {.touch = TOUCH_STICKS,
+                        .anchor = {chance(&seed), chance(&seed)}}};
+        const struct surroundings s = any_surroundings(&seed);
+        double x[3] = {chance(&seed), chance(&seed), chance(&seed)};
+        if (!settle_joint(&joint, &s, x)) continue;
+        const double strain[STRAINS] = {x[0], x[1], x[2]}, error = off(&joint, &s, x);
+        slips += joint_resistance(&joint, strain).contact.touch == TOUCH_SLIPS;
+        found++;
+        if (!(error < 1e-5)) fail_msg("contact %d: off by %g", k, error);
+    }
+    assert_true(found > 90000 && slips > 10000);
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_found_is_an_equilibrium)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
