@@ -53,6 +53,12 @@ is 'and that of scattered ones' "inviscid|one|0|$all|$first.0|$fragments" \
 
 is 'one more runs alone' 'counts.svg immobile-4.h5 immobile.json inviscid-4.h5 inviscid.json table.md test.json' \
     "$(study REALISATIONS=4)"
+mkdir "$scratch/by"
+echo "stage=x version=1 output=$scratch/by/file -- cp $where/test.json $scratch/by/file" >"$scratch/recipe"
+yes 'what a command line does not hold goes by a file' pipelines/memo run "@$scratch/recipe"
+is 'which is read once' "$(<"$where/test.json")" "$(cat "$scratch/recipe" "$scratch/by/file" 2>/dev/null)"
+yes 'so that there may be thousands of runs' awk 'length > 131000 { exit 1 }' <(make -n monte-carlo \
+    MONTE_CARLO_SCENE="$scratch/tiny.json" RUNS="$scratch" REALISATIONS=1500 2>/dev/null)
 rm "$where/immobile-1.h5"
 is 'one that is lost is made again' 'immobile-1.h5' "$(study REALISATIONS=4)"
 rows() { build/bin/inspect "$1" | jq '.datasets[] | select(.name == "/history/time").shape[0]'; }
