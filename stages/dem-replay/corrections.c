@@ -274,7 +274,7 @@ bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
     if (resist_entries(c, false) <= enough) return true;
     for (int round = 0; round < ROUNDS; round++) {
         if (round > 0 && corrections_are_costly(c)) return false;
-        if (round > 0) settle_in_turn(c, enough);
+        if (round > 1) settle_in_turn(c, enough);
         if (settle_together(c, round % 2 == 0, enough)) return true;
     }
     return false;

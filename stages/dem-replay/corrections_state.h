@@ -13,6 +13,7 @@ struct entry {
     int count, row[STRAINS];
     double load[STRAINS];     // that it begins with
     double pull[2];           // of the shear spring, so far
+    double overlap;           // so far; 0: open
     enum touch touch;         // so far
     bool is_new;              // since the last time
     double slope[STRAINS][3]; // of q with the first three strains; of the others, each

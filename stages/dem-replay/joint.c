@@ -91,29 +91,32 @@ static void add_bond(const struct joint *joint, const double strain[STRAINS],
     }
 }
 
-// The shear spring of a contact: how far it would pull if nothing slipped, and with how
-// much of its stiffness and what it pulled with before that is judged.
+// The shear spring of a contact: what it would pull if nothing slipped, and as is
+// judged; what it can hold, and as is judged.
 struct spring {
-    double free[2], share, pull[2];
+    double free[2], trial[2], limit, judged_limit;
 };
 
-// Coulomb slip [K 4.25-4.26] by a spring that pulls TRIAL: the limit falls as the
-// grains part. One that slides still resists what turns its direction.
-static void slide(const struct joint *joint, const struct spring *spring,
-                  const double trial[2], double limit, struct resistance *resistance)
+// Coulomb slip [K 4.25-4.26]: the limit falls as the grains part. One that slides still
+// resists what turns its direction.
+static void slide(const struct joint *joint, const struct judgement *judgement,
+                  const struct spring *spring, struct resistance *resistance)
 {
+    const double *trial = spring->trial, limit = spring->limit;
     const double size = sqrt(trial[0] * trial[0] + trial[1] * trial[1]);
     const double along[2] = {trial[0] / size, trial[1] / size};
-    const double turned = 1 - (1 - spring->share) * limit / size;
-    const double kept = spring->share * limit / size * joint->contact_across / turned;
-    const double pull = along[0] * spring->pull[0] + along[1] * spring->pull[1];
+    const double held = spring->judged_limit / size;
+    const double turned = 1 - (1 - judgement->share) * held;
+    const double kept = judgement->share * held * joint->contact_across / turned;
+    const double pull = along[0] * judgement->pull[0] + along[1] * judgement->pull[1];
     for (int k = 0; k < 2; k++) {
         double *slope = resistance->slope[STRAIN_ACROSS + k];
         slope[STRAIN_ALONG] -= joint->friction * joint->contact_along * along[k];
         for (int l = 0; l < 2; l++)
             slope[STRAIN_ACROSS + l] += kept * ((k == l) - along[k] * along[l]);
         resistance->load[STRAIN_ACROSS + k] +=
-            limit * along[k] + (1 - 1 / turned) * (spring->pull[k] - pull * along[k]);
+            limit * along[k] +
+            (1 - 1 / turned) * (judgement->pull[k] - pull * along[k]);
         resistance->contact.anchor[k] +=
             (1 - limit / size) * trial[k] / joint->contact_across;
     }
@@ -134,10 +137,14 @@ static void stick(const struct joint *joint, const struct spring *spring,
 // Grains that come to touch do so without shear: their spring is free where they are
 // when all is balanced.
 static void add_shear(const struct joint *joint, const double strain[STRAINS],
-                      double limit, struct spring *spring,
+                      double overlap, const struct judgement *judgement,
                       struct resistance *resistance)
 {
-    double *anchor = resistance->contact.anchor, trial[2];
+    const double share = judgement->share;
+    struct spring spring = {.limit = joint->friction * joint->contact_along * overlap};
+    spring.judged_limit = joint->friction * joint->contact_along *
+                          (share * overlap + (1 - share) * judgement->overlap);
+    double *anchor = resistance->contact.anchor, *trial = spring.trial;
     if (joint->contact.touch == TOUCH_NONE) {
         resistance->contact.touch = TOUCH_BEGINS;
         memcpy(anchor, strain + STRAIN_ACROSS, 2 * sizeof *anchor);
@@ -145,47 +152,45 @@ static void add_shear(const struct joint *joint, const double strain[STRAINS],
     }
     for (int k = 0; k < 2; k++) {
         anchor[k] = joint->contact.anchor[k];
-        spring->free[k] =
+        spring.free[k] =
             joint->contact_across * (strain[STRAIN_ACROSS + k] - anchor[k]);
-        trial[k] =
-            spring->share * spring->free[k] + (1 - spring->share) * spring->pull[k];
+        trial[k] = share * spring.free[k] + (1 - share) * judgement->pull[k];
     }
     // One that slid lies where it begins to: it goes on, until it is seen to stick.
     const double edge = joint->contact.touch == TOUCH_SLIPS ? 1 - 1e-11 : 1;
-    if (sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > edge * limit)
-        slide(joint, spring, trial, limit, resistance);
+    if (sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > edge * spring.judged_limit)
+        slide(joint, judgement, &spring, resistance);
     else
-        stick(joint, spring, resistance);
+        stick(joint, &spring, resistance);
 }
 
 // [K 4.11-4.16]
 static void add_contact(const struct joint *joint, const double strain[STRAINS],
-                        struct spring *spring, struct resistance *resistance)
+                        const struct judgement *judgement,
+                        struct resistance *resistance)
 {
     const double overlap = joint->overlap - strain[STRAIN_ALONG];
     if (overlap < 0) return;
     resistance->load[STRAIN_ALONG] -= joint->contact_along * overlap;
     resistance->slope[STRAIN_ALONG][STRAIN_ALONG] += joint->contact_along;
-    add_shear(joint, strain, joint->friction * joint->contact_along * overlap, spring,
-              resistance);
+    add_shear(joint, strain, overlap, judgement, resistance);
 }
 
 struct resistance joint_softened(const struct joint *joint,
-                                 const double strain[STRAINS], double share,
-                                 const double pull[2])
+                                 const double strain[STRAINS],
+                                 const struct judgement *judgement)
 {
     struct resistance resistance = {.contact.touch = TOUCH_NONE};
-    struct spring spring = {.share = share, .pull = {pull[0], pull[1]}};
     if (joint->is_gone) return resistance;
     if (joint->is_bonded) add_bond(joint, strain, &resistance);
-    add_contact(joint, strain, &spring, &resistance);
+    add_contact(joint, strain, judgement, &resistance);
     return resistance;
 }
 
 struct resistance joint_resistance(const struct joint *joint,
                                    const double strain[STRAINS])
 {
-    return joint_softened(joint, strain, 1, (const double[2]){0, 0});
+    return joint_softened(joint, strain, &(struct judgement){.share = 1});
 }
 
 void joint_break(struct joint *joint, const double strain[STRAINS])

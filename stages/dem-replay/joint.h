@@ -67,12 +67,16 @@ struct resistance joint_resistance(const struct joint *joint,
                                    const double strain[STRAINS]);
 
 // The same while Newton's method looks for a solution: whether a contact slips, and
-// which way, is judged as if its shear spring had SHARE of its stiffness (at most 1, as
-// it is) and had pulled with PULL before. A solution is the same [Alart and Curnier
-// 1991]; on the way strains much larger than the spring's own tell less.
+// which way, is judged as if its springs had SHARE of their stiffness (at most 1, as
+// they are), the one across had pulled with PULL before and the grains had overlapped
+// by OVERLAP. A solution is the same [Alart and Curnier 1991]; on the way strains much
+// larger than the springs' own tell less.
+struct judgement {
+    double share, pull[2], overlap;
+};
 struct resistance joint_softened(const struct joint *joint,
-                                 const double strain[STRAINS], double share,
-                                 const double pull[2]);
+                                 const double strain[STRAINS],
+                                 const struct judgement *judgement);
 
 // What of STRAIN a displacement of the grain at END makes: the transpose is what the
 // load does to that grain.

@@ -15,7 +15,7 @@ static double bond_across(const struct joint *joint)
 }
 
 // How stiff what holds the joint is against shear without its contact, of the contact,
-// which can be stiffer by orders of magnitude.
+// which can be stiffer by orders of magnitude. Half of it: others give way as well.
 static double softness(const struct corrections *c, const struct entry *entry)
 {
     const struct joint *joint = &c->joint[entry->joint];
@@ -23,13 +23,15 @@ static double softness(const struct corrections *c, const struct entry *entry)
     for (int k = STRAIN_ACROSS; k < STRAINS / 2; k++)
         compliance += 0.5 * c->share * compliance_of(c, entry->row[k])[entry->row[k]];
     const double held = c->tangent[entry->joint][STRAIN_ACROSS] - bond_across(joint);
-    return fmin(1, fmax(1e-4, (1 / compliance - held) / joint->contact_across));
+    return fmin(1, fmax(1e-4, 0.5 * (1 / compliance - held) / joint->contact_across));
 }
 
 void note_pull(const struct corrections *c, struct entry *entry)
 {
     const int j = entry->joint;
     const double bond = bond_across(&c->joint[j]);
+    const double along = c->from[j][STRAIN_ALONG] + c->strain[entry->row[0]];
+    entry->overlap = fmax(0, c->joint[j].overlap - along);
     for (int k = STRAIN_ACROSS; k < STRAINS / 2 && entry->count > k; k++) {
         const double more = c->strain[entry->row[k]];
         entry->pull[k - STRAIN_ACROSS] = c->more[entry->row[k]] + entry->load[k] +
@@ -42,13 +44,17 @@ void resist_entry(struct corrections *c, struct entry *entry, bool softened)
 {
     const int j = entry->joint;
     const double *tangent = c->tangent[j];
-    const double soft = softened && entry->count >= 3 ? softness(c, entry) : 1;
+    struct judgement judgement = {.share = 1};
+    if (softened && entry->count >= 3)
+        judgement = (struct judgement){.share = softness(c, entry),
+                                       .pull = {entry->pull[0], entry->pull[1]},
+                                       .overlap = entry->overlap};
     double strain[STRAINS];
     memcpy(strain, c->from[j], sizeof strain);
     for (int k = 0; k < entry->count; k++)
         strain[k] += c->strain[entry->row[k]];
     const struct resistance resistance =
-        joint_softened(&c->joint[j], strain, soft, entry->pull);
+        joint_softened(&c->joint[j], strain, &judgement);
     entry->touch = resistance.contact.touch;
     for (int k = 0; k < entry->count; k++) {
         const double more = c->strain[entry->row[k]];
@@ -241,6 +247,7 @@ static void go(struct corrections *c)
                 entry->pull[k - 1] += entry->slope[k][l] * c->step[entry->row[l]];
             entry->pull[k - 1] -= bond * c->step[entry->row[k]];
         }
+        if (entry->overlap > 0) entry->overlap -= c->step[entry->row[0]];
     }
     for (int row = 0; row < c->count; row++)
         c->strain[row] += c->step[row];
@@ -250,10 +257,12 @@ static void go(struct corrections *c)
 // anything and numbers end.
 bool settle_together(struct corrections *c, bool softened, double enough)
 {
-    enum { PATIENCE = 4 };
-    double best = INFINITY, most = 0;
+    enum { PATIENCE = 4, AT_THE_END = 3 };
+    double best = INFINITY, nearly = enough;
+    for (int row = 0; row < c->count; row++)
+        nearly = fmax(nearly, 1e-6 * fabs(c->linear[row]));
     double left = resist_entries(c, softened);
-    for (int waited = 0; waited < PATIENCE; waited++) {
+    for (int waited = 0; waited < (best > nearly ? PATIENCE : AT_THE_END); waited++) {
         if (!find_step(c)) return false;
         go(c);
         left = resist_entries(c, softened);
@@ -263,7 +272,5 @@ bool settle_together(struct corrections *c, bool softened, double enough)
             waited = 0;
         }
     }
-    for (int row = 0; row < c->count; row++)
-        most = fmax(most, fabs(c->linear[row]));
-    return resist_entries(c, false) <= fmax(enough, 1e-6 * most);
+    return resist_entries(c, false) <= nearly;
 }

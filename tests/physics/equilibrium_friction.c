@@ -2,6 +2,7 @@
 // Slip in equilibrium (dem-replay, engine=quasi-static) against closed forms: a grain
 // sheared to and fro, a row drawn through what holds it by friction, a block on a
 // slope.
+#include "dem-replay/joint.h"
 #include "dem_scene.h"
 #include "support_equilibrium.h"
 
@@ -243,13 +244,47 @@ static void any_order_of_joints(void **state)
     packing_free(&reversed);
 }
 
+// Judged by a thousandth of its springs a contact does what it does, where they pulled
+// so before: a solution is the same. One that was open slides, the way its spring lies,
+// where it does so by itself.
+static void slip_that_is_judged_softly(void **state)
+{
+    (void)state;
+    struct joint joint = {.contact_along = 1,
+                          .contact_across = 0.8,
+                          .friction = friction,
+                          .contact = {.touch = TOUCH_STICKS, .anchor = {0.1, -0.2}}};
+    enum touch seen[4] = {0};
+    for (int k = 0; k < 12; k++) {
+        const double strain[STRAINS] = {0.1 - 0.2 * (k % 4), 0.04 * k, -0.05 * (k / 2)};
+        const struct resistance whole = joint_resistance(&joint, strain);
+        struct judgement judgement = {.share = 1e-3,
+                                      .pull = {whole.load[1], whole.load[2]},
+                                      .overlap = fmax(0, -strain[STRAIN_ALONG])};
+        const struct resistance soft = joint_softened(&joint, strain, &judgement);
+        assert_int_equal(soft.contact.touch, whole.contact.touch);
+        for (int l = 0; l < 3; l++)
+            assert_true(fabs(soft.load[l] - whole.load[l]) <= 1e-12);
+        seen[whole.contact.touch]++;
+    }
+    assert_true(seen[TOUCH_NONE] && seen[TOUCH_STICKS] && seen[TOUCH_SLIPS]);
+    const double pressed[STRAINS] = {-1, 0.1 + 0.6, -0.2 + 0.8};
+    assert_int_equal(joint_resistance(&joint, pressed).contact.touch, TOUCH_SLIPS);
+    const struct judgement opened = {.share = 0.01};
+    const struct resistance soft = joint_softened(&joint, pressed, &opened);
+    assert_int_equal(soft.contact.touch, TOUCH_SLIPS);
+    assert_true(fabs(soft.load[1] - 0.6 * friction) <= 1e-12);
+    assert_true(fabs(soft.load[2] - 0.8 * friction) <= 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_loop_of_hysteresis),
                                        cmocka_unit_test(a_front_of_slip),
                                        cmocka_unit_test(a_block_on_a_slope),
                                        cmocka_unit_test(a_load_is_without_rest_once),
-                                       cmocka_unit_test(any_order_of_joints)};
+                                       cmocka_unit_test(any_order_of_joints),
+                                       cmocka_unit_test(slip_that_is_judged_softly)};
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
