@@ -260,6 +260,7 @@ static void guess_strains(struct corrections *c, const double (*guess)[STRAINS])
             guess ? guess[c->entry[c->entry_of[row]].joint][c->strain_of[row]] : 0;
 }
 
+// Softened, else as it is; where that fails too joints in turn come before each.
 bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
                       const double (*guess)[STRAINS], double share, double enough)
 {
