@@ -222,12 +222,14 @@ ifneq ($(.SHELLSTATUS),0)
 $(error pipelines/memo could not tell what is stale)
 endif
 
-# A thousand inputs are more than a shell's line holds: they go by a file.
-words = $(recipe/$1) -- $(command/$1)
-words_by_file = $(if $(really),$$(file >$(recipes)-$(subst /,-,$1),$(words)))@$(recipes)-$(subst /,-,$1)
+# What memo is told of $1: by a file where there are so many inputs that a shell's line may not
+# hold them.
+told = $(recipe/$1) -- $(command/$1)
+told_file = $(recipes)-$(subst /,-,$1)
+told_by_file = $(if $(really),$$(file >$(told_file),$(told)))@$(told_file)
 define artifact_rule
 $1: $(if $(filter $1,$(stale)),FORCE) | $(inputs/$1) $(programs/$1)
-	$(if $(filter 0,$(V)),@)pipelines/memo run $(if $(word 500,$(inputs/$1)),$(words_by_file),$(words))
+	$(if $(filter 0,$(V)),@)pipelines/memo run $(if $(word 500,$(inputs/$1)),$(told_by_file),$(told))
 endef
 $(foreach a,$(artifacts),$(eval $(call artifact_rule,$a)))
 endif
