@@ -50,8 +50,8 @@ void corrections_take_off_lane(const struct corrections *corrections, int lane,
 
 // Multiplications spent on dense systems since there were no corrections.
 double corrections_work(const struct corrections *corrections);
-// Whether that is more than 100 factors take, and more than 1e10 (a second or two): then
-// what is not found is not looked for in other ways.
+// Whether that is more than 100 factors take, and more than 1e10 (a second or two):
+// then what is not found is not looked for in other ways.
 bool corrections_are_costly(const struct corrections *corrections);
 void corrections_count_work(struct corrections *corrections, double more);
 

@@ -4,6 +4,7 @@
 #include "foresee_state.h"
 
 #include "basics/memory.h"
+#include "basics/ranks.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,28 +15,15 @@ static const double row_speed = 2;
 
 // ---- what is expected ---------------------------------------------------------------
 
-struct placed {
-    int place, joint;
-};
-
-static int compare_places(const void *a, const void *b)
-{
-    const struct placed *p = a, *q = b;
-    if (p->place != q->place) return p->place < q->place ? -1 : 1;
-    return (p->joint > q->joint) - (p->joint < q->joint);
-}
-
 // So that rows that go through the factor side by side have most of the way in common.
 static int *order_joints(const struct equilibrium *e)
 {
-    struct placed *placed = NEW_ARRAY(struct placed, e->n_joint);
+    double *before = NEW_ARRAY(double, e->n_joint);
     int *in_order = NEW_ARRAY(int, e->n_joint);
     for (int j = 0; j < e->n_joint; j++)
-        placed[j] = (struct placed){stiffness_place(e->matrix, j), j};
-    qsort(placed, (size_t)e->n_joint, sizeof *placed, compare_places);
-    for (int j = 0; j < e->n_joint; j++)
-        in_order[j] = placed[j].joint;
-    free(placed);
+        before[j] = -(double)stiffness_place(e->matrix, j);
+    rank_descending(before, e->n_joint, in_order, NULL);
+    free(before);
     return in_order;
 }
 

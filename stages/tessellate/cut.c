@@ -128,7 +128,8 @@ static int throat_of(const struct cut *cut, struct corner a, struct corner b,
     *forward = a.node < b.node || (same && image_number(apart) > 0);
     const int32_t ends[2] = {*forward ? a.node : b.node, *forward ? b.node : a.node};
     const struct image image = *forward ? apart : image_opposite(apart);
-    for (int t = first_throat_between(cut->network, ends); t < cut->network->n_throat; t++) {
+    for (int t = first_throat_between(cut->network, ends); t < cut->network->n_throat;
+         t++) {
         const int32_t *node = cut->network->throat_nodes[t];
         if (node[0] != ends[0] || node[1] != ends[1]) break;
         if (same_image(throat_image(cut, t), image)) return t;
