@@ -17,26 +17,23 @@ struct crackstats_parameters {
 #define AT(member) offsetof(struct crackstats_parameters, member)
 
 static const struct parameter table[] = {
-    {"slices", PARAMETER_INTEGER, "1", "10", BOUND_BETWEEN, 1, 100000, NULL,
-     "horizontal slices of equal thickness in the profile, from the bottom up",
-     AT(slices)},
-    {"intervals", PARAMETER_INTEGER, "1", "10", BOUND_BETWEEN, 1, 10000, NULL,
-     "equal parts of the saturation, and of the drying time, that cracks are counted "
-     "in",
-     AT(intervals)},
-    {"confidence", PARAMETER_NUMBER, "1", "0.95", BOUND_BETWEEN, 0.5, 0.999999, NULL,
-     "of the intervals around the means of several runs", AT(confidence)},
-    {"first_group", PARAMETER_INTEGER, "1", "0", BOUND_BETWEEN, 0, 1000000, NULL,
-     "the first so many runs are tested against the others; 0: no test",
-     AT(first_group)},
-    {"paired", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "runs of the two groups belong together, the first of one and the first of the "
-     "other and so on, as of one aggregate that dries in two ways: their differences "
-     "are tested too",
-     AT(paired)},
-    {"same_bonds", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
-     "all runs must have as many bonds as the first; false: runs of other packings",
-     AT(same_bonds)},
+    {"slices", PARAMETER_INTEGER, "1", "10", AT(slices), BETWEEN(1, 100000),
+     .text = "horizontal slices of equal thickness in the profile, from the bottom up"},
+    {"intervals", PARAMETER_INTEGER, "1", "10", AT(intervals), BETWEEN(1, 10000),
+     .text = "equal parts of the saturation, and of the drying time, that cracks are "
+             "counted in"},
+    {"confidence", PARAMETER_NUMBER, "1", "0.95", AT(confidence),
+     BETWEEN(0.5, 0.999999),
+     .text = "of the intervals around the means of several runs"},
+    {"first_group", PARAMETER_INTEGER, "1", "0", AT(first_group), BETWEEN(0, 1000000),
+     .text = "the first so many runs are tested against the others; 0: no test"},
+    {"paired", PARAMETER_BOOLEAN, "1", "false", AT(paired),
+     .text = "runs of the two groups belong together, the first of one and the first "
+             "of the other and so on, as of one aggregate that dries in two ways: "
+             "their differences are tested too"},
+    {"same_bonds", PARAMETER_BOOLEAN, "1", "true", AT(same_bonds),
+     .text = "all runs must have as many bonds as the first; false: runs of other "
+             "packings"},
     {0}};
 
 static const struct stage stage = {

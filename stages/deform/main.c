@@ -26,20 +26,20 @@ struct deform_parameters {
 };
 
 static const struct parameter table[] = {
-    {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"", BOUND_NONE, 0, 0,
-     "segment|line", "clearance that radii go with, as in tessellate",
-     offsetof(struct deform_parameters, clearance)},
-    {"on_change", PARAMETER_CHOICE, "1", "\"refuse\"", BOUND_NONE, 0, 0, "refuse|keep",
-     "where moved grains have another diagram: nothing is written (exit status 1), or "
-     "the network stays as it is connected",
-     offsetof(struct deform_parameters, on_change)},
-    {"radii", PARAMETER_CHOICE, "1", "\"anew\"", BOUND_NONE, 0, 0, "anew|carried",
-     "of the third input: as they are there, or drawn ones: each that of the nearest "
-     "throat before, changed like its clearance",
-     offsetof(struct deform_parameters, radii)},
-    {"write", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0, 0, "network|packing",
-     "packing: the moved grains in their box, for tessellate",
-     offsetof(struct deform_parameters, write)},
+    {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
+     offsetof(struct deform_parameters, clearance), .choices = "segment|line",
+     .text = "clearance that radii go with, as in tessellate"},
+    {"on_change", PARAMETER_CHOICE, "1", "\"refuse\"",
+     offsetof(struct deform_parameters, on_change), .choices = "refuse|keep",
+     .text = "where moved grains have another diagram: nothing is written (exit status "
+             "1), or the network stays as it is connected"},
+    {"radii", PARAMETER_CHOICE, "1", "\"anew\"",
+     offsetof(struct deform_parameters, radii), .choices = "anew|carried",
+     .text = "of the third input: as they are there, or drawn ones: each that of the "
+             "nearest throat before, changed like its clearance"},
+    {"write", PARAMETER_CHOICE, "1", "\"network\"",
+     offsetof(struct deform_parameters, write), .choices = "network|packing",
+     .text = "packing: the moved grains in their box, for tessellate"},
     {0}};
 
 static const struct stage stage = {

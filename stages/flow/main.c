@@ -23,19 +23,19 @@ struct flow_parameters {
 };
 
 #define AT(member) offsetof(struct flow_parameters, member)
-#define WALL(key, kind, unit, wall, text)                                              \
+#define WALL(key, kind, unit, wall, what)                                              \
     {                                                                                  \
-        key, PARAMETER_NUMBER, unit, "null", BOUND_NONE, 0, 0, NULL, text,             \
-            AT(imposed.kind[wall])                                                     \
+        key, PARAMETER_NUMBER, unit, "null", AT(imposed.kind[wall]), .text = what      \
     }
 
 static const struct parameter table[] = {
-    {"along", PARAMETER_CHOICE, "1", "\"z\"", BOUND_NONE, 0, 0, "x|y|z|none",
-     "direction in which the pressure falls, from the lower to the upper wall or, "
-     "where the box repeats, from box to box; none: only what pressure and flux say",
-     AT(imposed.along)},
-    {"pressure_drop", PARAMETER_NUMBER, "Pa", "1", BOUND_NONE, 0, 0, NULL,
-     "how far it falls over the box", AT(imposed.drop)},
+    {"along", PARAMETER_CHOICE, "1", "\"z\"", AT(imposed.along),
+     .choices = "x|y|z|none",
+     .text = "direction in which the pressure falls, from the lower to the upper wall "
+             "or, where the box repeats, from box to box; none: only what pressure and "
+             "flux say"},
+    {"pressure_drop", PARAMETER_NUMBER, "Pa", "1", AT(imposed.drop),
+     .text = "how far it falls over the box"},
     WALL("pressure.x_lower", pressure, "Pa", 0, "piezometric pressure at the wall -x"),
     WALL("pressure.x_upper", pressure, "Pa", 1, "at the wall +x"),
     WALL("pressure.y_lower", pressure, "Pa", 2, "at the wall -y"),
@@ -49,56 +49,48 @@ static const struct parameter table[] = {
     WALL("flux.y_upper", flux, "m3 s-1", 3, "through the wall +y"),
     WALL("flux.z_lower", flux, "m3 s-1", 4, "through the wall -z"),
     WALL("flux.z_upper", flux, "m3 s-1", 5, "through the wall +z"),
-    {"sides", PARAMETER_CHOICE, "1", "\"no-slip\"", BOUND_NONE, 0, 0,
-     "no-slip|symmetric|symmetric-yade",
-     "walls resist as grains do; or are planes of symmetry [C 3.1]; or as in Yade, "
-     "which also narrows the throats at symmetric walls",
-     AT(sides)},
-    {"conductance", PARAMETER_CHOICE, "1", "\"hydraulic\"", BOUND_NONE, 0, 0,
-     "hydraulic|effective",
-     "of a throat: by hydraulic radius [C 8] or effective radius "
-     "[C 10]",
-     AT(conductance)},
-    {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", BOUND_ABOVE, 0, 0, NULL,
-     "alpha of [C 8]", AT(factor)},
-    {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", BOUND_NONE, 0, 0, "signed|unsigned",
-     "of throats whose pores lie on one side of the facet: signed, a partition of the "
-     "void; or counted twice, as in Yade",
-     AT(pieces)},
-    {"viscosity", PARAMETER_NUMBER, "Pa s", "0.001", BOUND_ABOVE, 0, 0, NULL,
-     "of the fluid", AT(viscosity)},
-    {"density", PARAMETER_NUMBER, "kg m-3", "1000", BOUND_MINIMUM, 0, 0, NULL,
-     "of the fluid, for buoyancy", AT(density)},
-    {"gravity", PARAMETER_POINT, "m s-2", "[0,0,0]", BOUND_NONE, 0, 0, NULL,
-     "acceleration, for buoyancy", AT(gravity)},
-    {"strain_rate", PARAMETER_POINT, "s-1", "[0,0,0]", BOUND_NONE, 0, 0, NULL,
-     "of the box along x, y, z: walls move so, and so do grains that have no "
-     "/particles/velocity",
-     AT(strain_rate)},
-    {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "from three more flows, along x, y and z", AT(tensor)},
-    {"stokes_drag", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "small grains that float in a pore get Stokes' drag too; the grains around them "
-     "lose what they get",
-     AT(stokes)},
-    {"pore_stress", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "pressure and viscous stress, averaged over each pore and over the fluid; nothing "
-     "may move",
-     AT(stress)},
-    {"solver", PARAMETER_CHOICE, "1", "\"auto\"", BOUND_NONE, 0, 0,
-     "auto|cholesky|iteration",
-     "of the pressures: Cholesky's factor, or conjugate gradients with a sampled "
-     "factor; auto: the faster",
-     AT(solver)},
-    {"tolerance", PARAMETER_NUMBER, "1", "1e-12", BOUND_BETWEEN, 1e-14, 0.1, NULL,
-     "on what does not flow out of a pore that flows in, and on the sum over all, of "
-     "the flux",
-     AT(tolerance)},
-    {"write", PARAMETER_CHOICE, "1", "\"flow\"", BOUND_NONE, 0, 0, "flow|forces",
-     "all of the flow, or the total force on every grain for dem-replay", AT(product)},
-    {"steps", PARAMETER_INTEGER, "1", "11", BOUND_BETWEEN, 2, 1e6, NULL,
-     "write=forces: in how many times, a second apart, the forces grow from nothing",
-     AT(steps)},
+    {"sides", PARAMETER_CHOICE, "1", "\"no-slip\"", AT(sides),
+     .choices = "no-slip|symmetric|symmetric-yade",
+     .text = "walls resist as grains do; or are planes of symmetry [C 3.1]; or as in "
+             "Yade, which also narrows the throats at symmetric walls"},
+    {"conductance", PARAMETER_CHOICE, "1", "\"hydraulic\"", AT(conductance),
+     .choices = "hydraulic|effective",
+     .text = "of a throat: by hydraulic radius [C 8] or effective radius [C 10]"},
+    {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", AT(factor), ABOVE(0),
+     .text = "alpha of [C 8]"},
+    {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", AT(pieces),
+     .choices = "signed|unsigned",
+     .text = "of throats whose pores lie on one side of the facet: signed, a partition "
+             "of the void; or counted twice, as in Yade"},
+    {"viscosity", PARAMETER_NUMBER, "Pa s", "0.001", AT(viscosity), ABOVE(0),
+     .text = "of the fluid"},
+    {"density", PARAMETER_NUMBER, "kg m-3", "1000", AT(density), AT_LEAST(0),
+     .text = "of the fluid, for buoyancy"},
+    {"gravity", PARAMETER_POINT, "m s-2", "[0,0,0]", AT(gravity),
+     .text = "acceleration, for buoyancy"},
+    {"strain_rate", PARAMETER_POINT, "s-1", "[0,0,0]", AT(strain_rate),
+     .text = "of the box along x, y, z: walls move so, and so do grains that have no "
+             "/particles/velocity"},
+    {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", AT(tensor),
+     .text = "from three more flows, along x, y and z"},
+    {"stokes_drag", PARAMETER_BOOLEAN, "1", "false", AT(stokes),
+     .text = "small grains that float in a pore get Stokes' drag too; the grains "
+             "around them lose what they get"},
+    {"pore_stress", PARAMETER_BOOLEAN, "1", "false", AT(stress),
+     .text = "pressure and viscous stress, averaged over each pore and over the fluid; "
+             "nothing may move"},
+    {"solver", PARAMETER_CHOICE, "1", "\"auto\"", AT(solver),
+     .choices = "auto|cholesky|iteration",
+     .text = "of the pressures: Cholesky's factor, or conjugate gradients with a "
+             "sampled factor; auto: the faster"},
+    {"tolerance", PARAMETER_NUMBER, "1", "1e-12", AT(tolerance), BETWEEN(1e-14, 0.1),
+     .text = "on what does not flow out of a pore that flows in, and on the sum over "
+             "all, of the flux"},
+    {"write", PARAMETER_CHOICE, "1", "\"flow\"", AT(product), .choices = "flow|forces",
+     .text = "all of the flow, or the total force on every grain for dem-replay"},
+    {"steps", PARAMETER_INTEGER, "1", "11", AT(steps), BETWEEN(2, 1e6),
+     .text = "write=forces: in how many times, a second apart, the forces grow from "
+             "nothing"},
     {0}};
 
 static const struct stage stage = {

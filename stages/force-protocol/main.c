@@ -26,56 +26,50 @@ struct force_parameters {
 #define AT(member) offsetof(struct force_parameters, member)
 
 static const struct parameter table[] = {
-    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
-     "of the liquid against the gas [K Table 3.1]", AT(surface_tension)},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
-     "imperfect wetting: menisci are less curved, and the contact line pulls the "
-     "grains towards the middle of the throat [K 3.14-3.18]",
-     AT(contact_angle)},
-    {"force_scale", PARAMETER_NUMBER, "1", "1", BOUND_MINIMUM, 0, 0, NULL,
-     "factor on the physical force; K's own was chosen and is not given",
-     AT(force_scale)},
-    {"form", PARAMETER_CHOICE, "1", "\"solid-angle\"", BOUND_NONE, 0, 0,
-     "solid-angle|faces|centres|arcs",
-     "what the liquid of a throat pulls with: its suction on the part of the grain "
-     "that faces it; that and the pull of the menisci, so that grains pull each other "
-     "in pairs; K's plain sums: towards the middles of the throats [K 5.1], or in a "
-     "layer over the arcs of a circle [K 3.20]",
-     AT(form)},
-    {"balanced", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
-     "change the pulls of the form as little as it takes for each throat alone to "
-     "leave the grains around it in balance, forces and moments; nothing changes on "
-     "cubic lattices",
-     AT(balanced)},
-    {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", BOUND_NONE, 0, 0,
-     "uniform|clusters|field",
-     "suction of the liquid: that of a throat of mean radius everywhere; of each "
-     "connected piece of liquid by its widest meniscus; or the pressures of viscous "
-     "liquid, from the snapshots of the drying (dry.snapshots)",
-     AT(suction)},
-    {"open_surface", PARAMETER_CHOICE, "1", "\"idle\"", BOUND_NONE, 0, 0, "idle|pulls",
-     "throats that lie in the open wall: their liquid has its menisci over the grains "
-     "and does not pull them outwards (K 5.4: a full network presses its open top as "
-     "well), or it pulls like any other",
-     AT(open_surface)},
-    {"steps", PARAMETER_INTEGER, "1", "550", BOUND_BETWEEN, 2, 1e7, NULL,
-     "uniform times from the start to the end of drying, both included [K 5.2]",
-     AT(steps)},
-    {"largest_change", PARAMETER_NUMBER, "1", "0", BOUND_BETWEEN, 0, 1, NULL,
-     "0: uniform times; else as few times as it takes for no force on a grain to "
-     "change by more than this from one to the next, of the largest force",
-     AT(largest_change)},
-    {"most_bytes", PARAMETER_NUMBER, "1", "4e9", BOUND_ABOVE, 0, 0, NULL,
-     "largest forces to write, 24 bytes a grain and time: more are refused at once",
-     AT(most_bytes)},
-    {"rings.left", PARAMETER_CHOICE, "1", "\"none\"", BOUND_NONE, 0, 0,
-     "none|volume|suction",
-     "liquid that stays at contacts as throats empty: none, a given volume, or as much "
-     "as is in equilibrium with liquid in a throat of mean radius",
-     AT(rings)},
-    {"rings.volume", PARAMETER_NUMBER, "1", "1e-3", BOUND_BETWEEN, 1e-9, 1, NULL,
-     "volume: of one ring, of the cube of the effective radius 2 R1 R2/(R1 + R2)",
-     AT(ring_volume)},
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", AT(surface_tension),
+     ABOVE(0), .text = "of the liquid against the gas [K Table 3.1]"},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(contact_angle),
+     BETWEEN(0, 89.999),
+     .text = "imperfect wetting: menisci are less curved, and the contact line pulls "
+             "the grains towards the middle of the throat [K 3.14-3.18]"},
+    {"force_scale", PARAMETER_NUMBER, "1", "1", AT(force_scale), AT_LEAST(0),
+     .text = "factor on the physical force; K's own was chosen and is not given"},
+    {"form", PARAMETER_CHOICE, "1", "\"solid-angle\"", AT(form),
+     .choices = "solid-angle|faces|centres|arcs",
+     .text = "what the liquid of a throat pulls with: its suction on the part of the "
+             "grain that faces it; that and the pull of the menisci, so that grains "
+             "pull each other in pairs; K's plain sums: towards the middles of the "
+             "throats [K 5.1], or in a layer over the arcs of a circle [K 3.20]"},
+    {"balanced", PARAMETER_BOOLEAN, "1", "true", AT(balanced),
+     .text = "change the pulls of the form as little as it takes for each throat alone "
+             "to leave the grains around it in balance, forces and moments; nothing "
+             "changes on cubic lattices"},
+    {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", AT(suction),
+     .choices = "uniform|clusters|field",
+     .text = "suction of the liquid: that of a throat of mean radius everywhere; of "
+             "each connected piece of liquid by its widest meniscus; or the pressures "
+             "of viscous liquid, from the snapshots of the drying (dry.snapshots)"},
+    {"open_surface", PARAMETER_CHOICE, "1", "\"idle\"", AT(open_surface),
+     .choices = "idle|pulls",
+     .text = "throats that lie in the open wall: their liquid has its menisci over the "
+             "grains and does not pull them outwards (K 5.4: a full network presses "
+             "its open top as well), or it pulls like any other"},
+    {"steps", PARAMETER_INTEGER, "1", "550", AT(steps), BETWEEN(2, 1e7),
+     .text =
+         "uniform times from the start to the end of drying, both included [K 5.2]"},
+    {"largest_change", PARAMETER_NUMBER, "1", "0", AT(largest_change), BETWEEN(0, 1),
+     .text = "0: uniform times; else as few times as it takes for no force on a grain "
+             "to change by more than this from one to the next, of the largest force"},
+    {"most_bytes", PARAMETER_NUMBER, "1", "4e9", AT(most_bytes), ABOVE(0),
+     .text = "largest forces to write, 24 bytes a grain and time: more are refused at "
+             "once"},
+    {"rings.left", PARAMETER_CHOICE, "1", "\"none\"", AT(rings),
+     .choices = "none|volume|suction",
+     .text = "liquid that stays at contacts as throats empty: none, a given volume, or "
+             "as much as is in equilibrium with liquid in a throat of mean radius"},
+    {"rings.volume", PARAMETER_NUMBER, "1", "1e-3", AT(ring_volume), BETWEEN(1e-9, 1),
+     .text =
+         "volume: of one ring, of the cube of the effective radius 2 R1 R2/(R1 + R2)"},
     {0}};
 
 static const struct stage stage = {

@@ -18,11 +18,10 @@ struct import_parameters {
 };
 
 static const struct parameter table[] = {
-    {"format", PARAMETER_CHOICE, "1", "\"openpnm\"", BOUND_NONE, 0, 0,
-     "openpnm|statoil",
-     "openpnm: a JSON graph; statoil: INPUT is the prefix of INPUT_node1.dat, "
-     "INPUT_link1.dat and INPUT_link2.dat",
-     offsetof(struct import_parameters, format)},
+    {"format", PARAMETER_CHOICE, "1", "\"openpnm\"",
+     offsetof(struct import_parameters, format), .choices = "openpnm|statoil",
+     .text = "openpnm: a JSON graph; statoil: INPUT is the prefix of INPUT_node1.dat, "
+             "INPUT_link1.dat and INPUT_link2.dat"},
     {0}};
 
 static const struct stage stage = {

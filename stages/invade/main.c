@@ -25,39 +25,38 @@ enum { UNTIL_END, UNTIL_BREAKTHROUGH };
 #define WALLS "-x|+x|-y|+y|-z|+z"
 
 static const struct parameter table[] = {
-    {"rule", PARAMETER_CHOICE, "1", "\"throats\"", BOUND_NONE, 0, 0, "throats|nodes",
-     "what holds gas up: throats by their radii (drainage), or nodes, as wide as their "
-     "widest throat",
-     AT(rule)},
-    {"trapping", PARAMETER_BOOLEAN, "1", "true", BOUND_NONE, 0, 0, NULL,
-     "liquid leaves only through the outlet: what gas has cut off from it stays",
-     AT(invasion.trapping)},
-    {"until", PARAMETER_CHOICE, "1", "\"end\"", BOUND_NONE, 0, 0, "end|breakthrough",
-     "when to stop: when gas can enter nothing more, or first touches the outlet",
-     AT(until)},
-    {"inlet", PARAMETER_CHOICES, "1", "[\"+z\"]", BOUND_NONE, 0, 0, WALLS,
-     "walls through which gas comes in", AT(invasion.inlet)},
-    {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", BOUND_NONE, 0, 0, WALLS,
-     "walls through which liquid leaves", AT(invasion.outlet)},
-    {"transport", PARAMETER_BOOLEAN, "1", "false", BOUND_NONE, 0, 0, NULL,
-     "find how well gas and liquid flow, and diffuse, from inlet to outlet at "
-     "saturations of 1, 0.9, 0.8, ... (relative permeability, effective diffusivity)",
-     AT(transport)},
-    {"imposed_empty", PARAMETER_CHOICES, "1", "[]", BOUND_NONE, 0, 0,
-     WALLS "|outer|inner",
-     "walls whose throats hold no liquid and let nothing through, as in dry",
-     AT(imposed_empty)},
+    {"rule", PARAMETER_CHOICE, "1", "\"throats\"", AT(rule), .choices = "throats|nodes",
+     .text = "what holds gas up: throats by their radii (drainage), or nodes, as wide "
+             "as their widest throat"},
+    {"trapping", PARAMETER_BOOLEAN, "1", "true", AT(invasion.trapping),
+     .text =
+         "liquid leaves only through the outlet: what gas has cut off from it stays"},
+    {"until", PARAMETER_CHOICE, "1", "\"end\"", AT(until),
+     .choices = "end|breakthrough",
+     .text =
+         "when to stop: when gas can enter nothing more, or first touches the outlet"},
+    {"inlet", PARAMETER_CHOICES, "1", "[\"+z\"]", AT(invasion.inlet), .choices = WALLS,
+     .text = "walls through which gas comes in"},
+    {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", AT(invasion.outlet),
+     .choices = WALLS, .text = "walls through which liquid leaves"},
+    {"transport", PARAMETER_BOOLEAN, "1", "false", AT(transport),
+     .text = "find how well gas and liquid flow, and diffuse, from inlet to outlet at "
+             "saturations of 1, 0.9, 0.8, ... (relative permeability, effective "
+             "diffusivity)"},
+    {"imposed_empty", PARAMETER_CHOICES, "1", "[]", AT(imposed_empty),
+     .choices = WALLS "|outer|inner",
+     .text = "walls whose throats hold no liquid and let nothing through, as in dry"},
     DRAWN_RADII_ROWS(AT(radii)),
-    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", BOUND_ABOVE, 0, 0, NULL,
-     "of the liquid [K Table 3.1]", AT(entry.surface_tension)},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", BOUND_BETWEEN, 0, 89.999, NULL,
-     "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) / r",
-     AT(entry.contact_angle)},
-    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2", BOUND_ABOVE, 0, 0, NULL,
-     "of the liquid, above that of the gas", AT(entry.liquid_density)},
-    {"gravity", PARAMETER_NUMBER, "m s-2", "0", BOUND_MINIMUM, 0, 0, NULL,
-     "towards -z: liquid higher up gives way to gas more easily; 0: none",
-     AT(entry.gravity)},
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", AT(entry.surface_tension),
+     ABOVE(0), .text = "of the liquid [K Table 3.1]"},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(entry.contact_angle),
+     BETWEEN(0, 89.999),
+     .text = "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) "
+             "/ r"},
+    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2", AT(entry.liquid_density),
+     ABOVE(0), .text = "of the liquid, above that of the gas"},
+    {"gravity", PARAMETER_NUMBER, "m s-2", "0", AT(entry.gravity), AT_LEAST(0),
+     .text = "towards -z: liquid higher up gives way to gas more easily; 0: none"},
     {0}};
 
 static const struct stage stage = {

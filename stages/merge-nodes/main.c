@@ -19,21 +19,21 @@ struct merge_parameters {
 };
 
 static const struct parameter table[] = {
-    {"measure", PARAMETER_CHOICE, "1", "\"grain_radius\"", BOUND_NONE, 0, 0,
-     "grain_radius|mean_length|absolute|fraction",
-     "what the threshold counts: mean grain radii, mean throat lengths, metres, or the "
-     "share of throats to remove; the last two of the network before any merging",
-     offsetof(struct merge_parameters, measure)},
-    {"threshold", PARAMETER_NUMBER, "1", "1e-6", BOUND_MINIMUM, 0, 0, NULL,
-     "throats shorter than this go, the shortest first; the default removes only those "
-     "that a degenerate packing makes",
-     offsetof(struct merge_parameters, threshold)},
-    {"volumes", PARAMETER_CHOICE, "1", "\"as_given\"", BOUND_NONE, 0, 0,
-     "as_given|conserved",
-     "as_given: where throats have volumes (/throats/volume) their sum stays, "
-     "cylinders stay cylinders; conserved: the sum of cylinders stays as well, as "
-     "volumes",
-     offsetof(struct merge_parameters, volumes)},
+    {"measure", PARAMETER_CHOICE, "1", "\"grain_radius\"",
+     offsetof(struct merge_parameters, measure),
+     .choices = "grain_radius|mean_length|absolute|fraction",
+     .text = "what the threshold counts: mean grain radii, mean throat lengths, "
+             "metres, or the share of throats to remove; the last two of the network "
+             "before any merging"},
+    {"threshold", PARAMETER_NUMBER, "1", "1e-6",
+     offsetof(struct merge_parameters, threshold), AT_LEAST(0),
+     .text = "throats shorter than this go, the shortest first; the default removes "
+             "only those that a degenerate packing makes"},
+    {"volumes", PARAMETER_CHOICE, "1", "\"as_given\"",
+     offsetof(struct merge_parameters, volumes), .choices = "as_given|conserved",
+     .text = "as_given: where throats have volumes (/throats/volume) their sum stays, "
+             "cylinders stay cylinders; conserved: the sum of cylinders stays as well, "
+             "as volumes"},
     {0}};
 
 static const struct stage stage = {

@@ -18,29 +18,28 @@ struct tessellate_parameters {
 };
 
 static const struct parameter table[] = {
-    {"diagram", PARAMETER_CHOICE, "1", "\"power\"", BOUND_NONE, 0, 0, "power|voronoi",
-     "power diagram (K's Dirichlet) or plain Voronoi; the same for grains of one size",
-     offsetof(struct tessellate_parameters, diagram)},
-    {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"", BOUND_NONE, 0, 0,
-     "segment|line",
-     "least clearance between throat and grains: over the throat itself, or over the "
-     "infinite line through it [K 3.7]",
-     offsetof(struct tessellate_parameters, clearance)},
-    {"throat_volume", PARAMETER_CHOICE, "1", "\"cylinder\"", BOUND_NONE, 0, 0,
-     "cylinder|void",
-     "what a throat holds: the cylinder of its radius and length [K 3.3.4], or its "
-     "share of the void between the grains (/throats/volume), the sum of which is "
-     "exact",
-     offsetof(struct tessellate_parameters, volume)},
-    {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"", BOUND_NONE, 0, 0,
-     "truncate|eliminate",
-     "what becomes of cells that do not end inside the walls, of the box or of a "
-     "cylinder, ring or sphere: cut by them, or left out, as unbounded ones are in K",
-     offsetof(struct tessellate_parameters, boundary)},
-    {"dimensions", PARAMETER_INTEGER, "1", "3", BOUND_BETWEEN, 2, 3, NULL,
-     "2: the network of one layer of grains, in a plane between it and the next, which "
-     "is as far away as the box is thick along y [K 3.3.6]",
-     offsetof(struct tessellate_parameters, dimensions)},
+    {"diagram", PARAMETER_CHOICE, "1", "\"power\"",
+     offsetof(struct tessellate_parameters, diagram), .choices = "power|voronoi",
+     .text = "power diagram (K's Dirichlet) or plain Voronoi; the same for grains of "
+             "one size"},
+    {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
+     offsetof(struct tessellate_parameters, clearance), .choices = "segment|line",
+     .text = "least clearance between throat and grains: over the throat itself, or "
+             "over the infinite line through it [K 3.7]"},
+    {"throat_volume", PARAMETER_CHOICE, "1", "\"cylinder\"",
+     offsetof(struct tessellate_parameters, volume), .choices = "cylinder|void",
+     .text = "what a throat holds: the cylinder of its radius and length [K 3.3.4], or "
+             "its share of the void between the grains (/throats/volume), the sum of "
+             "which is exact"},
+    {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"",
+     offsetof(struct tessellate_parameters, boundary), .choices = "truncate|eliminate",
+     .text = "what becomes of cells that do not end inside the walls, of the box or of "
+             "a cylinder, ring or sphere: cut by them, or left out, as unbounded ones "
+             "are in K"},
+    {"dimensions", PARAMETER_INTEGER, "1", "3",
+     offsetof(struct tessellate_parameters, dimensions), BETWEEN(2, 3),
+     .text = "2: the network of one layer of grains, in a plane between it and the "
+             "next, which is as far away as the box is thick along y [K 3.3.6]"},
     {0}};
 
 static const struct stage stage = {

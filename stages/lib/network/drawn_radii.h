@@ -23,34 +23,33 @@ enum status give_radii(struct network *network, const struct drawn_radii *radii,
 #define DRAWN_RADII_AT(at, member) (at) + offsetof(struct drawn_radii, member)
 // clang-format off
 #define DRAWN_RADII_ROWS(at) \
-    {"throat_radius.distribution", PARAMETER_CHOICE, "1", "\"network\"", BOUND_NONE, 0, \
-     0, "network|normal|lognormal|uniform|two_mode", \
-     "throat radii: as in the network, or drawn [K 2.2, 3.11]; drawn ones make the " \
-     "throats cylinders", \
-     DRAWN_RADII_AT(at, law)}, \
-    {"throat_radius.mean", PARAMETER_NUMBER, "m", "103e-9", BOUND_ABOVE, 0, 0, NULL, \
-     "mean of drawn radii; two_mode: of the first mode", \
-     DRAWN_RADII_AT(at, how.mean)}, \
-    {"throat_radius.standard_deviation", PARAMETER_NUMBER, "m", "1e-9", BOUND_MINIMUM, \
-     0, 0, NULL, "their standard deviation", \
-     DRAWN_RADII_AT(at, how.deviation)}, \
-    {"throat_radius.second_mean", PARAMETER_NUMBER, "m", "40e-9", BOUND_ABOVE, 0, 0, \
-     NULL, "two_mode: mean of the second mode", \
-     DRAWN_RADII_AT(at, how.second_mean)}, \
+    {"throat_radius.distribution", PARAMETER_CHOICE, "1", "\"network\"", \
+     DRAWN_RADII_AT(at, law), \
+     .choices = "network|normal|lognormal|uniform|two_mode", \
+     .text = "throat radii: as in the network, or drawn [K 2.2, 3.11]; drawn ones make " \
+             "the throats cylinders"}, \
+    {"throat_radius.mean", PARAMETER_NUMBER, "m", "103e-9", \
+     DRAWN_RADII_AT(at, how.mean), ABOVE(0), \
+     .text = "mean of drawn radii; two_mode: of the first mode"}, \
+    {"throat_radius.standard_deviation", PARAMETER_NUMBER, "m", "1e-9", \
+     DRAWN_RADII_AT(at, how.deviation), AT_LEAST(0), \
+     .text = "their standard deviation"}, \
+    {"throat_radius.second_mean", PARAMETER_NUMBER, "m", "40e-9", \
+     DRAWN_RADII_AT(at, how.second_mean), ABOVE(0), \
+     .text = "two_mode: mean of the second mode"}, \
     {"throat_radius.second_standard_deviation", PARAMETER_NUMBER, "m", "2e-9", \
-     BOUND_MINIMUM, 0, 0, NULL, "its standard deviation", \
-     DRAWN_RADII_AT(at, how.second_deviation)}, \
-    {"throat_radius.second_share", PARAMETER_NUMBER, "1", "0.5", BOUND_BETWEEN, 0, 1, \
-     NULL, "share of the throats in it", \
-     DRAWN_RADII_AT(at, how.second_share)}, \
-    {"throat_radius.correlation_length", PARAMETER_NUMBER, "m", "0", BOUND_MINIMUM, 0, \
-     0, NULL, \
-     "drawn radii are alike within this distance, their distribution the same; 0: " \
-     "independent", \
-     DRAWN_RADII_AT(at, how.correlation_length)}, \
-    {"throat_radius.seed", PARAMETER_INTEGER, "1", "1", BOUND_BETWEEN, 0, 4294967295.0, \
-     NULL, "seed of drawn radii", \
-     DRAWN_RADII_AT(at, seed)}
+     DRAWN_RADII_AT(at, how.second_deviation), AT_LEAST(0), \
+     .text = "its standard deviation"}, \
+    {"throat_radius.second_share", PARAMETER_NUMBER, "1", "0.5", \
+     DRAWN_RADII_AT(at, how.second_share), BETWEEN(0, 1), \
+     .text = "share of the throats in it"}, \
+    {"throat_radius.correlation_length", PARAMETER_NUMBER, "m", "0", \
+     DRAWN_RADII_AT(at, how.correlation_length), AT_LEAST(0), \
+     .text = "drawn radii are alike within this distance, their distribution the same; " \
+             "0: independent"}, \
+    {"throat_radius.seed", PARAMETER_INTEGER, "1", "1", \
+     DRAWN_RADII_AT(at, seed), BETWEEN(0, 4294967295.0), \
+     .text = "seed of drawn radii"}
 // clang-format on
 
 #endif

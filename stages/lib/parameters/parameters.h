@@ -40,12 +40,19 @@ struct parameter {
     enum parameter_type type;
     const char *unit;           // UDUNITS spelling, "1" for a pure number
     const char *fallback;       // the default, as JSON; NULL: must be given
+    size_t offset;              // where it goes in the stage's parameter struct
     enum parameter_bound bound; // x >= low; x > low; low <= x <= high
     double low, high;           // in the unit
     const char *choices;        // "inviscid|immobile"
     const char *text;           // one line for the user
-    size_t offset;              // where it goes in the stage's parameter struct
 };
+
+// A row: what each parameter has, by place; then by name what it needs of the rest.
+//     {"points", PARAMETER_INTEGER, "1", "101", AT(points), AT_LEAST(2),
+//      .text = "separations on the curve, evenly spaced"},
+#define AT_LEAST(least) .bound = BOUND_MINIMUM, .low = (least)
+#define ABOVE(limit) .bound = BOUND_ABOVE, .low = (limit)
+#define BETWEEN(least, most) .bound = BOUND_BETWEEN, .low = (least), .high = (most)
 
 // A table ends with a row whose key is NULL.
 
