@@ -3,6 +3,8 @@
 // and the width of the processor's registers.
 #include "dem_scene.h"
 
+#include "basics/wide_vectors.h"
+
 enum { SIDE = 4, N = SIDE * SIDE * SIDE };
 
 // Loads that break some bonds and make some contacts slip.
@@ -68,7 +70,6 @@ static void test_threads_make_no_difference(void **state)
 static void test_width_makes_no_difference(void **state)
 {
     (void)state;
-    if (!__builtin_cpu_supports("avx512f")) skip();
     struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
     struct vector *force = random_vectors(N, 5e-10, 12);
     struct dem_setup setup = weak_setup(&packing);
@@ -249,7 +250,8 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads_make_no_difference),
-        cmocka_unit_test(test_width_makes_no_difference),
+        UNIT_TEST_WHERE(has_wide_vectors(), "no wide vectors here",
+                        test_width_makes_no_difference),
         cmocka_unit_test(test_scale_makes_no_difference),
         cmocka_unit_test(test_rotation_turns_the_result),
         cmocka_unit_test(test_numbering_makes_no_difference),
