@@ -46,6 +46,14 @@ static enum status begin(struct run *run, struct reason *reason)
 
 // ---- a step of the load -------------------------------------------------------------
 
+bool is_loaded(const struct load *load, int n, int step)
+{
+    const struct vector *force = load->force + (size_t)step * (size_t)n;
+    for (int i = 0; i < n; i++)
+        if (norm(force[i]) > 0) return true;
+    return false;
+}
+
 void take_forces(struct run *run)
 {
     const size_t n = (size_t)run->packing->n_particle;

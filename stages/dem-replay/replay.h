@@ -79,7 +79,7 @@ struct response {
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
     int n_gone, first_gone;            // grains that left an equilibrium
-    int n_unsettled;                   // loads at whose end not all was at rest
+    int n_unsettled;          // loads, but none, at whose end not all was at rest
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last
     int n_snap, snapped; // ends of equilibrium gone through in time, and the grain that
@@ -93,6 +93,10 @@ struct replay_progress {
     void (*report)(void *context, double fraction); // may be NULL
     void *context;
 };
+
+// Whether STEP has a force on any of N grains. Where none has, [K 4.20] measures what
+// is left of one decay by another.
+bool is_loaded(const struct load *load, int n, int step);
 
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the
 // run diverged, or a step did not settle within its cycles or iterations;

@@ -131,15 +131,6 @@ static double unbalanced_ratio(const struct run *run)
     return isinf(ratio) ? 1 : ratio;
 }
 
-// Without a load nothing remains to measure what is left by: both terms of [K 4.20]
-// decay.
-static bool is_loaded(const struct run *run)
-{
-    for (int i = 0; i < run->packing->n_particle; i++)
-        if (norm(run->force[i]) > 0) return true;
-    return false;
-}
-
 // CYCLES more, cut where the state may be kept, and where the load follows the grains,
 // which must not depend on it.
 static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
@@ -169,7 +160,9 @@ static enum status run_on(struct run *run, struct reason *reason)
 {
     enum { LOOK_EVERY = 16 };
     const struct replay_settings *settings = run->settings;
-    if (isnan(settings->tolerance) || !is_loaded(run)) return STATUS_OK;
+    if (isnan(settings->tolerance)) return STATUS_OK;
+    if (!is_loaded(run->load, run->packing->n_particle, run->place.step))
+        return STATUS_OK;
     const int64_t first = run->place.began + ramp(run) + settings->cycles;
     for (;;) {
         const int64_t done = dem_cycle(run->state) - first;
@@ -250,7 +243,8 @@ static void note_unsettled(const struct run *run)
 {
     static const double settled = 1e-4; // [K 5.2]
     for (int k = 0; k < run->load->n_time; k++)
-        run->response->n_unsettled += run->response->unbalanced_ratio[k] >= settled;
+        run->response->n_unsettled += run->response->unbalanced_ratio[k] >= settled &&
+                                      is_loaded(run->load, run->packing->n_particle, k);
 }
 
 static void end(struct run *run)

@@ -168,11 +168,12 @@ double largest_displacement(const struct packing *packing,
     return most;
 }
 
-static double largest(const double *values, int count)
+static double largest_unbalanced_ratio(const struct load *load, int n,
+                                       const struct response *response)
 {
     double most = 0;
-    for (int k = 0; k < count; k++)
-        most = fmax(most, values[k]);
+    for (int k = 0; k < load->n_time; k++)
+        if (is_loaded(load, n, k)) most = fmax(most, response->unbalanced_ratio[k]);
     return most;
 }
 
@@ -198,5 +199,5 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     artifact_put_number(artifact, "/summary/gone", response->n_gone);
     artifact_put_number(artifact, "/summary/snaps", response->n_snap);
     artifact_put_number(artifact, "/summary/largest_unbalanced_ratio",
-                        largest(response->unbalanced_ratio, load->n_time));
+                        largest_unbalanced_ratio(load, packing->n_particle, response));
 }
