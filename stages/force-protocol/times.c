@@ -29,12 +29,14 @@ struct choice {
     double *time;        // (n) but no more than MOST
     int n, capacity, most;
     double wanted; // how many it takes
+    double latest; // of these
 };
 
 static void choose(struct choice *choice, double time)
 {
-    if (choice->n > 0 && !(time > choice->time[choice->n - 1])) return;
+    if (choice->wanted > 0 && !(time > choice->latest)) return;
     choice->wanted++;
+    choice->latest = time;
     if (choice->n == choice->most) return;
     GROW_ARRAY(choice->time, choice->n, choice->capacity);
     choice->time[choice->n++] = time;
@@ -76,7 +78,7 @@ static void follow(struct choice *choice, double from, double to)
     remember_former(choice);
     choice->moved = movement(choice);
     if (choice->moved <= choice->bound) return;
-    const double parts = ceil(choice->moved / choice->bound);
+    const double parts = to > from ? ceil(choice->moved / choice->bound) : 1;
     const double too_many = choice->wanted + parts > choice->most ? parts : 0;
     for (int p = 1; p < parts && !too_many; p++)
         choose(choice, from + (to - from) * (p / parts));

@@ -36,6 +36,8 @@ static struct dried dry_lattice(uint64_t seed)
 static void dried_free(struct dried *dried)
 {
     free(dried->record.exposed);
+    free(dried->record.snapshot_time);
+    free(dried->record.pressure);
     drying_history_free(&dried->history);
     network_free(&dried->network);
 }
@@ -114,6 +116,132 @@ static void menisci_begin_at_the_open_surface(void **state)
     dried_free(&dried);
 }
 
+// ---- a field ------------------------------------------------------------------------
+
+// Three snapshots, the middle one nearer to the first; a third of the nodes is in gas,
+// which ones changes, and a throat is closed.
+enum { SNAPSHOTS = 3 };
+static const struct suction_law by_field = {
+    .rule = SUCTION_FIELD, .uniform = 1e6, .meniscus = 0.14};
+
+static struct dried dry_with_field(void)
+{
+    struct dried dried = dry_lattice(4);
+    const int n_node = dried.network.n_node;
+    const double *time = dried.record.drying.time;
+    const double end = time[dried.record.drying.n_step - 1];
+    const double when[SNAPSHOTS] = {0.1 * end, 0.3 * end, 0.9 * end};
+    uint64_t seed = 3;
+    dried.network.throat_radius[5] = 0;
+    dried.record.n_snapshot = SNAPSHOTS;
+    dried.record.snapshot_time = duplicate(when, SNAPSHOTS, sizeof *when);
+    dried.record.pressure = NEW_ARRAY(double, SNAPSHOTS *n_node);
+    for (int k = 0; k < SNAPSHOTS * n_node; k++)
+        if (next_random(&seed) > 1.0 / 3)
+            dried.record.pressure[k] = -1e6 * (1 + next_random(&seed));
+    return dried;
+}
+
+// The suction in a snapshot: the mean of the ends in liquid, or that of a meniscus.
+static double in_snapshot(const struct dried *dried, int s, int throat)
+{
+    const double *pressure = dried->record.pressure + s * dried->network.n_node;
+    const double one = pressure[dried->network.throat_nodes[throat][0]];
+    const double other = pressure[dried->network.throat_nodes[throat][1]];
+    if (one < 0 && other < 0) return -(one + other) / 2;
+    if (one < 0 || other < 0) return -(one + other);
+    const double radius = dried->network.throat_radius[throat];
+    return throat == 5 ? 1e6 : 0.14 / radius;
+}
+
+static void check_field(const struct dried *dried, const struct filling *filling,
+                        double time)
+{
+    const double *when = dried->record.snapshot_time;
+    const int s = time < when[1] ? 0 : 1;
+    const double share = fmin(1, fmax(0, (time - when[s]) / (when[s + 1] - when[s])));
+    for (int t = 0; t < dried->network.n_throat; t++)
+        assert_close(filling->suction[t],
+                     (1 - share) * in_snapshot(dried, s, t) +
+                         share * in_snapshot(dried, s + 1, t),
+                     1e-14);
+}
+
+// At both ends of each step, and from there or from the beginning.
+static void a_field_is_that_of_the_time(void **state)
+{
+    (void)state;
+    struct dried dried = dry_with_field();
+    const struct drying_record *drying = &dried.record.drying;
+    struct filling walking = filling_begin(&dried.network, &dried.record, &by_field);
+    struct filling going = filling_begin(&dried.network, &dried.record, &by_field);
+    for (int step = 0; step + 1 < drying->n_step; step++) {
+        if (step > 0) filling_advance(&walking);
+        check_field(&dried, &walking, drying->time[step]);
+        filling_to_end_of_step(&walking);
+        check_field(&dried, &walking, drying->time[step + 1]);
+        filling_to(&going, drying->time[step]);
+        check_field(&dried, &going, drying->time[step]);
+    }
+    filling_free(&going);
+    filling_free(&walking);
+    dried_free(&dried);
+}
+
+// Of what holds liquid in all three snapshots: the middle one beside a third of the
+// way.
+static void the_error_of_a_field_is_what_the_middle_snapshot_adds(void **state)
+{
+    (void)state;
+    struct dried dried = dry_with_field();
+    struct filling filling = filling_begin(&dried.network, &dried.record, &by_field);
+    double sum = 0;
+    int count = 0;
+    for (int t = 0; t < dried.network.n_throat; t++) {
+        double suction[SNAPSHOTS];
+        int wet = 0;
+        for (int s = 0; s < SNAPSHOTS; s++) {
+            const double *pressure = dried.record.pressure + s * dried.network.n_node;
+            const int32_t *node = dried.network.throat_nodes[t];
+            wet += pressure[node[0]] < 0 || pressure[node[1]] < 0;
+            suction[s] = in_snapshot(&dried, s, t);
+        }
+        if (wet < SNAPSHOTS) continue;
+        sum += fabs(suction[1] - 0.75 * suction[0] - 0.25 * suction[2]);
+        count++;
+    }
+    assert_true(count > 200 && count < dried.network.n_throat - 50);
+    assert_close(field_error(&filling), sum / count / 1e6, 1e-13);
+    filling_free(&filling);
+    dried_free(&dried);
+}
+
+// Clusters have the same suction whichever way the filling has come to the step.
+static void steps_are_the_filling_of_their_times(void **state)
+{
+    (void)state;
+    struct dried dried = dry_lattice(6);
+    const struct drying_record *drying = &dried.record.drying;
+    struct filling walking = filling_begin(&dried.network, &dried.record, &by_clusters);
+    for (int step = 1; step + 1 < drying->n_step; step++) {
+        filling_advance(&walking);
+        if (!(drying->time[step] < drying->time[step + 1])) continue;
+        struct filling going =
+            filling_begin(&dried.network, &dried.record, &by_clusters);
+        filling_to(&going, drying->time[step]);
+        assert_int_equal(going.step, step);
+        for (int t = 0; t < dried.network.n_throat; t++) {
+            double one[LOADS], other[LOADS];
+            filling_loads(&walking, t, one);
+            filling_loads(&going, t, other);
+            assert_memory_equal(one, other, sizeof one);
+        }
+        filling_free(&going);
+    }
+    filling_free(&walking);
+    dried_free(&dried);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -121,6 +249,9 @@ int main(void)
         cmocka_unit_test(clusters_are_those_of_the_drying),
         cmocka_unit_test(a_cluster_has_the_suction_of_what_empties_next),
         cmocka_unit_test(menisci_begin_at_the_open_surface),
+        cmocka_unit_test(steps_are_the_filling_of_their_times),
+        cmocka_unit_test(a_field_is_that_of_the_time),
+        cmocka_unit_test(the_error_of_a_field_is_what_the_middle_snapshot_adds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
