@@ -221,32 +221,33 @@ static void a_field_is_linear_between_snapshots(void **state)
 static void auxiliary_grains_go(void **state)
 {
     (void)state;
-    enum { N = 4, TIMES = 3 };
-    static const uint8_t kind[N] = {GRAIN_AUXILIARY, 0, GRAIN_AUXILIARY, 0};
-    static const int32_t bond[4][2] = {{2, 0}, {1, 3}, {2, 3}, {0, 1}};
+    enum { N = 5, TIMES = 3, LEFT = 3 };
+    static const uint8_t kind[N] = {0, GRAIN_AUXILIARY, 0, GRAIN_AUXILIARY, 0};
+    static const int32_t bond[5][2] = {{0, 2}, {0, 1}, {1, 3}, {2, 4}, {3, 4}};
     struct packing packing = {.n_particle = N,
-                              .n_bond = 4,
+                              .n_bond = 5,
                               .position = NEW_ARRAY(struct vector, N),
                               .radius = NEW_ARRAY(double, N),
                               .kind = duplicate(kind, N, sizeof *kind),
-                              .bond = duplicate(bond, 4, sizeof *bond)};
+                              .bond = duplicate(bond, 5, sizeof *bond)};
     struct protocol protocol = {.n_time = TIMES,
                                 .force = NEW_ARRAY(struct vector, N * TIMES)};
     for (int i = 0; i < N; i++) {
-        packing.position[i].x = packing.radius[i] = i;
+        packing.position[i].x = packing.radius[i] = 1 + i;
         for (int m = 0; m < TIMES; m++)
             protocol.force[m * N + i].y = 10 * m + i;
     }
     drop_auxiliary(&packing, &protocol);
-    assert_int_equal(packing.n_particle, 2);
+    assert_int_equal(packing.n_particle, LEFT);
     assert_null(packing.kind);
-    assert_int_equal(packing.n_bond, 1);
-    assert_true(packing.bond[0][0] == 0 && packing.bond[0][1] == 1);
-    for (int i = 0; i < 2; i++) {
-        assert_same(packing.position[i].x, 2 * i + 1);
-        assert_same(packing.radius[i], 2 * i + 1);
+    assert_int_equal(packing.n_bond, 2);
+    for (int b = 0; b < 2; b++)
+        assert_true(packing.bond[b][0] == b && packing.bond[b][1] == b + 1);
+    for (int i = 0; i < LEFT; i++) {
+        assert_same(packing.position[i].x, 1 + 2 * i);
+        assert_same(packing.radius[i], 1 + 2 * i);
         for (int m = 0; m < TIMES; m++)
-            assert_same(protocol.force[2 * m + i].y, 10 * m + 2 * i + 1);
+            assert_same(protocol.force[LEFT * m + i].y, 10 * m + 2 * i);
     }
     protocol_free(&protocol);
     packing_free(&packing);
@@ -319,14 +320,14 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
     const int n = network.packing.n_particle;
     struct vector *anew = NEW_ARRAY(struct vector, n);
     struct vector *before = NEW_ARRAY(struct vector, n);
-    for (int lines = 0; lines < 4; lines++) { // with and without, by both rules
-        const struct suction_law law = {.rule = lines / 2 ? SUCTION_CLUSTERS
+    for (int which = 0; which < 4; which++) { // both rules, without lines and with
+        const struct suction_law law = {.rule = which / 2 ? SUCTION_CLUSTERS
                                                           : SUCTION_UNIFORM,
                                         .uniform = 1,
                                         .meniscus = 1e-7,
                                         .contact_line = 1e6};
         struct action action = random_action(&network);
-        if (lines % 2 == 0) patches_free(&action.patches[LOAD_CONTACT_LINE]);
+        if (which % 2 == 0) patches_free(&action.patches[LOAD_CONTACT_LINE]);
         struct walk walk = walk_begin(&action, &network, &record, &law);
         int steps = 1;
         do {
