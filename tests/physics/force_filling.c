@@ -116,6 +116,48 @@ static void menisci_begin_at_the_open_surface(void **state)
     dried_free(&dried);
 }
 
+// One throat has emptied and one half before the first step, which is the last; one was
+// never to hold liquid, and leaves neither gas nor rings.
+static void a_drying_may_begin_with_some_throats_empty(void **state)
+{
+    (void)state;
+    enum { EMPTY = 20, HALF = 30, NEVER = 40 };
+    struct network network = lattice_network(4, 4, 4, 1);
+    network.throat_kind[NEVER] = THROAT_IMPOSED_EMPTY;
+    int64_t offset[] = {0, 3};
+    int32_t throat[] = {EMPTY, HALF, NEVER};
+    double left[] = {0, 0.5, 0}, time[] = {0}, saturation[] = {0.75};
+    const struct filling_record record = {.drying = {.n_step = 1,
+                                                     .time = time,
+                                                     .saturation = saturation,
+                                                     .offset = offset,
+                                                     .throat = throat,
+                                                     .throat_saturation = left},
+                                          .exposed = NEW_ARRAY(bool, network.n_node)};
+    const struct suction_law law = {
+        .rule = SUCTION_UNIFORM, .uniform = 7, .contact_line = 1};
+    struct filling filling = filling_begin(&network, &record, &law);
+    const int32_t *gas = network.throat_nodes[EMPTY];
+    assert_true(filling_saturation(&filling) == 0.75);
+    for (int t = 0; t < network.n_throat; t++) {
+        const double wet = t == EMPTY || t == NEVER ? 0 : t == HALF ? 0.5 : 1;
+        int menisci = 0;
+        for (int end = 0; end < 2; end++) {
+            const int node = network.throat_nodes[t][end];
+            menisci += node == gas[0] || node == gas[1];
+        }
+        double load[LOADS];
+        filling_loads(&filling, t, load);
+        assert_true(load[LOAD_SUCTION] == 7 * wet);
+        assert_true(load[LOAD_EMPTINESS] == (t == NEVER ? 0 : 1 - wet));
+        assert_true(load[LOAD_CONTACT_LINE] ==
+                    (wet > 0 ? menisci * network.throat_radius[t] : 0));
+    }
+    filling_free(&filling);
+    free(record.exposed);
+    network_free(&network);
+}
+
 // ---- a field ------------------------------------------------------------------------
 
 // Three snapshots, the middle one nearer to the first; a third of the nodes is in gas,
@@ -249,6 +291,7 @@ int main(void)
         cmocka_unit_test(clusters_are_those_of_the_drying),
         cmocka_unit_test(a_cluster_has_the_suction_of_what_empties_next),
         cmocka_unit_test(menisci_begin_at_the_open_surface),
+        cmocka_unit_test(a_drying_may_begin_with_some_throats_empty),
         cmocka_unit_test(steps_are_the_filling_of_their_times),
         cmocka_unit_test(a_field_is_that_of_the_time),
         cmocka_unit_test(the_error_of_a_field_is_what_the_middle_snapshot_adds),
