@@ -17,6 +17,10 @@ from tap import BIN, SCENE, done, ok, read, run, scratch
 
 MOST_STOPS = 60
 
+# Where a shell without job control put the tests behind, SIGINT is ignored, here and by
+# what is started here.
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+
 
 def call(stage, *arguments):
     return subprocess.run([f"{BIN}/{stage}", *map(str, arguments)], capture_output=True)
