@@ -68,9 +68,11 @@ static struct scene forces_through(int n_step, const struct vector (*force)[GRAI
         drying->time[k + 1] = k + 1;
         drying->offset[k + 2] = k + 1;
         drying->throat[k] = k;
-        for (int i = 0; i < GRAINS; i++)
-            patches_add(&scene.action.patches[LOAD_SUCTION], k, i,
-                        subtract(force[k][i], force[k + 1][i]));
+        for (int i = 0; i < GRAINS; i++) {
+            const struct vector change = subtract(force[k][i], force[k + 1][i]);
+            if (norm(change) > 0)
+                patches_add(&scene.action.patches[LOAD_SUCTION], k, i, change);
+        }
     }
     patches_sort(&scene.action.patches[LOAD_SUCTION], GRAINS);
     return scene;
