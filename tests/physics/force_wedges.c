@@ -1,95 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where throats lie beside grains: in diagrams of unequal grains, in walls and in boxes
-// that repeat, with all cells and without those that walls would cut.
-#include "../random.h"
-#include "../test.h"
-#include "basics/memory.h"
+// Where throats lie beside grains: in diagrams of unequal grains, in walls, flat and
+// round, in boxes that repeat and below auxiliary grains, with all cells and without
+// those that walls would cut.
 #include "force-protocol/rings.h"
-#include "tessellate/diagram.h"
+#include "wedge_scene.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-// ---- scenes -------------------------------------------------------------------------
-
-struct scene {
-    bool layer;
-    uint8_t periodic[3];
-    enum boundary boundary;
-};
-
-static const struct scene scenes[] = {
-    {false, {0, 0, 0}, BOUNDARY_TRUNCATE},  {false, {1, 1, 0}, BOUNDARY_TRUNCATE},
-    {false, {0, 0, 0}, BOUNDARY_ELIMINATE}, {false, {1, 1, 0}, BOUNDARY_ELIMINATE},
-    {true, {0, 0, 0}, BOUNDARY_TRUNCATE},   {true, {1, 0, 0}, BOUNDARY_TRUNCATE},
-    {true, {0, 0, 0}, BOUNDARY_ELIMINATE},  {true, {1, 0, 0}, BOUNDARY_ELIMINATE},
-    {true, {0, 0, 1}, BOUNDARY_ELIMINATE}};
-enum { N_SCENE = sizeof scenes / sizeof *scenes };
-
-// Of x from the nearest copy of y.
-static struct vector nearest(const struct packing *packing, struct vector y,
-                             struct vector x)
-{
-    struct vector apart = subtract(x, y);
-    for (int axis = 0; axis < 3; axis++) {
-        const double edge = component(packing->upper, axis);
-        const double way = component(apart, axis);
-        if (packing->periodic[axis])
-            set_component(&apart, axis, way - edge * rint(way / edge));
-    }
-    return apart;
-}
-
-// Far enough from the others, and from walls that the box does not repeat at.
-static bool is_free(const struct packing *packing, struct vector x, double radius)
-{
-    for (int axis = 0; axis < 3; axis++) {
-        const double at = component(x, axis), edge = component(packing->upper, axis);
-        if (!packing->periodic[axis] && fmin(at, edge - at) < radius) return false;
-    }
-    for (int j = 0; j < packing->n_particle; j++)
-        if (norm(nearest(packing, packing->position[j], x)) <
-            packing->radius[j] + radius)
-            return false;
-    return true;
-}
-
-// Grains of radii from 0.25 to 0.5 that do not touch.
-static struct packing scattered(const struct scene *scene, uint64_t seed)
-{
-    const int n = scene->layer ? 60 : 110;
-    struct packing packing = {.position = NEW_ARRAY(struct vector, n),
-                              .radius = NEW_ARRAY(double, n),
-                              .upper = {5, 5, 6}};
-    memcpy(packing.periodic, scene->periodic, sizeof packing.periodic);
-    if (scene->layer) packing.upper = (struct vector){8, 1, 9};
-    const struct vector edge = packing.upper;
-    while (packing.n_particle < n) {
-        const double radius = 0.25 * (1 + next_random(&seed));
-        const struct vector x = {edge.x * next_random(&seed),
-                                 scene->layer ? 0.5 : edge.y * next_random(&seed),
-                                 edge.z * next_random(&seed)};
-        if (!is_free(&packing, x, radius)) continue;
-        packing.position[packing.n_particle] = x;
-        packing.radius[packing.n_particle++] = radius;
-    }
-    return packing;
-}
-
-static struct network diagram_of(const struct scene *scene, uint64_t seed)
-{
-    struct packing packing = scattered(scene, seed);
-    const struct tessellation how = {
-        .power = true, .boundary = scene->boundary, .layer = scene->layer};
-    struct network network;
-    struct tessellation_report report;
-    struct reason reason;
-    if (tessellate(&packing, &how, &network, &report, &reason))
-        fail_msg("%s", reason.text);
-    packing_free(&packing);
-    return network;
-}
 
 // ---- one wedge ----------------------------------------------------------------------
 
@@ -134,6 +50,12 @@ static void check_foot(const struct wedges *wedges, const struct wedge *wedge)
         assert_equal(wedge->foot, scale(0.5, add(wedge->from, wedge->to)));
     } else if (wedge->beyond < 0) {
         const int wall = -1 - wedge->beyond;
+        if (wall >= WALL_OUTER) {
+            const double height = height_above(packing, wedge->centre);
+            assert_zero(height_above(packing, wedge->foot));
+            assert_zero(distance(wedge->foot, wedge->centre) - fabs(height));
+            return;
+        }
         struct vector wanted = wedge->centre;
         set_component(&wanted, wall / 2,
                       wall % 2 ? component(packing->upper, wall / 2) : 0);
@@ -210,25 +132,38 @@ static void check_around(const struct wedges *wedges, int n)
 static bool lies_in(const struct network *network, int throat, int wall)
 {
     const struct packing *packing = &network->packing;
-    const double level = wall % 2 ? component(packing->upper, wall / 2) : 0;
-    bool lies = !packing->periodic[wall / 2];
-    for (int end = 0; end < 2; end++) {
-        const int node = network->throat_nodes[throat][end];
-        const double at = component(network->node_position[node], wall / 2);
-        lies = lies && fabs(at - level) < 1e-9;
+    const int32_t *ends = network->throat_nodes[throat];
+    const struct vector at[2] = {network->node_position[ends[0]],
+                                 network->node_position[ends[1]]};
+    if (wall >= WALL_OUTER) {
+        const int own = packing->body->within ? WALL_OUTER : WALL_INNER;
+        return packing->n_body > 0 && wall == own &&
+               fabs(height_above(packing, at[0])) < 1e-9 &&
+               fabs(height_above(packing, at[1])) < 1e-9;
     }
-    return lies;
+    const double level = wall % 2 ? component(packing->upper, wall / 2) : 0;
+    return !packing->periodic[wall / 2] &&
+           fabs(component(at[0], wall / 2) - level) < 1e-9 &&
+           fabs(component(at[1], wall / 2) - level) < 1e-9;
 }
 
-// Bits of the walls in which both ends of the throat lie. Grains around it go from wall
-// to wall.
+// Bits of the walls in which both ends of the throat lie; below auxiliary grains, which
+// are all at the upper side, also that of this one. Grains around it go from wall to
+// wall.
 static void check_surface(const struct wedges *wedges, int throat, int n)
 {
+    const struct network *network = wedges->network;
     int count = 0, beyond = 0;
-    for (int wall = 0; wall < 6; wall++) {
+    bool below = false;
+    if (network->throat_kind[throat] != THROAT_NETWORK)
+        return; // between auxiliary ones
+    for (int k = 0; k < n; k++)
+        below |= is_auxiliary(&network->packing, wedges->wedge[k].grain);
+    for (int wall = 0; wall <= WALL_INNER; wall++) {
         if (wedges->layer && wall / 2 == 1) continue;
-        const bool lies = lies_in(wedges->network, throat, wall);
-        assert_int_equal(wedges->surface[throat] >> wall & 1, lies);
+        const bool lies = lies_in(network, throat, wall);
+        const bool faces = below && wall == 5;
+        assert_int_equal(wedges->surface[throat] >> wall & 1, lies || faces);
         count += lies;
     }
     for (int k = 0; k < n; k++) {
