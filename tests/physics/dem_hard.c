@@ -244,6 +244,37 @@ static void test_too_fast_for_the_step(void **state)
     packing_free(&packing);
 }
 
+// A grain of a twentieth, beside another, whose surface moves by SHARE of the mean
+// radius in a step.
+static enum status spin_small_grain(double share, struct reason *reason)
+{
+    struct packing packing = new_packing(2, 0);
+    packing.radius[1] = RADIUS / 20;
+    packing.position[1].x = 1.06 * RADIUS;
+    const double mean = 0.5 * (packing.radius[0] + packing.radius[1]);
+    const struct dem_setup setup = stiff_setup(&packing);
+    struct dem *dem = create(&setup);
+    const double angle = share * mean / packing.radius[1];
+    const struct vector spin[] = {{0, 0, 0}, {0, 0, angle / dem_time_step(dem)}};
+    dem_set_velocity(dem, NULL, spin);
+    const enum status status = dem_run(dem, 10, reason);
+    dem_free(dem);
+    packing_free(&packing);
+    return status;
+}
+
+// It is its own surface that counts, not how far one of the largest would turn; and a
+// step that is stable is not called unstable.
+static void test_small_grain_turns(void **state)
+{
+    (void)state;
+    struct reason reason = {""};
+    assert_int_equal(spin_small_grain(0.0999, &reason), STATUS_OK);
+    assert_int_equal(spin_small_grain(0.1001, &reason), STATUS_NOT_CONVERGED);
+    assert_non_null(strstr(reason.text, "more than 0.1 mean radii"));
+    assert_non_null(strstr(reason.text, "within the stability limit"));
+}
+
 // Two, ten and a thousand times the limit: refused with the limit named; forced, it
 // runs on or says that it diverged, and no number is ever anything but finite.
 static void test_past_the_limit(void **state)
@@ -293,6 +324,7 @@ int main(void)
         cmocka_unit_test(test_contrast_in_impact),
         cmocka_unit_test(test_fast_grain),
         cmocka_unit_test(test_too_fast_for_the_step),
+        cmocka_unit_test(test_small_grain_turns),
         cmocka_unit_test(test_past_the_limit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

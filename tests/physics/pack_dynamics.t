@@ -278,6 +278,15 @@ for title, settings, walls in [
        and len(made.i) > len(made.r) / 2, title,
        (made.deepest(*walls(made)), len(made.i)))
 
+# ---- radii of 1:20 ----------------------------------------------------------------------
+
+# Small rough grains spin fast while large ones grow against them.
+made = Packing("method=radius_expansion", "count=500", ALL, ROUGH, "sizes.distribution=two_mode",
+               "radius=1", "sizes.second_radius=0.05", "sizes.second_share=0.95")
+deepest = (made.overlap / np.minimum(made.r[made.i], made.r[made.j])).max()
+ok(deepest < 0.01 and made.reached["unbalanced_ratio"] < 1e-4 and len(made.i) > 20,
+   "rough grains of 1:20 come to rest", (deepest, made.reached))
+
 # ---- explosive repulsion ----------------------------------------------------------------
 
 for settings in ["upper=[10,10,10]", "count=300"], ["dimensions=2", "upper=[10,0,10]", "count=35"]:

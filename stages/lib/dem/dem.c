@@ -204,6 +204,21 @@ static double fastest_wall(const struct dem *dem)
     return fastest;
 }
 
+static enum status refuse_pace(const struct dem *dem, struct reason *reason)
+{
+    const double step = dem_time_step(dem), limit = dem_time_step_limit(dem);
+    const bool is_stable = step <= limit;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "diverged in cycle %lld: a grain or its surface would move more than "
+                  "%g mean radii in one time step of %g s, %s the stability limit of "
+                  "%g s%s",
+                  (long long)dem->cycle, FURTHEST_STEP, step,
+                  is_stable ? "within" : "past", limit,
+                  is_stable ? ": too long for such a speed, try a smaller "
+                              "time_step_safety"
+                            : "");
+}
+
 // Cycles asked for, and how they go.
 struct course {
     int64_t cycles, done;
@@ -235,12 +250,7 @@ static void end_cycle(struct dem *dem, struct outcome outcome, struct course *co
     dem->travelled += dem->last_travel;
     if (!outcome.pace.sound) {
         wake_pairs(dem);
-        course->status =
-            refuse(course->reason, STATUS_NOT_CONVERGED,
-                   "diverged in cycle %lld: a grain would move more than %g mean "
-                   "radii in one time step of %g s (stable below %g s)",
-                   (long long)dem->cycle, FURTHEST_STEP, dem_time_step(dem),
-                   dem_time_step_limit(dem));
+        course->status = refuse_pace(dem, course->reason);
         return;
     }
     dem->cycle++;

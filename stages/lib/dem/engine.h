@@ -292,8 +292,9 @@ struct wall_geometry {
 };
 struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back);
 
-// The largest square of a speed, the surface's from turning included; SOUND is false
-// when a grain would have moved too far to be true, which then stays where it was.
+// The largest square of a speed, that of a largest grain's surface from turning
+// included; SOUND is false when a grain, or its surface, would have moved too far to be
+// true, which then stays where it was.
 struct pace {
     double largest;
     bool sound;

@@ -145,8 +145,9 @@ INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool tur
         const quad v = *velocity + dt * mobile[0] * net.force;
         const quad w = turns ? *spin + dt * mobile[1] * net.moment : zero;
         const quad squares = turns ? v * v + turning * (w * w) : v * v;
-        const double square = sum_of(squares);
-        if (!(square <= limit)) { // also when it is not a number
+        const double square = sum_of(squares), radius = place[i].radius;
+        const quad surface = turns ? v * v + radius * radius * (w * w) : squares;
+        if (!(sum_of(surface) <= limit)) { // also when it is not a number
             sound = false;
             continue;
         }
