@@ -25,7 +25,8 @@ static enum status check_grain(const double grain[4], int count, int number,
                                struct reason *reason)
 {
     if (count != 4)
-        return refuse(reason, STATUS_BAD_DATA, "line %d: must be four numbers, x y z r",
+        return refuse(reason, STATUS_BAD_DATA,
+                      "line %d: must be four numbers, x y z r, or a comment, #",
                       number);
     for (int k = 0; k < 4; k++)
         if (!isfinite(grain[k]))

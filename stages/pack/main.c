@@ -83,6 +83,9 @@ static struct packing import(const char *path, const struct pack_parameters *par
                              json_t *inputs)
 {
     const struct bytes bytes = read_whole(path);
+    if (!bytes.size && !strcmp(path, "-"))
+        die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
+                             "an input, make run from IMPORT=FILE");
     struct packing packing = is_hdf5(&bytes)
                                  ? import_packing(path, bytes, inputs)
                                  : import_lines(path, bytes, parameters, inputs);

@@ -238,7 +238,7 @@ for reader, given in [("tessellate", "network"), ("merge-nodes", "packing"),
     refused(f"{reader} refuses a {given}", BAD_DATA, [reader, given],
             f"{given}: must be a {wanted[reader]}, is a {given}")
 refused("a JSON artifact is not an HDF5 file", BAD_DATA, ["crackstats", "crackstats"],
-        "crackstats: is not an HDF5 file")
+        "crackstats: is not an HDF5 file; parameters, in JSON, go by -p")
 damage("an unknown schema is named", "packing",
        attribute("/", "schema", "craquelure/soup/1"), "schema craquelure/soup/1 is unknown")
 damage("a later version of a schema is refused", "packing",
@@ -565,11 +565,13 @@ def imported(title, content, line, *settings):
 
 
 imported("a line of three numbers is named", "0 0 0 1\n3 0 0\n",
-         "line 2: must be four numbers, x y z r")
+         "line 2: must be four numbers, x y z r, or a comment, #")
 imported("a line of five numbers is named", "# grains\n\n0 0 0 1 1\n",
-         "line 3: must be four numbers, x y z r")
+         "line 3: must be four numbers, x y z r, or a comment, #")
 imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
-         "line 2: must be four numbers, x y z r")
+         "line 2: must be four numbers, x y z r, or a comment, #")
+imported("the names of columns want a #", "x,y,z,r\n0,0,0,1\n",
+         "line 1: must be four numbers, x y z r, or a comment, #")
 imported("a negative radius in a text is refused", "0 0 0 -1\n",
          "line 1: the radius must be > 0 m, got -1")
 imported("a radius of zero in a text is refused", "0 0 0 0\n",
@@ -579,7 +581,11 @@ imported("a number too large is refused", "1e999 0 0 1\n", "line 1: must be fini
 imported("null bytes in a text are refused", b"0 0 0 1\n\0\0\0",
          "holds null bytes: neither text nor HDF5")
 imported("a text of comments holds no grains", "# x y z r\n\n", "no grains")
-imported("an empty text holds no grains", "", "(no grains|is empty)")
+imported("an empty text holds no grains", "", "no grains")
+refused("an import without an input says where grains come from", BAD_DATA,
+        ["pack", "--set", "method=import"],
+        "standard input: no grains: method=import takes them from an input, make run from "
+        "IMPORT=FILE")
 imported("a box upside down is refused at import", "0 0 0 1\n",
          "pack.upper: must be above pack.lower = -1 m along z, got -2",
          "--set", "upper=[1,1,-2]")
@@ -676,6 +682,12 @@ parameters("an unknown nested key comes with the nearest known one", "dry",
            "the nearest known one is boundary_layer.layers")
 parameters("a key with a line break gives one line", "pack", {"radius\nx": 1},
            r"pack.radius\?x: unknown key; the nearest known one is radius")
+parameters("a key put in another group comes with where it belongs", "dem-replay",
+           {"volume": 1, "bond": {"friction": 1}},
+           "dem-replay.volume: unknown key; the nearest known one is bridges.volume",
+           "dem-replay.bond.friction: unknown key; the nearest known one is friction")
+parameters("a key like no other comes with none", "dem-replay", {"foo": 1},
+           "dem-replay.foo: unknown key; --help lists those there are")
 parameters("unknown sections of a scene are named", "pack",
            {"pack": {}, "packs": {}, "dem-repaly": {}},
            "packs: unknown section; the nearest stage is pack",
@@ -747,6 +759,8 @@ setting("--set refuses a value that is not UTF-8", USAGE, b"radius=\xff", r"--se
 setting("--set refuses a key that is not UTF-8", USAGE, b"\xff=1", r"--set \S+=1: is not UTF-8")
 setting("--set refuses an unknown key", BAD_DATA, "radiuss=1",
         "pack.radiuss: unknown key; the nearest known one is radius")
+setting("--set says that keys go without the section", USAGE, "pack.radius=1",
+        "--set pack.radius=1: must go without the section, radius=1")
 setting("--set refuses a wrong type", BAD_DATA, "radius=wide",
         'pack.radius: must be a number, got "wide"')
 setting("--set refuses what is out of range", BAD_DATA, "touching_gap=2",
@@ -1131,6 +1145,12 @@ if has_terminals():
     result("binary output is not written to a terminal",
            [] if done.returncode == USAGE and shown ==
            ["pack: standard output is a terminal: name a file with -o, or pipe it", ""]
+           else [f"status {done.returncode}, shown {shown}"])
+    done = run(["script", "-qec", f"{BIN}/dry -o out/drying", "/dev/null"])
+    shown = done.stdout.decode().split("\r\n")
+    result("binary input is not read from a terminal",
+           [] if done.returncode == USAGE and shown ==
+           ["dry: standard input is a terminal: name a file, or pipe it", ""]
            else [f"status {done.returncode}, shown {shown}"])
 else:
     result("binary output is not written to a terminal", [], "no terminal to be had, or no program `script`")

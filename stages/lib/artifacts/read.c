@@ -22,7 +22,8 @@ static hid_t open_image(const char *path, const struct bytes *image)
     static const unsigned char signature[8] = {0x89, 'H',  'D',  'F',
                                                '\r', '\n', 0x1a, '\n'};
     if (image->size < 8 || memcmp(image->data, signature, 8))
-        die(STATUS_BAD_DATA, "%s: is not an HDF5 file", input_name(path));
+        die(STATUS_BAD_DATA, "%s: is not an HDF5 file%s", input_name(path),
+            image->data[0] == '{' ? "; parameters, in JSON, go by -p" : "");
     hdf5_begin();
     const hid_t file =
         H5LTopen_file_image(image->data, image->size,

@@ -23,6 +23,8 @@ const char *input_name(const char *path)
 
 static int open_input(const char *path)
 {
+    if (!strcmp(path, "-") && isatty(STDIN_FILENO))
+        die(STATUS_USAGE, "standard input is a terminal: name a file, or pipe it");
     if (!strcmp(path, "-")) return STDIN_FILENO;
     const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) die(STATUS_NO_INPUT, "%s: %s", path, strerror(errno));

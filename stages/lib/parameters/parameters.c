@@ -264,20 +264,41 @@ static bool is_key(const struct parameter *table, const char *path)
     return false;
 }
 
-static void report_unknown(struct filling *filling, const char *path)
+// Edits that turn PATH into KEY, or one more than those between their last parts, where
+// PATH is in the wrong group.
+static int distance(const char *path, const char *key)
+{
+    const char *last_of_path = strrchr(path, '.'), *last_of_key = strrchr(key, '.');
+    const int whole = edit_distance(path, key);
+    const int last = 1 + edit_distance(last_of_path ? last_of_path + 1 : path,
+                                       last_of_key ? last_of_key + 1 : key);
+    return whole < last ? whole : last;
+}
+
+// The key most like PATH; NULL where more than half of its letters differ.
+static const char *nearest_key(const struct parameter *table, const char *path)
 {
     const char *nearest = NULL;
-    int least = 1 << 20;
-    for (const struct parameter *p = filling->table; p->key; p++) {
-        const int edits = edit_distance(path, p->key);
+    int least = (int)strlen(path) / 2 + 1;
+    for (const struct parameter *p = table; p->key; p++) {
+        const int edits = distance(path, p->key);
         if (edits < least) {
             least = edits;
             nearest = p->key;
         }
     }
+    return nearest;
+}
+
+static void report_unknown(struct filling *filling, const char *path)
+{
+    const char *nearest = nearest_key(filling->table, path);
     if (nearest)
         report("%s.%s: unknown key; the nearest known one is %s", filling->where, path,
                nearest);
+    else if (filling->table->key)
+        report("%s.%s: unknown key; --help lists those there are", filling->where,
+               path);
     else
         report("%s.%s: unknown key; this stage has no parameters", filling->where,
                path);

@@ -228,11 +228,21 @@ static json_t *load_section(const struct command_line *line)
     return section;
 }
 
+// Keys of a scene begin with the section, those of --set do not.
+static void set(json_t *section, const char *stage, const char *assignment)
+{
+    const size_t length = strlen(stage);
+    if (!strncmp(assignment, stage, length) && assignment[length] == '.')
+        die(STATUS_USAGE, "--set %s: must go without the section, %s", assignment,
+            assignment + length + 1);
+    parameters_set(section, assignment);
+}
+
 static void fill(const struct command_line *line, void *parameters)
 {
     json_t *section = load_section(line);
     for (int k = 0; k < line->n_set; k++)
-        parameters_set(section, line->set[k]);
+        set(section, line->stage->name, line->set[k]);
     char where[300];
     snprintf(where, sizeof where, "%s%s%s%s", line->params ? line->params : "",
              line->params && line->n_set ? " with --set" : "", line->params ? ": " : "",
