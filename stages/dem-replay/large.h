@@ -28,6 +28,7 @@ struct large {
     double tried, most_tried;      // increments and steps in time of this load, and the
                                    // most there may be [large_way.c]
     double hold;      // against motion as one, in the factor [large_free.c]
+    bool is_restless; // something did not come to rest under this load
     bool is_stale;    // the factor is not that of the last equilibrium
     bool is_unstable; // the stiffness at the trial was not positive when last factored
 };

@@ -67,8 +67,9 @@ void large_kick(struct equilibrium *e)
 
 // ---- steps in time ------------------------------------------------------------------
 
-// Of dashpots, over the stiffness and a time step: no step is longer or shorter.
-static const double softest = 1e-8, stiffest = 1e6;
+// Of dashpots, over the stiffness and a time step: no step is longer or shorter. Forces
+// that no joint bears take steps that are shorter by as much.
+static const double softest = 1e-8, stiffest = 1e12;
 
 // How long steps are.
 struct pace {
@@ -123,8 +124,9 @@ static bool let_go_of_loose(struct equilibrium *e, const struct displacement *st
 static bool walk(struct equilibrium *e, const struct displacement *start)
 {
     const int most = (int)(20 / e->setup.increment);
-    struct pace pace = {.damping = 1};
     double least = left_without_dashpots(e);
+    const double beyond = fmax(1, least); // of what the stiffest joint bears
+    struct pace pace = {.damping = beyond};
     const double rest = e->setup.tolerance * e->largest_load;
     int64_t idle = 0;
     e->may_leave = false;
@@ -136,7 +138,7 @@ static bool walk(struct equilibrium *e, const struct displacement *start)
         if (outcome == MEETS) continue;
         if (outcome != ADVANCED) {
             step_less(&pace, outcome, moved);
-            if (pace.damping > stiffest) break;
+            if (pace.damping > stiffest * beyond) break;
             continue;
         }
         keep_history(e);

@@ -219,10 +219,12 @@ static enum status refuse_long(struct equilibrium *e, const struct way *way,
         balanced(way), e->large->most_tried, least_balanced(e));
 }
 
-// Something went on moving, and does so under the next load.
+// Something went on moving, and does so under the next load. Bonds that break may leave
+// it so several times under one.
 static void leave_restless(struct equilibrium *e)
 {
-    e->n_restless++;
+    if (!e->large->is_restless) e->n_restless++;
+    e->large->is_restless = true;
     e->large->share = 1;
     resist(e);
     e->restless = least_balanced(e);
@@ -305,6 +307,7 @@ static enum status go_beyond(struct equilibrium *e, struct way *way, bool is_uns
 enum status large_balance(struct equilibrium *e, struct reason *reason)
 {
     struct way way = begin_way(e, 0);
+    if (e->large->tried == 0) e->large->is_restless = false; // a new load
     while (way.reached < 1) {
         e->large->balanced = balanced(&way);
         if (e->large->tried > e->large->most_tried) return refuse_long(e, &way, reason);

@@ -63,6 +63,59 @@ static void a_block_that_is_let_go(void **state)
     packing_free(&packing);
 }
 
+// ---- more than joints bear ----------------------------------------------------------
+
+static struct block *new_breaking_block(void)
+{
+    struct block *block = new_block();
+    block->setup.material.friction = 0.5;
+    block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1.6e4;
+    block->setup.large_displacements = true;
+    block->setup.increment = 0.02;
+    block->setup.tolerance = 1e-8;
+    return block;
+}
+
+// Forces that press the stiffest joint by a thousand radii, or by 1e39 times as many,
+// take all grains that are not held away: steps in time are as short as that asks for.
+static void forces_beyond_all_joints(void **state)
+{
+    (void)state;
+    const double sizes[] = {10, 1e10, 1e40};
+    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+        struct block *block = new_breaking_block();
+        struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+        struct vector force[BLOCK];
+        int grain;
+        load_block(force, sizes[k]);
+        next_equilibrium(equilibrium, force);
+        print_message("# %g N: %.0f tries\n", sizes[k], equilibrium->large->tried);
+        assert_int_equal(equilibrium_gone(equilibrium, &grain), BLOCK - SIDE * SIDE);
+        assert_int_equal(equilibrium_restless(equilibrium, &grain), 0);
+        assert_true(equilibrium->large->tried < 500);
+        equilibrium_free(equilibrium);
+        free_block(block);
+    }
+}
+
+// One that does not come to rest, bond after bond, is one load without rest.
+static void a_load_without_rest_counts_once(void **state)
+{
+    (void)state;
+    struct block *block = new_breaking_block();
+    block->setup.most_iterations = 1;
+    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct vector force[BLOCK];
+    int grain, cracks;
+    load_block(force, -1e-4);
+    next_equilibrium(equilibrium, force);
+    equilibrium_cracks(equilibrium, &cracks);
+    print_message("# %d bonds broke\n", cracks);
+    assert_int_equal(equilibrium_restless(equilibrium, &grain), 1);
+    equilibrium_free(equilibrium);
+    free_block(block);
+}
+
 // ---- a limit ------------------------------------------------------------------------
 
 // A row that is drawn across takes more increments than it is given here.
@@ -96,6 +149,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_block_that_is_let_go),
+        cmocka_unit_test(forces_beyond_all_joints),
+        cmocka_unit_test(a_load_without_rest_counts_once),
         cmocka_unit_test(a_way_that_is_too_long),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
