@@ -15,10 +15,11 @@ set title "a slice: broken in tension (blue), in shear (yellow)" textcolor "#222
 plot slice using 1:2:3 with circles linecolor rgb "#dddddd", \
     cracks using 1:2:3:($5 == 0 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb "#0a2a7a", \
     cracks using 1:2:3:($5 == 1 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb "#e0b000"
-set title "from above: all that broke, by saturation" textcolor "#222222"
+set title "from above: all that broke" textcolor "#222222"
 set palette defined (0 "#0a2a7a", 0.5 "#c0407a", 1 "#f0b000")
 set cbrange [0:1]
 set colorbox horizontal user origin screen 0.6, 0.07 size screen 0.3, 0.02
 set cbtics 0.25
+set label 1 "saturation at which it broke" at screen 0.75, 0.115 center textcolor "#222222"
 plot tables . "/all" using 1:2:3 with points pointtype 7 pointsize 0.4 linecolor palette
 unset multiplot

@@ -34,9 +34,12 @@ set rmargin at screen 0.975
 set ylabel "broken bonds so far" offset 1,0
 set yrange [0:top]
 set ytics autofreq
-set key left top
-plot table("inviscid", "count") using 1:3 with steps linestyle 1 linecolor rgb gold title "shear, negligible viscosity", \
-     table("inviscid", "count") using 1:2 with steps linestyle 1 linecolor rgb black title "normal, negligible viscosity", \
-     table("immobile", "count") using 1:3 with steps linestyle 2 linecolor rgb gold title "shear, immobile liquid", \
-     table("immobile", "count") using 1:2 with steps linestyle 2 linecolor rgb black title "normal, immobile liquid"
+set key left top maxrows 2 width -8
+grey = "#666666"
+plot keyentry with lines linestyle 1 linecolor rgb gold title "shear", \
+     keyentry with lines linestyle 1 linecolor rgb black title "normal", \
+     keyentry with lines linestyle 1 linecolor rgb grey title "negligible viscosity", \
+     keyentry with lines linestyle 2 linecolor rgb grey title "immobile liquid", \
+     for [limit = 1:2] for [mode = 3:2:-1] table(word("inviscid immobile", limit), "count") \
+         using 1:mode with steps linestyle limit linecolor rgb (mode == 3 ? gold : black) notitle
 unset multiplot
