@@ -93,6 +93,20 @@ static bool next_run(struct reading *reading, struct run *run, const char **path
     return true;
 }
 
+static void must_belong(const struct liquid *liquid, const struct run *run,
+                        const char *path)
+{
+    if (liquid->network.packing.n_particle != run->packing.n_particle)
+        die(STATUS_BAD_DATA,
+            "%s: is not the drying of the response before it: has %d grains, not %d",
+            path, liquid->network.packing.n_particle, run->packing.n_particle);
+    if (liquid->first_period_end != run->first_period_end)
+        die(STATUS_BAD_DATA,
+            "%s: is not the drying of the response before it: "
+            "/summary/first_period_end_time is %.17g s, not %.17g",
+            path, liquid->first_period_end, run->first_period_end);
+}
+
 // Its drying; false when none was given.
 static bool next_liquid(struct reading *reading, const struct run *run,
                         struct liquid *liquid)
@@ -104,10 +118,7 @@ static bool next_liquid(struct reading *reading, const struct run *run,
         return false;
     }
     *liquid = read_liquid(input);
-    if (liquid->first_period_end != run->first_period_end ||
-        liquid->network.packing.n_particle != run->packing.n_particle)
-        die(STATUS_BAD_DATA, "%s: is not the drying of the response before it",
-            input_name(input->path));
+    must_belong(liquid, run, input_name(input->path));
     artifact_close(input);
     return true;
 }

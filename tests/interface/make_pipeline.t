@@ -166,6 +166,9 @@ echo 2 >mydry.version
 is 'and runs again when that changes' 'mydry' "$(ran DRY=./mydry)"
 is 'and back' 'dry force-protocol dem-replay crackstats' "$(ran)"
 
+is 'a program that is not there is named' 'memo: ./nothere: no such program' \
+    "$(make run SCENE=$scene DRY=./nothere 2>&1 | grep memo:)"
+
 cat >launch <<'END'
 #!/bin/bash
 echo launch >>ran

@@ -217,8 +217,8 @@ with scratch() as folder:
        "snapshots are at the mean saturation of the runs")
 
     # ---- refusals -------------------------------------------------------------------
-    ok(refused("drying: is not the drying of the response before it", at("hand"), at("drying")),
-       "the drying of another response is refused")
+    ok(refused("drying: is not the drying of the response before it: /summary/first_period_end_time is ",
+               at("hand"), at("drying")), "the drying of another response is refused")
     ok(refused("drying: must be a response, is a drying", at("drying")), "and one alone")
     ok(refused("drying: must be a response, is a drying", at("wet"), at("drying"), at("drying")),
        "and a second one")
@@ -234,6 +234,8 @@ with scratch() as folder:
     run("dry", "-p", SCENE, at("network"), "-o", at("drying"))
     run("force-protocol", "-p", SCENE, "--set", "steps=5", at("drying"), "-o", at("forces"))
     run("dem-replay", "-p", SCENE, "--set", "cycles=1", at("forces"), "-o", at("smaller"))
+    ok(refused("drying: is not the drying of the response before it: has 12 grains, not 45",
+               at("wet"), at("drying")), "and that of another packing")
     both = crackstats("--set", "same_bonds=false", at("wet"), at("smaller"))
     ok(both["bonds"] == (len(bonds) + 20) / 2, "runs of other packings, when asked for",
        both["bonds"])
