@@ -197,7 +197,7 @@ step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),ve
 # $1 is a table or a picture that pipelines/$2 makes of the files $3. It is called with these, or
 # with the words $4 where they are given, and with $1.
 report = $(call artifact,$1,stage=$2 version=1,$(wildcard pipelines/$2 pipelines/$2.gp \
-	pipelines/$2-*.awk pipelines/$2.awk pipelines/common.sh pipelines/style.gp) $3,pipelines/$2 \
+	pipelines/$2-*.awk pipelines/$2.awk pipelines/common.* pipelines/style.gp) $3,pipelines/$2 \
 	$(or $4,$3) $1,$(BUILD)/bin/inspect)
 
 # Whether goal $1, or a file in its folder $2, is asked for.

@@ -22,7 +22,7 @@ coupled_version := $(shell echo $(foreach s,$(coupled_stages),$(call version_of,
 
 # Sample $1 in $2 portions.
 define coupled_run
-$(call artifact,$(coupled_folder)/$1/$2/course.tsv,stage=coupled version=$(coupled_version) $(coupled_scene_$1:%=set='%'),pipelines/coupled-run pipelines/coupled-course $(firstword $(coupled_scene_$1)),pipelines/coupled-run $(firstword $(coupled_scene_$1)) $2 $(wordlist 2,99,$(coupled_scene_$1)) $(coupled_folder)/$1/$2/course.tsv,$(coupled_stages:%=$(BUILD)/bin/%))
+$(call artifact,$(coupled_folder)/$1/$2/course.tsv,stage=coupled version=$(coupled_version) $(coupled_scene_$1:%=set='%'),pipelines/coupled-run pipelines/coupled-course pipelines/common.py $(firstword $(coupled_scene_$1)),pipelines/coupled-run $(firstword $(coupled_scene_$1)) $2 $(wordlist 2,99,$(coupled_scene_$1)) $(coupled_folder)/$1/$2/course.tsv,$(coupled_stages:%=$(BUILD)/bin/%))
 endef
 
 coupled: ## drying and shrinking in turns, beside one way, and their picture (minutes)
@@ -46,6 +46,6 @@ collapse: ## the load that the soft aggregate bears as its throats narrow (minut
 
 ifneq ($(call asked,collapse,$(collapse_folder)),)
 $(call must,COLLAPSE_PORTIONS,$(whole),a whole number)
-$(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/collapse pipelines/coupled-run $(collapse_scene),pipelines/collapse $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
+$(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/collapse pipelines/coupled-run pipelines/common.py $(collapse_scene),pipelines/collapse $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
 $(call study,collapse,$(collapse_folder)/collapse.md)
 endif
