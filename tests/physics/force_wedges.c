@@ -211,20 +211,6 @@ static void wedges_lie_where_powers_are_equal(void **state)
             check_all(&scenes[s], seed);
 }
 
-static void shrink(struct network *network, double factor)
-{
-    struct packing *packing = &network->packing;
-    packing->upper = scale(factor, packing->upper);
-    for (int i = 0; i < packing->n_particle; i++) {
-        packing->position[i] = scale(factor, packing->position[i]);
-        packing->radius[i] *= factor;
-    }
-    for (int i = 0; i < network->n_node; i++)
-        network->node_position[i] = scale(factor, network->node_position[i]);
-    for (int t = 0; t < network->n_throat; t++)
-        network->throat_length[t] *= factor;
-}
-
 // Where cells were left out no throat lies in a wall, however near in metres.
 static void walls_are_as_far_in_nanometres(void **state)
 {

@@ -11,7 +11,13 @@
 
 #include <string.h>
 
-enum surroundings { IN_A_BOX, BELOW_AUXILIARY, IN_A_SPHERE, AROUND_A_SPHERE };
+enum surroundings {
+    IN_A_BOX,
+    IN_A_NARROW_BOX,
+    BELOW_AUXILIARY,
+    IN_A_SPHERE,
+    AROUND_A_SPHERE
+};
 
 struct scene {
     bool layer;
@@ -110,12 +116,17 @@ static inline void add_auxiliary(struct packing *packing, uint64_t *seed)
 // Grains of radii from 0.25 to 0.5 that do not touch.
 static inline struct packing scattered(const struct scene *scene, uint64_t seed)
 {
-    const int n = scene->layer ? 60 : scene->where == IN_A_SPHERE ? 50 : 110;
+    const bool is_narrow = scene->where == IN_A_NARROW_BOX;
+    const int n = is_narrow                     ? 10
+                  : scene->layer                ? 60
+                  : scene->where == IN_A_SPHERE ? 50
+                                                : 110;
     struct packing packing = {.position = NEW_ARRAY(struct vector, 2 * n),
                               .radius = NEW_ARRAY(double, 2 * n),
                               .upper = {5, 5, 6}};
     memcpy(packing.periodic, scene->periodic, sizeof packing.periodic);
     if (scene->layer) packing.upper = (struct vector){8, 1, 9};
+    if (is_narrow) packing.upper = (struct vector){1.3, 1.2, 6};
     if (scene->where >= IN_A_SPHERE) add_sphere(scene, &packing);
     const struct vector edge = packing.upper;
     while (packing.n_particle < n) {
@@ -143,6 +154,24 @@ static inline struct network diagram_of(const struct scene *scene, uint64_t seed
         fail_msg("%s", reason.text);
     packing_free(&packing);
     return network;
+}
+
+static inline void shrink(struct network *network, double factor)
+{
+    struct packing *packing = &network->packing;
+    packing->upper = scale(factor, packing->upper);
+    for (int k = 0; k < packing->n_body; k++) {
+        packing->body[k].lower = scale(factor, packing->body[k].lower);
+        packing->body[k].upper = scale(factor, packing->body[k].upper);
+    }
+    for (int i = 0; i < packing->n_particle; i++) {
+        packing->position[i] = scale(factor, packing->position[i]);
+        packing->radius[i] *= factor;
+    }
+    for (int i = 0; i < network->n_node; i++)
+        network->node_position[i] = scale(factor, network->node_position[i]);
+    for (int t = 0; t < network->n_throat; t++)
+        network->throat_length[t] *= factor;
 }
 
 #endif

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Balanced pulls in diagrams of scattered grains: each throat in balance, grains at
+// rest while all is wet, and nothing nearer to the form.
+#include "force-protocol/balance.h"
+#include "wedge_scene.h"
+
+static struct wedges wedges_of(const struct network *network)
+{
+    struct wedges wedges;
+    struct reason reason;
+    if (wedges_find(network, &wedges, &reason)) fail_msg("%s", reason.text);
+    return wedges;
+}
+
+static double product(const struct patches *a, const struct patches *b)
+{
+    double sum = 0;
+    assert_int_equal(a->n, b->n);
+    for (int k = 0; k < a->n; k++) {
+        assert_int_equal(a->patch[k].throat, b->patch[k].throat);
+        assert_int_equal(a->patch[k].particle, b->patch[k].particle);
+        sum += dot(a->patch[k].pull, b->patch[k].pull);
+    }
+    return sum;
+}
+
+static struct patches balanced(struct wedges *wedges, enum form form, double *change)
+{
+    struct patches patches;
+    struct reason reason;
+    if (find_balanced_patches(wedges, form, &patches, change, &reason))
+        fail_msg("%s", reason.text);
+    return patches;
+}
+
+static struct vector pull_on(const struct patches *patches, int throat, int grain)
+{
+    struct vector pull = {0};
+    for (int k = patches->begin[grain]; k < patches->begin[grain + 1]; k++)
+        if (patches->patch[k].throat == throat)
+            pull = add(pull, patches->patch[k].pull);
+    return pull;
+}
+
+// Forces, and moments about the throat, of all throats that neither walls nor auxiliary
+// grains are beside. Returns how many.
+static int check_throats(struct wedges *wedges, const struct patches *patches)
+{
+    int count = 0;
+    for (int t = 0; t < wedges->network->n_throat; t++) {
+        struct vector force = {0}, moment = {0};
+        bool alone = true;
+        const int n = wedges_at(wedges, t);
+        for (int k = 0; k < n; k++) {
+            const struct wedge *wedge = &wedges->wedge[k];
+            bool known = false;
+            for (int other = 0; other < k; other++)
+                known |= wedges->wedge[other].grain == wedge->grain;
+            alone &= wedge->beyond >= 0 &&
+                     !is_auxiliary(&wedges->network->packing, wedge->grain);
+            if (known || !alone) continue;
+            const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
+            const struct vector pull = pull_on(patches, t, wedge->grain);
+            force = add(force, pull);
+            moment = add(moment, cross(subtract(wedge->centre, middle), pull));
+        }
+        if (!alone) continue;
+        assert_within(norm(force), 0, 1e-12);
+        assert_within(norm(moment), 0, 1e-12);
+        count++;
+    }
+    return count;
+}
+
+static double rest_of(const struct patches *patches, int grain)
+{
+    struct vector sum = {0};
+    for (int k = patches->begin[grain]; k < patches->begin[grain + 1]; k++)
+        sum = add(sum, patches->patch[k].pull);
+    return norm(sum);
+}
+
+// FORM_FACES is in balance as it is. What is changed of the solid angles is orthogonal
+// to it and to what becomes of them, so that nothing in balance is nearer.
+static void check_balance(struct wedges *wedges)
+{
+    double change, none;
+    struct patches form = find_patches(wedges, FORM_SOLID_ANGLE);
+    struct patches faces = find_patches(wedges, FORM_FACES);
+    struct patches near = balanced(wedges, FORM_SOLID_ANGLE, &change);
+    struct patches same = balanced(wedges, FORM_FACES, &none);
+    assert_within(none, 0, 1e-12);
+    assert_within(product(&same, &same), product(&same, &faces), 0);
+    const double all = product(&form, &form);
+    assert_close(product(&faces, &near), product(&faces, &form), 1e-12);
+    assert_close(product(&near, &near), product(&near, &form), 1e-12);
+    assert_close(change, sqrt(1 - product(&near, &near) / all), 1e-9);
+    assert_true(change > 0.01);
+    assert_true(check_throats(wedges, &near) > 40);
+    int closed = 0;
+    for (int i = 0; i < wedges->network->packing.n_particle; i++) {
+        if (rest_of(&form, i) > 1e-12) continue;
+        assert_within(rest_of(&near, i), 0, 1e-12);
+        closed += near.begin[i] < near.begin[i + 1];
+    }
+    assert_true(closed > 10);
+    patches_free(&form);
+    patches_free(&faces);
+    patches_free(&near);
+    patches_free(&same);
+}
+
+static void balance_is_the_nearest_there_is(void **state)
+{
+    (void)state;
+    for (int s = 0; s < N_SCENE; s++) {
+        struct network network = diagram_of(&scenes[s], 1);
+        struct wedges wedges = wedges_of(&network);
+        check_balance(&wedges);
+        wedges_free(&wedges);
+        network_free(&network);
+    }
+}
+
+// Where a grain is around a throat in two repetitions of the box, each has its place:
+// else FORM_FACES would not be in balance.
+static void repetitions_are_grains_of_their_own(void **state)
+{
+    (void)state;
+    const struct scene narrow = {false, {1, 1, 0}, BOUNDARY_TRUNCATE, IN_A_NARROW_BOX};
+    struct network network = diagram_of(&narrow, 1);
+    struct wedges wedges = wedges_of(&network);
+    int twice = 0;
+    for (int t = 0; t < network.n_throat; t++) {
+        int same = 0;
+        const int n = wedges_at(&wedges, t);
+        for (int k = 0; k < n; k++)
+            same += wedges.wedge[k].grain == wedges.wedge[0].grain;
+        twice += same > 2;
+    }
+    assert_true(twice > 5);
+    double change;
+    struct patches patches = balanced(&wedges, FORM_FACES, &change);
+    assert_within(change, 0, 1e-12);
+    patches_free(&patches);
+    wedges_free(&wedges);
+    network_free(&network);
+}
+
+// In nanometres the same bits, also where two grains around a throat have two turns.
+static void balance_does_not_depend_on_scale(void **state)
+{
+    (void)state;
+    for (int s = 0; s < N_SCENE; s++) {
+        struct network network = diagram_of(&scenes[s], 2);
+        struct wedges wedges = wedges_of(&network);
+        double change, change_small;
+        struct patches patches = balanced(&wedges, FORM_SOLID_ANGLE, &change);
+        shrink(&network, 0x1p-30);
+        struct patches small = balanced(&wedges, FORM_SOLID_ANGLE, &change_small);
+        assert_true(change == change_small);
+        assert_int_equal(patches.n, small.n);
+        for (int k = 0; k < small.n; k++)
+            assert_true(distance(scale(0x1p60, small.patch[k].pull),
+                                 patches.patch[k].pull) == 0);
+        patches_free(&patches);
+        patches_free(&small);
+        wedges_free(&wedges);
+        network_free(&network);
+    }
+}
+
+int main(void)
+{
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(balance_is_the_nearest_there_is),
+        cmocka_unit_test(repetitions_are_grains_of_their_own),
+        cmocka_unit_test(balance_does_not_depend_on_scale),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
