@@ -6,6 +6,9 @@
 #include "force-protocol/balance.h"
 #include "force-protocol/rings.h"
 #include "force_scene.h"
+#include "tessellate/diagram.h"
+
+#include <string.h>
 
 // A cube among six grains whose cells were left out: twelve throats, six faces. Turned
 // by ANGLE around a slanting axis. Unequal grains, each face where powers are equal.
@@ -318,6 +321,66 @@ static void throats_leave_their_part_of_rings(void **state)
     network_free(&network);
 }
 
+// Grains in a row that overlap, so that all rings but those of other radii are alike.
+static void each_pair_in_a_row_has_its_own_ring(void **state)
+{
+    (void)state;
+    static const double radii[][4] = {{0.2, 0.3, 0.3, 0.3}, {0.3, 0.3, 0.3, 0.2}};
+    for (int row = 0; row < 2; row++) {
+        struct vector position[4];
+        double radius[4];
+        for (int i = 0; i < 4; i++) {
+            position[i] = (struct vector){0.5, 0.5, 0.3 + 0.45 * i};
+            radius[i] = radii[row][i];
+        }
+        const struct packing packing = {.n_particle = 4,
+                                        .position = position,
+                                        .radius = radius,
+                                        .upper = {1, 1, 2}};
+        const struct tessellation how = {.power = true};
+        struct tessellation_report report;
+        struct network network;
+        struct wedges wedges;
+        struct rings rings;
+        struct reason reason;
+        if (tessellate(&packing, &how, &network, &report, &reason) ||
+            wedges_find(&network, &wedges, &reason) ||
+            find_rings(&wedges, &law, &rings, &reason))
+            fail_msg("%s", reason.text);
+        double below = 0;
+        for (int i = 0; i < 4; i++) {
+            double volume, above = 0;
+            if (i < 3 && solve_ring(&radius[i], 0, &law, &volume, &above, &reason))
+                fail_msg("%s", reason.text);
+            const struct vector pull = {0, 0, above - below};
+            assert_true(distance(sum_of(&rings.patches, i), pull) < 1e-9);
+            below = above;
+        }
+        assert_int_equal(rings.count, 3);
+        patches_free(&rings.patches);
+        wedges_free(&wedges);
+        network_free(&network);
+    }
+}
+
+// A bridge that is none; the first pair by radii is named, its lower grain first.
+static void what_is_no_bridge_is_refused(void **state)
+{
+    (void)state;
+    struct network network = cell_among_six(0);
+    struct ring_law bad = law;
+    bad.contact_angle = 4;
+    struct wedges wedges;
+    struct rings rings;
+    struct reason reason;
+    assert_int_equal(wedges_find(&network, &wedges, &reason), STATUS_OK);
+    assert_int_equal(find_rings(&wedges, &bad, &rings, &reason), STATUS_BAD_DATA);
+    assert_non_null(strstr(reason.text, "ring between grains 0 and 1: "));
+    assert_int_equal(rings.patches.n, 0);
+    wedges_free(&wedges);
+    network_free(&network);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -329,6 +392,8 @@ int main(void)
         cmocka_unit_test(pulls_turn_with_the_scene),
         cmocka_unit_test(patches_and_menisci_are_in_balance),
         cmocka_unit_test(throats_leave_their_part_of_rings),
+        cmocka_unit_test(each_pair_in_a_row_has_its_own_ring),
+        cmocka_unit_test(what_is_no_bridge_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
