@@ -216,7 +216,7 @@ static void walls_are_as_far_in_nanometres(void **state)
 {
     (void)state;
     struct network network = diagram_of(&scenes[2], 1);
-    shrink(&network, 0x1p-30);
+    resize(&network, 0x1p-30);
     struct wedges wedges;
     struct reason reason;
     if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);

@@ -156,7 +156,7 @@ static inline struct network diagram_of(const struct scene *scene, uint64_t seed
     return network;
 }
 
-static inline void shrink(struct network *network, double factor)
+static inline void resize(struct network *network, double factor)
 {
     struct packing *packing = &network->packing;
     packing->upper = scale(factor, packing->upper);
