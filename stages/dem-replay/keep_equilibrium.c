@@ -162,6 +162,13 @@ static void save_cracks(const struct equilibrium *e, struct array_list *list)
     free(position);
 }
 
+// Points of glue overlap by -infinity [make_joints.c], which files do not hold.
+static void bound_numbers(double *number, int64_t count)
+{
+    for (int64_t k = 0; k < count; k++)
+        if (number[k] < -largest) number[k] = -largest;
+}
+
 struct array_list equilibrium_save(const struct equilibrium *e)
 {
     struct array_list list = {NULL, 0};
@@ -171,6 +178,7 @@ struct array_list equilibrium_save(const struct equilibrium *e)
         const int64_t count = (int64_t)width_of(&table[t]) * table[t].count;
         double *number = NEW_ARRAY(double, count);
         copy_table(&table[t], number, true);
+        bound_numbers(number, count);
         add_array(&list, table[t].name, DEM_FLOAT64, count, number);
         free(number);
     }
@@ -249,6 +257,12 @@ static bool restore_counted(struct equilibrium *e, struct array_reader *reader)
     return true;
 }
 
+static void restore_points(struct equilibrium *e)
+{
+    for (int j = 0; j < e->n_joint; j++)
+        if (e->joint[j].overlap <= -largest) e->joint[j].overlap = -INFINITY;
+}
+
 enum status equilibrium_restore(struct equilibrium *e, const struct array_list *list,
                                 struct reason *reason)
 {
@@ -262,12 +276,12 @@ enum status equilibrium_restore(struct equilibrium *e, const struct array_list *
     const int n_table = list_tables(e, table);
     for (int t = 0; t < n_table; t++) {
         const int64_t count = (int64_t)width_of(&table[t]) * table[t].count;
-        // Points of glue overlap by -infinity [make_joints.c].
         const double *number =
-            read_array(&reader, table[t].name, DEM_FLOAT64, count, -INFINITY, largest);
+            read_array(&reader, table[t].name, DEM_FLOAT64, count, -largest, largest);
         if (!number) return STATUS_BAD_DATA;
         copy_table(&table[t], (double *)number, false);
     }
+    restore_points(e);
     go_back(e);
     equilibrium_forget(e);
     return STATUS_OK;

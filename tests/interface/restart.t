@@ -151,6 +151,9 @@ with scratch() as folder:
     in_pieces("dem-replay by equilibria with large displacements",
               [*equilibria, "--set", "quasi_static.large_displacements=true"])
 
+    in_pieces("dem-replay by equilibria with contact bonds",
+              [*equilibria, "--set", "bond.kind=contact"])
+
     in_pieces("dem-replay of a body that nothing holds",
               [*short, "--set", "cycles=100", "--set", "support=free", "--set",
                "bond.strength.distribution=weibull"])

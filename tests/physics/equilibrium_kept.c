@@ -46,11 +46,25 @@ static struct equilibrium *begin(const struct scene *scene, const struct block *
     return make_equilibrium(&setup);
 }
 
+// A file holds no others.
+static void assert_finite(const struct scene *scene, const struct array_list *list)
+{
+    for (int k = 0; k < list->count; k++) {
+        const double *number = list->array[k].data;
+        if (list->array[k].type != DEM_FLOAT64) continue;
+        for (int64_t l = 0; l < list->array[k].count; l++)
+            if (!isfinite(number[l]))
+                fail_msg("%s: %s holds %g", scene->name, list->array[k].name,
+                         number[l]);
+    }
+}
+
 static void go_on(const struct scene *scene, const struct block *block,
                   struct equilibrium **equilibrium)
 {
     struct reason reason = {""};
     struct array_list list = equilibrium_save(*equilibrium);
+    assert_finite(scene, &list);
     equilibrium_free(*equilibrium);
     *equilibrium = begin(scene, block);
     if (equilibrium_restore(*equilibrium, &list, &reason)) fail_msg("%s", reason.text);
