@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Once for processors with vectors of eight numbers, once for those without: each
+// Once for vectors of four numbers, once of eight (BYTES), which are all lanes: each
 // number has the same digits in both. NAMED(x) is the name of x.
 #include "joint_lanes.h"
 
 #include <math.h>
 #include <string.h>
-#if defined __AVX512F__
+#if defined __AVX__
 #include <immintrin.h>
 #endif
 
 #define INLINE static inline __attribute__((always_inline))
 
 // Not returned by functions: how that is done depends on the machine.
-typedef double lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
-typedef int64_t whole __attribute__((vector_size(LANES * sizeof(int64_t)), aligned(8)));
+typedef double lanes __attribute__((vector_size(BYTES), aligned(8)));
+typedef int64_t whole __attribute__((vector_size(BYTES), aligned(8)));
+
+// Vectors that the lanes take; longer ones than registers are taken apart by compilers,
+// number by number.
+enum { NUMBERS = BYTES / sizeof(double), PARTS = LANES / NUMBERS };
 
 static const double unmoved[GRAIN] = {0};
 
@@ -24,10 +28,12 @@ static const double unmoved[GRAIN] = {0};
 
 INLINE void take_root(lanes *a)
 {
-#if defined __AVX512F__
+#if defined __AVX512F__ && BYTES == 64
     *a = (lanes)_mm512_sqrt_pd((__m512d)*a);
+#elif defined __AVX__ && BYTES == 32
+    *a = (lanes)_mm256_sqrt_pd((__m256d)*a);
 #else
-    for (int l = 0; l < LANES; l++)
+    for (int l = 0; l < NUMBERS; l++)
         (*a)[l] = sqrt((*a)[l]);
 #endif
 }
@@ -41,11 +47,14 @@ INLINE void take_larger(const lanes *a, lanes *most)
 
 INLINE uint8_t at_most(const lanes *a, double limit)
 {
-#if defined __AVX512F__
+#if defined __AVX512F__ && BYTES == 64
     return (uint8_t)_mm512_cmp_pd_mask((__m512d)*a, _mm512_set1_pd(limit), _CMP_LE_OQ);
+#elif defined __AVX__ && BYTES == 32
+    return (uint8_t)_mm256_movemask_pd(
+        _mm256_cmp_pd((__m256d)*a, _mm256_set1_pd(limit), _CMP_LE_OQ));
 #else
     int bits = 0;
-    for (int l = 0; l < LANES; l++)
+    for (int l = 0; l < NUMBERS; l++)
         bits |= ((*a)[l] <= limit) << l;
     return (uint8_t)bits;
 #endif
@@ -62,11 +71,16 @@ static void touch(int n_joint, const struct joint *joint, const double (*from)[S
                   const double *moved, uint8_t *touches)
 {
     for (; n_joint-- > 0; joint++, from++, touches++) {
-        const double *i = end_of(joint, 0, moved), *j = end_of(joint, 1, moved);
-        const lanes shift[3] = {AT(j, 0) - AT(i, 0), AT(j, 1) - AT(i, 1),
-                                AT(j, 2) - AT(i, 2)};
-        const lanes longer = ALONG(joint->axis[0], shift);
-        *touches = at_most(&longer, joint->overlap - (*from)[STRAIN_ALONG]);
+        int bits = 0;
+        for (int first = 0; first < LANES; first += NUMBERS) {
+            const double *i = end_of(joint, 0, moved + first);
+            const double *j = end_of(joint, 1, moved + first);
+            const lanes shift[3] = {AT(j, 0) - AT(i, 0), AT(j, 1) - AT(i, 1),
+                                    AT(j, 2) - AT(i, 2)};
+            const lanes longer = ALONG(joint->axis[0], shift);
+            bits |= at_most(&longer, joint->overlap - (*from)[STRAIN_ALONG]) << first;
+        }
+        *touches = (uint8_t)bits;
     }
 }
 
@@ -96,13 +110,15 @@ INLINE void pull(const struct joint *joint, int end, const lanes load[STRAINS],
                  double *left)
 {
     if (joint->grain[end] < 0) return;
-    lanes *of = (lanes *)(left + (long)joint->grain[end] * GRAIN);
+    double *of = left + (long)joint->grain[end] * GRAIN;
     const double *n = &joint->axis[0].x, *s = &joint->axis[1].x, *t = &joint->axis[2].x;
     const double sign = end ? 1 : -1, arm = joint->arm[end];
     for (int k = 0; k < 3; k++) {
-        of[k] -= sign * (n[k] * load[0] + s[k] * load[1] + t[k] * load[2]);
-        of[3 + k] -= arm * (s[k] * load[2] - t[k] * load[1]) +
-                     sign * (n[k] * load[3] + s[k] * load[4] + t[k] * load[5]);
+        lanes *force = (lanes *)(of + k * LANES);
+        lanes *moment = (lanes *)(of + (3 + k) * LANES);
+        *force -= sign * (n[k] * load[0] + s[k] * load[1] + t[k] * load[2]);
+        *moment -= arm * (s[k] * load[2] - t[k] * load[1]) +
+                   sign * (n[k] * load[3] + s[k] * load[4] + t[k] * load[5]);
     }
 }
 
@@ -133,32 +149,48 @@ INLINE void find_overload(const struct joint *joint,
     take_larger(&sliding, most);
 }
 
+// Of a joint, or of all so far.
+struct part {
+    lanes carried, carrying, overload;
+};
+
+INLINE void resist_part(const struct joint *joint, const double from[STRAINS],
+                        const struct bond_strength *strength, const double *moved,
+                        double *left, struct part *sum)
+{
+    lanes load[STRAINS];
+    find_strains(joint, from, moved, load);
+    const lanes overlap = joint->overlap - load[STRAIN_ALONG];
+    for (int k = 0; k < STRAINS; k++)
+        load[k] *= joint->is_bonded ? joint->bond_stiffness[k] : 0;
+    if (joint->is_bonded) find_overload(joint, strength, load, &sum->overload);
+    const lanes push = joint->contact_along * overlap;
+    load[STRAIN_ALONG] -= (lanes)((whole)push & (overlap >= 0));
+    pull(joint, 0, load, left);
+    pull(joint, 1, load, left);
+    lanes force = load[0] * load[0] + load[1] * load[1] + load[2] * load[2];
+    take_root(&force);
+    sum->carried += force;
+    const whole carries = (force > 0) | -(int64_t)joint->is_bonded;
+    sum->carrying -= __builtin_convertvector(carries, lanes);
+}
+
 static void resist(int n_joint, const struct joint *joint,
                    const double (*from)[STRAINS], const struct bond_strength *strength,
                    const double *moved, double *left, struct lane_sums *sums)
 {
-    lanes carried = {0}, carrying = {0}, overload = {0};
+    struct part sum[PARTS] = {0};
     for (; n_joint-- > 0; joint++, from++) {
         if (joint->is_gone) continue;
-        lanes load[STRAINS];
-        find_strains(joint, *from, moved, load);
-        const lanes overlap = joint->overlap - load[STRAIN_ALONG];
-        for (int k = 0; k < STRAINS; k++)
-            load[k] *= joint->is_bonded ? joint->bond_stiffness[k] : 0;
-        if (joint->is_bonded) find_overload(joint, strength, load, &overload);
-        const lanes push = joint->contact_along * overlap;
-        load[STRAIN_ALONG] -= (lanes)((whole)push & (overlap >= 0));
-        pull(joint, 0, load, left);
-        pull(joint, 1, load, left);
-        lanes force = load[0] * load[0] + load[1] * load[1] + load[2] * load[2];
-        take_root(&force);
-        carried += force;
-        const whole carries = (force > 0) | -(int64_t)joint->is_bonded;
-        carrying -= __builtin_convertvector(carries, lanes);
+        for (int p = 0; p < PARTS; p++)
+            resist_part(joint, *from, strength, moved + p * NUMBERS, left + p * NUMBERS,
+                        &sum[p]);
     }
-    memcpy(sums->carried, &carried, sizeof carried);
-    memcpy(sums->carrying, &carrying, sizeof carrying);
-    memcpy(sums->overload, &overload, sizeof overload);
+    for (int p = 0; p < PARTS; p++) {
+        memcpy(sums->carried + p * NUMBERS, &sum[p].carried, BYTES);
+        memcpy(sums->carrying + p * NUMBERS, &sum[p].carrying, BYTES);
+        memcpy(sums->overload + p * NUMBERS, &sum[p].overload, BYTES);
+    }
 }
 
 // ---- grains -------------------------------------------------------------------------
@@ -169,28 +201,36 @@ INLINE void find_size(const lanes a[3], lanes *size)
     take_root(size);
 }
 
-static void measure(int grain, const struct displacement *from, const double *moved,
-                    const double *left, struct lane_sums *sums)
+// Of the lanes from FIRST on.
+INLINE void measure_part(const double *began, const double *moved, const double *left,
+                         int first, struct lane_sums *sums)
 {
-    lanes to[DEGREES], of[DEGREES], size, most = {0}, furthest;
-    const double *began = &from->shift.x;
+    lanes to[DEGREES], of[DEGREES], size, most, furthest;
     for (int k = 0; k < DEGREES; k++) {
-        to[k] = began[k] + AT(moved + (long)grain * GRAIN, k);
-        of[k] = AT(left + (long)grain * GRAIN, k);
+        to[k] = began[k] + AT(moved + first, k);
+        of[k] = AT(left + first, k);
     }
-    memcpy(&furthest, sums->furthest, sizeof furthest);
-    memcpy(&most, sums->left, sizeof most);
+    memcpy(&furthest, sums->furthest + first, sizeof furthest);
+    memcpy(&most, sums->left + first, sizeof most);
     for (int k = 0; k < DEGREES; k += 3) {
         find_size(to + k, &size);
         take_larger(&size, &furthest);
         find_size(of + k, &size);
         take_larger(&size, &most);
         if (k > 0) continue;
-        for (int l = 0; l < LANES; l++)
-            sums->unbalanced[l] += size[l];
+        for (int l = 0; l < NUMBERS; l++)
+            sums->unbalanced[first + l] += size[l];
     }
-    memcpy(sums->furthest, &furthest, sizeof furthest);
-    memcpy(sums->left, &most, sizeof most);
+    memcpy(sums->furthest + first, &furthest, sizeof furthest);
+    memcpy(sums->left + first, &most, sizeof most);
+}
+
+static void measure(int grain, const struct displacement *from, const double *moved,
+                    const double *left, struct lane_sums *sums)
+{
+    for (int first = 0; first < LANES; first += NUMBERS)
+        measure_part(&from->shift.x, moved + (long)grain * GRAIN,
+                     left + (long)grain * GRAIN, first, sums);
 }
 
 const struct lane_kernels NAMED(lane_kernels) = {
