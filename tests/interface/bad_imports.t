@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bad input (tests/refusals.py): grains that `pack` imports, from text and dumps."""
+import sys
+
+sys.path.insert(0, "tests")
+from refusals import BAD_DATA, done, refused, text_file
+
+# ---- imported text ----------------------------------------------------------------------
+
+def imported(title, content, line, *settings):
+    refused(title, BAD_DATA,
+            ["pack", "--set", "method=import", *settings, text_file("grains", content)],
+            f"grains: {line}" if not settings else line)
+
+
+imported("a line of three numbers is named", "0 0 0 1\n3 0 0\n",
+         "line 2: must be four numbers, x y z r, or a comment, #")
+imported("a line of five numbers is named", "# grains\n\n0 0 0 1 1\n",
+         "line 3: must be four numbers, x y z r, or a comment, #")
+imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
+         "line 2: must be four numbers, x y z r, or a comment, #")
+imported("the names of columns want a #", "x,y,z,r\n0,0,0,1\n",
+         "line 1: must be four numbers, x y z r, or a comment, #")
+imported("a negative radius in a text is refused", "0 0 0 -1\n",
+         "line 1: the radius must be > 0 m, got -1")
+imported("a radius of zero in a text is refused", "0 0 0 0\n",
+         "line 1: the radius must be > 0 m, got 0")
+imported("NaN in a text is refused", "0 nan 0 1\n", "line 1: must be finite, got -?nan")
+imported("a number too large is refused", "1e999 0 0 1\n", "line 1: must be finite, got inf")
+imported("null bytes in a text are refused", b"0 0 0 1\n\0\0\0",
+         "holds null bytes: neither text nor HDF5")
+imported("a text of comments holds no grains", "# x y z r\n\n", "no grains")
+imported("an empty text holds no grains", "", "no grains")
+refused("an import without an input says where grains come from", BAD_DATA,
+        ["pack", "--set", "method=import"],
+        "standard input: no grains: method=import takes them from an input, make run from "
+        "IMPORT=FILE")
+imported("a box upside down is refused at import", "0 0 0 1\n",
+         "pack.upper: must be above pack.lower = -1 m along z, got -2",
+         "--set", "upper=[1,1,-2]")
+refused("an import of a network is refused", BAD_DATA,
+        ["pack", "--set", "method=import", "network"],
+        "network: must be a packing, is a network")
+
+# ---- imported dumps ---------------------------------------------------------------------
+
+def dump(*rows, columns="id x y z radius", box="BOX BOUNDS pp ff ff", bounds=("0 9",) * 3,
+         count=2):
+    lines = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ATOMS", count, f"ITEM: {box}", *bounds,
+             f"ITEM: ATOMS {columns}", *rows, ""]
+    return "\n".join(map(str, lines))
+
+
+good = dump("1 1 1 1 1", "2 4 4 4 1")
+imported("a dump without radii is refused", dump("1 1 1 1", "2 4 4 4", columns="id x y z"),
+         "line 9: must be ITEM: ATOMS with a column radius or diameter")
+imported("a dump without places is refused",
+         dump("1 1 1", "2 4 4", columns="id x radius"),
+         r"line 9: must be ITEM: ATOMS with columns x, y and z \(or xu, xs, xsu\)")
+imported("a dump with places scaled in part is refused",
+         dump("1 1 1 1 1", "2 4 4 4 1", columns="id xs y z radius"),
+         "line 9: must be ITEM: ATOMS with all places scaled, or none")
+imported("a dump of a tilted box is refused",
+         dump("1 1 1 1 1", box="BOX BOUNDS xy xz yz pp pp pp", bounds=("0 9 1",) * 3),
+         "line 5: must be a straight box, .*")
+imported("a dump with a box upside down is refused", dump(bounds=("0 9", "9 0", "0 9")),
+         "line 7: must be the box, a lower and an upper bound")
+imported("a dump that ends too early is refused", dump("1 1 1 1 1"),
+         "line 11: must be a grain: fewer than ITEM: NUMBER OF ATOMS says")
+imported("a dump that ends before its grains is refused", "ITEM: TIMESTEP\n0\n",
+         "ends before the grains of the frame")
+imported("a dump without a frame is refused", "ITEM: UNITS\nsi\n",
+         'no "ITEM: TIMESTEP" line')
+imported("a row of a dump that is too short is refused", dump("1 1 1 1 1", "2 4 4"),
+         "line 11: must be a value for each column")
+imported("a word for a number in a dump is refused", dump("1 1 1 1 1", "2 4 four 4 1"),
+         "line 11: must be finite numbers")
+imported("a radius of zero in a dump is refused", dump("1 1 1 1 1", "2 4 4 4 0"),
+         "line 11: the radius must be > 0 m, got 0")
+imported("an id twice in a dump is refused", dump("7 1 1 1 1", "7 4 4 4 1"),
+         "two grains have the same id")
+imported("a count of atoms that is none is refused", dump(count="many"),
+         "line 4: must be the number of atoms, from 1 to 1e8")
+imported("a count of atoms that lies is refused", dump("1 1 1 1 1", count=99999999),
+         "line 11: must be a grain: fewer than .*")
+for settings, line in [
+        (["frame=1"], "grains: pack.frame: must be below 1, the frames there are, got 1"),
+        (["frame=-2"], r"pack.frame: must be from -1 to 1e\+12, got -2"),
+        (["domain.cut.shape=box"],
+         "pack.domain.shape: must be box, and nothing cut out, for import")]:
+    imported(f"a dump with {settings[0]} is refused", good, line, "--set", *settings)
+
+done()
