@@ -6,9 +6,8 @@
 
 double whole_mass(const struct whole *whole, int i)
 {
-    const double radius = whole->packing->radius[i];
-    if (whole->is_gone && whole->is_gone[i]) return 0;
-    return radius == whole->length ? 1 : pow(radius / whole->length, 3);
+    const double radius = whole->packing->radius[i] / whole->length;
+    return whole->is_gone && whole->is_gone[i] ? 0 : radius * radius * radius;
 }
 
 struct vector whole_place(const struct whole *whole, int i)
