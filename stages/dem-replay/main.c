@@ -182,8 +182,10 @@ static void warn_if_restless(const struct load *load, const struct response *res
             response->n_unsettled, load->n_time);
 }
 
-// What cracked may still hang together; what has moved by its own size does not.
+// What cracked may still hang together; what has moved by its own size does not. Forces
+// in balance, which keep their directions, turn over what they press together.
 static void warn_if_loose(const struct packing *packing,
+                          const struct replay_settings *settings,
                           const struct response *response)
 {
     double largest_radius = 0;
@@ -202,6 +204,11 @@ static void warn_if_loose(const struct packing *packing,
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
                "%.3g of the largest radius",
                response->n_crack, packing->n_bond, moved / largest_radius);
+    const bool is_loose =
+        moved > largest_radius || response->n_gone == packing->n_particle;
+    if (settings->support == SUPPORT_WALL && packing->n_particle > 0 && is_loose)
+        report("support=wall holds only what the forces press on it: pressed together "
+               "alone an aggregate turns over (support=free takes that off)");
 }
 
 int main(int argc, char **argv)
@@ -226,7 +233,7 @@ int main(int argc, char **argv)
     run(&packing, &load, settings, &invocation, input->path, &checkpoint.keeper,
         &response);
     if (!invocation.quiet) warn_if_restless(&load, &response);
-    if (!invocation.quiet) warn_if_loose(&packing, &response);
+    if (!invocation.quiet) warn_if_loose(&packing, settings, &response);
     write_response(&packing, &load, settings, &response, &invocation, input, digest);
 
     checkpoint_end(&checkpoint);

@@ -96,6 +96,37 @@ with scratch() as folder:
            count == 0 and "rest" not in told, f"{count} loads without rest, as the message says",
            told)
 
+    # ---- a wall that nothing is pressed on
+    # Forces that press a body together and keep their directions turn it over, about which
+    # both engines agree; with what turns it taken off nothing breaks.
+    run("pack", "-p", SCENE, "--set", "counts=[3,3,3]", "-o", at("cube"))
+    arm = h5py.File(at("cube"))["particles/position"][:] / 500e-9 - 1.5
+    pull = -1e-7 * arm * (1 + 0.01 * (np.arange(27) * 7 % 5))[:, None]
+    pull -= pull.mean(axis=0)
+    with h5py.File(at("forces"), "r") as file, h5py.File(at("pressed"), "w") as pressed:
+        for name in "bonds", "domain", "particles":
+            with h5py.File(at("cube")) as cube:
+                cube.copy(name, pressed)
+        file.copy("summary", pressed)
+        for key, value in file.attrs.items():
+            pressed.attrs[key] = value
+        for name, value in (("time", [0.]), ("saturation", [1.]),
+                            ("force", pull[None])):
+            pressed[name] = np.array(value)
+            pressed[name].attrs["units"] = file[name].attrs["units"]
+    for engine in (("engine=quasi-static", "quasi_static.large_displacements=true"),
+                   ("cycles=200000",)):
+        broken, told = [], []
+        for support in "wall", "free":
+            tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(engine), "--set",
+                                    f"support={support}", at("pressed"), "-o", at("response")],
+                                   capture_output=True, text=True)
+            told.append(tried.stderr)
+            broken.append(len(h5py.File(at("response"))["cracks/bond"]))
+        ok(broken[0] > 27 and broken[1] == 0 and "support=wall holds only" in told[0]
+           and "support=wall" not in told[1], f"{engine[0]}: nothing is pressed on the wall",
+           (broken, told))
+
     # ---- bonds
     response = replay("bond.by=touching")
     listed = h5py.File(at("forces"))["bonds/particles"][:]
