@@ -102,8 +102,8 @@ make("degenerate", "tessellate", "packing")
 make("network", "merge-nodes", "degenerate")
 make("drying", "dry", "network")
 make("forces", "force-protocol", "drying", "--set", "steps=5")
-make("response", "dem-replay", "forces", "--set", "time_step_safety=0.02", "--set", "cycles=100",
-     "--set", "bond.normal_strength=1e3")
+make("response", "dem-replay", "-q", "forces", "--set", "time_step_safety=0.02",
+     "--set", "cycles=100", "--set", "bond.normal_strength=1e3")
 make("crackstats", "crackstats", "response")
 
 READER = {

@@ -106,7 +106,7 @@ make("smaller", "pack", "--set", "counts=[2,2,2]")
 for before, after, command in [("smaller", "a", ["tessellate"]), ("a", "b", ["merge-nodes"]),
                                ("b", "c", ["dry"]),
                                ("c", "d", ["force-protocol", "--set", "steps=5"]),
-                               ("d", "e", ["dem-replay", "--set", "time_step_safety=0.02",
+                               ("d", "e", ["dem-replay", "-q", "--set", "time_step_safety=0.02",
                                            "--set", "cycles=5"])]:
     make(after, *command, before)
 refused("responses of two studies are not counted together", BAD_DATA,
