@@ -200,7 +200,12 @@ static void warn_if_loose(const struct packing *packing,
         report("it snapped through or buckled %d time%s, and dashpots brought it to "
                "rest; grain %d moved most at the last",
                response->n_snap, response->n_snap > 1 ? "s" : "", response->snapped);
-    if (moved > largest_radius)
+    if (moved > largest_radius && !response->n_crack)
+        report(
+            "the aggregate has given way: no bond broke, but a grain moved %.3g of the "
+            "largest radius",
+            moved / largest_radius);
+    else if (moved > largest_radius)
         report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
                "%.3g of the largest radius",
                response->n_crack, packing->n_bond, moved / largest_radius);
