@@ -42,6 +42,8 @@ void large_free(struct large *large);
 struct vector *displaced(const struct equilibrium *equilibrium);
 void take_off_as_one(struct equilibrium *equilibrium);
 void stand_still(const struct equilibrium *equilibrium, struct displacement *step);
+// The same of small displacements MOVED (n), all of them.
+void stand_at_start(const struct equilibrium *equilibrium, struct displacement *moved);
 // How stiff the factor has to hold it so that it is positive where the body is stable.
 double hold_of(const struct equilibrium *equilibrium);
 // As large_softest, by the factor there is [large_mode.c]; its STIFFNESS, which may be

@@ -126,6 +126,13 @@ void stand_still(const struct equilibrium *e, struct displacement *step)
     free(moved);
 }
 
+void stand_at_start(const struct equilibrium *e, struct displacement *moved)
+{
+    const struct whole start = whole_of(e->packing, e->is_gone, NULL);
+    struct whole there = start;
+    stand(e, &start, &there, moved);
+}
+
 void keep_momentum(const struct equilibrium *e, struct displacement *mode)
 {
     struct vector *moved = displaced(e);

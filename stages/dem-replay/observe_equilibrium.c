@@ -40,11 +40,16 @@ int equilibrium_snaps(const struct equilibrium *e, int *last)
     return e->n_snap;
 }
 
+// Where nothing holds the grains, nor says where they are as one, rounding does: small
+// displacements are told without that, large ones are found without [large_free.c].
 void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
 {
     realise(e->foresight);
+    struct displacement *moved = duplicate(e->trial, (size_t)e->n, sizeof *moved);
+    if (e->setup.is_free && !e->large) stand_at_start(e, moved);
     for (int i = 0; i < e->n; i++)
-        displacement[i] = scale(e->length, e->trial[i].shift);
+        displacement[i] = scale(e->length, moved[i].shift);
+    free(moved);
 }
 
 void equilibrium_bonds_intact(const struct equilibrium *e, uint8_t *intact)
