@@ -20,12 +20,11 @@ double *uniform_times(const struct drying_record *record, int count)
     return times;
 }
 
-// Times chosen so far, and how far forces have moved since the last of them.
+// Times chosen so far.
 struct choice {
     struct walk walk;
     double bound;        // N
     struct vector *last; // (n_particle) forces at the last time
-    double moved;        // largest change of a force since
     double *time;        // (n) but no more than MOST
     int n, capacity, most;
     double wanted; // how many it takes
@@ -46,7 +45,6 @@ static void remember(struct choice *choice)
 {
     const int n = choice->walk.filling.network->packing.n_particle;
     memcpy(choice->last, choice->walk.force, (size_t)n * sizeof *choice->last);
-    choice->moved = 0;
 }
 
 // Largest change of the last move's forces since the last time.
@@ -72,13 +70,12 @@ static void remember_former(struct choice *choice)
 // where it alone was too much, it is parted evenly.
 static void follow(struct choice *choice, double from, double to)
 {
-    choice->moved = fmax(choice->moved, movement(choice));
-    if (choice->moved <= choice->bound) return;
+    if (movement(choice) <= choice->bound) return;
     choose(choice, from);
     remember_former(choice);
-    choice->moved = movement(choice);
-    if (choice->moved <= choice->bound) return;
-    const double parts = to > from ? ceil(choice->moved / choice->bound) : 1;
+    const double moved = movement(choice);
+    if (moved <= choice->bound) return;
+    const double parts = to > from ? ceil(moved / choice->bound) : 1;
     const double too_many = choice->wanted + parts > choice->most ? parts : 0;
     for (int p = 1; p < parts && !too_many; p++)
         choose(choice, from + (to - from) * (p / parts));

@@ -39,6 +39,7 @@ static const struct scene scenes[] = {
     {false, {0, 0, 0}, BOUNDARY_TRUNCATE, BELOW_AUXILIARY},
     {true, {1, 0, 0}, BOUNDARY_TRUNCATE, BELOW_AUXILIARY},
     {false, {0, 0, 0}, BOUNDARY_TRUNCATE, IN_A_SPHERE},
+    {false, {0, 0, 0}, BOUNDARY_ELIMINATE, IN_A_SPHERE},
     {false, {1, 1, 0}, BOUNDARY_TRUNCATE, AROUND_A_SPHERE}};
 enum { N_SCENE = sizeof scenes / sizeof *scenes };
 
@@ -172,6 +173,23 @@ static inline void resize(struct network *network, double factor)
         network->node_position[i] = scale(factor, network->node_position[i]);
     for (int t = 0; t < network->n_throat; t++)
         network->throat_length[t] *= factor;
+}
+
+// Every second face's loop runs the other way.
+static inline void turn_loops(struct network *network)
+{
+    for (int face = 0; face < network->n_face; face += 2) {
+        int64_t a = network->face_offset[face], b = network->face_offset[face + 1] - 1;
+        for (; a < b; a++, b--) {
+            const int32_t node = network->face_nodes[a];
+            network->face_nodes[a] = network->face_nodes[b];
+            network->face_nodes[b] = node;
+            if (!network->face_node_image) continue;
+            const struct image image = network->face_node_image[a];
+            network->face_node_image[a] = network->face_node_image[b];
+            network->face_node_image[b] = image;
+        }
+    }
 }
 
 #endif
