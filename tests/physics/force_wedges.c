@@ -333,6 +333,53 @@ static void rings_are_whole_in_the_end(void **state)
             check_rings(&scenes[s]);
 }
 
+// In a layer each throat is the face between two grains, and leaves their ring.
+static void check_rings_of_layer(const struct scene *scene)
+{
+    const struct ring_law law = {
+        .rule = RING_VOLUME, .volume = 1, .surface_tension = 1};
+    struct network network = diagram_of(scene, 1);
+    const struct packing *packing = &network.packing;
+    struct wedges wedges;
+    struct rings rings;
+    struct reason reason;
+    if (wedges_find(&network, &wedges, &reason) ||
+        find_rings(&wedges, &law, &rings, &reason))
+        fail_msg("%s", reason.text);
+    int count = 0;
+    for (int k = 0; k < rings.patches.n; k++) {
+        const struct patch *patch = &rings.patches.patch[k];
+        const int n = wedges_at(&wedges, patch->throat);
+        const struct wedge *wedge = wedges.wedge;
+        if (n > 1 && wedge->grain != patch->particle) wedge++;
+        assert_int_equal(wedge->grain, patch->particle);
+        double volume, force = 0;
+        const struct vector apart = subtract(wedge->across, wedge->centre);
+        if (n > 1 && !is_auxiliary(packing, wedge->grain) &&
+            !is_auxiliary(packing, wedge->beyond)) {
+            const double radius[2] = {packing->radius[wedge->grain],
+                                      packing->radius[wedge->beyond]};
+            if (solve_ring(radius, norm(apart) - radius[0] - radius[1], &law, &volume,
+                           &force, &reason))
+                fail_msg("%s", reason.text);
+        }
+        assert_equal(patch->pull, scale(force / norm(apart), apart));
+        count += force != 0;
+    }
+    assert_int_equal(count, 2 * rings.count);
+    assert_true(count > 60);
+    patches_free(&rings.patches);
+    wedges_free(&wedges);
+    network_free(&network);
+}
+
+static void throats_of_layers_leave_rings(void **state)
+{
+    (void)state;
+    for (int s = 0; s < N_SCENE; s++)
+        if (scenes[s].layer) check_rings_of_layer(&scenes[s]);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -341,6 +388,7 @@ int main(void)
         cmocka_unit_test(walls_are_as_far_in_nanometres),
         cmocka_unit_test(wedges_close_around_grains),
         cmocka_unit_test(rings_are_whole_in_the_end),
+        cmocka_unit_test(throats_of_layers_leave_rings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
