@@ -325,8 +325,9 @@ static void throats_leave_their_part_of_rings(void **state)
 static void each_pair_in_a_row_has_its_own_ring(void **state)
 {
     (void)state;
-    static const double radii[][4] = {{0.2, 0.3, 0.3, 0.3}, {0.3, 0.3, 0.3, 0.2}};
-    for (int row = 0; row < 2; row++) {
+    static const double radii[][4] = {
+        {0.2, 0.3, 0.3, 0.3}, {0.3, 0.3, 0.3, 0.2}, {0.3, 0.3, 0.3, 0.4}};
+    for (int row = 0; row < 3; row++) {
         struct vector position[4];
         double radius[4];
         for (int i = 0; i < 4; i++) {
