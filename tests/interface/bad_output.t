@@ -45,6 +45,20 @@ refused("a link to nowhere as output is refused", CANNOT_CREATE, ["pack"],
 refused("inspect cannot write its series below a file", CANNOT_CREATE,
         ["inspect", "--vtk=packing/x", "forces"], "packing/x-0000.vtu: Not a directory",
         output=())
+for program, source in [("tessellate", "packing"), ("dry", "network"),
+                        ("force-protocol", "drying"), ("dem-replay", "forces"),
+                        ("crackstats", "response")]:
+    before = open(source, "rb").read()
+    refused(f"{program} over its own input is refused", USAGE, [program, source],
+            f"{source}: is an input, and where the output goes: name another file",
+            output=("-o", os.path.abspath(source)))
+    result(f"{source} is what it was", [] if open(source, "rb").read() == before else ["changed"])
+refused_in_shell("grains of one's own are not lost either", USAGE,
+                 "echo 0 0 0 1 >grains.txt; $BIN/pack --set method=import grains.txt -o grains.txt",
+                 "pack: grains.txt: is an input, and where the output goes: name another file")
+shutil.copy("network", "own")
+same = run(["merge-nodes", "own", "-o", "own"])
+result("a network may become another in its place", [same.stderr] if same.returncode else [])
 refused("a limit on the file size leaves the earlier output", IO, ["pack"],
         "out/result: File too large",
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000)))

@@ -291,6 +291,23 @@ static void check_other(const struct invocation *invocation, const char *option,
     check_output(path);
 }
 
+// An artifact may become another of its kind in its place, as by sort -o; what is of
+// another kind, or text, would be lost by a slip.
+static void check_inputs(const struct invocation *invocation)
+{
+    const struct stage *stage = invocation->stage;
+    if (stage->reads && !strcmp(stage->reads, stage->writes)) return;
+    for (int k = 0; k < invocation->n_input; k++) {
+        const char *path = invocation->inputs[k];
+        struct stat there;
+        if (!strcmp(path, "-") || stat(path, &there) || !S_ISREG(there.st_mode))
+            continue;
+        if (is_same_place(path, invocation->output))
+            die(STATUS_USAGE,
+                "%s: is an input, and where the output goes: name another file", path);
+    }
+}
+
 static void check_checkpoint(const struct invocation *invocation)
 {
     const char *path = invocation->checkpoint;
@@ -331,6 +348,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
     if (!strcmp(invocation.output, "-") && isatty(STDOUT_FILENO))
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");
+    check_inputs(&invocation);
     check_output(invocation.output);
     check_other(&invocation, "--report", invocation.report);
     check_checkpoint(&invocation);
