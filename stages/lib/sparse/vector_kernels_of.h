@@ -59,7 +59,7 @@ INLINE vector less(vector c, double a, vector b)
 }
 
 // Loops over what stays in registers, so with bounds that are known where they are
-// inlined.
+// inlined. Parts innermost: a number is read once for all of a row.
 #define UNROLLED _Pragma("GCC unroll 8")
 
 // A over B, whose INVERSE is known: as well rounded as a division, and much sooner
@@ -103,13 +103,11 @@ INLINE void forward_columns(const struct supernode *super, int first, int wide,
     }
     for (int i = first + wide; i < rows; i++) {
         double *at = lanes_of(super, i, parts, x);
-        UNROLLED for (int q = 0; q < parts; q++)
-        {
-            vector left = load(at + NUMBERS * q);
-            UNROLLED for (int j = 0; j < wide; j++) left =
-                less(left, panel[(long)j * rows + i], own[j][q]);
-            store(at + NUMBERS * q, left);
-        }
+        vector left[PARTS];
+        UNROLLED for (int q = 0; q < parts; q++) left[q] = load(at + NUMBERS * q);
+        UNROLLED for (int j = 0; j < wide; j++) UNROLLED for (int q = 0; q < parts; q++)
+            left[q] = less(left[q], panel[(long)j * rows + i], own[j][q]);
+        UNROLLED for (int q = 0; q < parts; q++) store(at + NUMBERS * q, left[q]);
     }
 }
 
@@ -123,12 +121,10 @@ INLINE void backward_columns(const struct supernode *super, int first, int wide,
         left[j][q] = load(lanes_of(super, first + j, parts, x) + NUMBERS * q);
     for (int i = first + wide; i < rows; i++) {
         const double *at = lanes_of(super, i, parts, x);
-        UNROLLED for (int q = 0; q < parts; q++)
-        {
-            const vector of_row = load(at + NUMBERS * q);
-            UNROLLED for (int j = 0; j < wide; j++) left[j][q] =
-                less(left[j][q], panel[(long)j * rows + i], of_row);
-        }
+        vector of_row[PARTS];
+        UNROLLED for (int q = 0; q < parts; q++) of_row[q] = load(at + NUMBERS * q);
+        UNROLLED for (int j = 0; j < wide; j++) UNROLLED for (int q = 0; q < parts; q++)
+            left[j][q] = less(left[j][q], panel[(long)j * rows + i], of_row[q]);
     }
     UNROLLED for (int j = wide - 1; j >= 0; j--)
     {
@@ -269,14 +265,14 @@ INLINE void take_off(int n, const double *from, int lanes, const double *share,
     vector of_share[LANES][PARTS];
     UNROLLED for (int c = 0; c < columns; c++) UNROLLED for (int q = 0; q < PARTS; q++)
         of_share[c][q] = load(share + c * LANES + NUMBERS * q);
-    for (; n > 0; n--, from += lanes, x += LANES)
-        UNROLLED for (int q = 0; q < PARTS; q++)
-        {
-            vector left = load(x + NUMBERS * q);
-            UNROLLED for (int c = 0; c < columns; c++) left =
-                less(left, from[c], of_share[c][q]);
-            store(x + NUMBERS * q, left);
-        }
+    for (; n > 0; n--, from += lanes, x += LANES) {
+        vector left[PARTS];
+        UNROLLED for (int q = 0; q < PARTS; q++) left[q] = load(x + NUMBERS * q);
+        UNROLLED for (int c = 0; c < columns; c++)
+            UNROLLED for (int q = 0; q < PARTS; q++) left[q] =
+                less(left[q], from[c], of_share[c][q]);
+        UNROLLED for (int q = 0; q < PARTS; q++) store(x + NUMBERS * q, left[q]);
+    }
 }
 
 static void take_off_eight(int n, const double *from, int lanes, const double *share,
