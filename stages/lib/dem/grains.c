@@ -103,6 +103,13 @@ INLINE double sum_of(quad a)
     return a[0] + a[1] + a[2];
 }
 
+// Of the speed of a surface RADIUS from the centre, at most.
+INLINE double surface_square(quad velocity, quad spin, double radius, bool turns)
+{
+    const quad shift = velocity * velocity;
+    return sum_of(turns ? shift + radius * radius * (spin * spin) : shift);
+}
+
 // What pulled from outside did in this step, and what local damping took.
 static void keep_books(const struct dem *dem, int i, const struct load *sum,
                        struct load damped_sum, quad velocity, quad spin)
@@ -120,7 +127,7 @@ INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool tur
 {
     const double dt = dem->time_step, share = dem->local_damping;
     const double furthest = FURTHEST_STEP / dt, limit = furthest * furthest;
-    const double turning = dem->largest_radius * dem->largest_radius;
+    const double largest_radius = dem->largest_radius;
     const uint8_t *const is_late = dem->is_late;
     const double(*const mobility)[2] = dem->mobility;
     const size_t next_mobility = dem->moves_alike ? 0 : 1;
@@ -144,10 +151,10 @@ INLINE struct pace move(struct dem *dem, int begin, int end, bool late, bool tur
         }
         const quad v = *velocity + dt * mobile[0] * net.force;
         const quad w = turns ? *spin + dt * mobile[1] * net.moment : zero;
-        const quad squares = turns ? v * v + turning * (w * w) : v * v;
-        const double square = sum_of(squares), radius = place[i].radius;
-        const quad surface = turns ? v * v + radius * radius * (w * w) : squares;
-        if (!(sum_of(surface) <= limit)) { // also when it is not a number
+        const double square = surface_square(v, w, largest_radius, turns);
+        // The grain's own surface is no faster: rarely asked. Also when not a number.
+        if (!(square <= limit) &&
+            !(surface_square(v, w, place[i].radius, turns) <= limit)) {
             sound = false;
             continue;
         }
