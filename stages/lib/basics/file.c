@@ -112,8 +112,7 @@ static char *follow_link(const char *path)
     return target;
 }
 
-// A device or a FIFO: nothing to rename over.
-static bool is_device(const char *path)
+bool is_device(const char *path)
 {
     struct stat information;
     return !stat(path, &information) && !S_ISREG(information.st_mode) &&

@@ -36,6 +36,9 @@ void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME]);
 // us, or what is at PATH cannot be replaced: a folder, a link that leads nowhere.
 void check_output(const char *path);
 
+// A device or a FIFO: nothing to rename over, nor to come back to.
+bool is_device(const char *path);
+
 // Whether what is written to one would replace the other, however they are spelt.
 bool is_same_place(const char *a, const char *b);
 

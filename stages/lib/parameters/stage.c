@@ -314,8 +314,7 @@ static void check_checkpoint(const struct invocation *invocation)
     if (!path) return;
     if (!strcmp(path, "-"))
         die(STATUS_USAGE, "--checkpoint: must be a file, not standard output");
-    struct stat there;
-    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode))
+    if (is_device(path))
         die(STATUS_USAGE, "--checkpoint %s: must be a file, not a device or pipe",
             path);
     if (invocation->report && is_same_place(path, invocation->report))
