@@ -5,11 +5,21 @@
 
 #include <stdlib.h>
 
+static const double border = 1e-9; // rounding, of the whole
+
+static int class_at(double place, int n)
+{
+    return place < 0 ? 0 : place >= n ? n - 1 : (int)place;
+}
+
 int class_of(double share, int n)
 {
-    static const double border = 1e-9;
-    const double place = (share - border) * n;
-    return place < 0 ? 0 : place >= n ? n - 1 : (int)place;
+    return class_at((share - border) * n, n);
+}
+
+struct slices slices_at(double share, int n)
+{
+    return (struct slices){{class_of(share, n), class_at((share + border) * n, n)}};
 }
 
 double height_share(const struct packing *packing, double z)
@@ -17,11 +27,11 @@ double height_share(const struct packing *packing, double z)
     return (z - packing->lower.z) / (packing->upper.z - packing->lower.z);
 }
 
-int slice_of_bond(const struct packing *packing, int bond, int n)
+struct slices slices_of_bond(const struct packing *packing, int bond, int n)
 {
     const double z = packing->position[packing->bond[bond][0]].z +
                      0.5 * bond_vector(packing, bond).z;
-    return class_of(height_share(packing, z), n);
+    return slices_at(height_share(packing, z), n);
 }
 
 struct counts counts_new(struct classes classes)
@@ -49,14 +59,18 @@ void count_cracks(struct counts *counts, const struct run *run, struct classes c
 {
     for (int k = 0; k < run->n_crack; k++) {
         const int mode = run->mode[k];
-        const int slice = slice_of_bond(&run->packing, run->bond[k], classes.n_slice);
+        const struct slices in =
+            slices_of_bond(&run->packing, run->bond[k], classes.n_slice);
         const int drier = class_of(1 - run->saturation[k], classes.n_interval);
         const double elapsed = run->end > 0 ? run->time[k] / run->end : 0;
         counts->period[run->time[k] <= run->first_period_end ? PERIOD_FIRST
                                                              : PERIOD_SECOND][mode]++;
-        counts->slice[slice][mode]++;
         counts->saturation[drier][mode]++;
         counts->time[class_of(elapsed, classes.n_interval)][mode]++;
-        counts->place[(size_t)drier * (size_t)classes.n_slice + (size_t)slice]++;
+        for (int half = 0; half < 2; half++) {
+            const size_t slice = (size_t)in.slice[half];
+            counts->slice[slice][mode] += 0.5;
+            counts->place[(size_t)drier * (size_t)classes.n_slice + slice] += 0.5;
+        }
     }
 }

@@ -24,16 +24,24 @@ struct counts {
 };
 
 // The class of SHARE, 0 to 1, in N equal ones. On the border of two, but for rounding,
-// it is the lower: bonds between two layers of a lattice lie there.
+// it is the lower: intervals count their ends.
 int class_of(double share, int n);
+
+// The slices, of N, that hold one half each of what lies at SHARE of the height: twice
+// the same, but on the border of two, where bonds between two layers of a lattice lie.
+// So a body turned upside down has the profile turned upside down.
+struct slices {
+    int slice[2];
+};
+struct slices slices_at(double share, int n);
 
 // Height in the box, 0 to 1.
 double height_share(const struct packing *packing, double z);
 
-// The slice, of N, that a crack of BOND counts in: by the height of the bond before
+// The slices, of N, that a crack of BOND counts in: by the height of the bond before
 // anything moved, so that one between two layers stays on their border however the
 // grains have shifted since.
-int slice_of_bond(const struct packing *packing, int bond, int n);
+struct slices slices_of_bond(const struct packing *packing, int bond, int n);
 
 struct counts counts_new(struct classes classes);
 void counts_free(struct counts *counts);

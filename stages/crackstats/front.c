@@ -41,12 +41,16 @@ void add_front(struct front *front, const struct run *run, const struct liquid *
     add_slices(front, liquid, classes);
     double *slice = slice_saturations(liquid, classes.n_slice, run->time, run->n_crack);
     for (int k = 0; k < run->n_crack; k++) {
-        const int place = slice_of_bond(&run->packing, run->bond[k], classes.n_slice);
-        const double local = slice[(size_t)k * (size_t)classes.n_slice + (size_t)place];
-        if (isnan(local)) continue; // never any liquid there
-        front->local[class_of(1 - local, LOCAL_CLASSES)]++;
-        front->local_sum += local;
-        front->cracks++;
+        const double *row = slice + (size_t)k * (size_t)classes.n_slice;
+        const struct slices in =
+            slices_of_bond(&run->packing, run->bond[k], classes.n_slice);
+        for (int half = 0; half < 2; half++) {
+            const double local = row[in.slice[half]];
+            if (isnan(local)) continue; // never any liquid there
+            front->local[class_of(1 - local, LOCAL_CLASSES)] += 0.5;
+            front->local_sum += 0.5 * local;
+            front->cracks += 0.5;
+        }
     }
     free(slice);
 }

@@ -45,21 +45,21 @@ static void advance(struct interval *interval)
         apply_changes(record, interval->step + 1, interval->after);
 }
 
-// The slice of each throat's middle. (n_throat); the caller frees it.
-static int *throat_slices(const struct network *network, int n_slice)
+// The slices of each throat's middle. (n_throat); the caller frees it.
+static struct slices *throat_slices(const struct network *network, int n_slice)
 {
-    int *slice = NEW_ARRAY(int, network->n_throat);
+    struct slices *slice = NEW_ARRAY(struct slices, network->n_throat);
     for (int t = 0; t < network->n_throat; t++) {
         const double z = network->node_position[network->throat_nodes[t][0]].z +
                          0.5 * along_throat(network, t).z;
-        slice[t] = class_of(height_share(&network->packing, z), n_slice);
+        slice[t] = slices_at(height_share(&network->packing, z), n_slice);
     }
     return slice;
 }
 
 // Summed anew at each time: what is dry is 0, not what rounding leaves.
-static void sum_slices(const struct interval *interval, double share, const int *slice,
-                       int n_slice, double *saturation)
+static void sum_slices(const struct interval *interval, double share,
+                       const struct slices *in, int n_slice, double *saturation)
 {
     const struct network *network = &interval->liquid->network;
     double *full = NEW_ARRAY(double, n_slice);
@@ -68,9 +68,12 @@ static void sum_slices(const struct interval *interval, double share, const int 
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
         const double before = interval->before[t], after = interval->after[t];
-        const double volume = throat_volume(network, t);
-        full[slice[t]] += volume;
-        saturation[slice[t]] += volume * (before + share * (after - before));
+        const double volume = 0.5 * throat_volume(network, t);
+        for (int half = 0; half < 2; half++) {
+            full[in[t].slice[half]] += volume;
+            saturation[in[t].slice[half]] +=
+                volume * (before + share * (after - before));
+        }
     }
     for (int s = 0; s < n_slice; s++)
         saturation[s] = full[s] > 0 ? saturation[s] / full[s] : NAN;
@@ -83,7 +86,7 @@ double *slice_saturations(const struct liquid *liquid, int n_slice, const double
     const double *at = liquid->record.time;
     const int n_step = liquid->record.n_step;
     double *saturation = NEW_ARRAY(double, (size_t)n_time *(size_t)n_slice);
-    int *slice = throat_slices(&liquid->network, n_slice);
+    struct slices *slice = throat_slices(&liquid->network, n_slice);
     struct interval interval = begin(liquid);
     for (int m = 0; m < n_time; m++) {
         double *row = saturation + (size_t)m * (size_t)n_slice;

@@ -17,7 +17,8 @@ double time_of_saturation(const struct liquid *liquid, double level);
 
 // Saturation of N_SLICE slices of equal height, from the bottom up, at N_TIME times
 // that do not fall. (n_time, n_slice); NAN where a slice never holds liquid. A throat
-// counts in the slice of its middle. The caller frees it.
+// counts in the slice of its middle, on the border of two half in each. The caller
+// frees it.
 double *slice_saturations(const struct liquid *liquid, int n_slice, const double *time,
                           int n_time);
 

@@ -18,7 +18,8 @@ struct crackstats_parameters {
 
 static const struct parameter table[] = {
     {"slices", PARAMETER_INTEGER, "1", "10", AT(slices), BETWEEN(1, 100000),
-     .text = "horizontal slices of equal thickness in the profile, from the bottom up"},
+     .text = "horizontal slices of equal thickness in the profile, from the bottom up; "
+             "a bond on the border of two counts half in each"},
     {"intervals", PARAMETER_INTEGER, "1", "10", AT(intervals), BETWEEN(1, 10000),
      .text = "equal parts of the saturation, and of the drying time, that cracks are "
              "counted in"},

@@ -59,7 +59,8 @@ static void put_scatter(json_t *entry, const double squares[COLUMN_COUNT], int r
     json_t *interval = runs > 1 ? json_object() : json_null();
     for (int c = 0; c < COLUMN_COUNT && runs > 1; c++) {
         const double mean = json_number_value(json_object_get(entry, names[c]));
-        const double deviation = counts_deviation(round(mean * runs), squares[c], runs);
+        const double deviation =
+            counts_deviation(round(2 * mean * runs) / 2, squares[c], runs); // of halves
         const double half = half_width_of(deviation, runs, confidence);
         json_object_set_new(sd, names[c], json_value(deviation));
         json_object_set_new(

@@ -66,9 +66,8 @@ static void test_facts_and_sums_of_two_runs(void **state)
     assert_within(study.deformation[1].shrinkage, 0.1, 1e-12);
     assert_within(study.deformation[1].strain[2], -0.1, 1e-12);
     assert_within(study.snapshot_saturation[0], 1, 1e-15);
-    // Middles of upright bonds lie on the borders of slices, and belong to the lower
-    // one.
-    static const double slice[4][MODE_COUNT] = {{0, 2}, {2, 0}, {2, 0}, {0, 2}};
+    // Middles of upright bonds lie on the borders of slices, half in each.
+    static const double slice[4][MODE_COUNT] = {{0, 1}, {1, 1}, {2, 0}, {1, 2}};
     for (int s = 0; s < 4; s++)
         for (int mode = 0; mode < MODE_COUNT; mode++)
             assert_within(study.counts.slice[s][mode], slice[s][mode], 0);
@@ -76,12 +75,41 @@ static void test_facts_and_sums_of_two_runs(void **state)
         assert_within(study.counts.saturation[half][MODE_NORMAL], 2, 0);
         assert_within(study.counts.time[half][MODE_NORMAL], 2, 0);
     }
-    assert_within(study.counts.place[0 * 4 + 0], 2, 0);
-    assert_within(study.counts.place[0 * 4 + 1], 2, 0);
-    assert_within(study.counts.place[1 * 4 + 2], 2, 0);
-    assert_within(study.counts.place[1 * 4 + 3], 2, 0);
+    static const double place[2][4] = {{1, 2, 1, 0}, {0, 0, 1, 3}};
+    for (int half = 0; half < 2; half++)
+        for (int s = 0; s < 4; s++)
+            assert_within(study.counts.place[half * 4 + s], place[half][s], 0);
     study_free(&study);
     run_free(&run);
+}
+
+// The same body, standing on its head.
+static void turn_over(struct run *run)
+{
+    struct packing *packing = &run->packing;
+    for (int i = 0; i < packing->n_particle; i++)
+        packing->position[i].z =
+            packing->lower.z + packing->upper.z - packing->position[i].z;
+}
+
+// Whether slices begin and end with layers or cut through them.
+static void test_profile_upside_down(void **state)
+{
+    (void)state;
+    for (int n_slice = 1; n_slice <= 9; n_slice++) {
+        const struct classes of = {.n_slice = n_slice, .n_interval = 2};
+        struct run run = broken_columns();
+        struct counts up = counts_new(of), down = counts_new(of);
+        count_cracks(&up, &run, of);
+        turn_over(&run);
+        count_cracks(&down, &run, of);
+        for (int s = 0; s < n_slice; s++)
+            for (int mode = 0; mode < MODE_COUNT; mode++)
+                assert_within(down.slice[n_slice - 1 - s][mode], up.slice[s][mode], 0);
+        counts_free(&up);
+        counts_free(&down);
+        run_free(&run);
+    }
 }
 
 // Grains that left the box count at its ends.
@@ -159,7 +187,7 @@ static void test_slices_over_time(void **state)
     liquid_free(&liquid);
 }
 
-// A crack that opens halfway through the emptying of its slice.
+// Cracks on the border of a slice that is emptying and of one that is dry.
 static void test_cracks_beside_their_liquid(void **state)
 {
     (void)state;
@@ -173,14 +201,15 @@ static void test_cracks_beside_their_liquid(void **state)
     struct study study = study_new(2, classes);
     for (int k = 0; k < 2; k++) {
         study_add(&study, &run, &liquid);
-        assert_within(study.facts[k].value[FRONT_SATURATION], 0.5 * (0.75 + 0.5),
+        assert_within(study.facts[k].value[FRONT_SATURATION], 0.25 * (0.75 + 0.5),
                       1e-15);
     }
     assert_int_equal(study.n_liquid, 2);
     assert_within(study.front.cracks, 4, 0);
-    assert_within(study.front.local_sum, 2.5, 1e-15);
-    assert_within(study.front.local[2], 2, 0); // from 0.8 to 0.7
-    assert_within(study.front.local[4], 2, 0); // a border belongs above
+    assert_within(study.front.local_sum, 1.25, 1e-15);
+    assert_within(study.front.local[2], 1, 0); // from 0.8 to 0.7
+    assert_within(study.front.local[4], 1, 0); // a border belongs above
+    assert_within(study.front.local[9], 2, 0); // dry
     // At a saturation of 1/2, and in the end.
     static const double slice[8] = {2, 2, 0, 0, 2, 0, 0, 0};
     for (int k = 0; k < 8; k++)
@@ -227,6 +256,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_facts_and_sums_of_two_runs),
         cmocka_unit_test(test_classes_end),
+        cmocka_unit_test(test_profile_upside_down),
         cmocka_unit_test(test_slices_over_time),
         cmocka_unit_test(test_cracks_beside_their_liquid),
         cmocka_unit_test(test_correlation_by_its_definition),
