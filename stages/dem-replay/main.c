@@ -182,36 +182,60 @@ static void warn_if_restless(const struct load *load, const struct response *res
             response->n_unsettled, load->n_time);
 }
 
+// Grains that have moved by more than the largest radius, at any snapshot, and the one
+// that moved most, by so many of these.
+struct far_grains {
+    int count, furthest;
+    double moved;
+};
+
+static struct far_grains find_far_grains(const struct packing *packing,
+                                         const struct response *response)
+{
+    double largest_radius = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        largest_radius = fmax(largest_radius, packing->radius[i]);
+    struct far_grains far = {0};
+    for (int i = 0; i < packing->n_particle; i++) {
+        double moved = 0;
+        for (int s = 0; s < response->n_snapshot; s++)
+            moved = fmax(moved, norm(response->snapshot[s].displacement[i]));
+        moved /= largest_radius;
+        far.count += moved > 1;
+        if (moved > far.moved) far = (struct far_grains){far.count, i, moved};
+    }
+    return far;
+}
+
 // What cracked may still hang together; what has moved by its own size does not. Forces
 // in balance, which keep their directions, turn over what they press together.
 static void warn_if_loose(const struct packing *packing,
                           const struct replay_settings *settings,
                           const struct response *response)
 {
-    double largest_radius = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        largest_radius = fmax(largest_radius, packing->radius[i]);
-    const double moved = largest_displacement(packing, response);
+    const struct far_grains far = find_far_grains(packing, response);
+    const int n = packing->n_particle;
+    const bool most_are_far = 2 * far.count >= n && far.count > 0;
     if (response->n_gone > 0)
-        report("%d grain%s left the aggregate, grain %d the first: nothing held them "
-               "under their load",
-               response->n_gone, response->n_gone > 1 ? "s" : "", response->first_gone);
+        report("%d of %d grains came off the aggregate, grain %d the first: nothing "
+               "held %s under %s load",
+               response->n_gone, n, response->first_gone,
+               response->n_gone > 1 ? "them" : "it",
+               response->n_gone > 1 ? "their" : "its");
     if (response->n_snap > 0)
         report("it snapped through or buckled %d time%s, and dashpots brought it to "
                "rest; grain %d moved most at the last",
                response->n_snap, response->n_snap > 1 ? "s" : "", response->snapped);
-    if (moved > largest_radius && !response->n_crack)
-        report(
-            "the aggregate has given way: no bond broke, but a grain moved %.3g of the "
-            "largest radius",
-            moved / largest_radius);
-    else if (moved > largest_radius)
-        report("the aggregate has come apart: %d of %d bonds broke, and a grain moved "
-               "%.3g of the largest radius",
-               response->n_crack, packing->n_bond, moved / largest_radius);
-    const bool is_loose =
-        moved > largest_radius || response->n_gone == packing->n_particle;
-    if (settings->support == SUPPORT_WALL && packing->n_particle > 0 && is_loose)
+    if (far.count > 0)
+        report("%s%d of %d grains moved by more than the largest radius, grain %d "
+               "most, by %.3g of it; %d of %d bonds broke",
+               !most_are_far       ? ""
+               : response->n_crack ? "the aggregate has come apart: "
+                                   : "the aggregate has given way: ",
+               far.count, n, far.furthest, far.moved, response->n_crack,
+               packing->n_bond);
+    const bool is_loose = most_are_far || response->n_gone == n;
+    if (settings->support == SUPPORT_WALL && n > 0 && is_loose)
         report("support=wall holds only what the forces press on it: pressed together "
                "alone an aggregate turns over (support=free takes that off)");
 }
