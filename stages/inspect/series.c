@@ -49,9 +49,9 @@ static void drying_series(const struct artifact *artifact, struct series *series
     struct drying_record record = artifact_get_drying(artifact);
     double *liquid = full_saturations(&network);
     double *kind = as_doubles(network.throat_kind, network.n_throat);
-    const struct vtu_array cells[] = {{"saturation", liquid, 1},
-                                      {"radius", network.throat_radius, 1},
-                                      {"kind", kind, 1},
+    const struct vtu_array cells[] = {{"saturation", liquid, 1, NULL},
+                                      {"radius", network.throat_radius, 1, NULL},
+                                      {"kind", kind, 1, NULL},
                                       {0}};
     const struct vtu_grid grid = {.n_point = network.n_node,
                                   .point = network.node_position,
@@ -86,8 +86,8 @@ static void forces_series(const struct artifact *artifact, struct series *series
         const int m =
             n_frame > 1 ? (int)((int64_t)frame * (n_time - 1) / (n_frame - 1)) : 0;
         const struct vtu_array points[] = {
-            {"force", &force[(size_t)m * (size_t)packing.n_particle].x, 3},
-            {"radius", packing.radius, 1},
+            {"force", &force[(size_t)m * (size_t)packing.n_particle].x, 3, NULL},
+            {"radius", packing.radius, 1, NULL},
             {0}};
         add_frame(series, time[m],
                   &(struct vtu_grid){.n_point = packing.n_particle,
@@ -172,13 +172,16 @@ static void response_series(const struct artifact *artifact, struct series *seri
         for (size_t i = 0; i < n; i++)
             moved[i] = add(packing.position[i], displacement[at + i]);
         update_cracks(&view, &packing, time[s]);
-        const struct vtu_array points[] = {{"displacement", &displacement[at].x, 3},
-                                           {"force", &force[at].x, 3},
-                                           {"radius", packing.radius, 1},
-                                           {0}};
+        const struct vtu_array points[] = {
+            {"displacement", &displacement[at].x, 3, NULL},
+            {"force", &force[at].x, 3, NULL},
+            {"radius", packing.radius, 1, NULL},
+            {0}};
         const struct vtu_array cells[] = {
-            {"contact_force", &contact_force[(size_t)s * (size_t)view.n_contact].x, 3},
-            {"crack", view.state, 1},
+            {"contact_force", &contact_force[(size_t)s * (size_t)view.n_contact].x, 3,
+             NULL},
+            {"crack", view.state, 1,
+             "0 holds, 1 broken in tension, 2 in shear, -1 no bond"},
             {0}};
         add_frame(series, time[s],
                   &(struct vtu_grid){.n_point = packing.n_particle,

@@ -9,15 +9,17 @@
 
 enum { VTK_VERTEX = 1, VTK_LINE = 3 };
 
-static void put_doubles(FILE *stream, const char *name, const double *value,
-                        int components, int count)
+// ParaView shows the name of a component beside that of the array.
+static void put_doubles(FILE *stream, const struct vtu_array *array, int count)
 {
+    const int components = array->components;
     fprintf(stream,
-            "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" "
-            "format=\"ascii\">\n",
-            name, components);
+            "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" ",
+            array->name, components);
+    if (array->meaning) fprintf(stream, "ComponentName0=\"%s\" ", array->meaning);
+    fprintf(stream, "format=\"ascii\">\n");
     for (int k = 0; k < count * components; k++)
-        fprintf(stream, "%.9g%c", value[k], (k + 1) % components ? ' ' : '\n');
+        fprintf(stream, "%.9g%c", array->value[k], (k + 1) % components ? ' ' : '\n');
     fprintf(stream, "</DataArray>\n");
 }
 
@@ -26,7 +28,7 @@ static void put_arrays(FILE *stream, const char *kind, const struct vtu_array *a
 {
     fprintf(stream, "<%s>\n", kind);
     for (; arrays && arrays->name; arrays++)
-        put_doubles(stream, arrays->name, arrays->value, arrays->components, count);
+        put_doubles(stream, arrays, count);
     fprintf(stream, "</%s>\n", kind);
 }
 
@@ -57,7 +59,8 @@ void write_vtu(const char *path, const struct vtu_grid *grid)
             "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">\n<UnstructuredGrid>\n"
             "<Piece NumberOfPoints=\"%d\" NumberOfCells=\"%d\">\n<Points>\n",
             grid->n_point, n_cell);
-    put_doubles(stream, "position", &grid->point->x, 3, grid->n_point);
+    put_doubles(stream, &(struct vtu_array){"position", &grid->point->x, 3, NULL},
+                grid->n_point);
     fprintf(stream, "</Points>\n");
     put_cells(stream, grid, n_cell, grid->line ? 2 : 1);
     put_arrays(stream, "PointData", grid->points, grid->n_point);

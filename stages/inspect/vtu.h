@@ -12,6 +12,8 @@ struct vtu_array {
     const char *name;
     const double *value; // (n * components)
     int components;
+    const char
+        *meaning; // of its numbers, for the legend; NULL: they speak for themselves
 };
 
 // Points, and lines between some of them, or vertices where there are none.

@@ -79,6 +79,9 @@ with scratch() as folder:
            f"{name}: VTK reads them")
         if array:
             ok(first.GetCellData().GetArray(array) is not None, f"{name}: {array} on the lines")
+        if array == "crack":
+            ok("1 broken in tension, 2 in shear" in first.GetCellData().GetArray(array).GetComponentName(0),
+               f"{name}: the legend says what the numbers of {array} mean")
     full = grid_of(vtkXMLUnstructuredGridReader(), at("drying-0000.vtu"))
     dry = grid_of(vtkXMLUnstructuredGridReader(), at("drying-0010.vtu"))
     total = lambda grid: vtk_to_numpy(grid.GetCellData().GetArray("saturation")).sum()
