@@ -18,11 +18,11 @@ static double end_of_drying(const struct artifact *response)
 // Bonds never heal, and nothing breaks after the end.
 static void check_cracks(const struct run *run, const char *path)
 {
-    uint8_t *broke = NEW_ARRAY(uint8_t, run->packing.n_bond);
+    uint8_t *holds = bonds_before(run);
     int k = 0;
-    while (k < run->n_crack && run->time[k] <= run->end && !broke[run->bond[k]]++)
+    while (k < run->n_crack && run->time[k] <= run->end && holds[run->bond[k]]--)
         k++;
-    free(broke);
+    free(holds);
     if (k == run->n_crack) return;
     if (run->time[k] > run->end)
         die(STATUS_BAD_DATA,
@@ -40,6 +40,9 @@ struct run read_run(const struct artifact *response)
     run.time = artifact_get(response, "/cracks/time", NULL);
     run.saturation = artifact_get(response, "/cracks/saturation", NULL);
     run.mode = artifact_get(response, "/cracks/mode", NULL);
+    if (artifact_has_dataset(response, "/weight_cracks/bond"))
+        run.weight_crack =
+            artifact_get(response, "/weight_cracks/bond", &run.n_weight_crack);
     run.first_period_end =
         artifact_get_number(response, "/summary/first_period_end_time");
     run.end = end_of_drying(response);

@@ -27,10 +27,18 @@ struct vector bond_vector(const struct packing *packing, int bond)
                        bond_image(packing, bond));
 }
 
-uint8_t *bonds_left(const struct run *run)
+uint8_t *bonds_before(const struct run *run)
 {
     uint8_t *left = NEW_ARRAY(uint8_t, run->packing.n_bond);
     if (run->packing.n_bond) memset(left, 1, (size_t)run->packing.n_bond);
+    for (int k = 0; k < run->n_weight_crack; k++)
+        left[run->weight_crack[k]] = 0;
+    return left;
+}
+
+uint8_t *bonds_left(const struct run *run)
+{
+    uint8_t *left = bonds_before(run);
     for (int k = 0; k < run->n_crack; k++)
         left[run->bond[k]] = 0;
     return left;
@@ -43,6 +51,7 @@ void run_free(struct run *run)
     free(run->time);
     free(run->saturation);
     free(run->mode);
+    free(run->weight_crack);
     free(run->snapshot_saturation);
     free(run->displacement);
     free(run->intact);

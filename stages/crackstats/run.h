@@ -14,6 +14,8 @@ struct run {
     double *time;                 // (n_crack) s, nondecreasing
     double *saturation;           // (n_crack) of the network
     uint8_t *mode;                // (n_crack) 0 normal, 1 shear
+    int n_weight_crack;           // under the weight alone, before drying
+    int32_t *weight_crack;        // (n_weight_crack) bonds
     double first_period_end, end; // s
     int n_snapshot;
     double *snapshot_saturation; // (n_snapshot)
@@ -28,7 +30,9 @@ struct image bond_image(const struct packing *packing, int bond);
 // From the first grain of BOND to the second, where nothing has moved; m.
 struct vector bond_vector(const struct packing *packing, int bond);
 
-// 1 for each bond that no crack broke. (n_bond); the caller frees it.
+// 1 for each bond that holds when drying begins, or that no crack broke. (n_bond); the
+// caller frees it.
+uint8_t *bonds_before(const struct run *run);
 uint8_t *bonds_left(const struct run *run);
 
 // Frees what the run owns and empties it.

@@ -62,14 +62,14 @@ static void note_clusters(double *value, const struct run *run, struct sizes *si
 static void note_pieces(double *value, const struct run *run, struct sizes *sizes)
 {
     const struct packing *packing = &run->packing;
-    uint8_t *intact = bonds_left(run);
-    const struct pieces found = find_pieces(packing, intact, sizes);
-    if (packing->n_bond) memset(intact, 1, (size_t)packing->n_bond);
-    value[FRAGMENTS_BEFORE] = find_pieces(packing, intact, NULL).count;
+    uint8_t *before = bonds_before(run), *left = bonds_left(run);
+    const struct pieces found = find_pieces(packing, left, sizes);
+    value[FRAGMENTS_BEFORE] = find_pieces(packing, before, NULL).count;
     value[FRAGMENTS_COUNT] = found.count;
     value[FRAGMENTS_LARGEST] = found.largest;
     value[FRAGMENTS_SINGLE] = found.single;
-    free(intact);
+    free(before);
+    free(left);
 }
 
 // Spring-back: the share of the largest shrinkage that is gone at the end.

@@ -6,6 +6,7 @@
 #include "basics/status.h"
 #include "parameters.h"
 #include "replay_engine.h"
+#include "take_weight.h"
 #include "write_response.h"
 
 #include <math.h>
@@ -136,12 +137,13 @@ static void run(const struct packing *packing, const struct load *load,
 static void write_response(const struct packing *packing, const struct load *load,
                            const struct replay_settings *settings,
                            const struct response *response,
+                           const struct taken_weight *weight,
                            const struct invocation *invocation,
                            const struct artifact *input, json_t *inputs)
 {
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "%d grains held", "a rigid wall beneath"};
-    char engine[200], support[60], model[900];
+    char engine[200], support[60], weights[200], model[1100];
     replay_engine(settings)->describe(settings, engine, sizeof engine);
     int n_held = 0;
     for (int i = 0; i < packing->n_particle; i++)
@@ -151,17 +153,19 @@ static void write_response(const struct packing *packing, const struct load *loa
              "%s\n"
              "support: %s\n"
              "overlaps of the packing %s\n"
-             "%s%s"
-             "left out: gravity, %smoments of capillary forces\n",
+             "%s%s%s"
+             "left out: %s%smoments of capillary forces\n",
              engine, support,
              settings->unstressed ? "lie at rest" : "push from the start",
              settings->begin ? "goes on from where an earlier replay ended\n" : "",
              settings->liquid.volume > 0
                  ? "liquid bridges between grains that have touched [G 2]\n"
                  : "",
+             describe_weight(weight, weights), weight->gravity > 0 ? "" : "gravity, ",
              settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, settings, response);
+    put_weight(artifact, weight, response);
     artifact_put_arrays(artifact, "engine", &response->engine);
     artifact_put_number(artifact, "/summary/first_period_end_time",
                         artifact_get_number(input, "/summary/first_period_end_time"));
@@ -254,7 +258,10 @@ int main(int argc, char **argv)
     struct artifact *earlier = open_earlier(&invocation, &packing, &engine);
     settings->begin = earlier ? &engine : NULL;
     choose_grains(&parameters, &packing, settings, invocation.quiet);
+    const struct taken_weight weight =
+        take_weight(input, &parameters, &packing, &load, settings);
 
+    if (!invocation.quiet) warn_of_defaults(&parameters, &packing);
     json_t *digest = digests(input, earlier);
     struct checkpoint checkpoint;
     checkpoint_begin(&checkpoint, &invocation, digest);
@@ -263,7 +270,9 @@ int main(int argc, char **argv)
         &response);
     if (!invocation.quiet) warn_if_restless(&load, &response);
     if (!invocation.quiet) warn_if_loose(&packing, settings, &response);
-    write_response(&packing, &load, settings, &response, &invocation, input, digest);
+    if (!invocation.quiet) warn_of_weight(&weight, &response, &packing);
+    write_response(&packing, &load, settings, &response, &weight, &invocation, input,
+                   digest);
 
     checkpoint_end(&checkpoint);
     json_decref(digest);
@@ -272,6 +281,7 @@ int main(int argc, char **argv)
     response_free(&response);
     free(settings->relative_strength);
     free(settings->held);
+    free(weight.standing);
     free_load(&load);
     packing_free(&packing);
     artifact_close(input);

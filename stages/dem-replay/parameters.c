@@ -11,6 +11,10 @@
 const struct parameter replay_table[] = {
     {"density", PARAMETER_NUMBER, "kg m-3", "3230", AT(settings.material.density),
      ABOVE(0), .text = "of the grains [K Table 5.1]"},
+    {"gravity", PARAMETER_NUMBER_OR_NULL, "m s-2", "null", AT(gravity), AT_LEAST(0),
+     .text = "towards -z: the grains, and the liquid in the forces, weigh on the body, "
+             "at rest before drying begins; null: as the forces have it (drying's and "
+             "force-protocol's gravity), 0 with support=free; 0: no weight of grains"},
     {"friction", PARAMETER_NUMBER, "1", "0.5", AT(settings.material.friction),
      AT_LEAST(0), .text = "coefficient between grains"},
     {"damping_ratio", PARAMETER_NUMBER, "1", "0.7", AT(settings.material.damping_ratio),

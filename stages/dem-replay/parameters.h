@@ -14,7 +14,7 @@ struct replay_parameters {
     struct strength_scatter scatter;
     int support, engine, bond, bonds_by, strength_law, bridge_model;
     bool prestress;
-    double bond_gap, contact_strength;
+    double bond_gap, contact_strength, gravity;
     struct number_list snapshots;
 };
 

@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "replay_engine.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +16,7 @@ const struct replay_engine *replay_engine(const struct replay_settings *settings
 
 // ---- begin --------------------------------------------------------------------------
 
-// Of this replay, and so none of an earlier one.
+// Of this replay, and so none of an earlier one or of the weight.
 static const struct dem_crack *own_cracks(const struct run *run, int *count)
 {
     const struct dem_crack *cracks = run->engine->cracks(run, count);
@@ -23,14 +24,28 @@ static const struct dem_crack *own_cracks(const struct run *run, int *count)
     return cracks + run->n_before;
 }
 
+// Where an earlier replay went before, the body stands already.
+static int first_step(const struct run *run)
+{
+    const struct replay_settings *settings = run->settings;
+    return settings->weight && !settings->begin ? run->engine->first_step : 0;
+}
+
 static enum status go_on(struct run *run, struct reason *reason)
 {
     const struct kept_state *state = run->keeper->begin;
-    const enum status status = run->engine->restore(run, &state->engine, reason);
+    struct response *response = run->response;
+    enum status status = run->engine->restore(run, &state->engine, reason);
+    struct engine_past past = {0};
+    if (!status) {
+        own_cracks(run, &past.n_crack);
+        status = restore_weight(response, past.n_crack, &state->stage, reason);
+    }
     if (status) return status;
-    struct engine_past past = {.cycle = run->engine->cycles(run)};
+    run->n_before += response->n_weight_crack;
+    past.cycle = run->engine->cycles(run);
     past.crack = own_cracks(run, &past.n_crack);
-    return restore_response(run->response, run->packing, run->load,
+    return restore_response(response, run->packing, run->load, first_step(run),
                             run->settings->n_snapshot, &past, &state->stage,
                             &run->place, reason);
 }
@@ -40,7 +55,7 @@ static enum status begin(struct run *run, struct reason *reason)
     const enum status status = run->engine->begin(run, reason);
     if (status) return status;
     run->engine->cracks(run, &run->n_before);
-    run->place.began = run->engine->cycles(run);
+    run->place = (struct replay_place){first_step(run), run->engine->cycles(run)};
     return run->keeper && run->keeper->begin ? go_on(run, reason) : STATUS_OK;
 }
 
@@ -57,8 +72,10 @@ bool is_loaded(const struct load *load, int n, int step)
 void take_forces(struct run *run)
 {
     const size_t n = (size_t)run->packing->n_particle;
-    memcpy(run->force, run->load->force + (size_t)run->place.step * n,
-           n * sizeof *run->force);
+    const struct vector *force = run->place.step < 0
+                                     ? run->settings->weight
+                                     : run->load->force + (size_t)run->place.step * n;
+    memcpy(run->force, force, n * sizeof *run->force);
 }
 
 static enum status advance(struct run *run, struct reason *reason)
@@ -67,6 +84,9 @@ static enum status advance(struct run *run, struct reason *reason)
     const enum status status = run->engine->advance(run, reason);
     if (!status) return STATUS_OK;
     struct reason cause = *reason;
+    if (step < 0)
+        return refuse(reason, status, "under the weight of the body alone: %.400s",
+                      cause.text);
     return refuse(reason, status, "step %d of the load (saturation %.3f): %.400s", step,
                   run->load->saturation[step], cause.text);
 }
@@ -93,6 +113,27 @@ static void note_cracks(struct run *run)
         response->crack_step[k] = step;
     }
     response->n_crack = response->cracks[step] = count;
+}
+
+// What breaks counts as broken before drying.
+static void note_weight(struct run *run)
+{
+    struct response *response = run->response;
+    int count;
+    own_cracks(run, &count);
+    response->n_weight_crack += count;
+    run->n_before += count;
+    response->weight_unbalanced_ratio = run->engine->unbalanced_ratio(run);
+}
+
+// The first of all: no earlier replay has gone before.
+static void take_weight_cracks(struct run *run)
+{
+    struct response *response = run->response;
+    int count;
+    response->weight_crack =
+        duplicate(run->engine->cracks(run, &count), (size_t)response->n_weight_crack,
+                  sizeof *response->weight_crack);
 }
 
 static void note_step(struct run *run)
@@ -148,8 +189,12 @@ static enum status do_step(struct run *run, struct reason *reason)
     take_forces(run);
     const enum status status = advance(run, reason);
     if (status) return status;
-    note_step(run);
-    take_snapshots(run);
+    if (run->place.step < 0) {
+        note_weight(run);
+    } else {
+        note_step(run);
+        take_snapshots(run);
+    }
     run->place = (struct replay_place){run->place.step + 1, run->engine->cycles(run)};
     return STATUS_OK;
 }
@@ -164,6 +209,7 @@ enum status replay(const struct packing *packing, const struct load *load,
         .cycles = NEW_ARRAY(int64_t, load->n_time),
         .cracks = NEW_ARRAY(int32_t, load->n_time),
         .reaction = NEW_ARRAY(struct net_load, load->n_time),
+        .weight_unbalanced_ratio = NAN,
         .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot + 1)};
     struct run run = {.packing = packing,
                       .load = load,
@@ -176,9 +222,10 @@ enum status replay(const struct packing *packing, const struct load *load,
     enum status status = begin(&run, reason);
     while (!status && run.place.step < load->n_time) {
         status = do_step(&run, reason);
-        if (progress && progress->report)
+        if (progress && progress->report && run.place.step >= 0)
             progress->report(progress->context, (double)run.place.step / load->n_time);
     }
+    if (!status && settings->weight) take_weight_cracks(&run);
     if (!status && settings->keep_state) response->engine = run.engine->save(&run);
     run.engine->end(&run);
     free(run.force);
@@ -201,6 +248,7 @@ void response_free(struct response *response)
     free(response->cycles);
     free(response->cracks);
     free(response->reaction);
+    free(response->weight_crack);
     dem_free_arrays(response->engine.array, response->engine.count);
     *response = (struct response){0};
 }

@@ -54,6 +54,9 @@ struct replay_settings {
     const struct array_list *begin; // .engine of an earlier replay of the same packing;
                                     // NULL: at rest, all whole
     bool keep_state;                // whether .engine is wanted
+    const struct vector *weight;    // (n_particle) N, of which each row of the load has
+                                 // its part: comes to rest before the first, and what
+                                 // breaks under it is no crack of drying; NULL: none
 };
 
 struct snapshot {
@@ -86,6 +89,9 @@ struct response {
                          // moved most at the last
     struct array_list engine; // at the end, if it was to be kept; quasi-static: all
                               // loads up to there
+    int n_weight_crack;       // before drying, under the weight alone
+    struct dem_crack *weight_crack;
+    double weight_unbalanced_ratio; // when drying began; NAN: without weight
 };
 
 // Told how far the replay is.

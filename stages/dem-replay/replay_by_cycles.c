@@ -23,10 +23,10 @@ static void describe(const struct replay_settings *settings, char *text, size_t 
 static double *strengths(const struct run *run, double mean)
 {
     const double *relative = run->settings->relative_strength;
-    if (!relative) return NULL;
+    if (!relative && !run->is_whole) return NULL;
     double *strength = NEW_ARRAY(double, run->packing->n_bond);
     for (int b = 0; b < run->packing->n_bond; b++)
-        strength[b] = mean * relative[b];
+        strength[b] = run->is_whole ? INFINITY : mean * relative[b];
     return strength;
 }
 
@@ -67,6 +67,7 @@ static enum status restore(struct run *run, const struct array_list *list,
 
 static enum status begin(struct run *run, struct reason *reason)
 {
+    run->is_whole = run->settings->weight && !run->settings->begin;
     const enum status status = create(run, reason);
     const struct array_list *earlier = run->settings->begin;
     if (status || !earlier) return status;
@@ -107,9 +108,13 @@ static int64_t ramp(const struct run *run)
 
 static void grow(struct run *run)
 {
+    const struct vector *weight = run->settings->weight; // is on already
     const int64_t next = dem_cycle(run->state) - run->place.began + 1;
+    const double share = (double)next / (double)ramp(run);
     for (int i = 0; next < ramp(run) && i < run->packing->n_particle; i++)
-        run->force[i] = scale((double)next / (double)ramp(run), run->force[i]);
+        run->force[i] =
+            weight ? add(weight[i], scale(share, subtract(run->force[i], weight[i])))
+                   : scale(share, run->force[i]);
 }
 
 // The forces of the step, on the grains as they are.
@@ -121,7 +126,7 @@ static void apply_forces(struct run *run)
     dem_set_force(run->state, run->force);
 }
 
-// ---- advance ------------------------------------------------------------------------
+// ---- cycles -------------------------------------------------------------------------
 
 // [K 4.20] has no denominator once no contact carries a force: then all that is applied
 // is unbalanced.
@@ -154,35 +159,93 @@ static enum status run_cycles(struct run *run, int64_t cycles, struct reason *re
     return STATUS_OK;
 }
 
-// Until a step is as settled as wanted, which is looked at every 16 cycles from where
-// those of every step end.
-static enum status run_on(struct run *run, struct reason *reason)
+// Until a step is as settled as TOLERANCE says, which is looked at every 16 cycles from
+// the FIRST on, or as long as MOST cycles from there.
+static enum status settle(struct run *run, int64_t first, double tolerance,
+                          int64_t most, struct reason *reason)
 {
     enum { LOOK_EVERY = 16 };
-    const struct replay_settings *settings = run->settings;
-    if (isnan(settings->tolerance)) return STATUS_OK;
-    if (!is_loaded(run->load, run->packing->n_particle, run->place.step))
-        return STATUS_OK;
-    const int64_t first = run->place.began + ramp(run) + settings->cycles;
     for (;;) {
         const int64_t done = dem_cycle(run->state) - first;
-        const int64_t left = settings->most_cycles - done;
+        const int64_t left = most - done;
         const int64_t to_look = LOOK_EVERY - done % LOOK_EVERY;
         const bool looks = to_look == LOOK_EVERY || left <= 0;
-        if (looks && unbalanced_ratio(run) < settings->tolerance) return STATUS_OK;
-        if (left <= 0)
-            return refuse(reason, STATUS_NOT_CONVERGED,
-                          "unbalanced ratio %g is not below %g after %lld cycles",
-                          dem_unbalanced_ratio(run->state), settings->tolerance,
-                          (long long)settings->most_cycles);
+        if (looks && unbalanced_ratio(run) < tolerance) return STATUS_OK;
+        if (left <= 0) return STATUS_OK;
         const enum status status =
             run_cycles(run, left < to_look ? left : to_look, reason);
         if (status) return status;
     }
 }
 
+static enum status run_on(struct run *run, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    if (isnan(settings->tolerance)) return STATUS_OK;
+    if (!is_loaded(run->load, run->packing->n_particle, run->place.step))
+        return STATUS_OK;
+    const int64_t first = run->place.began + ramp(run) + settings->cycles;
+    const enum status status =
+        settle(run, first, settings->tolerance, settings->most_cycles, reason);
+    if (status || unbalanced_ratio(run) < settings->tolerance) return status;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "unbalanced ratio %g is not below %g after %lld cycles",
+                  dem_unbalanced_ratio(run->state), settings->tolerance,
+                  (long long)settings->most_cycles);
+}
+
+// ---- weight -------------------------------------------------------------------------
+
+// For statics, as far as the time step is stable with it, which was chosen for less.
+static double calming_share(const struct run *run)
+{
+    static const double share = 0.7;
+    const double own = run->settings->material.local_damping;
+    const double limit = dem_time_step_limit(run->state) * (1 + own);
+    return fmax(own, fmin(share, limit / dem_time_step(run->state) - 1));
+}
+
+// Bonds as strong as they are, the body as it is.
+static enum status give_strengths(struct run *run, struct reason *reason)
+{
+    struct dem *whole = run->state;
+    struct array_list list;
+    list.array = dem_save(whole, &list.count);
+    run->is_whole = false;
+    enum status status = create(run, reason);
+    if (!status) status = restore(run, &list, reason);
+    dem_free_arrays(list.array, list.count);
+    dem_free(whole);
+    return status;
+}
+
+// Loose grains may fall for longer than anyone waits.
+static enum status stand(struct run *run, struct reason *reason)
+{
+    static const double settled = 1e-5; // a tenth of [K 5.2], as all goes on from here
+    enum { MOST_STEPS = 100 };          // as long as so many of the load
+    const struct replay_settings *settings = run->settings;
+    const int64_t done = dem_cycle(run->state) - run->place.began;
+    dem_set_local_damping(run->state, calming_share(run));
+    apply_forces(run);
+    const enum status status = done > 0 ? STATUS_OK : run_cycles(run, 1, reason);
+    if (status) return status;
+    return settle(run, run->place.began + 1,
+                  isnan(settings->tolerance) ? settled : settings->tolerance,
+                  MOST_STEPS * settings->cycles, reason);
+}
+
+// ---- advance ------------------------------------------------------------------------
+
 static enum status advance(struct run *run, struct reason *reason)
 {
+    if (run->is_whole && run->place.step > STEP_WHOLE) {
+        const enum status status = give_strengths(run, reason);
+        if (status) return status;
+    }
+    if (run->place.step < 0) return stand(run, reason);
+    if (run->settings->weight)
+        dem_set_local_damping(run->state, run->settings->material.local_damping);
     const int64_t full = run->place.began + ramp(run);
     enum status status = STATUS_OK;
     apply_forces(run);
@@ -255,6 +318,7 @@ static void end(struct run *run)
 }
 
 const struct replay_engine replay_by_cycles = {
+    .first_step = STEP_WHOLE,
     .describe = describe,
     .begin = begin,
     .restore = restore,

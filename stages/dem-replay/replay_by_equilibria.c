@@ -47,7 +47,7 @@ static void tell(void *context, double balanced)
 {
     const struct run *run = context;
     const struct replay_progress *progress = run->progress;
-    if (progress && progress->report)
+    if (progress && progress->report && run->place.step >= 0)
         progress->report(progress->context,
                          (run->place.step + balanced) / run->load->n_time);
 }
@@ -155,7 +155,7 @@ static void expect(struct run *run)
 static enum status advance(struct run *run, struct reason *reason)
 {
     keep(run);
-    expect(run);
+    if (run->place.step >= 0) expect(run);
     return find(run, reason);
 }
 
@@ -191,7 +191,8 @@ static void observe(const struct run *run, struct snapshot *snapshot)
 
 static struct array_list save(const struct run *run)
 {
-    return save_loads(run->settings->begin, run->load, run->packing);
+    return save_loads(run->settings->begin, run->settings->weight, run->load,
+                      run->packing);
 }
 
 static void end(struct run *run)
@@ -213,6 +214,7 @@ static void end(struct run *run)
 
 const struct replay_engine replay_by_equilibria = {
     .needs_support = true,
+    .first_step = STEP_WEIGHT,
     .check = check,
     .describe = describe,
     .begin = begin,

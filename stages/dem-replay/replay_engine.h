@@ -15,14 +15,23 @@ struct run {
     struct response *response;
     const struct replay_engine *engine;
     void *state;               // of the engine
+    bool is_whole;             // its bonds hold whatever comes
     struct vector *force;      // (n_particle) N, of this step
     struct net_load taken_off; // of it, where nothing holds the grains
-    int n_before;              // bonds that an earlier replay has broken
+    int n_before;              // bonds that an earlier replay, or weight, has broken
     struct replay_place place;
+};
+
+// Steps before the load, of a body with weight.
+enum {
+    STEP_WHOLE = -2, // under its weight, bonds holding whatever comes: what overshoots
+                     // on the way to rest breaks none. Only for engines with inertia
+    STEP_WEIGHT = -1 // the same, with bonds as strong as they are
 };
 
 struct replay_engine {
     bool needs_support; // it has no answer where no grain is held
+    int first_step;     // of those with weight
     // Whether it does what SETTINGS ask for; NULL: it does.
     enum status (*check)(const struct replay_settings *settings, struct reason *reason);
     void (*describe)(const struct replay_settings *settings, char *text, size_t size);
@@ -44,7 +53,7 @@ extern const struct replay_engine replay_by_cycles, replay_by_equilibria;
 
 const struct replay_engine *replay_engine(const struct replay_settings *settings);
 
-// The forces of the step, as they are in the load.
+// The forces of the step, as they are in the load, or the weight.
 void take_forces(struct run *run);
 
 #endif

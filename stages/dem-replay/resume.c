@@ -3,6 +3,7 @@
 
 #include "basics/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,22 +100,29 @@ struct array_list save_response(const struct response *response,
     add_array(&list, "cracks", DEM_INT32, n_time, response->cracks);
     add_array(&list, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, response->reaction);
     add_array(&list, "crack_step", DEM_INT32, response->n_crack, response->crack_step);
+    add_array(&list, "weight_cracks", DEM_INT32, 1,
+              &(int32_t){response->n_weight_crack});
+    add_array(&list, "weight_unbalanced_ratio", DEM_FLOAT64,
+              !isnan(response->weight_unbalanced_ratio),
+              &response->weight_unbalanced_ratio);
     save_snapshots(&list, response, packing);
     save_contacts(&list, response);
     return list;
 }
 
-struct array_list save_loads(const struct array_list *earlier, const struct load *load,
+struct array_list save_loads(const struct array_list *earlier,
+                             const struct vector *weight, const struct load *load,
                              const struct packing *packing)
 {
-    const int64_t before = earlier ? array_count(earlier, loads_name) : 0;
+    const int64_t before = earlier  ? array_count(earlier, loads_name)
+                           : weight ? 3 * (int64_t)packing->n_particle
+                                    : 0;
     const int64_t now = 3 * (int64_t)load->n_time * packing->n_particle;
     double *all = NEW_ARRAY(double, before + now);
-    if (before) {
-        const struct dem_array *saved =
-            dem_find_array(earlier->array, earlier->count, loads_name);
-        memcpy(all, saved->data, (size_t)before * sizeof *all);
-    }
+    const void *data = weight;
+    if (earlier && before)
+        data = dem_find_array(earlier->array, earlier->count, loads_name)->data;
+    if (before) memcpy(all, data, (size_t)before * sizeof *all);
     memcpy(all + before, load->force, (size_t)now * sizeof *all);
     struct array_list list = {NULL, 0};
     add_array(&list, loads_name, DEM_FLOAT64, before + now, all);
@@ -147,11 +155,13 @@ const struct vector *saved_loads(const struct array_list *list,
                       largest);
 }
 
-static enum status restore_history(struct response *response, int n_time, int64_t cycle,
+static enum status restore_history(struct response *response, int first_step,
+                                   int n_time, int64_t cycle,
                                    struct array_reader *reader,
                                    struct replay_place *place)
 {
-    const int64_t *step = read_array(reader, "step", DEM_INT64, 1, 0, n_time - 1);
+    const int64_t *step =
+        read_array(reader, "step", DEM_INT64, 1, first_step, n_time - 1);
     const int64_t *began =
         read_array(reader, "step_began", DEM_INT64, 1, 0, (double)cycle);
     const double *ratio =
@@ -169,6 +179,20 @@ static enum status restore_history(struct response *response, int n_time, int64_
     memcpy(response->cycles, cycles, n * sizeof *cycles);
     memcpy(response->cracks, cracks, n * sizeof *cracks);
     memcpy(response->reaction, reaction, n * sizeof *reaction);
+    return STATUS_OK;
+}
+
+enum status restore_weight(struct response *response, int n_crack,
+                           const struct array_list *list, struct reason *reason)
+{
+    struct array_reader reader = {.list = list, .reason = reason};
+    const int64_t n_ratio = array_count(list, "weight_unbalanced_ratio");
+    const int32_t *n = read_array(&reader, "weight_cracks", DEM_INT32, 1, 0, n_crack);
+    const double *ratio = read_array(&reader, "weight_unbalanced_ratio", DEM_FLOAT64,
+                                     n_ratio > 0, 0, largest);
+    if (reader.failed) return STATUS_BAD_DATA;
+    response->n_weight_crack = *n;
+    if (n_ratio > 0) response->weight_unbalanced_ratio = *ratio;
     return STATUS_OK;
 }
 
@@ -271,14 +295,14 @@ static enum status restore_contacts(struct response *response,
 }
 
 enum status restore_response(struct response *response, const struct packing *packing,
-                             const struct load *load, int most_snapshots,
-                             const struct engine_past *past,
+                             const struct load *load, int first_step,
+                             int most_snapshots, const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason)
 {
     struct array_reader reader = {.list = list, .reason = reason};
-    enum status status =
-        restore_history(response, load->n_time, past->cycle, &reader, place);
+    enum status status = restore_history(response, first_step, load->n_time,
+                                         past->cycle, &reader, place);
     if (status == STATUS_OK)
         status = restore_cracks(response, load->n_time, past, &reader);
     if (status == STATUS_OK)

@@ -8,7 +8,7 @@
 
 // Where in the load a replay is.
 struct replay_place {
-    int step;
+    int step;      // below 0: comes to rest under its weight (replay_engine.h)
     int64_t began; // cycle of the engine when the step began
 };
 
@@ -18,8 +18,9 @@ struct array_list save_response(const struct response *response,
                                 struct replay_place place);
 
 // An equilibrium follows from all loads that led to it, so these are its state: those
-// of EARLIER (NULL: none), and then LOAD. A new list.
-struct array_list save_loads(const struct array_list *earlier, const struct load *load,
+// of EARLIER (NULL: none), WEIGHT (n_particle; NULL: none), and then LOAD. A new list.
+struct array_list save_loads(const struct array_list *earlier,
+                             const struct vector *weight, const struct load *load,
                              const struct packing *packing);
 
 // Whether it was kept by equilibria (save_loads), not by cycles; and what an engine
@@ -32,19 +33,25 @@ const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,
                                  struct reason *reason);
 
-// Of the engine when its state was kept: the cracks but those of an earlier replay, and
-// the cycle.
+// Fills in RESPONSE what became of the weight, out of such a LIST; of N_CRACK cracks
+// of the engine.
+enum status restore_weight(struct response *response, int n_crack,
+                           const struct array_list *list, struct reason *reason);
+
+// Of the engine when its state was kept: the cracks but those of an earlier replay and
+// of the weight, and the cycle.
 struct engine_past {
     const struct dem_crack *crack;
     int n_crack;
     int64_t cycle;
 };
 
-// Fills RESPONSE, as empty as replay begins with, from LIST and the PAST.
+// Fills RESPONSE, as empty as replay begins with, from LIST and the PAST; no step is
+// before FIRST_STEP.
 // STATUS_BAD_DATA: not the list of such a replay.
 enum status restore_response(struct response *response, const struct packing *packing,
-                             const struct load *load, int most_snapshots,
-                             const struct engine_past *past,
+                             const struct load *load, int first_step,
+                             int most_snapshots, const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason);
 

@@ -59,7 +59,8 @@ struct dataset_values artifact_get_values(const struct artifact *artifact,
 // Whether an optional dataset is there.
 bool artifact_has_dataset(const struct artifact *artifact, const char *name);
 
-// A number from an attribute, "/summary/porosity".
+// A number from an attribute, "/summary/porosity"; whether an optional one is there.
+bool artifact_has_number(const struct artifact *artifact, const char *name);
 double artifact_get_number(const struct artifact *artifact, const char *name);
 
 // A text attribute of the whole artifact, or NULL when there is none: a foreign program

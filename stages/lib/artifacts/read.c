@@ -192,6 +192,11 @@ bool artifact_has_dataset(const struct artifact *artifact, const char *name)
     return artifact_has(artifact, schema_dataset(artifact->schema, name));
 }
 
+bool artifact_has_number(const struct artifact *artifact, const char *name)
+{
+    return artifact_has(artifact, schema_attribute(artifact->schema, name));
+}
+
 double artifact_get_number(const struct artifact *artifact, const char *name)
 {
     char group[128];

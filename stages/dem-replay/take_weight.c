@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "take_weight.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double gravity_of_the_earth = 9.80665; // m/s2
+
+// ---- taken --------------------------------------------------------------------------
+
+// What the forces have of it; 0: none.
+static double gravity_of_forces(const struct artifact *input)
+{
+    return artifact_has_number(input, "/summary/gravity")
+               ? artifact_get_number(input, "/summary/gravity")
+               : 0;
+}
+
+static double choose_gravity(const struct replay_parameters *parameters,
+                             const struct packing *packing, double of_forces)
+{
+    const bool is_free = parameters->settings.support == SUPPORT_FREE;
+    const bool is_given = !isnan(parameters->gravity);
+    const double gravity = is_given ? parameters->gravity : of_forces;
+    if (gravity > 0 && is_free && is_given)
+        die(STATUS_BAD_DATA,
+            "dem-replay.gravity: must be 0 with support=free, is %g: what nothing "
+            "holds falls, and bears no weight (support=fixed and wall hold it)",
+            gravity);
+    if (gravity > 0 && packing->periodic[2])
+        die(STATUS_BAD_DATA,
+            "dem-replay.gravity: must be 0 in a box that repeats along z, is %g",
+            gravity);
+    return is_free ? 0 : gravity;
+}
+
+struct taken_weight take_weight(const struct artifact *input,
+                                const struct replay_parameters *parameters,
+                                const struct packing *packing, struct load *load,
+                                struct replay_settings *settings)
+{
+    const double of_forces = gravity_of_forces(input);
+    struct taken_weight taken = {.has_liquid = of_forces > 0,
+                                 .gravity =
+                                     choose_gravity(parameters, packing, of_forces)};
+    if (taken.gravity > 0 && of_forces > 0 && taken.gravity != of_forces)
+        report("gravity = %g m/s2 for the grains, but %g for the liquid in %s",
+               taken.gravity, of_forces, input_name(input->path));
+    double *liquid = artifact_has_dataset(input, "/liquid_mass")
+                         ? artifact_get(input, "/liquid_mass", NULL)
+                         : NULL;
+    struct weighing weighing = {.packing = packing,
+                                .density = settings->material.density,
+                                .gravity = taken.gravity > 0 ? taken.gravity
+                                                             : gravity_of_the_earth,
+                                .liquid = load->n_time > 0 ? liquid : NULL};
+    taken.numbers =
+        find_bond_numbers(load,
+                          artifact_get_number(input, "/summary/capillary_pressure") *
+                              artifact_get_number(input, "/summary/force_scale"),
+                          &weighing);
+    if (taken.gravity > 0) taken.standing = add_weight(load, &weighing);
+    // What an earlier replay has left stands already.
+    settings->weight = taken.standing;
+    free(liquid);
+    return taken;
+}
+
+// ---- told ---------------------------------------------------------------------------
+
+void warn_of_weight(const struct taken_weight *weight, const struct response *response,
+                    const struct packing *packing)
+{
+    static const double matters = 0.05, settled = 1e-4;
+    const double most = fmax(weight->numbers.grain, weight->numbers.body);
+    if (weight->gravity == 0 && most >= matters)
+        report("gravity is left out, but what the body weighs is %.2g of the suction: "
+               "gravity=9.81 takes it along, in force-protocol that of the liquid",
+               most);
+    if (weight->gravity > 0 && !weight->has_liquid)
+        report("the forces are without the weight of the liquid: "
+               "force-protocol.gravity=%g adds it",
+               weight->gravity);
+    if (response->n_weight_crack > 0)
+        report("%d of %d bonds broke under the weight alone, before drying: they are "
+               "in /weight_cracks, and are no cracks of drying",
+               response->n_weight_crack, packing->n_bond);
+    if (response->weight_unbalanced_ratio >= settled)
+        report("under its weight alone the body did not come to rest before drying: "
+               "the unbalanced ratio is %.2g",
+               response->weight_unbalanced_ratio);
+}
+
+static bool is_default(const struct replay_parameters *parameters, const char *key)
+{
+    const struct parameter *row = replay_table;
+    while (strcmp(row->key, key))
+        row++;
+    double value;
+    memcpy(&value, (const char *)parameters + row->offset, sizeof value);
+    return value == strtod(row->fallback, NULL);
+}
+
+void warn_of_defaults(const struct replay_parameters *parameters,
+                      const struct packing *packing)
+{
+    static const char *const keys[] = {"normal_stiffness", "bond.normal_stiffness",
+                                       "bond.normal_strength", "bond.shear_strength"};
+    static const double radius_of_defaults = 250e-9; // m, [K Table 5.1]
+    const int of_contacts = 1;
+    const bool is_parallel = parameters->settings.bond.kind == DEM_PARALLEL_BOND;
+    const int count = is_parallel && packing->n_bond ? 4 : of_contacts;
+    char names[200] = "";
+    double mean = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        mean += packing->radius[i] / packing->n_particle;
+    if (packing->n_particle == 0) return;
+    if (mean <= 10 * radius_of_defaults && mean >= 0.1 * radius_of_defaults) return;
+    for (int k = 0; k < count; k++)
+        if (is_default(parameters, keys[k])) {
+            if (names[0]) strcat(names, ", ");
+            strcat(names, keys[k]);
+        }
+    if (names[0])
+        report("the defaults of %s are those of grains of 250 nm radius; these have "
+               "%.3g m: docs/your-grains.md says what to take",
+               names, mean);
+}
+
+const char *describe_weight(const struct taken_weight *weight, char text[200])
+{
+    if (weight->gravity == 0) return "";
+    snprintf(text, 200,
+             "weight of the grains%s: gravity %.17g m/s2, at rest before drying\n",
+             weight->has_liquid ? " and the liquid" : "", weight->gravity);
+    return text;
+}
+
+void put_weight(struct artifact *artifact, const struct taken_weight *weight,
+                const struct response *response)
+{
+    if (!isnan(weight->numbers.grain))
+        artifact_put_number(artifact, "/summary/bond_number_grain",
+                            weight->numbers.grain);
+    if (!isnan(weight->numbers.body))
+        artifact_put_number(artifact, "/summary/bond_number_body",
+                            weight->numbers.body);
+    if (weight->gravity == 0) return;
+    const int n = response->n_weight_crack;
+    int32_t *bond = NEW_ARRAY(int32_t, n);
+    uint8_t *mode = NEW_ARRAY(uint8_t, n);
+    for (int k = 0; k < n; k++) {
+        bond[k] = response->weight_crack[k].bond;
+        mode[k] = response->weight_crack[k].mode;
+    }
+    artifact_put_number(artifact, "/summary/gravity", weight->gravity);
+    artifact_put_number(artifact, "/summary/weight_cracks", n);
+    if (!isnan(response->weight_unbalanced_ratio))
+        artifact_put_number(artifact, "/summary/weight_unbalanced_ratio",
+                            response->weight_unbalanced_ratio);
+    artifact_put(artifact, "/weight_cracks/bond", bond, n);
+    artifact_put(artifact, "/weight_cracks/mode", mode, n);
+    free(bond);
+    free(mode);
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A grain of density rho and radius R weighs
+//     W = rho g (4/3) pi R^3,
+// and the liquid around it, M kg by force-protocol's shares, M g. Two Bond numbers say
+// what that is beside the suction p_c:
+//     Bo = mean W / largest |F|                      of a grain,
+//     Bo = sum (W + M g) / (A p_c) = rho_body g H / p_c   of the body,
+// A the horizontal area of the box and H the height of what stands in it.
+#include "weight.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+
+static double grain_weight(const struct weighing *of, int i)
+{
+    const double radius = of->packing->radius[i];
+    return of->density * of->gravity * (4 * M_PI / 3) * radius * radius * radius;
+}
+
+static double liquid_weight(const struct weighing *of, int i)
+{
+    return of->liquid ? of->liquid[i] * of->gravity : 0;
+}
+
+struct vector *add_weight(struct load *load, const struct weighing *of)
+{
+    const int n = of->packing->n_particle;
+    struct vector *standing = NEW_ARRAY(struct vector, n);
+    for (int i = 0; i < n; i++) {
+        const double weight = grain_weight(of, i);
+        standing[i].z = -weight - liquid_weight(of, i);
+        for (int k = 0; k < load->n_time; k++)
+            load->force[(size_t)k * (size_t)n + (size_t)i].z -= weight;
+    }
+    return standing;
+}
+
+struct bond_numbers find_bond_numbers(const struct load *load, double suction,
+                                      const struct weighing *of)
+{
+    const struct packing *packing = of->packing;
+    const int n = packing->n_particle;
+    double largest = 0, grains = 0, liquid = 0;
+    for (size_t k = 0; k < (size_t)load->n_time * (size_t)n; k++)
+        largest = fmax(largest, norm(load->force[k]));
+    for (int i = 0; i < n; i++) {
+        grains += grain_weight(of, i);
+        liquid += liquid_weight(of, i);
+    }
+    const double area =
+        (packing->upper.x - packing->lower.x) * (packing->upper.y - packing->lower.y);
+    return (struct bond_numbers){
+        .grain = largest > 0 ? grains / n / largest : NAN,
+        .body = suction > 0 ? (grains + liquid) / (area * suction) : NAN};
+}
