@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A replay of a body with weight, given up at every moment at which its state may be
+// kept, also before the first load, and gone on with: the same response to the bit, by
+// cycles and by equilibria. And what overshoots on the way to rest breaks nothing.
+#include "dem_scene.h"
+#include "support_equilibrium.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    SIDE = 3,
+    HEIGHT = 4,
+    GRAINS = SIDE * SIDE * HEIGHT,
+    LOADS = 12,
+    MOST = 400,
+    EVERY = 17
+};
+
+// States in the order in which they were kept.
+struct states {
+    int count, asked;
+    struct kept_state state[MOST];
+};
+
+static bool now_and_then(void *context)
+{
+    struct states *states = context;
+    return states->asked++ % EVERY == 0;
+}
+
+static struct array_list copied(const struct array_list *list)
+{
+    struct array_list copy = {NULL, 0};
+    for (int k = 0; k < list->count; k++)
+        add_array(&copy, list->array[k].name, list->array[k].type, list->array[k].count,
+                  list->array[k].data);
+    return copy;
+}
+
+static void remember(void *context, const struct kept_state *state)
+{
+    struct states *states = context;
+    if (states->count == MOST) return;
+    states->state[states->count++] =
+        (struct kept_state){copied(&state->engine), copied(&state->stage)};
+}
+
+// A body that its weight breaks in part, and then what pulls on it.
+struct scene {
+    struct packing packing;
+    uint8_t held[GRAINS];
+    double time[LOADS], saturation[LOADS];
+    struct vector weight[GRAINS], force[LOADS * GRAINS];
+    struct load load;
+    struct replay_settings settings;
+};
+
+static const double weight = 2e-9; // N, of a grain
+
+static void make(struct scene *scene, enum engine engine)
+{
+    static double strength[3 * GRAINS];
+    *scene = (struct scene){.packing = cubic_lattice(SIDE, SIDE, HEIGHT, false)};
+    const struct dem_setup setup = stiff_setup(&scene->packing);
+    for (int i = 0; i < GRAINS; i++) {
+        scene->held[i] = i / (SIDE * SIDE) == HEIGHT - 1; // hangs
+        scene->weight[i].z = -weight;
+        for (int k = 0; k < LOADS; k++)
+            scene->force[k * GRAINS + i] = (struct vector){
+                3 * weight * sin(i + k), 3 * weight * cos(2 * i - k), -weight};
+    }
+    for (int b = 0; b < scene->packing.n_bond; b++)
+        strength[b] = 1 + 0.9 * sin(b * b);
+    for (int k = 0; k < LOADS; k++) {
+        scene->time[k] = k;
+        scene->saturation[k] = 1 - k / (LOADS - 1.0);
+    }
+    scene->load = (struct load){LOADS, scene->time, scene->saturation, scene->force};
+    scene->settings = (struct replay_settings){.material = setup.material,
+                                               .bond = setup.bond,
+                                               .relative_strength = strength,
+                                               .held = scene->held,
+                                               .unstressed = true,
+                                               .support = SUPPORT_FIXED,
+                                               .engine = engine,
+                                               .equilibrium_tolerance = 1e-8,
+                                               .most_iterations = 40,
+                                               .rolling = 1e-3,
+                                               .increment = 0.02,
+                                               .time_step_safety = 0.03,
+                                               .cycles = 60,
+                                               .ramp = 40,
+                                               .tolerance = NAN,
+                                               .threads = 1,
+                                               .weight = scene->weight};
+    scene->settings.bond.normal_strength = scene->settings.bond.shear_strength =
+        4 * weight / (M_PI * pow(0.5858 * RADIUS, 2));
+}
+
+static struct response replayed(const struct scene *scene, const struct keeper *keeper)
+{
+    struct response response;
+    struct reason reason = {""};
+    if (replay(&scene->packing, &scene->load, &scene->settings, NULL, keeper, &response,
+               &reason))
+        fail_msg("%s", reason.text);
+    return response;
+}
+
+static void assert_same(const struct response *a, const struct response *b, int state)
+{
+    bool same = a->n_crack == b->n_crack && a->n_weight_crack == b->n_weight_crack &&
+                a->weight_unbalanced_ratio == b->weight_unbalanced_ratio;
+    for (int k = 0; same && k < a->n_crack; k++)
+        same = a->crack[k].bond == b->crack[k].bond &&
+               a->crack_step[k] == b->crack_step[k];
+    for (int k = 0; same && k < a->n_weight_crack; k++)
+        same = a->weight_crack[k].bond == b->weight_crack[k].bond;
+    same = same && !memcmp(a->reaction, b->reaction, LOADS * sizeof *a->reaction) &&
+           !memcmp(a->cycles, b->cycles, LOADS * sizeof *a->cycles) &&
+           !memcmp(a->unbalanced_ratio, b->unbalanced_ratio, LOADS * sizeof(double));
+    if (!same) fail_msg("another end from state %d", state);
+}
+
+static void goes_on(enum engine engine, int from_weight)
+{
+    static struct scene scene;
+    static struct states states;
+    make(&scene, engine);
+    states.count = states.asked = 0;
+    const struct keeper keeper = {now_and_then, remember, &states, NULL};
+    struct response whole = replayed(&scene, &keeper);
+    if (!whole.n_weight_crack || !whole.n_crack)
+        fail_msg("weight breaks %d, forces %d", whole.n_weight_crack, whole.n_crack);
+    int before_drying = 0;
+    for (int k = 0; k < states.count; k++) {
+        const struct array_list *stage = &states.state[k].stage;
+        const struct dem_array *step =
+            dem_find_array(stage->array, stage->count, "step");
+        before_drying += *(const int64_t *)step->data < 0;
+        const struct keeper later = {NULL, NULL, NULL, &states.state[k]};
+        struct response response = replayed(&scene, &later);
+        assert_same(&whole, &response, k);
+        response_free(&response);
+        free_kept_state(&states.state[k]);
+    }
+    if (before_drying < from_weight || before_drying == states.count)
+        fail_msg("%d of %d states before drying", before_drying, states.count);
+    response_free(&whole);
+    packing_free(&scene.packing);
+}
+
+static void cycles_go_on(void **state)
+{
+    (void)state;
+    goes_on(ENGINE_EXPLICIT, 10);
+}
+
+static void equilibria_go_on(void **state)
+{
+    (void)state;
+    goes_on(ENGINE_QUASI_STATIC, 0);
+}
+
+// A pair that hangs: a load that comes at once stretches it to twice what rest does.
+static void nothing_breaks_on_the_way(void **state)
+{
+    (void)state;
+    for (int is_weaker = 0; is_weaker < 2; is_weaker++) {
+        struct packing packing = bonded_pair();
+        const struct dem_setup setup = stiff_setup(&packing);
+        uint8_t held[] = {1, 0};
+        double time[] = {0}, saturation[] = {1};
+        struct vector force[] = {{0, 0, 0}, {weight, 0, 0}};
+        const struct load load = {1, time, saturation, force};
+        struct replay_settings settings = {.material = setup.material,
+                                           .bond = setup.bond,
+                                           .held = held,
+                                           .unstressed = true,
+                                           .support = SUPPORT_FIXED,
+                                           .engine = ENGINE_EXPLICIT,
+                                           .time_step_safety = 0.002,
+                                           .cycles = 2000,
+                                           .tolerance = NAN,
+                                           .threads = 1,
+                                           .weight = force};
+        settings.material.damping_ratio = 0;
+        settings.bond.normal_strength =
+            (is_weaker ? 0.999 : 1.001) * weight / (M_PI * pow(0.5858 * RADIUS, 2));
+        struct response response = replay_or_fail(&packing, &load, &settings);
+        assert_int_equal(response.n_weight_crack, is_weaker);
+        assert_int_equal(response.n_crack, 0);
+        response_free(&response);
+        packing_free(&packing);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cycles_go_on),
+        cmocka_unit_test(equilibria_go_on),
+        cmocka_unit_test(nothing_breaks_on_the_way),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
