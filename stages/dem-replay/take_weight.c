@@ -78,9 +78,10 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
     static const double matters = 0.05, settled = 1e-4;
     const double most = fmax(weight->numbers.grain, weight->numbers.body);
     if (weight->gravity == 0 && most >= matters)
-        report("gravity is left out, but what the body weighs is %.2g of the suction: "
-               "gravity=9.81 takes it along, in force-protocol that of the liquid",
-               most);
+        report(
+            "gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 in "
+            "dry, or in force-protocol and here, takes weight along",
+            weight->numbers.grain < most ? "the body" : "a grain", most);
     if (weight->gravity > 0 && !weight->has_liquid)
         report("the forces are without the weight of the liquid: "
                "force-protocol.gravity=%g adds it",

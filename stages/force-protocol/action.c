@@ -12,18 +12,25 @@ void action_free(struct action *action)
         patches_free(&action->patches[l]);
 }
 
+// Added to FORCE.
+static struct vector pulled(const struct action *action, enum load l,
+                            double (*load)[LOADS], int grain, struct vector force)
+{
+    const struct patches *patches = &action->patches[l];
+    if (patches->n == 0) return force;
+    for (int k = patches->begin[grain]; k < patches->begin[grain + 1]; k++)
+        force = add(force,
+                    scale(load[patches->patch[k].throat][l], patches->patch[k].pull));
+    return force;
+}
+
 static struct vector force_on(const struct action *action, double (*load)[LOADS],
                               int grain)
 {
     struct vector force = {0};
-    for (int l = 0; l < LOADS; l++) {
-        const struct patches *patches = &action->patches[l];
-        if (patches->n == 0) continue;
-        for (int k = patches->begin[grain]; k < patches->begin[grain + 1]; k++)
-            force = add(force, scale(load[patches->patch[k].throat][l],
-                                     patches->patch[k].pull));
-    }
-    return scale(action->scale, force);
+    for (int l = 0; l < LOAD_WEIGHT; l++)
+        force = pulled(action, (enum load)l, load, grain, force);
+    return pulled(action, LOAD_WEIGHT, load, grain, scale(action->scale, force));
 }
 
 void forces_now(const struct action *action, const struct filling *filling,

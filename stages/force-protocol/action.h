@@ -8,7 +8,7 @@
 #include "patches.h"
 
 // Which throats act on which grains, by each load; what is not modelled has no patches.
-// Forces are times SCALE.
+// Forces are times SCALE, but for the weight.
 struct action {
     struct patches patches[LOADS];
     double scale;

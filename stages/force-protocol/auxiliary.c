@@ -40,10 +40,12 @@ void drop_auxiliary(struct packing *packing, struct protocol *protocol)
     }
     size_t to = 0; // never overtakes what is still read
     for (int k = 0; k < protocol->n_time; k++)
-        for (int i = 0; i < before; i++)
-            if (number[i] >= 0)
-                protocol->force[to++] =
-                    protocol->force[(size_t)k * (size_t)before + (size_t)i];
+        for (int i = 0; i < before; i++) {
+            if (number[i] < 0) continue;
+            const size_t from = (size_t)k * (size_t)before + (size_t)i;
+            if (protocol->liquid) protocol->liquid[to] = protocol->liquid[from];
+            protocol->force[to++] = protocol->force[from];
+        }
     drop_bonds(packing, number);
     packing->n_particle = n;
     free(packing->kind);

@@ -63,25 +63,36 @@ int filling_clusters(const struct filling *filling, int *cluster)
     return count;
 }
 
+// By how much still liquid is below its pressure at z = 0 in the middle of THROAT.
+static double above(const struct filling *filling, int throat)
+{
+    const double weight = filling->law.weight;
+    return weight > 0 ? weight * throat_middle(filling->network, throat).z : 0;
+}
+
 static void find_cluster_suction(const struct filling *filling)
 {
     const struct network *network = filling->network;
     const int n = network->n_throat;
     int *cluster = NEW_ARRAY(int, n);
-    double *widest = NEW_ARRAY(double, n); // with a meniscus, of the cluster so named
+    double *least = NEW_ARRAY(double, n); // at z = 0, of the cluster so named
     filling_clusters(filling, cluster);
+    for (int t = 0; t < n; t++)
+        least[t] = INFINITY;
     for (int t = 0; t < n; t++) {
         const int32_t *node = network->throat_nodes[t];
-        if (cluster[t] >= 0 &&
-            (has_meniscus_at(filling, node[0]) || has_meniscus_at(filling, node[1])))
-            widest[cluster[t]] = fmax(widest[cluster[t]], network->throat_radius[t]);
+        if (cluster[t] < 0 || !(network->throat_radius[t] > 0) ||
+            !(has_meniscus_at(filling, node[0]) || has_meniscus_at(filling, node[1])))
+            continue;
+        const double entry = filling->law.meniscus / network->throat_radius[t];
+        least[cluster[t]] = fmin(least[cluster[t]], entry - above(filling, t));
     }
     for (int t = 0; t < n; t++)
         if (cluster[t] >= 0)
-            filling->suction[t] = widest[cluster[t]] > 0
-                                      ? filling->law.meniscus / widest[cluster[t]]
+            filling->suction[t] = least[cluster[t]] < INFINITY
+                                      ? least[cluster[t]] + above(filling, t)
                                       : filling->law.uniform;
-    free(widest);
+    free(least);
     free(cluster);
 }
 
@@ -261,6 +272,10 @@ void filling_loads(const struct filling *filling, int throat, double load[LOADS]
     load[LOAD_CONTACT_LINE] =
         holds_liquid(filling, throat) ? line * count_menisci(filling, throat) : 0;
     load[LOAD_EMPTINESS] = takes_part ? 1 - saturation : 0;
+    load[LOAD_WEIGHT] =
+        filling->law.weight > 0 && saturation > 0
+            ? filling->law.weight * saturation * throat_volume(filling->network, throat)
+            : 0;
 }
 
 struct filling filling_begin(const struct network *network,

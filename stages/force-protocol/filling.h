@@ -20,7 +20,8 @@ enum suction_rule {
     SUCTION_UNIFORM, // that of a throat of mean radius, everywhere [K 5.3]
     // In each connected piece of liquid that of its widest throat with a meniscus, into
     // which gas comes next: there the meniscus is as curved as it can be, and behind
-    // all others of the piece is the same pressure.
+    // all others of the piece is the same pressure; with weight, at the same height:
+    // then gas comes next where the suction less rho g z is least.
     SUCTION_CLUSTERS,
     // By the pressures of viscous liquid at the nodes: a throat has the mean of its
     // ends that are in liquid, or without one that of its own meniscus; linear in time
@@ -33,6 +34,7 @@ struct suction_law {
     double uniform;      // Pa, of a throat of mean radius
     double meniscus;     // 2 sigma cos(theta), N/m: suction times radius
     double contact_line; // sigma sin(theta), N/m
+    double weight;       // rho g, N/m3; 0: the liquid weighs nothing
 };
 
 // What pulls on the grains, for each throat.
@@ -40,6 +42,7 @@ enum load {
     LOAD_SUCTION,      // of the liquid times saturation, Pa
     LOAD_CONTACT_LINE, // radius times sigma sin(theta) for each end in gas, N
     LOAD_EMPTINESS,    // how much of the throat has emptied, 1
+    LOAD_WEIGHT,       // of the liquid, N
     LOADS
 };
 

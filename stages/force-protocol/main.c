@@ -5,6 +5,8 @@
 #include "balance.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "liquid_weight.h"
+#include "network/checks.h"
 #include "protocol.h"
 #include "read_record.h"
 #include "rings.h"
@@ -18,7 +20,7 @@ enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
 
 struct force_parameters {
     double surface_tension, contact_angle, force_scale, largest_change, ring_volume,
-        most_bytes;
+        most_bytes, gravity;
     int open_surface, form, suction, rings;
     bool balanced;
     int64_t steps;
@@ -54,6 +56,10 @@ static const struct parameter table[] = {
      .text = "throats that lie in the open wall: their liquid has its menisci over the "
              "grains and does not pull them outwards (K 5.4: a full network presses "
              "its open top as well), or it pulls like any other"},
+    {"gravity", PARAMETER_NUMBER_OR_NULL, "m s-2", "null", AT(gravity), AT_LEAST(0),
+     .text = "towards -z: the grains around each throat carry its liquid, and with "
+             "pressure=clusters the suction grows with height; null: as the drying had "
+             "it (dry.gravity); 0: the liquid weighs nothing"},
     {"steps", PARAMETER_INTEGER, "1", "550", AT(steps), BETWEEN(2, 1e7),
      .text =
          "uniform times from the start to the end of drying, both included [K 5.2]"},
@@ -126,6 +132,30 @@ static struct suction_law find_law(const struct network *network,
     return law;
 }
 
+// Of the parameters of the drying, if it says any.
+static double gravity_of_drying(const struct artifact *input)
+{
+    char *text = artifact_get_text(input, "parameters");
+    json_t *parameters = text ? json_loads(text, 0, NULL) : NULL;
+    const double gravity = json_number_value(json_object_get(parameters, "gravity"));
+    json_decref(parameters);
+    free(text);
+    return gravity > 0 ? gravity : 0;
+}
+
+static void find_weight(const struct network *network,
+                        const struct filling_record *record,
+                        struct force_parameters *parameters,
+                        const struct artifact *input, struct suction_law *law)
+{
+    struct reason reason;
+    if (isnan(parameters->gravity)) parameters->gravity = gravity_of_drying(input);
+    if (check_gravity(network, parameters->gravity, &reason))
+        die(STATUS_BAD_DATA, "force-protocol.%s", reason.text);
+    const double mass = artifact_get_number(input, "/summary/liquid_mass");
+    law->weight = parameters->gravity * liquid_density(network, &record->drying, mass);
+}
+
 static enum status find_action(struct wedges *wedges,
                                const struct force_parameters *parameters,
                                double suction, unsigned open_walls,
@@ -160,6 +190,7 @@ static enum status find_action(struct wedges *wedges,
         if (parameters->open_surface == OPEN_SURFACE_IDLE)
             drop_patches_in_walls(wedges, open_walls, &of[l]);
     }
+    if (parameters->gravity > 0) of[LOAD_WEIGHT] = find_liquid_shares(wedges);
     if (law.rule == RING_NONE) return STATUS_OK;
     const enum status status = find_rings(wedges, &law, rings, reason);
     of[LOAD_EMPTINESS] = rings->patches;
@@ -167,29 +198,33 @@ static enum status find_action(struct wedges *wedges,
 }
 
 static void refuse_size(const struct force_parameters *parameters, double times,
-                        double grains)
+                        double bytes, double grains)
 {
     const bool adaptive = parameters->largest_change > 0;
     die(STATUS_BAD_DATA,
         "force-protocol.%s: %g takes %.3g times, which are %.3g bytes of forces on %g "
         "grains: more than force-protocol.most_bytes = %g",
         adaptive ? "largest_change" : "steps",
-        adaptive ? parameters->largest_change : times, times, times * grains * 24,
-        grains, parameters->most_bytes);
+        adaptive ? parameters->largest_change : times, times, times * bytes, grains,
+        parameters->most_bytes);
 }
 
 static struct protocol find_protocol(const struct process *process,
                                      const struct force_parameters *parameters)
 {
     const double grains = process->network->packing.n_particle;
-    const int most = (int)fmin(1e9, parameters->most_bytes / fmax(24, 24 * grains));
+    const double bytes = parameters->gravity > 0 ? 32 : 24; // a grain and time
+    const int most = (int)fmin(1e9, parameters->most_bytes / (bytes * fmax(1, grains)));
     double count = (double)parameters->steps, *times = NULL;
     if (parameters->largest_change > 0)
         times = adaptive_times(process, parameters->largest_change, most, &count);
     else if (count <= most)
         times = uniform_times(&process->record->drying, (int)count);
-    if (!times) refuse_size(parameters, count, grains);
-    return make_protocol(process, times, (int)count);
+    if (!times) refuse_size(parameters, count, bytes * grains, grains);
+    struct protocol protocol = make_protocol(process, times, (int)count);
+    if (parameters->gravity > 0)
+        protocol.liquid = liquid_masses(process, &protocol, parameters->gravity);
+    return protocol;
 }
 
 // What is said of the forces.
@@ -218,7 +253,8 @@ static struct findings examine(const struct process *process,
 }
 
 static void put_summary(struct artifact *artifact, const struct process *process,
-                        const struct findings *found, const struct artifact *input)
+                        const struct findings *found, double gravity,
+                        const struct artifact *input)
 {
     const double unit = found->largest > 0 ? found->largest : 1;
     artifact_put_number(artifact, "/summary/capillary_pressure", process->law->uniform);
@@ -228,6 +264,7 @@ static void put_summary(struct artifact *artifact, const struct process *process
     artifact_put_number(artifact, "/summary/interpolation_error", found->error / unit);
     if (!isnan(found->field_error))
         artifact_put_number(artifact, "/summary/field_error", found->field_error);
+    if (gravity > 0) artifact_put_number(artifact, "/summary/gravity", gravity);
     artifact_put_number(artifact, "/summary/balance_change",
                         process->action->balance_change);
     artifact_put_number(artifact, "/summary/net_force", found->net_force);
@@ -248,31 +285,41 @@ static void describe(const struct force_parameters *parameters,
         "one capillary pressure, that of a throat of mean radius",
         "capillary pressure of each connected piece of liquid, by its widest meniscus",
         "capillary pressures of viscous liquid, from snapshots of the drying"};
+    static const char *const heights[] = {"the same at all heights",
+                                          "growing with height",
+                                          "with height as in the drying"};
     char left[200] = "no liquid stays at contacts";
     if (parameters->rings != RING_NONE)
         snprintf(left, sizeof left,
                  "rings stay at %d contacts as throats empty, pull with at most %.6g N "
                  "and do not evaporate",
                  rings->count, rings->largest);
+    char weight[200] = "left out: weight of the liquid";
+    if (parameters->gravity > 0)
+        snprintf(weight, sizeof weight,
+                 "weight of the liquid: gravity %.17g m/s2, on the grains around each "
+                 "throat; suction %s",
+                 parameters->gravity, heights[parameters->suction]);
     snprintf(text, size,
              "capillary force: %s%s\n"
              "throats in the open wall: %s\n"
              "%s\n"
              "contact line: %s\n"
              "%s\n"
-             "left out: weight of the liquid\n",
+             "%s\n",
              forms[parameters->form],
              parameters->balanced ? ", balanced at each throat" : "",
              parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull",
              suctions[parameters->suction],
              parameters->contact_angle > 0 ? "pulls grains towards throats with menisci"
                                            : "none (perfect wetting)",
-             left);
+             left, weight);
 }
 
 static void write_forces(const struct packing *packing, const struct protocol *protocol,
                          const struct process *process, const struct findings *found,
-                         const char *model, const struct invocation *invocation,
+                         double gravity, const char *model,
+                         const struct invocation *invocation,
                          const struct artifact *input)
 {
     struct artifact *artifact = artifact_create("forces", invocation->output);
@@ -281,7 +328,10 @@ static void write_forces(const struct packing *packing, const struct protocol *p
     artifact_put(artifact, "/saturation", protocol->saturation, protocol->n_time);
     artifact_put_table(artifact, "/force", protocol->force, protocol->n_time,
                        packing->n_particle);
-    put_summary(artifact, process, found, input);
+    if (protocol->liquid)
+        artifact_put_table(artifact, "/liquid_mass", protocol->liquid, protocol->n_time,
+                           packing->n_particle);
+    put_summary(artifact, process, found, gravity, input);
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
@@ -295,7 +345,8 @@ int main(int argc, char **argv)
     struct filling_record record =
         read_record(input, &network, parameters.suction == SUCTION_FIELD);
     check_end(&record.drying, (double)parameters.steps, input->path);
-    const struct suction_law law = find_law(&network, &parameters, input->path);
+    struct suction_law law = find_law(&network, &parameters, input->path);
+    find_weight(&network, &record, &parameters, input, &law);
 
     struct wedges wedges;
     struct action action = {0};
@@ -314,10 +365,10 @@ int main(int argc, char **argv)
     struct protocol protocol = find_protocol(&process, &parameters);
     const struct findings found = examine(&process, &protocol, input->path);
     drop_auxiliary(&network.packing, &protocol);
-    char model[900];
+    char model[1100];
     describe(&parameters, &rings, model, sizeof model);
-    write_forces(&network.packing, &protocol, &process, &found, model, &invocation,
-                 input);
+    write_forces(&network.packing, &protocol, &process, &found, parameters.gravity,
+                 model, &invocation, input);
 
     protocol_free(&protocol);
     action_free(&action);

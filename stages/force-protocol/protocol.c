@@ -36,6 +36,7 @@ void protocol_free(struct protocol *protocol)
     free(protocol->time);
     free(protocol->saturation);
     free(protocol->force);
+    free(protocol->liquid);
     *protocol = (struct protocol){0};
 }
 

@@ -17,6 +17,8 @@ struct protocol {
     int n_time;
     double *time, *saturation; // (n_time) s, 1
     struct vector *force;      // (n_time * n_particle) N
+    double *liquid;            // (n_time * n_particle) kg around each grain; NULL: it
+                               // weighs nothing
 };
 
 // The forces at the N_TIME TIMES, increasing, which it takes over. Between steps of the

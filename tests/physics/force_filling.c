@@ -13,11 +13,12 @@ struct dried {
     struct filling_record record;
 };
 
-static struct dried dry_lattice(uint64_t seed)
+static struct dried dry_lattice_under(double gravity, uint64_t seed)
 {
     struct dried dried = {.network = lattice_network(5, 5, 7, 5e-7)};
     randomise_radii(&dried.network, 5e-7, 0.4, seed);
-    const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+    conditions.gravity = gravity;
     dried.history = dry_and_check(&dried.network, &conditions);
     struct drying_history *history = &dried.history;
     dried.record = (struct filling_record){
@@ -31,6 +32,11 @@ static struct dried dry_lattice(uint64_t seed)
     for (int i = 0; i < dried.network.n_node; i++)
         dried.record.exposed[i] = dried.network.node_walls[i] & WALL_Z_UPPER;
     return dried;
+}
+
+static struct dried dry_lattice(uint64_t seed)
+{
+    return dry_lattice_under(0, seed);
 }
 
 static void dried_free(struct dried *dried)
@@ -66,11 +72,13 @@ static void clusters_are_those_of_the_drying(void **state)
 
 // Gas goes next into the throat of least suction: what empties at the end of a step had
 // the suction of its cluster.
-static void a_cluster_has_the_suction_of_what_empties_next(void **state)
+static void empties_next(double gravity)
 {
-    (void)state;
-    struct dried dried = dry_lattice(7);
-    struct filling filling = filling_begin(&dried.network, &dried.record, &by_clusters);
+    struct dried dried = dry_lattice_under(gravity, 7);
+    struct suction_law law = by_clusters;
+    law.meniscus = 2 * kharaghani_conditions(LIQUID_INVISCID).surface_tension;
+    law.weight = kharaghani_conditions(LIQUID_INVISCID).liquid_density * gravity;
+    struct filling filling = filling_begin(&dried.network, &dried.record, &law);
     int checked = 0;
     for (int step = 0; step + 1 < dried.record.drying.n_step; step++) {
         if (step > 0) filling_advance(&filling);
@@ -82,14 +90,28 @@ static void a_cluster_has_the_suction_of_what_empties_next(void **state)
             filling_to_end_of_step(&filling);
             filling_loads(&filling, throat, load);
             assert_true(load[LOAD_SUCTION] == 0 && load[LOAD_EMPTINESS] == 1);
-            const double wanted = 0.14 / dried.network.throat_radius[throat];
-            assert_true(fabs(filling.suction[throat] / wanted - 1) < 1e-15);
+            const double wanted = law.meniscus / dried.network.throat_radius[throat];
+            assert_true(fabs(filling.suction[throat] / wanted - 1) < 1e-14);
             checked++;
         }
     }
     assert_true(checked > 400);
     filling_free(&filling);
     dried_free(&dried);
+}
+
+static void a_cluster_has_the_suction_of_what_empties_next(void **state)
+{
+    (void)state;
+    empties_next(0);
+}
+
+// Under weight gas does not go next into the widest throat, and the suction grows with
+// height: by as much as a whole meniscus over this lattice.
+static void so_it_has_under_weight(void **state)
+{
+    (void)state;
+    empties_next(3e8);
 }
 
 // While all is wet only the throats at the open surface have menisci: one at their
@@ -294,6 +316,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(clusters_are_those_of_the_drying),
         cmocka_unit_test(a_cluster_has_the_suction_of_what_empties_next),
+        cmocka_unit_test(so_it_has_under_weight),
         cmocka_unit_test(menisci_begin_at_the_open_surface),
         cmocka_unit_test(a_drying_may_begin_with_some_throats_empty),
         cmocka_unit_test(steps_are_the_filling_of_their_times),

@@ -194,7 +194,7 @@ with scratch() as folder:
         ok(abs(summary["bond_number_grain"] / (MASS * g / largest) - 1) < 1e-12
            and abs(summary["bond_number_body"] / (36 * MASS * g / (36 * R**2 * suction)) - 1) < 1e-12,
            f"Bond numbers, gravity={gravity}", dict(summary))
-        ok(("gravity is left out, but what the body weighs is" in said) == (gravity == "0"),
+        ok(("gravity is left out, but the body weighs" in said) == (gravity == "0"),
            "a line when weight is left out and matters", said)
     forces(1000 * force, capillary_pressure=1000 * suction)
     ok("gravity is left out" not in replay("gravity=0", "cycles=10")[1], "and none where it does not")

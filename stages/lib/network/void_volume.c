@@ -6,8 +6,7 @@
 
 #include <stdlib.h>
 
-// Of the face's rim: nodes that coincide, as on lattices, do not pull it to their side.
-static struct vector middle_of(const struct network *network, int face)
+struct vector face_middle(const struct network *network, int face)
 {
     const int64_t begin = network->face_offset[face],
                   end = network->face_offset[face + 1];
@@ -50,7 +49,7 @@ static enum status add_face(const struct network *network,
 {
     const int64_t begin = network->face_offset[face];
     const int count = (int)(network->face_offset[face + 1] - begin);
-    const struct vector middle = middle_of(network, face);
+    const struct vector middle = face_middle(network, face);
     for (int k = 0; k < count; k++) {
         const int64_t a = begin + k, b = begin + (k + 1) % count;
         const int throat = face_throat(network, incidence, face, k);

@@ -17,4 +17,8 @@
 // (a grain whose centre another one has engulfed).
 enum status find_void_volumes(struct network *network, struct reason *reason);
 
+// The middle of the face's rim, in the repetition of the box in which its first grain
+// is: nodes that coincide, as on lattices, do not pull it to their side.
+struct vector face_middle(const struct network *network, int face);
+
 #endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The liquid's own weight, on the grains around it.
+#ifndef CRAQUELURE_LIQUID_WEIGHT_H
+#define CRAQUELURE_LIQUID_WEIGHT_H
+
+#include "patches.h"
+#include "protocol.h"
+
+// The share of each grain in the liquid of a throat, as a pull towards -z; those of one
+// throat sum to 1. By the void of its cell beside the throat, as find_void_volumes
+// gives it to the throat, so that a grain carries the liquid in its own cell; in equal
+// parts in layers and where nothing is void. The caller frees it.
+struct patches find_liquid_shares(struct wedges *wedges);
+
+// Liquid per volume of full throats, kg/m3, from the MASS with which the drying began.
+double liquid_density(const struct network *network, const struct drying_record *record,
+                      double mass);
+
+// Mass of liquid around each grain at each time of the protocol, (n_time * n_particle)
+// kg. With GRAVITY > 0, that of the law. The caller frees it.
+double *liquid_masses(const struct process *process, const struct protocol *protocol,
+                      double gravity);
+
+#endif
