@@ -71,7 +71,7 @@ static void compare_files(struct comparison *comparison)
 {
     struct bytes bytes[2];
     for (int k = 0; k < 2; k++)
-        bytes[k] = read_whole(comparison->names[k]);
+        bytes[k] = read_whole_of(comparison->names[k], may_be_either);
     const bool json = is_document(&bytes[0]);
     if (json != is_document(&bytes[1]))
         die(STATUS_BAD_DATA, "%s is %s, %s is %s", input_name(comparison->names[0]),

@@ -69,7 +69,7 @@ int main(int argc, char **argv)
         .doc = "inspect -- any artifact as JSON, or as a series for ParaView"};
     parse_command_line(&argp, argc, argv, &options);
 
-    struct bytes bytes = read_whole(options.input);
+    struct bytes bytes = read_whole_of(options.input, may_be_either);
     if (is_document(&bytes)) { // describes itself
         if (options.data || options.vtk || options.openpnm || options.statoil)
             die(STATUS_USAGE, "%s: is JSON: read it with jq",

@@ -26,11 +26,6 @@ static const struct stage stage = {
     .reports = "Write there, as JSON, what is said of the packing",
     .checkpoints = true};
 
-static bool is_hdf5(const struct bytes *bytes)
-{
-    return bytes->size >= 4 && !memcmp(bytes->data, "\x89HDF", 4);
-}
-
 static void apply_box(struct packing *packing, const struct pack_parameters *parameters)
 {
     for (int axis = 0; axis < 3; axis++) {

@@ -20,6 +20,11 @@ refused("three bytes are not an artifact", BAD_DATA,
         ["tessellate", text_file("short", b"\x89HD")], "short: is not an HDF5 file")
 refused("an input without end is refused", BAD_DATA, ["crackstats", "/dev/zero"],
         "/dev/zero: is not an HDF5 file")
+for program in ["tessellate", "dry", "crackstats", "inspect", "artdiff packing"]:
+    refused_in_shell(f"text without end is refused by {program}", BAD_DATA,
+                     "while echo yes or no; do sleep 0.01; done |"
+                     f" timeout 5 $BIN/{program} -",
+                     f"{program.split()[0]}: standard input: is not an HDF5 file")
 refused("a signature alone is not an artifact", BAD_DATA,
         ["tessellate", text_file("signature", b"\x89HDF\r\n\x1a\n")],
         "signature: is a truncated or damaged HDF5 file")

@@ -62,6 +62,23 @@ result("a network may become another in its place", [same.stderr] if same.return
 refused("a limit on the file size leaves the earlier output", IO, ["pack"],
         "out/result: File too large",
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000)))
+for length in [244, 255]:
+    name = "n" * length
+    made = run(["pack", "-o", f"out/{name}"])
+    result(f"a name of {length} bytes is as good as any",
+           [made.stderr.decode()] if made.returncode or sorted(os.listdir("out")) != [name, "result"]
+           else [])
+refused("a longer name is refused at once", CANNOT_CREATE, ["dry", "no-such-input"],
+        f"out/{'n' * 256}: File name too long", output=("-o", "out/" + "n" * 256))
+for kind, command in [("packing", ["pack"]), ("report", ["pack", "-o", "out/packing", "--report"])]:
+    with open("rights", "w"):
+        pass
+    modes = []
+    for mode in [0o600, 0o664]:
+        os.chmod("rights", mode)
+        run([*command, *(["-o"] if kind == "packing" else []), "rights"])
+        modes.append(os.stat("rights").st_mode & 0o777 == mode and os.path.getsize("rights") > 0)
+    result(f"a {kind} that is replaced keeps its rights", [] if all(modes) else [str(modes)])
 small_disk = """mount -t tmpfs -o size=16k tmpfs out && head -c 9000 packing >out/other
     echo "the earlier output" >out/result
     $BIN/pack -o out/result; status=$?
@@ -121,6 +138,20 @@ for place, line in [("", ": No such file or directory"), ("astray", "astray: No 
         refused(f"{option} '{place}' is refused at once", CANNOT_CREATE,
                 ["dry", "no-such-input", option, place], line,
                 output=("-o", "out/result") if option == "--checkpoint" else ())
+
+# ---- killed while the output is on its way to the disk ----------------------------------
+
+with open("kill.c", "w") as file:
+    file.write("#include <signal.h>\n"
+               "int fsync(int file) { return raise(SIGKILL) + file; }\n")
+subprocess.run(["gcc", "-shared", "-fPIC", "-o", "kill.so", "kill.c"], check=True)
+for kind, command in [("an artifact", ["pack"]), ("JSON", ["bridge", "--set", "radius=1e-3", "--set",
+                                                            "volume=1e-12"])]:
+    for there in [True, False]:
+        where = "out/result" if there else "out/new"
+        ended = run([*command, "-o", where], env=os.environ | {"LD_PRELOAD": "./kill.so"})
+        result(f"killed while {kind} is synced: {'what was there' if there else 'nothing'} is left",
+               problems_of(ended, -signal.SIGKILL, []))
 
 # ---- signals ----------------------------------------------------------------------------
 

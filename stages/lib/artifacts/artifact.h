@@ -40,6 +40,9 @@ void artifact_close(struct artifact *artifact);
 struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
                                      const char *name);
 
+// Whether bytes begin as HDF5 files do.
+bool is_hdf5(const struct bytes *bytes);
+
 // A whole dataset in the memory type of its schema entry (float64: double, int32:
 // int32_t, int64: int64_t, uint8: uint8_t). ROWS, if not NULL, gets the first extent.
 // The caller frees it.

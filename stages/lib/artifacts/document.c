@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "artifacts/document.h"
 
+#include "artifacts/artifact.h"
 #include "basics/memory.h"
 
 #include <ctype.h>
@@ -14,6 +15,14 @@ bool is_document(const struct bytes *bytes)
     while (k < bytes->size && isspace(bytes->data[k]))
         k++;
     return k < bytes->size && bytes->data[k] == '{';
+}
+
+bool may_be_either(const struct bytes *beginning)
+{
+    size_t k = 0;
+    while (k < beginning->size && isspace(beginning->data[k]))
+        k++;
+    return k == beginning->size || beginning->data[k] == '{' || is_hdf5(beginning);
 }
 
 static bool has_json_type(const json_t *value, const char *type)

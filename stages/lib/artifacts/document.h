@@ -13,6 +13,9 @@
 // Whether they begin as JSON does, not as HDF5.
 bool is_document(const struct bytes *bytes);
 
+// Whether they may go on as JSON or as HDF5 (for read_whole_of).
+bool may_be_either(const struct bytes *beginning);
+
 // Reads and checks it; PATH is for messages. Exits 65 when it is not an artifact or
 // breaks its schema. The caller owns it.
 json_t *document_of(const char *path, const struct bytes *bytes);

@@ -16,12 +16,18 @@
 const char *const provenance_names[] = {"program", "parameters", "inputs", "model",
                                         NULL};
 
+bool is_hdf5(const struct bytes *bytes)
+{
+    static const unsigned char signature[8] = {0x89, 'H',  'D',  'F',
+                                               '\r', '\n', 0x1a, '\n'};
+    return bytes->size >= sizeof signature &&
+           !memcmp(bytes->data, signature, sizeof signature);
+}
+
 static hid_t open_image(const char *path, const struct bytes *image)
 {
     if (image->size == 0) die(STATUS_BAD_DATA, "%s: is empty", input_name(path));
-    static const unsigned char signature[8] = {0x89, 'H',  'D',  'F',
-                                               '\r', '\n', 0x1a, '\n'};
-    if (image->size < 8 || memcmp(image->data, signature, 8))
+    if (!is_hdf5(image))
         die(STATUS_BAD_DATA, "%s: is not an HDF5 file%s", input_name(path),
             image->data[0] == '{' ? "; parameters, in JSON, go by -p" : "");
     hdf5_begin();
@@ -118,7 +124,7 @@ static void check_apart(struct artifact *artifact, const char *name)
 
 struct artifact *artifact_open(const char *path, const char *name)
 {
-    return artifact_open_bytes(path, read_whole(path), name);
+    return artifact_open_bytes(path, read_whole_of(path, is_hdf5), name);
 }
 
 struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,

@@ -31,8 +31,11 @@ static int open_input(const char *path)
     return descriptor;
 }
 
-struct bytes read_whole(const char *path)
+struct bytes read_whole_of(const char *path,
+                           bool (*goes_on)(const struct bytes *beginning))
 {
+    enum { SIGNATURE = 8 };
+    bool asked = !goes_on;
     const int descriptor = open_input(path);
     struct stat information;
     size_t capacity = 1 << 16;
@@ -47,11 +50,18 @@ struct bytes read_whole(const char *path)
         if (got == 0) break;
         bytes.size += (size_t)got;
         if (bytes.data[0] == 0) break; // /dev/zero has no end
+        if (!asked && bytes.size >= SIGNATURE && !goes_on(&bytes)) break;
+        asked = asked || bytes.size >= SIGNATURE;
         if (bytes.size == capacity)
             bytes.data = reallocate(bytes.data, capacity *= 2, 1);
     }
     if (descriptor != STDIN_FILENO) close(descriptor);
     return bytes;
+}
+
+struct bytes read_whole(const char *path)
+{
+    return read_whole_of(path, NULL);
 }
 
 static bool write_all(int descriptor, const unsigned char *data, size_t size)
@@ -71,35 +81,6 @@ static void write_standard_output(const void *data, size_t size)
     signal(SIGPIPE, SIG_IGN); // a closed pipe is reported as any other failure
     if (!write_all(STDOUT_FILENO, data, size))
         die(STATUS_IO, "standard output: %s", strerror(errno));
-}
-
-// The rights a plain open() would have given: mkstemp gives 0600.
-static void grant_usual_rights(int descriptor)
-{
-    const mode_t mask = umask(0);
-    umask(mask);
-    fchmod(descriptor, 0666 & ~mask);
-}
-
-static void write_file(const char *path, const void *data, size_t size)
-{
-    char *temporary = allocate(strlen(path) + 8, 1);
-    sprintf(temporary, "%s.XXXXXX", path);
-    const int descriptor = mkstemp(temporary);
-    if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
-    grant_usual_rights(descriptor);
-    const bool written = write_all(descriptor, data, size) && !fsync(descriptor);
-    const int write_error = errno;
-    if (close(descriptor) || !written) {
-        unlink(temporary);
-        die(STATUS_IO, "%s: %s", path, strerror(written ? errno : write_error));
-    }
-    if (rename(temporary, path)) {
-        const int rename_error = errno;
-        unlink(temporary);
-        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(rename_error));
-    }
-    free(temporary);
 }
 
 // What a link points to is replaced, not the link: /dev/stdout must stay one.
@@ -144,10 +125,140 @@ static sigset_t hold_interrupts(void)
 static void check_replaceable(const char *path)
 {
     struct stat information;
+    if (lstat(path, &information) && errno == ENAMETOOLONG)
+        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
     if (!access(path, F_OK) && access(path, W_OK))
         die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
     if (!stat(path, &information) && S_ISDIR(information.st_mode))
         die(STATUS_CANNOT_CREATE, "%s: is a directory", path);
+}
+
+// The folder that PATH is in. The caller frees it.
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash) return strdup(".");
+    return strndup(path, slash == path ? 1 : (size_t)(slash - path)); // "/x": in "/"
+}
+
+// Another name in the folder of PATH, short, as PATH's own may be as long as names can
+// be. The caller frees it.
+static char *name_beside(const char *path, const char *name)
+{
+    char *folder = folder_of(path), *beside = NULL;
+    if (asprintf(&beside, "%s/%s", folder, name) < 0)
+        die(STATUS_INTERNAL, "out of memory: a file name");
+    free(folder);
+    return beside;
+}
+
+// Those of the file that is replaced, or what a plain open() would have given.
+static void grant_rights(int descriptor, const char *path)
+{
+    struct stat replaced;
+    const mode_t mask = umask(0);
+    umask(mask);
+    fchmod(descriptor, stat(path, &replaced) ? 0666 & ~mask : replaced.st_mode & 0777);
+}
+
+// ---- files without a name -----------------------------------------------------------
+
+void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME])
+{
+    snprintf(name, DESCRIPTOR_NAME, "/proc/self/fd/%d", descriptor);
+}
+
+// A file in the folder of PATH; -1 where the file system cannot have one.
+static int open_in_folder(const char *path)
+{
+    char *folder = folder_of(path);
+    const int descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    free(folder);
+    return descriptor;
+}
+
+int open_unnamed(const char *path)
+{
+    int descriptor = -1;
+    if (!strcmp(path, "-") && fcntl(STDOUT_FILENO, F_GETFD) < 0) // would become ours
+        die(STATUS_IO, "standard output: %s", strerror(errno));
+    signal(SIGXFSZ, SIG_IGN); // past the file size limit: an error, as on a full disk
+    if (strcmp(path, "-") && !is_device(path)) {
+        char *target = follow_link(path);
+        descriptor = open_in_folder(target);
+        free(target);
+    }
+    if (descriptor < 0) descriptor = memfd_create("output", MFD_CLOEXEC);
+    if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    return descriptor;
+}
+
+// The link's name, which the caller frees; NULL where DESCRIPTOR cannot be linked. A
+// process of the same number on another machine may be at work in the folder.
+static char *link_beside(const char *from, const char *path)
+{
+    for (int n = 0;; n++) {
+        char name[32];
+        snprintf(name, sizeof name, ".new-%d-%d", (int)getpid(), n);
+        char *beside = name_beside(path, name);
+        if (!linkat(AT_FDCWD, from, AT_FDCWD, beside, AT_SYMLINK_FOLLOW)) return beside;
+        free(beside);
+        if (errno != EEXIST) return NULL;
+    }
+}
+
+// Synced while it has no name, so that whatever ends the program meanwhile leaves
+// nothing. A link replaces nothing: where there is a file, it goes by a name beside it.
+// False when it cannot be linked, being in memory.
+static bool give_name(int descriptor, const char *path)
+{
+    char from[DESCRIPTOR_NAME];
+    name_of_descriptor(descriptor, from);
+    grant_rights(descriptor, path);
+    if (fsync(descriptor)) die(STATUS_IO, "%s: %s", path, strerror(errno));
+    if (!linkat(AT_FDCWD, from, AT_FDCWD, path, AT_SYMLINK_FOLLOW)) return true;
+    char *beside = errno == EEXIST ? link_beside(from, path) : NULL;
+    if (!beside) return false;
+    if (rename(beside, path)) {
+        const int error = errno;
+        unlink(beside);
+        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(error));
+    }
+    free(beside);
+    return true;
+}
+
+// ---- whole files --------------------------------------------------------------------
+
+// Where no file can be without a name.
+static void write_by_name(const char *path, const void *data, size_t size)
+{
+    char *temporary = name_beside(path, ".new-XXXXXX");
+    const int descriptor = mkstemp(temporary);
+    if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
+    grant_rights(descriptor, path);
+    const bool written = write_all(descriptor, data, size) && !fsync(descriptor);
+    const int write_error = errno;
+    if (close(descriptor) || !written) {
+        unlink(temporary);
+        die(STATUS_IO, "%s: %s", path, strerror(written ? errno : write_error));
+    }
+    if (rename(temporary, path)) {
+        const int rename_error = errno;
+        unlink(temporary);
+        die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(rename_error));
+    }
+    free(temporary);
+}
+
+static void write_file(const char *path, const void *data, size_t size)
+{
+    const int descriptor = open_in_folder(path);
+    if (descriptor >= 0 && !write_all(descriptor, data, size))
+        die(STATUS_IO, "%s: %s", path, strerror(errno));
+    const bool named = descriptor >= 0 && give_name(descriptor, path);
+    if (descriptor >= 0) close(descriptor);
+    if (!named) write_by_name(path, data, size);
 }
 
 void write_whole(const char *path, const void *data, size_t size)
@@ -162,61 +273,11 @@ void write_whole(const char *path, const void *data, size_t size)
         return;
     }
     const sigset_t before = hold_interrupts();
-    signal(SIGXFSZ, SIG_IGN); // past the file size limit: an error, as on a full disk
+    signal(SIGXFSZ, SIG_IGN);
     char *target = follow_link(path);
     write_file(target, data, size);
     free(target);
     sigprocmask(SIG_SETMASK, &before, NULL);
-}
-
-// ---- files without a name -----------------------------------------------------------
-
-// The folder that PATH is in. The caller frees it.
-static char *folder_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    if (!slash) return strdup(".");
-    return strndup(path, slash == path ? 1 : (size_t)(slash - path)); // "/x": in "/"
-}
-
-int open_unnamed(const char *path)
-{
-    int descriptor = -1;
-    if (!strcmp(path, "-") && fcntl(STDOUT_FILENO, F_GETFD) < 0) // would become ours
-        die(STATUS_IO, "standard output: %s", strerror(errno));
-    signal(SIGXFSZ, SIG_IGN);
-    if (strcmp(path, "-") && !is_device(path)) {
-        char *target = follow_link(path), *folder = folder_of(target);
-        descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
-        free(folder);
-        free(target);
-    }
-    if (descriptor < 0) descriptor = memfd_create("output", MFD_CLOEXEC);
-    if (descriptor < 0) die(STATUS_CANNOT_CREATE, "%s: %s", path, strerror(errno));
-    return descriptor;
-}
-
-void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME])
-{
-    snprintf(name, DESCRIPTOR_NAME, "/proc/self/fd/%d", descriptor);
-}
-
-// Under another name first: a link replaces nothing. False when it cannot be linked,
-// being in memory.
-static bool give_name(int descriptor, const char *path)
-{
-    char *temporary = allocate(strlen(path) + 16, 1), from[DESCRIPTOR_NAME];
-    sprintf(temporary, "%s.%d", path, (int)getpid());
-    name_of_descriptor(descriptor, from);
-    const bool linked = !linkat(AT_FDCWD, from, AT_FDCWD, temporary, AT_SYMLINK_FOLLOW);
-    const bool synced = !linked || !fsync(descriptor);
-    if (linked && (!synced || rename(temporary, path))) {
-        const int error = errno;
-        unlink(temporary);
-        die(synced ? STATUS_CANNOT_CREATE : STATUS_IO, "%s: %s", path, strerror(error));
-    }
-    free(temporary);
-    return linked;
 }
 
 static void copy_whole(int descriptor, const char *path)

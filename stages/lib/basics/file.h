@@ -16,9 +16,15 @@ struct bytes {
 // fails. The caller frees .data.
 struct bytes read_whole(const char *path);
 
+// The same, but only the beginning of what GOES_ON says no to, which is asked once
+// there are 8 bytes: what follows may have no end.
+struct bytes read_whole_of(const char *path,
+                           bool (*goes_on)(const struct bytes *beginning));
+
 // Writes all of it or nothing: beside PATH under another name, synced, then renamed.
 // "-" is standard output. Exits 73 when PATH cannot be created, 74 when writing fails;
-// what stood at PATH before is then untouched. Interrupts wait until it is done.
+// what stood at PATH before is then untouched. What is replaced keeps its rights.
+// Interrupts wait until it is done.
 void write_whole(const char *path, const void *data, size_t size);
 
 // A new file that is no one's to see yet, for reading and writing, on the file system
