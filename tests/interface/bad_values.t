@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bad input (tests/refusals.py): values of artifacts, one by one: numbers that are none, out of
 range, of another shape or type."""
+import os
 import sys
 
 import h5py
 import numpy
 
 sys.path.insert(0, "tests")
-from refusals import attribute, damage, done, removed, replaced, value
+from refusals import (BAD_DATA, attribute, damage, damaged, done, refused, removed, replaced,
+                      result, run, value)
 
 # ---- numbers that are none --------------------------------------------------------------
 
@@ -150,31 +152,59 @@ damage("a link to nowhere counts as missing", "packing",
        "/particles/radius: is missing")
 
 
-def borrowed(how):
-    """The radii stand in another file."""
+def borrowed(how, name, source):
+    """What NAME leads to stands in the file SOURCE."""
 
     def change(file):
-        shape = file["particles/radius"].shape
-        del file["particles/radius"]
-        how(file, shape)
+        shape = getattr(file[name], "shape", None)
+        del file[name]
+        how(file, name, shape, source)
 
     return change
 
 
-def virtual(file, shape):
+def link(file, name, shape, source):
+    file[name] = h5py.ExternalLink(source, f"/{name}")
+
+
+def storage(file, name, shape, source):
+    file.create_dataset(name, shape, "f8", external=[(source, 0, h5py.h5f.UNLIMITED)])
+
+
+def virtual(file, name, shape, source):
     layout = h5py.VirtualLayout(shape, "f8")
-    layout[:] = h5py.VirtualSource("packing", "particles/radius", shape=shape)
-    file.create_virtual_dataset("particles/radius", layout)
+    layout[:] = h5py.VirtualSource(source, name, shape=shape)
+    file.create_virtual_dataset(name, layout)
 
 
-for way, how in {
-        "an external link": lambda file, shape: file.__setitem__(
-            "particles/radius", h5py.ExternalLink("packing", "/particles/radius")),
-        "external storage": lambda file, shape: file.create_dataset(
-            "particles/radius", shape, "f8", external=[("packing", 0, h5py.h5f.UNLIMITED)]),
-        "a virtual dataset": virtual}.items():
-    damage(f"{way} is refused", "packing", borrowed(how),
-           "/particles/radius: lies in another file")
+os.mkfifo("fifo")  # who opens it waits for ever
+for source in "packing", "fifo":
+    for way, how, name in [("an external link", link, "particles/radius"),
+                           ("external storage", storage, "particles/radius"),
+                           ("a virtual dataset", virtual, "particles/radius"),
+                           ("a group elsewhere", link, "particles")]:
+        damage(f"{way}, in a {source}, is refused", "packing", borrowed(how, name, source),
+               f"/{name}: lies in another file: copy it into this one")
+        refused(f"so it is by inspect: {way}, in a {source}", BAD_DATA, ["inspect", "damaged"],
+                f"damaged: /{name}: lies in another file: copy it into this one", output=())
+
+
+def aside(file):
+    file["aside"] = h5py.ExternalLink("fifo", "/aside")
+
+
+damage("a link that no one needs is refused as well", "packing", aside,
+       "/aside: lies in another file: copy it into this one")
+
+
+def within(file):
+    file.move("particles/radius", "spare")
+    file["particles/radius"] = h5py.SoftLink("/spare")
+    file["itself"] = file["/"]
+
+
+own = run(["tessellate", damaged("packing", within), "-o", "out/result"])
+result("links within the file are followed", [own.stderr.decode()] if own.returncode else [])
 damage("a group where a dataset belongs counts as missing", "packing",
        lambda file: (file.__delitem__("particles/radius"),
                      file.create_group("particles/radius")),

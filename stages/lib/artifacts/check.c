@@ -349,19 +349,6 @@ static bool is_left_out(hid_t file, const json_t *rules)
     return json_is_true(json_object_get(rules, "optional")) && !has_entry(file, rules);
 }
 
-// Links and storage may lead to other files, which no digest of this one vouches for.
-static bool lies_elsewhere(hid_t file, hid_t dataset)
-{
-    H5O_info_t root, own;
-    const hid_t list = H5Dget_create_plist(dataset);
-    const bool elsewhere =
-        H5Oget_info_by_name(file, "/", &root, H5P_DEFAULT) < 0 ||
-        H5Oget_info(dataset, &own) < 0 || own.fileno != root.fileno ||
-        H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0;
-    H5Pclose(list);
-    return elsewhere;
-}
-
 static enum status check_dataset(hid_t file, const json_t *rules,
                                  struct symbols *symbols, size_t image_size,
                                  struct reason *reason)
@@ -373,9 +360,6 @@ static enum status check_dataset(hid_t file, const json_t *rules,
     if (subject.dataset < 0)
         return refuse(reason, STATUS_BAD_DATA, "%s: is missing", subject.name);
     enum status status = check_class(&subject, reason);
-    if (!status && lies_elsewhere(file, subject.dataset))
-        status =
-            refuse(reason, STATUS_BAD_DATA, "%s: lies in another file", subject.name);
     if (!status) status = check_shape(&subject, symbols, reason);
     if (!status) status = check_size(&subject, image_size, reason);
     if (!status) status = check_values(&subject, symbols, reason);

@@ -8,6 +8,11 @@
 
 #include <stddef.h>
 
+// All that the file's links lead to lies in it, which its digest vouches for. Else
+// returns STATUS_BAD_DATA with the object in REASON. Follows nothing: to be asked
+// before anything is opened.
+enum status check_links(hid_t file, struct reason *reason);
+
 // Every dataset is there, has the kind of numbers and the shape that the schema says,
 // with equal symbols meaning equal extents, and every value keeps its rules. IMAGE_SIZE
 // bounds what a dataset may claim to hold. Returns STATUS_BAD_DATA with dataset, row,

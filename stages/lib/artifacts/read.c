@@ -90,8 +90,10 @@ static void open_unchecked(struct artifact *artifact, const char *name)
 static void check(const struct artifact *artifact)
 {
     struct reason reason;
-    const enum status status =
-        check_file(artifact->file, artifact->schema, artifact->image.size, &reason);
+    enum status status = check_links(artifact->file, &reason);
+    if (!status)
+        status =
+            check_file(artifact->file, artifact->schema, artifact->image.size, &reason);
     if (status) die(STATUS_BAD_DATA, "%s: %s", input_name(artifact->path), reason.text);
     for (int k = 0; provenance_names[k]; k++)
         free(artifact_get_text(artifact, provenance_names[k]));
