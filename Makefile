@@ -23,6 +23,20 @@ V ?= 0# V=1 shows the commands
 BUILD ?= build
 PREFIX ?= /usr/local
 DESTDIR ?=
+RUNS ?= $(BUILD)/runs
+
+# Names of files go to make's rules and its shell as they are: one that either would take apart or
+# run is refused before it is used.
+hash := \#
+signs := ' " ` ; & < > | * ? [ ] { } ( ) ! $$ \ : = % $(hash)
+unfit = $(strip $(word 2,$(value $1)) $(foreach sign,$(signs),$(findstring $(sign),$(value $1))))
+set_by_user = $(filter command environment,$(origin $1))
+check_name = $(if $(and $(set_by_user),$(unfit)),$(error $1=$(strip $(value $1)): make takes no blanks or signs \
+	in names of files; a link by another name will do))
+$(foreach name,BUILD RUNS SCENE IMPORT MONTE_CARLO_SCENE,$(call check_name,$(name)))
+# A word for the shell.
+quoted = '$(subst ','\'',$1)'
+
 default = $(if $(filter default undefined,$(origin $1)),$2,$($1))# make has its own CC
 CC := $(call default,CC,gcc)
 CXX := $(call default,CXX,g++)
@@ -71,7 +85,7 @@ ifneq ($(and $(first_goals),$(other_goals)),)
 .PHONY: $(other_goals) others
 $(other_goals): others ;
 others: $(first_goals)
-	@+$(MAKE) --no-print-directory $(other_goals)
+	@+$(MAKE) --no-print-directory $(foreach goal,$(other_goals),$(call quoted,$(goal)))
 
 else
 
@@ -171,14 +185,14 @@ include $(wildcard $(BUILD)/obj/*/*/*.d $(BUILD)/obj/*/*/*/*.d)
 # stage makes (pipelines/crack.mk has one for each stage), each `report` a table or picture
 # that a program beside it makes, and `study` the goal.
 
-RUNS ?= $(BUILD)/runs
 RUN ?=# a launcher for the stages: RUN='srun -n1'
 THREADS ?=# of each stage
 
 # Stops at once where a word of the variable $1, or no word, is not $2 (whole): it must be $3.
-must = $(if $(shell printf '%s\n' $(foreach w,$($1),'$(subst ','\'',$w)') | grep -qvxE '$2' && echo so),$(error $1 must be $3, got '$($1)'))
+must = $(if $(shell printf '%s\n' $(foreach w,$($1),$(call quoted,$w)) | grep -qvxE '$2' && echo so),$(error $1 must be $3, got '$($1)'))
 whole := [1-9][0-9]{0,6}
 number := ([0-9]+\.?|[0-9]*\.[0-9]+)([eE][-+]?[0-9]+)?
+$(if $(THREADS),$(call must,THREADS,$(whole),a whole number))
 
 artifacts :=
 pipeline_goals := $(RUNS)/%
@@ -191,7 +205,8 @@ artifact = $(if $(filter $1,$(artifacts)),,$(eval artifacts += $1)$(eval \
 
 # $1 is made by stage $2, program $3, from scene $4 with overrides $5 and the files $6.
 step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),version=$(call \
-	version_of,$2),program='$3') $(5:%=set='%'),$6,$(RUN) $3 -p $4 $(5:%=--set '%') \
+	version_of,$2),program=$(call quoted,$3)) $(foreach s,$5,set=$(call quoted,$s)),$6,$(RUN) $3 \
+	-p $4 $(foreach s,$5,--set $(call quoted,$s)) \
 	$(THREADS:%=--threads %) $6 -o $1,$3)
 
 # $1 is a table or a picture that pipelines/$2 makes of the files $3. It is called with these, or
@@ -217,7 +232,7 @@ ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # be several at work.
 recipes := $(shell mkdir -p $(BUILD) && mktemp $(BUILD)/recipes.XXXXXX)
 $(file >$(recipes),$(foreach a,$(artifacts),$(recipe/$a)))
-stale := $(shell pipelines/memo check $(recipes); status=$$?; rm -f $(recipes); exit $$status)
+stale := $(shell pipelines/memo check $(recipes))
 ifneq ($(.SHELLSTATUS),0)
 $(error pipelines/memo could not tell what is stale)
 endif
@@ -326,7 +341,7 @@ clean: ## remove everything made
 	rm -rf $(BUILD)
 
 # --- tools and libraries --------------------------------------------------------------
-# Does and prints nothing when nothing is missing.
+# Does and prints nothing when nothing is missing. What apt says shows only where it fails.
 
 .PHONY: deps FORCE
 deps: ## install what is missing (Debian; as root or through sudo)
@@ -335,6 +350,8 @@ deps: ## install what is missing (Debian; as root or through sudo)
 			|| missing+=" $$package"; done; \
 	[[ -z $$missing ]] && exit; \
 	as_root=; (( EUID )) && as_root=sudo; \
-	$$as_root apt-get update; \
-	$$as_root env DEBIAN_FRONTEND=noninteractive \
-		apt-get install -y --no-install-recommends $$missing
+	printf '  %-5s %s\n' APT "$$missing"; \
+	said=$$(mktemp); trap 'rm -f "$$said"' EXIT; \
+	{ $$as_root apt-get update && $$as_root env DEBIAN_FRONTEND=noninteractive \
+		apt-get install -y --no-install-recommends $$missing; } >"$$said" 2>&1 \
+		|| { status=$$?; tail -n 20 "$$said" >&2; exit $$status; }

@@ -26,14 +26,6 @@ force-protocol = $(call step,$1,force-protocol,$(FORCE_PROTOCOL),$2,$3,$4)
 dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
 crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
 
-# What make or its shell would take apart.
-hash := \#
-unfit := $(strip $(word 2,$(value SCENE)) $(foreach sign,' " ` ; & < > | * ? [ ] { } ! $$ $(hash),$(findstring \
-	$(sign),$(value SCENE))))
-ifneq ($(unfit),)
-$(error SCENE=$(value SCENE): make takes no blanks or signs in names of files)
-endif
-
 pipeline_goals += demo run
 
 # packing, tessellation and network of scene $2 in folder $1, with the overrides $3 of the packing

@@ -23,6 +23,8 @@ END
 cat >fake/apt-get <<'END'
 #!/bin/bash
 echo "$*" >>"$SCRATCH/asked"
+seq 800 # lines of news
+[[ -e $SCRATCH/no-network ]] && { echo "E: no network" >&2; exit 100; }
 [[ $1 == install ]] && rm "$SCRATCH/missing"
 exit 0
 END
@@ -34,11 +36,19 @@ with_fakes() { PATH=$scratch/fake:$PATH "$@"; }
 is 'make deps with nothing missing says nothing' '' "$(with_fakes make deps 2>&1)"
 is 'and asks apt for nothing' '' "$(cat asked 2>/dev/null)"
 echo 'jq libgsl-dev' >missing
-with_fakes make deps >/dev/null 2>&1
+with_fakes make deps >said 2>&1
+is 'make deps says what it installs, in a line' '  APT    libgsl-dev jq' "$(sed 's/jq libgsl-dev/libgsl-dev jq/' said)"
 is 'make deps installs what is missing, no more' \
     $'update\ninstall -y --no-install-recommends libgsl-dev jq' \
     "$(sed 's/libgsl-dev jq$/&/;s/jq libgsl-dev$/libgsl-dev jq/' asked)"
 
+echo jq >missing
+touch no-network
+with_fakes make deps >said 2>&1
+is 'where apt fails, make does, and shows the end of what apt said' '2 E: no network' \
+    "$? $(grep -o '^E: .*' said)"
+is 'in few lines' yes "$( (( $(wc -l <said) < 25 )) && echo yes)"
+rm no-network
 cat >pipelines/goals.mk <<'END'
 first second: ; @echo $@ >>asked
 END

@@ -227,10 +227,50 @@ wait $!
 mv memo-itself pipelines/memo
 is 'of two makes at once each sees what is stale' 1 "$(grep -c 'memo run .*stage=pack' plan)"
 
-for name in "a b" "it's" 'a;b' 'a#b'; do
-    is "a scene named $name is refused" 1 "$(make run SCENE="samples/$name.json" 2>&1 \
-        | grep -c 'make takes no blanks or signs in names of files')"
+# --- names of files: they work, or are refused in one line, and none is run ----------------
+
+# refused VARIABLE NAME [MAKE-ARGUMENTS...]
+refused()
+{
+    local variable=$1 name=$2
+    shift 2
+    make run "$@" "$variable=$name" >said 2>&1
+    is "$variable=${name//[$'\n'#]/?} is refused${1:+, by make $1}" '1 line, refused' \
+        "$(wc -l <said) line, $(grep -q 'make takes no blanks or signs in names of files' said \
+        && echo refused)"
+}
+for name in 'a b' "it's" 'a;touch PWN;' 'a#b' 'a(b' 'a)b' 'a:b' 'a=b' 'a\b' 'a%b' 'a|touch PWN' \
+    'a`touch PWN`' 'a$(touch PWN)' 'a$(shell touch PWN)' 'a&touch PWN' $'a\ntouch PWN' \
+    "a';touch PWN;'" 'a>PWN' 'a*' 'a{b,c}'; do
+    refused SCENE "samples/$name.json" -n
+    refused IMPORT "$name.txt" -n SCENE=$scene
 done
+for variable in SCENE IMPORT RUNS BUILD; do
+    refused $variable 'a;touch PWN;' -n SCENE=$scene
+    refused $variable 'a;touch PWN;' -q SCENE=$scene
+    refused $variable 'a;touch PWN;' -B SCENE=$scene
+done
+is 'in the environment as well' 2 \
+    "$(IMPORT='a;touch PWN;' make -n run SCENE=$scene >/dev/null 2>&1; echo $?)"
+is 'SEEDS, THREADS: not run either' '' "$(make -n strength SEEDS='1;touch PWN' 2>&1 | grep memo)$(
+    make -n run SCENE=$scene THREADS='1;touch PWN' 2>&1 | grep memo)"
+make -n soft SOFT_SET="a='\$(touch PWN)';touch PWN;'" DRY="x';touch PWN;'" >said 2>&1
+is 'and nothing was run' '' "$(find . -name 'PWN*')"
+is 'nor is anything left behind' '' "$(find build -name 'recipes*')"
+for name in 'a,b' 'a@b+c' 'a~b^c' 'größe' '-a'; do
+    cp $scene "samples/$name.json"
+    : >ran
+    make run SCENE="samples/$name.json" >said 2>&1
+    is "a scene named $name works" "$all" "$(xargs <ran)"
+done
+cat >pipelines/wrong.mk <<'END'
+$(if $(filter wrong,$(MAKECMDGOALS)),$(call artifact,$(RUNS)/wrong,what='is (this,,true,true))
+pipeline_goals += wrong
+wrong: $(RUNS)/wrong
+END
+make -n wrong >said 2>&1
+is 'recipes that cannot be read leave nothing either' '' "$(find build -name 'recipes*')"
+rm pipelines/wrong.mk
 cp $scene samples/stiff-5x5x10.json
 plan=$(make -n demo)
 is 'make demo: one network, one picture of its cracks' 'crack-patterns merge-nodes pack tessellate' \
