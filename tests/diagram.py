@@ -135,8 +135,8 @@ def tessellate(grains, edge, folder, *options, periodic=(False,) * 3, radius=Non
     at = lambda end: os.path.join(folder, name + end)
     flag = str(list(map(bool, periodic))).lower()
     run("pack", "-q", "--set", "method=import", "--set", "lower=[0,0,0]", "--set",
-        f"upper={edge.tolist()}", "--set", "bonds=none", "--set", f"periodic={flag}",
-        "-o", at("-packing.h5"), input=text.encode())
+        f"upper={edge.tolist()}", "--set", "bonds=none", "--set", f"periodic={flag}", "--set",
+        "check=none", "-o", at("-packing.h5"), input=text.encode())
     run("tessellate", "-q", *options, at("-packing.h5"), "-o", at(".h5"))
     return Diagram(at(".h5"))
 

@@ -1,14 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/neighbours.h"
 #include "pack.h"
-
-#include <stdlib.h>
-
-void bond_touching(struct packing *packing, double gap)
-{
-    free(packing->bond);
-    packing->bond = neighbour_pairs(packing, gap, &packing->n_bond);
-}
 
 double packing_porosity(const struct packing *packing)
 {

@@ -4,6 +4,9 @@
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "geometry/neighbours.h"
+#include "geometry/packing_check.h"
+#include "import.h"
 #include "methods.h"
 #include "pack.h"
 #include "parameters.h"
@@ -25,86 +28,6 @@ static const struct stage stage = {
         "packing.h5. With method=explosive_repulsion the same, for grains to part.",
     .reports = "Write there, as JSON, what is said of the packing",
     .checkpoints = true};
-
-static void apply_box(struct packing *packing, const struct pack_parameters *parameters)
-{
-    for (int axis = 0; axis < 3; axis++) {
-        if (!isnan(parameters->domain.lower[axis]))
-            set_component(&packing->lower, axis, parameters->domain.lower[axis]);
-        if (!isnan(parameters->domain.upper[axis]))
-            set_component(&packing->upper, axis, parameters->domain.upper[axis]);
-        const double low = component(packing->lower, axis);
-        const double high = component(packing->upper, axis);
-        if (!(low < high))
-            die(STATUS_BAD_DATA,
-                "pack.upper: must be above pack.lower = %g m along %c, got %g", low,
-                "xyz"[axis], high);
-    }
-}
-
-static struct packing import_lines(const char *path, struct bytes text,
-                                   const struct pack_parameters *parameters,
-                                   json_t *inputs)
-{
-    struct packing packing;
-    struct reason reason;
-    const bool lammps = is_lammps(&text);
-    const enum status status =
-        lammps ? import_lammps(&text, parameters->frame, &packing, &reason)
-               : import_text(&text, &packing, &reason);
-    if (status) die(status, "%s: %s", input_name(path), reason.text);
-    for (int axis = 0; axis < 3 && !lammps; axis++)
-        packing.periodic[axis] = parameters->domain.periodic[axis];
-    char digest[65];
-    sha256(text.data, text.size, digest);
-    json_array_append_new(inputs,
-                          json_pack("{s:s,s:s}", "schema", "text", "sha256", digest));
-    free(text.data);
-    return packing;
-}
-
-static struct packing import_packing(const char *path, struct bytes image,
-                                     json_t *inputs)
-{
-    struct artifact *origin = artifact_open_bytes(path, image, "packing");
-    const struct packing packing = artifact_get_packing(origin);
-    json_array_append_new(inputs, input_digest(origin));
-    artifact_close(origin);
-    return packing;
-}
-
-// Grains from text or from another packing; INPUTS gets what the provenance says of it.
-static struct packing import(const char *path, const struct pack_parameters *parameters,
-                             json_t *inputs)
-{
-    const struct bytes bytes = read_whole(path);
-    if (!bytes.size && !strcmp(path, "-"))
-        die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
-                             "an input, make run from IMPORT=FILE");
-    struct packing packing = is_hdf5(&bytes)
-                                 ? import_packing(path, bytes, inputs)
-                                 : import_lines(path, bytes, parameters, inputs);
-    apply_box(&packing, parameters);
-    return packing;
-}
-
-// Grains of another maker, and the box they lie in as DOMAIN.
-static struct packing make_import(const struct invocation *invocation,
-                                  const struct pack_parameters *parameters,
-                                  json_t *inputs, struct domain *domain)
-{
-    if (parameters->domain.shape != DOMAIN_BOX || parameters->domain.cut != CUT_NONE)
-        die(STATUS_BAD_DATA,
-            "pack.domain.shape: must be box, and nothing cut out, for import");
-    const struct packing packing =
-        import(invocation->n_input ? invocation->inputs[0] : "-", parameters, inputs);
-    *domain = (struct domain){.dimensions = (int)parameters->dimensions,
-                              .lower = packing.lower,
-                              .upper = packing.upper};
-    for (int axis = 0; axis < 3; axis++)
-        domain->periodic[axis] = packing.periodic[axis];
-    return packing;
-}
 
 static struct packing make_packing(const struct invocation *invocation,
                                    const struct pack_parameters *parameters,
@@ -174,7 +97,31 @@ static const char *model_text(const struct reached *reached,
            "history\nno bonds while they moved\n";
 }
 
+// Stops at what cannot be, and says what can hardly be meant.
+static void look_at(const struct packing *packing, const struct contacts *contacts,
+                    const struct invocation *invocation,
+                    const struct pack_parameters *parameters)
+{
+    // random points are meant to overlap
+    if (parameters->check == CHECK_NONE || parameters->method == METHOD_POISSON) return;
+    const char *path = invocation->n_input ? input_name(invocation->inputs[0]) : NULL;
+    const struct packing_facts facts =
+        packing_facts(packing, contacts, parameters->touching_gap);
+    struct findings findings = {0};
+    judge_packing(packing, &facts, &findings);
+    for (int k = 0; k < findings.count; k++) {
+        const struct finding *finding = &findings.item[k];
+        if (finding->severity == FINDING_IMPOSSIBLE &&
+            parameters->check == CHECK_REFUSE)
+            die(STATUS_BAD_DATA, "%s%s%s", path ? path : "", path ? ": " : "",
+                finding->text);
+        if (finding->severity != FINDING_NOTE && !invocation->quiet)
+            report("%s%s%s", path ? path : "", path ? ": " : "", finding->text);
+    }
+}
+
 static void write_packing(const struct packing *packing, const struct domain *domain,
+                          const struct contacts *contacts,
                           const struct invocation *invocation, json_t *inputs,
                           const struct pack_parameters *parameters,
                           const struct reached *reached)
@@ -184,7 +131,7 @@ static void write_packing(const struct packing *packing, const struct domain *do
         die(STATUS_BAD_DATA, "the box is too small for its grains: the porosity is %g",
             porosity);
     struct packing_report said =
-        report_packing(packing, domain, parameters->touching_gap,
+        report_packing(packing, domain, contacts, parameters->touching_gap,
                        reached->dynamic && parameters->dynamics.friction > 0);
     report_number(&said, "/summary/porosity", porosity);
     report_number(&said, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
@@ -200,12 +147,24 @@ static void write_packing(const struct packing *packing, const struct domain *do
     report_free(&said);
 }
 
-static void make_bonds(struct packing *packing,
+// The caller frees the pairs.
+static struct contacts find_contacts(const struct packing *packing, double gap)
+{
+    struct contacts contacts;
+    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &contacts.count);
+    contacts.pair = (const int32_t(*)[2])pair;
+    return contacts;
+}
+
+static void make_bonds(struct packing *packing, const struct contacts *contacts,
                        const struct pack_parameters *parameters, bool quiet)
 {
     if (parameters->bonds == BONDS_NONE) packing->n_bond = 0;
     if (parameters->bonds != BONDS_TOUCHING) return;
-    bond_touching(packing, parameters->touching_gap);
+    free(packing->bond);
+    packing->n_bond = contacts->count;
+    packing->bond =
+        duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
     if (!packing->n_bond && packing->n_particle > 1 && !quiet)
         report("no two grains touch within touching_gap = %g: no bonds",
                parameters->touching_gap);
@@ -254,13 +213,21 @@ int main(int argc, char **argv)
     struct reached reached = {.dynamic = false};
     struct packing packing =
         make_packing(&invocation, &parameters, inputs, &domain, &reached);
-    make_bonds(&packing, &parameters, invocation.quiet);
-    if (parameters.extra_layer) make_layer(&domain, parameters.extra_side, &packing);
+    struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
+    look_at(&packing, &contacts, &invocation, &parameters);
+    make_bonds(&packing, &contacts, &parameters, invocation.quiet);
+    if (parameters.extra_layer) {
+        make_layer(&domain, parameters.extra_side, &packing);
+        free((void *)contacts.pair);
+        contacts = find_contacts(&packing, parameters.touching_gap);
+    }
     if (parameters.method != METHOD_IMPORT)
         packing.n_body = domain_bodies(&domain, packing.body);
-    write_packing(&packing, &domain, &invocation, inputs, &parameters, &reached);
+    write_packing(&packing, &domain, &contacts, &invocation, inputs, &parameters,
+                  &reached);
 
     checkpoint_end(&checkpoint);
+    free((void *)contacts.pair);
     packing_free(&packing);
     invocation_free(&invocation);
     return STATUS_OK;

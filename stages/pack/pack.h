@@ -2,7 +2,6 @@
 #ifndef CRAQUELURE_PACK_H
 #define CRAQUELURE_PACK_H
 
-#include "basics/file.h"
 #include "basics/progress.h"
 #include "basics/status.h"
 #include "domain.h"
@@ -81,31 +80,7 @@ enum status add_layer(const struct domain *domain, int wall, struct packing *pac
                       struct reason *reason);
 enum status check_layer(const struct domain *domain, int wall, struct reason *reason);
 
-// ---- import -------------------------------------------------------------------------
-
-// Grains from text, one "x y z r" a line in metres; "#" begins a comment. The box is
-// theirs (lowest and highest grain surfaces). STATUS_BAD_DATA with the line in REASON.
-// On success the caller frees *PACKING.
-enum status import_text(const struct bytes *text, struct packing *packing,
-                        struct reason *reason);
-
-// A copy that ends with a null, for the caller to free; STATUS_BAD_DATA when there are
-// nulls within.
-enum status copy_text(const struct bytes *text, char **copy, struct reason *reason);
-
-// Whether this is a LAMMPS dump in text.
-bool is_lammps(const struct bytes *text);
-
-// One frame of it, from 0 (-1: the last), in the order of the grains' ids. Positions
-// x|xu|xs|xsu (and so on), radius or diameter; box and periodic sides as it says.
-// STATUS_BAD_DATA with the line in REASON. On success the caller frees *PACKING.
-enum status import_lammps(const struct bytes *text, int64_t frame,
-                          struct packing *packing, struct reason *reason);
-
 // ---- contacts -----------------------------------------------------------------------
-
-// Bonds every two grains whose surfaces are at most GAP radius sums apart.
-void bond_touching(struct packing *packing, double gap);
 
 // Void share of the box, counting overlaps twice as solid.
 double packing_porosity(const struct packing *packing);

@@ -147,6 +147,17 @@ const struct parameter pack_table[] = {
      .text = "flat side of the box that the extra layer is at"},
     {"frame", PARAMETER_INTEGER, "1", "-1", AT(frame), BETWEEN(-1, 1e12),
      .text = "of an imported LAMMPS dump, from 0; -1: the last"},
+    {"import.scale", PARAMETER_NUMBER, "m", "1", AT(import_scale), ABOVE(0),
+     .text = "length of a unit of INPUT: 1e-3 where it is in millimetres, 1e-6 in "
+             "micrometres"},
+    {"import.diameters", PARAMETER_BOOLEAN, "1", "false", AT(import_diameters),
+     .text = "INPUT has diameters where radii are read"},
+    {"check", PARAMETER_CHOICE, "1", "\"refuse\"", AT(check),
+     .choices = "refuse|warn|none",
+     .text =
+         "refuse: grains in one place or wholly outside the box, or with more volume "
+         "than it, end with status 65, and what looks like a slip is said (not of "
+         "poisson); warn: both are said; none: not looked at"},
     {"bonds", PARAMETER_CHOICE, "1", "\"touching\"", AT(bonds),
      .choices = "none|touching|keep",
      .text = "which grains are bonded; keep: as an imported packing.h5 says"},

@@ -28,9 +28,10 @@ enum method {
     METHOD_IMPORT
 };
 enum bonds { BONDS_NONE, BONDS_TOUCHING, BONDS_KEEP };
+enum check { CHECK_REFUSE, CHECK_WARN, CHECK_NONE };
 
 struct pack_parameters {
-    int method, bonds; // enum method, enum bonds
+    int method, bonds, check; // enum method, enum bonds, enum check
     int64_t dimensions;
     int64_t counts[3]; // of a lattice: unit cells
     int64_t count;     // of grains; 0: until no more fit
@@ -41,6 +42,8 @@ struct pack_parameters {
     int extra_side; // wall that the extra layer is at
     struct dynamics_parameters dynamics;
     double touching_gap; // of the sum of two radii
+    double import_scale; // m per unit of INPUT
+    bool import_diameters;
 };
 
 extern const struct parameter pack_table[];

@@ -283,15 +283,16 @@ static void say_distances(const struct subject *subject, struct packing_report *
 }
 
 struct packing_report report_packing(const struct packing *packing,
-                                     const struct domain *domain, double gap, bool rubs)
+                                     const struct domain *domain,
+                                     const struct contacts *contacts, double gap,
+                                     bool rubs)
 {
     struct subject subject = {.packing = packing,
                               .domain = domain,
+                              .contacts = *contacts,
                               .gap = gap,
                               .rubs = rubs,
                               .flat = packing_is_flat(packing)};
-    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &subject.contacts.count);
-    subject.contacts.pair = (const int32_t(*)[2])pair;
     choose_windows(&subject);
 
     struct packing_report report = {0};
@@ -301,7 +302,6 @@ struct packing_report report_packing(const struct packing *packing,
     say_fabric(&subject, &report);
     say_sizes(packing, &report);
     say_distances(&subject, &report);
-    free(pair);
     return report;
 }
 

@@ -6,6 +6,7 @@
 
 #include "artifacts/artifact.h"
 #include "domain.h"
+#include "geometry/porosity.h"
 
 enum { MOST_SAID = 32 };
 
@@ -22,14 +23,15 @@ struct packing_report {
     struct said said[MOST_SAID];
 };
 
-// Measures PACKING in DOMAIN, contacts being surfaces at most GAP radius sums apart,
+// Measures PACKING in DOMAIN, CONTACTS being surfaces at most GAP radius sums apart,
 // with friction if it RUBS (two of them then hold a grain that would rattle otherwise):
 // everything but porosity and unbalanced ratio. What makes no sense for this packing is
 // left out, such as the bulk porosity where walls are everywhere near. Bulk, slices and
 // g(r) are taken in a box: for a cylinder or sphere the largest that lies within, for a
 // ring, or where something is cut out, not at all. Freed with report_free.
 struct packing_report report_packing(const struct packing *packing,
-                                     const struct domain *domain, double gap,
+                                     const struct domain *domain,
+                                     const struct contacts *contacts, double gap,
                                      bool rubs);
 
 // Adds a number; NAME must last. One that is not finite is left out.

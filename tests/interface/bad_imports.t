@@ -43,6 +43,20 @@ refused("an import of a network is refused", BAD_DATA,
         ["pack", "--set", "method=import", "network"],
         "network: must be a packing, is a network")
 
+# ---- what grains cannot be ----------------------------------------------------------------
+
+imported("two grains in one place are refused", "0 0 0 1e-3\n1 0 0 1e-3\n0 0 0 2e-3\n",
+         r"/particles/position: row 2: has the same centre as row 0 \(1 such pair\): leave "
+         "duplicates out")
+imported("a grain wholly outside the box is refused", "1 1 1 0.005\n1 1 2.5 0.005\n",
+         r"grains: /particles/position: row 1: the grain is wholly outside the box, as 1 of 2 are: "
+         "leave them out, or let pack.lower and pack.upper take them in",
+         "--set", "lower=[0,0,0]", "--set", "upper=[2,2,2]")
+imported("grains with more volume than their box are refused", "1 1 1 0.005\n1 1 1.01 0.005\n",
+         r"grains: the porosity is -20.8: the grains have 21.8 of the volume of the box: "
+         "pack.lower and pack.upper leave them no room",
+         "--set", "lower=[0.999,0.999,0.999]", "--set", "upper=[1.001,1.001,1.011]")
+
 # ---- imported dumps ---------------------------------------------------------------------
 
 def dump(*rows, columns="id x y z radius", box="BOX BOUNDS pp ff ff", bounds=("0 9",) * 3,

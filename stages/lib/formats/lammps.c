@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // LAMMPS dumps in text: frames of "ITEM: ..." lines, each followed by its data.
+#include "formats/grains.h"
+
 #include "basics/memory.h"
-#include "pack.h"
 
 #include <stdio.h>
 #include <stdlib.h>

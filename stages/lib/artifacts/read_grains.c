@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "artifacts/read_grains.h"
+
+#include "artifacts/artifact.h"
+#include "basics/status.h"
+#include "formats/grains.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static struct packing read_lines(const char *path, struct bytes text, int64_t frame,
+                                 json_t *inputs)
+{
+    struct packing packing;
+    struct reason reason;
+    const enum status status = is_lammps(&text)
+                                   ? import_lammps(&text, frame, &packing, &reason)
+                                   : import_text(&text, &packing, &reason);
+    if (status) die(status, "%s: %s", input_name(path), reason.text);
+    char digest[65];
+    sha256(text.data, text.size, digest);
+    json_array_append_new(inputs,
+                          json_pack("{s:s,s:s}", "schema", "text", "sha256", digest));
+    return packing;
+}
+
+static struct packing read_artifact(const char *path, struct bytes image,
+                                    const char *schema, json_t *inputs)
+{
+    struct artifact *artifact = artifact_open_bytes(path, image, schema);
+    if (!schema_dataset(artifact->schema, "/particles/position"))
+        die(STATUS_BAD_DATA, "%s: must hold grains, is a %s", input_name(path),
+            artifact->schema->name);
+    const struct packing packing = artifact_get_packing(artifact);
+    json_array_append_new(inputs, input_digest(artifact));
+    artifact_close(artifact);
+    return packing;
+}
+
+struct packing read_grains(const char *path, const char *schema, int64_t frame,
+                           bool *has_box, json_t *inputs)
+{
+    const struct bytes bytes = read_whole(path);
+    if (!bytes.size && !strcmp(path, "-"))
+        die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
+                             "an input, make run from IMPORT=FILE");
+    if (has_box) *has_box = is_hdf5(&bytes) || is_lammps(&bytes);
+    if (is_hdf5(&bytes)) return read_artifact(path, bytes, schema, inputs);
+    const struct packing packing = read_lines(path, bytes, frame, inputs);
+    free(bytes.data);
+    return packing;
+}

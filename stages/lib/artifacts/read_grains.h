@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains from a file, whatever kind it is.
+#ifndef CRAQUELURE_READ_GRAINS_H
+#define CRAQUELURE_READ_GRAINS_H
+
+#include "geometry/packing.h"
+
+#include <jansson.h>
+
+// Grains of PATH: text, FRAME of a LAMMPS dump (-1: the last), or an artifact of SCHEMA
+// (NULL: any that holds a packing). HAS_BOX, if not NULL: whether it says what the box
+// is; else the walls are where the grains end. INPUTS gets what the provenance says of
+// it. Exits 65 and 66. The caller frees the packing.
+struct packing read_grains(const char *path, const char *schema, int64_t frame,
+                           bool *has_box, json_t *inputs);
+
+#endif

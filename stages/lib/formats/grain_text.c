@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/grains.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Reads one line of at most four numbers; returns how many there were, or -1 for
+// anything that is not a number.
+static int read_numbers(const char *line, double numbers[4])
+{
+    int count = 0;
+    for (;;) {
+        line += strspn(line, " \t\r,;");
+        if (!*line || *line == '#') return count;
+        char *end;
+        const double number = strtod(line, &end);
+        if (end == line || count == 4) return -1;
+        numbers[count++] = number;
+        line = end;
+    }
+}
+
+static enum status check_grain(const double grain[4], int count, int number,
+                               struct reason *reason)
+{
+    if (count != 4)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "line %d: must be four numbers, x y z r, or a comment, #",
+                      number);
+    for (int k = 0; k < 4; k++)
+        if (!isfinite(grain[k]))
+            return refuse(reason, STATUS_BAD_DATA, "line %d: must be finite, got %g",
+                          number, grain[k]);
+    if (grain[3] <= 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "line %d: the radius must be > 0 m, got %g", number, grain[3]);
+    return STATUS_OK;
+}
+
+enum status copy_text(const struct bytes *text, char **copy, struct reason *reason)
+{
+    if (memchr(text->data, 0, text->size))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "holds null bytes: neither text nor HDF5");
+    *copy = allocate(text->size + 1, 1);
+    memcpy(*copy, text->data, text->size);
+    return STATUS_OK;
+}
+
+void box_around(struct packing *packing)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int i = 0; i < packing->n_particle; i++) {
+            low = fmin(low, component(packing->position[i], axis) - packing->radius[i]);
+            high =
+                fmax(high, component(packing->position[i], axis) + packing->radius[i]);
+        }
+        set_component(&packing->lower, axis, low);
+        set_component(&packing->upper, axis, high);
+    }
+}
+
+enum status import_text(const struct bytes *text, struct packing *packing,
+                        struct reason *reason)
+{
+    *packing = (struct packing){0};
+    char *copy = NULL;
+    enum status status = copy_text(text, &copy, reason);
+    if (status) return status;
+    int capacity = 0, number = 0;
+    char *rest = copy;
+    for (char *line; !status && (line = strsep(&rest, "\n"));) {
+        double grain[4] = {0};
+        const int count = read_numbers(line, grain);
+        number++;
+        if (count == 0) continue;
+        status = check_grain(grain, count, number, reason);
+        if (status) break;
+        if (packing->n_particle == capacity) {
+            capacity = capacity ? 2 * capacity : 64;
+            packing->position = reallocate(packing->position, (size_t)capacity,
+                                           sizeof *packing->position);
+            packing->radius =
+                reallocate(packing->radius, (size_t)capacity, sizeof *packing->radius);
+        }
+        packing->position[packing->n_particle] =
+            (struct vector){grain[0], grain[1], grain[2]};
+        packing->radius[packing->n_particle++] = grain[3];
+    }
+    free(copy);
+    if (!status && !packing->n_particle)
+        status = refuse(reason, STATUS_BAD_DATA, "no grains");
+    if (status) {
+        packing_free(packing);
+        return status;
+    }
+    packing->bond = allocate(0, sizeof *packing->bond);
+    box_around(packing);
+    return STATUS_OK;
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains of other makers: text, and dumps of LAMMPS.
+#ifndef CRAQUELURE_GRAINS_H
+#define CRAQUELURE_GRAINS_H
+
+#include "basics/file.h"
+#include "basics/status.h"
+#include "geometry/packing.h"
+
+// Grains from text, one "x y z r" a line in metres; "#" begins a comment. The box is
+// theirs (lowest and highest grain surfaces). STATUS_BAD_DATA with the line in REASON.
+// On success the caller frees *PACKING.
+enum status import_text(const struct bytes *text, struct packing *packing,
+                        struct reason *reason);
+
+// Walls where the grains end.
+void box_around(struct packing *packing);
+
+// A copy that ends with a null, for the caller to free; STATUS_BAD_DATA when there are
+// nulls within.
+enum status copy_text(const struct bytes *text, char **copy, struct reason *reason);
+
+// Whether this is a LAMMPS dump in text.
+bool is_lammps(const struct bytes *text);
+
+// One frame of it, from 0 (-1: the last), in the order of the grains' ids. Positions
+// x|xu|xs|xsu (and so on), radius or diameter; box and periodic sides as it says.
+// STATUS_BAD_DATA with the line in REASON. On success the caller frees *PACKING.
+enum status import_lammps(const struct bytes *text, int64_t frame,
+                          struct packing *packing, struct reason *reason);
+
+#endif

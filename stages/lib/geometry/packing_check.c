@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/packing_check.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+// m, of the median radius: at 10 mm a grain weighs some thirty times what water between
+// grains can carry (rho g r^2/sigma); below 1 nm it is smaller than molecules of
+// liquid.
+static const double largest_radius = 1e-2, smallest_radius = 1e-9;
+static const double share_that_counts = 0.01; // of the grains: fewer are slips of a few
+static const double empty_most = 0.1;         // share of the box
+
+void add_finding(struct findings *findings, enum severity severity, const char *name,
+                 const char *format, ...)
+{
+    if (findings->count == MOST_FINDINGS) return;
+    int at = findings->count++;
+    for (; at > 0 && findings->item[at - 1].severity < severity; at--)
+        findings->item[at] = findings->item[at - 1];
+    struct finding *finding = &findings->item[at];
+    finding->severity = severity;
+    finding->name = name;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(finding->text, sizeof finding->text, format, list);
+    va_end(list);
+}
+
+// ---- one after the other ------------------------------------------------------------
+
+static void judge_units(const struct packing_facts *facts, struct findings *findings)
+{
+    static const char *const unit[] = {"milli", "micro", "nano"};
+    int k = 0; // the largest unit that makes grains of these numbers
+    while (k < 2 && facts->median * pow(1e-3, k + 1) > largest_radius)
+        k++;
+    if (facts->median > largest_radius)
+        add_finding(findings, FINDING_WRONG, "units",
+                    "the median radius is %g m, and liquid holds no grains beyond a "
+                    "centimetre: lengths in %smetres? pack.import.scale=1e-%d makes it "
+                    "%g m",
+                    facts->median, unit[k], 3 * (k + 1),
+                    facts->median * pow(1e-3, k + 1));
+    if (facts->median < smallest_radius)
+        add_finding(findings, FINDING_WRONG, "units",
+                    "the median radius is %g m, less than molecules of liquid have: "
+                    "are lengths "
+                    "in metres? pack.import.scale is metres per unit of the file",
+                    facts->median);
+    if (facts->largest > 1000 * facts->median)
+        add_finding(
+            findings, FINDING_WRONG, "sizes",
+            "the largest radius, %g m, is %.3g of the median: two units in one file?",
+            facts->largest, facts->largest / facts->median);
+}
+
+static void judge_places(const struct packing_facts *facts, struct findings *findings)
+{
+    if (facts->coincident)
+        add_finding(
+            findings, FINDING_IMPOSSIBLE, "coincident",
+            "/particles/position: row %d: has the same centre as row %d (%d such "
+            "pair%s): leave duplicates out",
+            facts->same[1], facts->same[0], facts->coincident,
+            facts->coincident > 1 ? "s" : "");
+    if (facts->outside)
+        add_finding(
+            findings, FINDING_IMPOSSIBLE, "outside",
+            "/particles/position: row %d: the grain is wholly outside the box, as %d "
+            "of "
+            "%d are: leave them out, or let pack.lower and pack.upper take them in",
+            facts->first_outside, facts->outside, facts->n);
+    else if (facts->centres_outside)
+        add_finding(
+            findings, FINDING_WRONG, "outside",
+            "/particles/position: row %d: the centre is outside the box, as those of "
+            "%d "
+            "of %d grains are: leave them out, or let pack.lower and pack.upper take "
+            "them in",
+            facts->first_centre_outside, facts->centres_outside, facts->n);
+    else if (facts->cut)
+        add_finding(
+            findings, FINDING_NOTE, "cut",
+            "%d of %d grains stick out of the box, row %d the furthest, by %.3g of its "
+            "radius: the porosity counts them whole",
+            facts->cut, facts->n, facts->deepest, facts->depth);
+}
+
+// Doubled radii: most grains overlap, and hardly any when their radii are halved.
+static bool look_like_diameters(const struct packing_facts *facts)
+{
+    return facts->overlapping > facts->n / 2 && facts->overlap > 0.5 &&
+           facts->halved <= share_that_counts * facts->n;
+}
+
+static bool overlap_too_much(const struct packing_facts *facts)
+{
+    return facts->overlap > 0.5 || facts->overlapping > share_that_counts * facts->n;
+}
+
+static void judge_overlaps(const struct packing_facts *facts, struct findings *findings)
+{
+    const int *worst = facts->worst;
+    if (facts->plane >= 0 && facts->overlapping > facts->n / 2)
+        add_finding(findings, FINDING_WRONG, "squashed",
+                    "all centres lie in one plane across %c, where %d of %d grains "
+                    "overlap, rows "
+                    "%d and %d by %.3g of the smaller radius: a body squashed flat, "
+                    "with %c lost?",
+                    "xyz"[facts->plane], facts -> overlapping, facts -> n, worst[0],
+                    worst[1], facts -> overlap, "xyz"[facts->plane]);
+    else if (look_like_diameters(facts))
+        add_finding(
+            findings, FINDING_WRONG, "diameters",
+            "%d of %d grains overlap, and %s would with half the radius: diameters for "
+            "radii? pack.import.diameters=true halves them",
+            facts->overlapping, facts->n, facts->halved ? "hardly any" : "none");
+    else if (overlap_too_much(facts))
+        add_finding(findings, FINDING_WRONG, "overlaps",
+                    "%d of %d grains overlap by more than %g of the smaller radius, "
+                    "rows %d and "
+                    "%d by %.3g: leave one of two out, or part them by "
+                    "pack.method=explosive_repulsion",
+                    facts->overlapping, facts->n, OVERLAP_MOST, worst[0], worst[1],
+                    facts->overlap);
+    else if (facts->overlapping)
+        add_finding(findings, FINDING_NOTE, "overlaps",
+                    "%d of %d grains overlap by more than %g of the smaller radius, "
+                    "rows %d and "
+                    "%d by %.3g",
+                    facts->overlapping, facts->n, OVERLAP_MOST, worst[0], worst[1],
+                    facts->overlap);
+}
+
+static void judge_room(const struct packing *packing, const struct packing_facts *facts,
+                       struct findings *findings)
+{
+    const struct vector low = facts->lower, high = facts->upper;
+    if (facts->porosity < 0)
+        add_finding(
+            findings, FINDING_IMPOSSIBLE, "porosity",
+            "the porosity is %.3g: the grains have %.3g of the volume of the box: %s",
+            facts->porosity, 1 - facts->porosity,
+            look_like_diameters(facts)
+                ? "diameters for radii? pack.import.diameters=true halves them"
+            : overlap_too_much(facts) ? "they overlap; radii too large?"
+                                      : "pack.lower and pack.upper leave them no room");
+    if (facts->empty <= empty_most) return;
+    bool fills = true;
+    for (int axis = 0; axis < 3; axis++)
+        fills = fills &&
+                component(low, axis) - component(packing->lower, axis) <= facts->far &&
+                component(packing->upper, axis) - component(high, axis) <= facts->far;
+    if (fills)
+        add_finding(findings, FINDING_WRONG, "empty",
+                    "%.0f %% of the box is more than %.3g m from every grain: a body "
+                    "that is no "
+                    "box, or hollow, whose surroundings would fill with liquid: cut a "
+                    "box out of "
+                    "it",
+                    100 * facts->empty, facts->far);
+    else
+        add_finding(findings, FINDING_WRONG, "empty",
+                    "%.0f %% of the box is more than %.3g m from every grain, and "
+                    "would fill with "
+                    "liquid: end it with the grains, by pack.lower=[%.6g,%.6g,%.6g] "
+                    "pack.upper=[%.6g,%.6g,%.6g]",
+                    100 * facts->empty, facts->far, low.x, low.y, low.z, high.x, high.y,
+                    high.z);
+}
+
+static void judge_plane(const struct packing_facts *facts, struct findings *findings)
+{
+    if (facts->plane < 0 || facts->plane == 1) return;
+    add_finding(findings, FINDING_NOTE, "layer",
+                "all centres lie in one plane across %c: layers lie in x and z "
+                "(pack.dimensions=2, tessellate.dimensions=2): exchange y and %c",
+                "xyz"[facts->plane], "xyz"[facts->plane]);
+}
+
+void judge_packing(const struct packing *packing, const struct packing_facts *facts,
+                   struct findings *findings)
+{
+    if (!facts->n) return;
+    judge_units(facts, findings);
+    judge_places(facts, findings);
+    judge_room(packing, facts, findings);
+    judge_overlaps(facts, findings);
+    judge_plane(facts, findings);
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Are these grains what one thinks? Units, diameters for radii, overlaps, grains
+// outside the box, grains in one place, empty space within the walls, squashed layers.
+#ifndef CRAQUELURE_PACKING_CHECK_H
+#define CRAQUELURE_PACKING_CHECK_H
+
+#include "geometry/porosity.h"
+
+// What is found in a packing. Rows are those of /particles; -1 where there is none.
+// Auxiliary grains count only as things that fill the box.
+struct packing_facts {
+    int n;                      // grains
+    double smallest, largest;   // radius, m
+    double median;              // radius, m
+    struct vector lower, upper; // where the grains' surfaces end, m
+    double porosity; // overlaps count twice as solid, as does what sticks out
+    double empty;    // share of the box far from every grain; 0 where there is a body
+    double far;      // how far that is from a surface, m
+    int outside, first_outside; // grains wholly beyond a wall of the box
+    int centres_outside, first_centre_outside;
+    int cut, deepest;        // grains that stick out of the box, and the furthest one
+    double depth;            // by so many of its radii
+    int coincident, same[2]; // pairs with one centre, the first of them
+    int halved;              // pairs that overlap still when all radii are halved
+    int overlapping;         // grains with an overlap above OVERLAP_MOST
+    double overlap;
+    int worst[2]; // the largest, of the smaller radius
+    int free;     // grains that touch neither grain nor wall
+    int plane;    // axis along which all centres lie in one plane; -1: none
+};
+
+// Of the smaller radius: more closes throats between grains.
+static const double OVERLAP_MOST = 0.1;
+
+// CONTACTS are the pairs within GAP, of the sum of the radii.
+struct packing_facts packing_facts(const struct packing *packing,
+                                   const struct contacts *contacts, double gap);
+
+enum severity {
+    FINDING_NOTE,      // worth knowing
+    FINDING_WRONG,     // hardly what was meant
+    FINDING_IMPOSSIBLE // no packing of grains is like this
+};
+
+// One line that says what was found, with numbers, and what to do.
+struct finding {
+    enum severity severity;
+    const char *name; // "overlaps"
+    char text[500];
+};
+
+enum { MOST_FINDINGS = 24 };
+
+struct findings {
+    int count;
+    struct finding item[MOST_FINDINGS];
+};
+
+// Adds a finding.
+void add_finding(struct findings *findings, enum severity severity, const char *name,
+                 const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+// What these facts say, the worst first.
+void judge_packing(const struct packing *packing, const struct packing_facts *facts,
+                   struct findings *findings);
+
+#endif

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/packing_check.h"
+
+#include "basics/memory.h"
+#include "geometry/fabric.h"
+#include "geometry/neighbours.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Of the sum of two radii: nearer is one place, as coordinates of 16 digits have it.
+static const double one_place = 1e-12;
+static const double halved_slack = 0.95; // contacts of DEM packings overlap by less
+
+// ---- sizes --------------------------------------------------------------------------
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void measure_sizes(const struct packing *packing, struct packing_facts *facts)
+{
+    double *radius = NEW_ARRAY(double, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        if (!is_auxiliary(packing, i)) radius[facts->n++] = packing->radius[i];
+    if (facts->n) {
+        qsort(radius, (size_t)facts->n, sizeof *radius, compare_numbers);
+        facts->smallest = radius[0];
+        facts->largest = radius[facts->n - 1];
+        facts->median = radius[facts->n / 2];
+    }
+    free(radius);
+}
+
+// ---- the box ------------------------------------------------------------------------
+
+// How far the surface of grain I reaches beyond its worst wall, of its radius: 1 when
+// its centre lies on the wall, 2 when all of it is outside.
+static double beyond_walls(const struct packing *packing, int i)
+{
+    double worst = -HUGE_VAL;
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        if (packing->periodic[wall / 2]) continue;
+        const double x = component(packing->position[i], wall / 2);
+        const double at = wall_position(packing, wall);
+        worst = fmax(worst, 1 - (wall % 2 ? at - x : x - at) / packing->radius[i]);
+    }
+    return worst;
+}
+
+static void count_one(int *count, int *first, int i)
+{
+    if (!(*count)++) *first = i;
+}
+
+static void measure_walls(const struct packing *packing, struct packing_facts *facts)
+{
+    const double rounding = 1e-9;
+    for (int i = 0; i < packing->n_particle; i++) {
+        if (is_auxiliary(packing, i)) continue;
+        const double beyond = beyond_walls(packing, i);
+        if (beyond >= 2 - rounding)
+            count_one(&facts->outside, &facts->first_outside, i);
+        if (beyond > 1)
+            count_one(&facts->centres_outside, &facts->first_centre_outside, i);
+        if (beyond <= 1e-3) continue;
+        facts->cut++;
+        if (beyond > facts->depth) facts->deepest = i;
+        facts->depth = fmax(facts->depth, beyond);
+    }
+}
+
+static void measure_extent(const struct packing *packing, struct packing_facts *facts)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    facts->porosity = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        double low = HUGE_VAL, high = -HUGE_VAL, first = HUGE_VAL, last = -HUGE_VAL;
+        for (int i = 0; i < packing->n_particle; i++) {
+            const double x = component(packing->position[i], axis);
+            low = fmin(low, x - packing->radius[i]);
+            high = fmax(high, x + packing->radius[i]);
+            first = fmin(first, x);
+            last = fmax(last, x);
+        }
+        set_component(&facts->lower, axis, low);
+        set_component(&facts->upper, axis, high);
+        const bool flat = facts->n > 3 && last - first < 0.01 * facts->median;
+        if (flat && facts->plane != 1) facts->plane = axis;
+    }
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double r = packing->radius[i];
+        facts->porosity -= 4 * M_PI / 3 * (r / edge.x) * (r / edge.y) * (r / edge.z);
+    }
+}
+
+// ---- empty space --------------------------------------------------------------------
+
+// Places in the middles of equal cells of the box.
+struct places {
+    int count[3];
+    double step[3]; // m
+    uint8_t *filled;
+};
+
+static void fill_around(const struct packing *packing, int i, double reach,
+                        struct places *places)
+{
+    int from[3], to[3];
+    double at[3];
+    for (int axis = 0; axis < 3; axis++) {
+        at[axis] =
+            (component(packing->position[i], axis) - component(packing->lower, axis)) /
+                places->step[axis] -
+            0.5;
+        const double half = reach / places->step[axis];
+        const bool repeats = packing->periodic[axis];
+        const double most = places->count[axis];
+        from[axis] =
+            (int)ceil(fmax(at[axis] - half, repeats ? at[axis] - most / 2 : 0));
+        to[axis] =
+            (int)floor(fmin(at[axis] + half, repeats ? at[axis] + most / 2 : most - 1));
+    }
+    for (int x = from[0]; x <= to[0]; x++)
+        for (int y = from[1]; y <= to[1]; y++)
+            for (int z = from[2]; z <= to[2]; z++) {
+                const int cell[3] = {x, y, z};
+                double square = 0;
+                size_t place = 0;
+                for (int axis = 0; axis < 3; axis++) {
+                    const double apart = (cell[axis] - at[axis]) * places->step[axis];
+                    const int count = places->count[axis];
+                    square += apart * apart;
+                    place = place * (size_t)count +
+                            (size_t)((cell[axis] % count + count) % count);
+                }
+                if (square <= reach * reach) places->filled[place] = 1;
+            }
+}
+
+// Far is more than a diameter, or where grains are loose than the room each has.
+static void measure_empty(const struct packing *packing, struct packing_facts *facts)
+{
+    if (!facts->n || packing->n_body) return;
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    const double room = cbrt(edge.x) * cbrt(edge.y) * cbrt(edge.z) / cbrt(facts->n);
+    facts->far = fmax(2 * facts->median, room);
+    struct places places;
+    size_t all = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        const double cells = 2 * component(edge, axis) / facts->far;
+        if (!(cells < 1e6)) return;
+        places.count[axis] = (int)fmax(1, rint(cells));
+        places.step[axis] = component(edge, axis) / places.count[axis];
+        all *= (size_t)places.count[axis];
+    }
+    if (all > 64 * (size_t)facts->n + 4096) return; // thinner than its grains
+    places.filled = NEW_ARRAY(uint8_t, all);
+    for (int i = 0; i < packing->n_particle; i++)
+        fill_around(packing, i, packing->radius[i] + facts->far, &places);
+    size_t filled = 0;
+    for (size_t k = 0; k < all; k++)
+        filled += places.filled[k];
+    facts->empty = 1 - (double)filled / (double)all;
+    free(places.filled);
+}
+
+// ---- pairs --------------------------------------------------------------------------
+
+static void measure_pairs(const struct packing *packing,
+                          const struct contacts *contacts, struct packing_facts *facts)
+{
+    uint8_t *overlaps = NEW_ARRAY(uint8_t, packing->n_particle);
+    for (int k = 0; k < contacts->count; k++) {
+        const int i = contacts->pair[k][0], j = contacts->pair[k][1];
+        if (is_auxiliary(packing, i) || is_auxiliary(packing, j)) continue;
+        const double a = packing->radius[i], b = packing->radius[j];
+        const double apart = norm(nearest_image(packing, i, j));
+        const double overlap = (a + b - apart) / fmin(a, b);
+        if (apart <= one_place * (a + b) && !facts->coincident++)
+            memcpy(facts->same, contacts->pair[k], sizeof facts->same);
+        if (apart < 0.5 * halved_slack * (a + b)) facts->halved++;
+        if (overlap > OVERLAP_MOST) overlaps[i] = overlaps[j] = 1;
+        if (overlap > facts->overlap)
+            memcpy(facts->worst, contacts->pair[k], sizeof facts->worst);
+        facts->overlap = fmax(facts->overlap, overlap);
+    }
+    for (int i = 0; i < packing->n_particle; i++)
+        facts->overlapping += overlaps[i];
+    free(overlaps);
+}
+
+static void count_free(const struct packing *packing, const struct contacts *contacts,
+                       double gap, struct packing_facts *facts)
+{
+    int *touching = grain_contacts(packing, contacts);
+    int *walls = wall_contacts(packing, gap);
+    for (int i = 0; i < packing->n_particle; i++)
+        facts->free += !is_auxiliary(packing, i) && !touching[i] && !walls[i];
+    free(touching);
+    free(walls);
+}
+
+struct packing_facts packing_facts(const struct packing *packing,
+                                   const struct contacts *contacts, double gap)
+{
+    struct packing_facts facts = {.first_outside = -1,
+                                  .first_centre_outside = -1,
+                                  .deepest = -1,
+                                  .same = {-1, -1},
+                                  .worst = {-1, -1},
+                                  .plane = -1};
+    measure_sizes(packing, &facts);
+    measure_extent(packing, &facts);
+    measure_walls(packing, &facts);
+    measure_empty(packing, &facts);
+    measure_pairs(packing, contacts, &facts);
+    count_free(packing, contacts, gap, &facts);
+    return facts;
+}
