@@ -11,6 +11,8 @@ static const double rounding = 1e-6; // of the sum of the radii, as pack.touchin
 void bond_grains(struct packing *packing, enum bonds_by by, double gap)
 {
     if (by == BONDS_BY_PACKING) return;
+    packing->n_bond = 0;
+    if (by == BONDS_BY_NONE) return;
     free(packing->bond);
     packing->bond = neighbour_pairs(packing, by == BONDS_BY_DISTANCE ? gap : rounding,
                                     &packing->n_bond);

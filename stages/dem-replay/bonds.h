@@ -8,7 +8,8 @@
 enum bonds_by {
     BONDS_BY_PACKING,  // those listed in it
     BONDS_BY_TOUCHING, // grains that touch, to rounding
-    BONDS_BY_DISTANCE  // grains whose surfaces are a GAP apart or less
+    BONDS_BY_DISTANCE, // grains whose surfaces are a GAP apart or less
+    BONDS_BY_NONE
 };
 
 // Gives PACKING its bonds, sorted by their two grains; across the sides too where the

@@ -2,22 +2,9 @@
 #include "held.h"
 
 #include "basics/memory.h"
+#include "geometry/support.h"
 
 #include <math.h>
-
-static const double touching = 1e-6; // of the radius
-
-static bool touches(const struct packing *packing, int grain, unsigned walls)
-{
-    for (int wall = 0; wall < WALL_COUNT; wall++) {
-        const double x = component(packing->position[grain], wall / 2);
-        const double at = wall_position(packing, wall);
-        const double inwards = wall % 2 ? at - x : x - at;
-        if (walls >> wall & 1 && inwards <= (1 + touching) * packing->radius[grain])
-            return true;
-    }
-    return false;
-}
 
 static bool lies_within(struct vector x, const double lower[3], const double upper[3])
 {
@@ -62,7 +49,7 @@ enum status find_held(const struct packing *packing, const struct held *held,
     if (status) return status;
     *is_held = NEW_ARRAY(uint8_t, packing->n_particle);
     for (int i = 0; i < packing->n_particle; i++)
-        (*is_held)[i] = touches(packing, i, held->walls) ||
+        (*is_held)[i] = touches_walls(packing, i, held->walls) ||
                         lies_within(packing->position[i], held->lower, held->upper);
     for (int k = 0; k < held->grains.count; k++)
         (*is_held)[(int)held->grains.value[k]] = 1;

@@ -4,6 +4,7 @@
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "geometry/support.h"
 #include "parameters.h"
 #include "replay_engine.h"
 #include "take_weight.h"
@@ -27,6 +28,36 @@ static const struct stage stage = {
              "broken. Displacements count from where its grains began.",
     .checkpoints = true};
 
+// Without a bond nothing can break, whatever the forces.
+static void check_bonds(const struct replay_parameters *parameters,
+                        const struct packing *packing)
+{
+    static const char *const none[] = {
+        [BONDS_BY_PACKING] = "the packing lists no bond between its",
+        [BONDS_BY_TOUCHING] = "no two touch of",
+        [BONDS_BY_DISTANCE] = "no two are within bond.gap of"};
+    if (packing->n_bond || packing->n_particle < 2) return;
+    if (parameters->bonds_by == BONDS_BY_NONE || parameters->settings.liquid.volume > 0)
+        return;
+    die(STATUS_BAD_DATA,
+        "dem-replay.bond.by: %s %d grains, so that none can break: a wider "
+        "pack.touching_gap, or bond.by=distance and bond.gap (`check` says how wide), "
+        "or "
+        "bond.by=none for contacts alone",
+        none[parameters->bonds_by], packing->n_particle);
+}
+
+// A body of which little is held moves as the forces have it.
+static void warn_if_unheld(const struct packing *packing, const uint8_t *held)
+{
+    const int n = packing->n_particle, supported = count_supported(packing, held);
+    if (packing->n_bond && memchr(held, 1, (size_t)n) && supported < n / 2)
+        report(
+            "bonds join only %d of %d grains to those that are held: the others move "
+            "as contacts let them (held, bond.by, pack.touching_gap)",
+            supported, n);
+}
+
 // The caller frees what it gives to SETTINGS.
 static void choose_grains(const struct replay_parameters *parameters,
                           struct packing *packing, struct replay_settings *settings,
@@ -35,6 +66,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     struct strength_scatter scatter = parameters->scatter;
     scatter.law = (enum strength_law)parameters->strength_law;
     bond_grains(packing, (enum bonds_by)parameters->bonds_by, parameters->bond_gap);
+    check_bonds(parameters, packing);
     settings->relative_strength = bond_strengths(&scatter, packing);
     struct held held = parameters->held;
     if (settings->support != SUPPORT_FIXED)
@@ -45,6 +77,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     if (settings->support != SUPPORT_FIXED || packing->n_particle == 0) return;
     const bool one_moves = memchr(settings->held, 0, (size_t)packing->n_particle);
     if (!one_moves && !quiet) report("all grains are held, so that none moves");
+    if (!quiet) warn_if_unheld(packing, settings->held);
     if (memchr(settings->held, 1, (size_t)packing->n_particle)) return;
     if (replay_engine(settings)->needs_support)
         die(STATUS_BAD_DATA,

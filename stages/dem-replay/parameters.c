@@ -44,9 +44,9 @@ const struct parameter replay_table[] = {
      AT(settings.bond.radius_fraction), BETWEEN(1e-6, 1),
      .text = "bond radius, of the smaller grain's"},
     {"bond.by", PARAMETER_CHOICE, "1", "\"packing\"", AT(bonds_by),
-     .choices = "packing|touching|distance",
-     .text = "which grains are bonded: those the packing lists, those that touch, or "
-             "those within bond.gap"},
+     .choices = "packing|touching|distance|none",
+     .text = "which grains are bonded: those the packing lists, those that touch, "
+             "those within bond.gap, or none: contacts and bridges alone"},
     {"bond.gap", PARAMETER_NUMBER, "1", "0.01", AT(bond_gap), BETWEEN(0, 10),
      .text =
          "largest gap that a bond spans, of the sum of the two radii; for by=distance"},

@@ -90,7 +90,7 @@ with scratch() as folder:
     loose = run("force-protocol", "-p", SOFT, "--set", "steps=12", input=run(
         "dry", input=run("merge-nodes", input=run("tessellate", input=run(
             "pack", "--set", "counts=[2,2,3]", "--set", "bonds=none")))))
-    status, message = tried(loose, *large)
+    status, message = tried(loose, *large, "bond.by=none")
     ok(status == 0 and "8 of 12 grains came off the aggregate" in message,
        "loose grains with friction leave, where no increment however small is balanced", message)
 

@@ -9,7 +9,7 @@
 
 extern const char schema_packing[], schema_network[], schema_drying[], schema_forces[],
     schema_response[], schema_crackstats[], schema_engine[], schema_restart[],
-    schema_bridge[], schema_flow[], schema_invasion[];
+    schema_bridge[], schema_flow[], schema_invasion[], schema_check[];
 
 static const struct {
     const char *name, *text;
@@ -18,7 +18,7 @@ static const struct {
                {"response", schema_response}, {"crackstats", schema_crackstats},
                {"engine", schema_engine},     {"restart", schema_restart},
                {"bridge", schema_bridge},     {"flow", schema_flow},
-               {"invasion", schema_invasion}};
+               {"invasion", schema_invasion}, {"check", schema_check}};
 
 static json_t *load(const char *text)
 {

@@ -19,5 +19,6 @@
     schema schema_bridge, "schemas/bridge.json"
     schema schema_flow, "schemas/flow.json"
     schema schema_invasion, "schemas/invasion.json"
+    schema schema_check, "schemas/check.json"
 
     .section .note.GNU-stack, "", @progbits

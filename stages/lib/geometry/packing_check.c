@@ -39,8 +39,8 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
     if (facts->median > largest_radius)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, and liquid holds no grains beyond a "
-                    "centimetre: lengths in %smetres? pack.import.scale=1e-%d makes it "
-                    "%g m",
+                    "centimetre: lengths in %smetres? times 1e-%d "
+                    "(pack.import.scale) it is %g m",
                     facts->median, unit[k], 3 * (k + 1),
                     facts->median * pow(1e-3, k + 1));
     if (facts->median < smallest_radius)
@@ -173,7 +173,8 @@ static void judge_room(const struct packing *packing, const struct packing_facts
 
 static void judge_plane(const struct packing_facts *facts, struct findings *findings)
 {
-    if (facts->plane < 0 || facts->plane == 1) return;
+    if (facts->plane < 0 || facts->plane == 1 || facts->overlapping > facts->n / 2)
+        return;
     add_finding(findings, FINDING_NOTE, "layer",
                 "all centres lie in one plane across %c: layers lie in x and z "
                 "(pack.dimensions=2, tessellate.dimensions=2): exchange y and %c",

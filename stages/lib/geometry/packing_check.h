@@ -9,10 +9,10 @@
 // What is found in a packing. Rows are those of /particles; -1 where there is none.
 // Auxiliary grains count only as things that fill the box.
 struct packing_facts {
-    int n;                      // grains
-    double smallest, largest;   // radius, m
-    double median;              // radius, m
-    struct vector lower, upper; // where the grains' surfaces end, m
+    int n;                           // grains
+    double smallest, largest;        // radius, m
+    double tenth, median, ninetieth; // radii that 10, 50 and 90 % do not exceed, m
+    struct vector lower, upper;      // where the grains' surfaces end, m
     double porosity; // overlaps count twice as solid, as does what sticks out
     double empty;    // share of the box far from every grain; 0 where there is a body
     double far;      // how far that is from a surface, m

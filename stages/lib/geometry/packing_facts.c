@@ -10,6 +10,8 @@
 
 // Of the sum of two radii: nearer is one place, as coordinates of 16 digits have it.
 static const double one_place = 1e-12;
+static const double stuck_out =
+    0.01; // of the radius: DEM grains press into walls by less
 static const double halved_slack = 0.95; // contacts of DEM packings overlap by less
 
 // ---- sizes --------------------------------------------------------------------------
@@ -29,7 +31,9 @@ static void measure_sizes(const struct packing *packing, struct packing_facts *f
         qsort(radius, (size_t)facts->n, sizeof *radius, compare_numbers);
         facts->smallest = radius[0];
         facts->largest = radius[facts->n - 1];
+        facts->tenth = radius[facts->n / 10];
         facts->median = radius[facts->n / 2];
+        facts->ninetieth = radius[facts->n - 1 - facts->n / 10];
     }
     free(radius);
 }
@@ -65,7 +69,7 @@ static void measure_walls(const struct packing *packing, struct packing_facts *f
             count_one(&facts->outside, &facts->first_outside, i);
         if (beyond > 1)
             count_one(&facts->centres_outside, &facts->first_centre_outside, i);
-        if (beyond <= 1e-3) continue;
+        if (beyond <= stuck_out) continue;
         facts->cut++;
         if (beyond > facts->depth) facts->deepest = i;
         facts->depth = fmax(facts->depth, beyond);

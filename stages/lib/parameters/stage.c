@@ -18,7 +18,7 @@
 static const char *const sections[] = {
     "pack",   "tessellate", "merge-nodes",    "dry",    "force-protocol", "dem-replay",
     "deform", "crackstats", "import-network", "invade", "bridge",         "flow",
-    NULL};
+    "check",  NULL};
 
 enum {
     KEY_THREADS = 256,
@@ -327,7 +327,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
     struct invocation invocation = {
-        .stage = stage, .output = "-", .checkpoint_every = 600, .threads = 1};
+        .stage = stage, .checkpoint_every = 600, .threads = 1};
     struct command_line line = {.stage = stage, .invocation = &invocation};
     struct argp_option all[MOST_OPTIONS];
     list_options(stage, all);
@@ -337,6 +337,8 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               .doc = stage->summary,
                               .help_filter = help_filter};
     parse_command_line(&argp, argc, argv, &line);
+    invocation.tells = stage->tells && !invocation.output;
+    if (!invocation.output) invocation.output = "-";
     fill(&line, parameters);
     free(line.set);
     if (line.print_parameters) {
@@ -344,7 +346,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
         putchar('\n');
         exit(STATUS_OK);
     }
-    if (!strcmp(invocation.output, "-") && isatty(STDOUT_FILENO))
+    if (!strcmp(invocation.output, "-") && !invocation.tells && isatty(STDOUT_FILENO))
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");
     check_inputs(&invocation);

@@ -21,6 +21,7 @@ struct stage {
     const char *notes;   // more for --help; may be NULL
     const char *reports; // what --report FILE writes; NULL: there is no such option
     bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
+    bool tells;          // without -o it tells people, in text, what it found
     bool transcribes;    // it writes what it read: what is wrong is wrong in the input
 };
 
@@ -34,6 +35,7 @@ struct invocation {
     const char *checkpoint;  // of --checkpoint; NULL: not asked for
     double checkpoint_every; // s
     int threads;
+    bool tells; // in text, on standard output, for there is no -o
     bool quiet;
     enum progress_mode progress;
     json_t *parameters; // effective, defaults filled in

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether bonds make one body of the grains, and what holds it.
+#ifndef CRAQUELURE_CHECK_BONDS_H
+#define CRAQUELURE_CHECK_BONDS_H
+
+#include "geometry/packing_check.h"
+
+struct bond_facts {
+    int without;   // grains that have no bond
+    int pieces;    // that bonds join, single grains included
+    int largest;   // grains in the largest of them
+    int at_bottom; // grains that touch the lower z wall
+    int supported; // grains that bonds join to these, themselves included
+    double gap;    // touching_gap that joins most grains; NAN: they are, or none does
+};
+
+struct bond_facts bond_facts(const struct packing *packing);
+
+// What these facts say; N grains in all, BOTTOM where to hold those at the bottom, m.
+void judge_bonds(const struct packing *packing, const struct bond_facts *facts, int n,
+                 double bottom, struct findings *findings);
+
+#endif

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// check: are these grains what one thinks?
+#include "artifacts/artifact.h"
+#include "artifacts/read_grains.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "geometry/neighbours.h"
+#include "tell.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct check_parameters {
+    double touching_gap;
+    int64_t frame;
+    struct material material;
+};
+
+#define AT(member) offsetof(struct check_parameters, member)
+
+static const struct parameter table[] = {
+    {"touching_gap", PARAMETER_NUMBER, "1", "1e-6", AT(touching_gap), BETWEEN(0, 1),
+     .text = "surfaces this close touch, of the sum of the two radii"},
+    {"frame", PARAMETER_INTEGER, "1", "-1", AT(frame), BETWEEN(-1, 1e12),
+     .text = "of a LAMMPS dump, from 0; -1: the last"},
+    {"density", PARAMETER_NUMBER, "kg m-3", "2500", AT(material.density), ABOVE(0),
+     .text = "of the grains; this and what follows: for what is suggested"},
+    {"grain_modulus", PARAMETER_NUMBER, "Pa", "6e10", AT(material.grain_modulus),
+     ABOVE(0), .text = "Young's modulus of the grains; default: glass"},
+    {"bond_modulus", PARAMETER_NUMBER, "Pa", "4e8", AT(material.bond_modulus), ABOVE(0),
+     .text = "Young's modulus of the bonds"},
+    {"radius_fraction", PARAMETER_NUMBER, "1", "0.5", AT(material.radius_fraction),
+     BETWEEN(1e-6, 1), .text = "bond radius, of the smaller grain's"},
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274",
+     AT(material.surface_tension), ABOVE(0), .text = "of the liquid; default: water"},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(material.contact_angle),
+     BETWEEN(0, 90), .text = "of the liquid on the grains"},
+    {0}};
+
+static const struct stage stage = {
+    .name = "check",
+    .version = STAGE_VERSION,
+    .summary = "check -- are these grains what one thinks? units, overlaps, box, bonds",
+    .reads = "packing, or what holds one, or text or a dump as pack imports them",
+    .writes = "check",
+    .most_inputs = 1,
+    .parameters = table,
+    .notes = "Without -o it says in text what it found, the worst first; with -o FILE "
+             "(or -) it writes JSON. Status 1 when something is wrong: that pack "
+             "refuses, or that is hardly meant.",
+    .tells = true};
+
+static struct contacts find_contacts(const struct packing *packing, double gap)
+{
+    struct contacts contacts;
+    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &contacts.count);
+    contacts.pair = (const int32_t(*)[2])pair;
+    return contacts;
+}
+
+// The defaults of dem-replay are those of grains of 500 nm.
+static void judge_defaults(const struct packing_facts *facts, struct findings *findings)
+{
+    const double usual = 250e-9, ratio = facts->median / usual;
+    if (ratio > 1.0 / 3 && ratio < 3) return;
+    add_finding(
+        findings, FINDING_NOTE, "defaults",
+        "dem-replay's defaults are for radii of 250 nm, these are %.3g times as large: "
+        "say stiffnesses and strengths (see suggested)",
+        ratio);
+}
+
+static void judge_free(const struct packing_facts *facts, struct findings *findings)
+{
+    if (!facts->free || facts->n < 2) return;
+    add_finding(findings, FINDING_NOTE, "free",
+                "%d of %d grains touch neither grain nor wall", facts->free, facts->n);
+}
+
+static struct findings judge(const struct packing *packing,
+                             const struct packing_facts *facts,
+                             const struct bond_facts *bonds)
+{
+    struct findings findings = {0};
+    if (!facts->n)
+        add_finding(&findings, FINDING_WRONG, "grains", "there are no grains");
+    if (!facts->n) return findings;
+    judge_packing(packing, facts, &findings);
+    judge_bonds(packing, bonds, facts->n, bottom_of(facts), &findings);
+    judge_free(facts, &findings);
+    judge_defaults(facts, &findings);
+    return findings;
+}
+
+// Text has no bonds: those that pack would make.
+static void bond_text(struct packing *packing, const struct contacts *contacts,
+                      const json_t *inputs)
+{
+    const json_t *schema = json_object_get(json_array_get(inputs, 0), "schema");
+    if (strcmp(json_string_value(schema), "text")) return;
+    free(packing->bond);
+    packing->n_bond = contacts->count;
+    packing->bond =
+        duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
+}
+
+int main(int argc, char **argv)
+{
+    struct check_parameters parameters;
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    json_t *inputs = json_array();
+    struct packing packing =
+        read_grains(invocation.inputs[0], NULL, parameters.frame, NULL, inputs);
+    const double gap = parameters.touching_gap;
+    struct contacts contacts = find_contacts(&packing, gap);
+    bond_text(&packing, &contacts, inputs);
+
+    const struct packing_facts facts = packing_facts(&packing, &contacts, gap);
+    const struct bond_facts bonds = bond_facts(&packing);
+    const struct findings findings = judge(&packing, &facts, &bonds);
+    const struct checked checked = {&packing, &contacts, &facts,
+                                    &bonds,   &findings, &parameters.material};
+    const int wrong = count_wrong(&findings);
+    if (invocation.tells && !invocation.quiet) tell(&checked, wrong);
+    if (!invocation.tells)
+        finish_json(checked_json(&checked, wrong), &invocation, json_incref(inputs),
+                    "grains as spheres, their contacts and bonds\n"
+                    "left out: the liquid, forces, weight\n");
+
+    json_decref(inputs);
+    free((void *)contacts.pair);
+    packing_free(&packing);
+    invocation_free(&invocation);
+    return wrong ? STATUS_NO : STATUS_OK;
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where to begin with grains of this size: parameters of dem-replay, and what a run
+// costs.
+#ifndef CRAQUELURE_CHECK_SUGGEST_H
+#define CRAQUELURE_CHECK_SUGGEST_H
+
+#include "geometry/packing_check.h"
+
+#include <jansson.h>
+
+struct material {
+    double density;         // kg/m3
+    double grain_modulus;   // Young's modulus, Pa
+    double bond_modulus;    // of the bonds, Pa
+    double radius_fraction; // of a bond, of the smaller grain's
+    double surface_tension; // N/m
+    double contact_angle;   // degree
+};
+
+// Below this height lie the centres of the lowest grains, to hold; m.
+double bottom_of(const struct packing_facts *facts);
+
+// The stress in a neck under the largest capillary force to expect, Pa.
+double expected_stress(const struct material *material, double radius);
+
+// {"dem-replay": {...}}; the caller owns it.
+json_t *suggest(const struct material *material, const struct packing *packing,
+                const struct packing_facts *facts);
+
+// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains; likewise.
+json_t *expected_cost(int n);
+
+#endif

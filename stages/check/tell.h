@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was found, for people and for programs.
+#ifndef CRAQUELURE_CHECK_TELL_H
+#define CRAQUELURE_CHECK_TELL_H
+
+#include "bonds.h"
+#include "suggest.h"
+
+struct checked {
+    const struct packing *packing;
+    const struct contacts *contacts;
+    const struct packing_facts *facts;
+    const struct bond_facts *bonds;
+    const struct findings *findings;
+    const struct material *material;
+};
+
+// Findings that are worse than a note.
+int count_wrong(const struct findings *findings);
+
+// To standard output: a line for each finding, then what was measured, and where none
+// is WRONG what is suggested.
+void tell(const struct checked *checked, int wrong);
+
+// The same as a document of schemas/check.json; the caller owns it.
+json_t *checked_json(const struct checked *checked, int wrong);
+
+#endif

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What holds a body: grains at walls of the box, and those that bonds join to them.
+#ifndef CRAQUELURE_GEOMETRY_SUPPORT_H
+#define CRAQUELURE_GEOMETRY_SUPPORT_H
+
+#include "geometry/packing.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// Whether GRAIN touches one of WALLS (bit k: wall k of the box), to 1e-6 of its radius.
+bool touches_walls(const struct packing *packing, int grain, unsigned walls);
+
+// The lowest grain of those that bonds join to each grain, itself included
+// (n_particle). The caller frees it.
+int *bonded_pieces(const struct packing *packing);
+
+// How many grains bonds join to those marked in HOLDS (n_particle), these included.
+int count_supported(const struct packing *packing, const uint8_t *holds);
+
+#endif

@@ -1,0 +1,204 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Grains that are not what their maker thinks: `check` says so with the numbers that a search of
+all pairs and places finds, `pack` refuses what cannot be and says what can hardly be meant, and a
+replay without bonds ends at once."""
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, run, scratch
+
+folder = scratch()
+at = lambda name: os.path.join(folder.name, name)
+
+
+def settings(*words):
+    return [word for each in words for word in ("--set", each)]
+
+
+def text(name, position, radius):
+    np.savetxt(at(name), np.column_stack([position, radius]), fmt="%.17g")
+    return at(name)
+
+
+def call(stage, *words):
+    ended = subprocess.run([f"{BIN}/{stage}", *words], capture_output=True, text=True, timeout=60)
+    return ended.returncode, ended.stdout, ended.stderr
+
+
+def check(path, *words):
+    """Status and report, and whether text and report say the same."""
+    told, lines, said = call("check", *words, path)
+    status, document, error = call("check", *words, path, "-o", "-")
+    report = json.loads(document)
+    beginnings = [f"{f['severity']}: {f['name']}: {f['text']}" for f in report["findings"]]
+    agree = (told, said, error) == (status, "", "") and \
+        lines.splitlines()[:len(beginnings)] == beginnings
+    return status, report, agree
+
+
+def names(report):
+    return [f["name"] for f in report["findings"] if f["severity"] != "note"]
+
+
+# 150 grains that grew until they jammed, as text.
+run("pack", "-q", *settings("method=radius_expansion", "count=150", "radius=50e-6", "seed=2",
+                            "dynamics.friction=0", "touching_gap=0.01"), "-o", at("own"))
+with h5py.File(at("own")) as file:
+    x, r = file["particles/position"][:], file["particles/radius"][:]
+    low, high = file["domain/lower"][:], file["domain/upper"][:]
+near = settings("touching_gap=0.01")
+n = len(r)
+distance = lambda p: np.linalg.norm(p[:, None] - p[None], axis=2)
+first, second = np.triu_indices(n, 1)
+
+
+def overlap_of(position, radius):
+    apart = distance(position)[first, second]
+    return ((radius[first] + radius[second] - apart)
+            / np.minimum(radius[first], radius[second])).max()
+
+
+# ---- good grains ------------------------------------------------------------------------
+
+good = text("good", x, r)
+status, report, agree = check(good, *near)
+ok(status == 0 and report["wrong"] == 0 and agree, "good grains pass", report["findings"])
+ok(np.isclose(report["contacts"]["max_overlap"], overlap_of(x, r)), "their largest overlap")
+sums = (r[first] + r[second])
+ok(report["contacts"]["pairs"] == (distance(x)[first, second] <= 1.01 * sums).sum()
+   == report["bonds"]["count"], "their contacts, which pack would bond")
+quantiles = np.sort(r)[[0, n // 10, n // 2, n - 1 - n // 10, n - 1]]
+ok(np.array_equal([report["radius"][k] for k in
+                   ("smallest", "tenth", "median", "ninetieth", "largest")], quantiles),
+   "their sizes")
+suggested = report["suggested"]["dem-replay"]
+ok(np.isclose(suggested["normal_stiffness"], 2 * 6e10 * quantiles[2], rtol=0.05)
+   and np.isclose(suggested["bond"]["normal_stiffness"], 4e8 / 2 / quantiles[2], rtol=0.05),
+   "stiffnesses follow from moduli and size", suggested)
+with open(at("scene.json"), "w") as file:
+    json.dump(report["suggested"], file)
+ok(call("dem-replay", "-p", at("scene.json"), "--parameters")[0] == 0,
+   "what is suggested is a section of a scene")
+status, _, said = call("pack", *settings("method=import"), *near, good, "-o", at("packed"))
+ok(status == 0 and said == "", "and pack has nothing to say", said)
+status, report, _ = check(at("packed"))
+ok(status == 0 and report["inputs"][0]["schema"] == "craquelure/packing/1", "a packing passes")
+ok(call("check", "-q", good)[1] == "", "-q says it by the status alone")
+ok(call("check", at("scene.json"))[0] == 65, "what holds no grains is bad input")
+ok(call("check", at("nothing"))[0] == 66, "no such input")
+
+# ---- bad ones: what they are called, what pack makes of them, and what mends them ---------
+
+random = np.random.default_rng(1)
+gas = x * 1.5
+shuffled = np.concatenate([x, x[3:4] + [1e-7, 0, 0]])
+with_twin = np.append(r, r[3])
+tall = settings("lower=[0,0,0]", f"upper=[{high[0]},{high[1]},{8 * high[2]}]")
+small = settings("lower=[0,0,0]", f"upper=[{high[0]},{high[1]},{0.5 * high[2]}]")
+BAD = [
+    # title, position, radius, settings of pack, findings, status of pack, what mends it
+    ("millimetres", 1e3 * x, 1e3 * r, [], ["units"], 0, ["import.scale=1e-3"]),
+    ("micrometres", 1e6 * x, 1e6 * r, [], ["units"], 0, ["import.scale=1e-6"]),
+    ("nanometres twice", 1e-9 * x, 1e-9 * r, [], ["units"], 0, ["import.scale=1e9"]),
+    ("diameters", x, 2 * r, [], ["porosity", "diameters"], 65, ["import.diameters=true"]),
+    ("two grains nearly in one place", shuffled, with_twin, [], ["overlaps"], 0, None),
+    ("a body squashed flat", x * [1, 1, 0], r, [], ["porosity", "squashed"], 65, None),
+    ("duplicates", np.concatenate([x, x[:5]]), np.append(r, r[:5]), [],
+     ["coincident", "overlaps"], 65, None),
+    ("a box far above the bed", x, r, tall, ["empty"], 0, ["upper=null", "lower=null"]),
+    ("a box that leaves grains outside", x, r, small, ["outside", "porosity"], 65,
+     ["upper=null", "lower=null"]),
+]
+for title, position, radius, box, wrong, packed, mends in BAD:
+    path = text("bad", position, radius)
+    command = ["pack", *settings("method=import"), *near, *box]
+    status, _, said = call(*command, path, "-o", at("bad.h5"))
+    words = said.splitlines()
+    ok(status == packed and len(words) == (1 if packed else len(wrong))
+       and all(line.startswith(f"pack: {path}: ") for line in words),
+       f"{title}: pack {'refuses' if packed else 'warns'}", (status, said))
+    if packed:
+        ok(call(*command, *settings("check=warn"), path, "-o", at("bad.h5"))[0] == 0,
+           f"{title}: packed all the same where asked for")
+    status, report, agree = check(at("bad.h5"), *near)
+    ok(status == 1 and names(report) == wrong and agree, f"{title}: check says so",
+       (status, report["findings"]))
+    ok(report["suggested"] is None, f"{title}: nothing is suggested for it")
+    if not box:
+        ok(names(check(path, *near)[1]) == wrong, f"{title}: and of the text")
+    if mends:
+        status, _, said = call(*command, *settings(*mends), path, "-o", at("bad.h5"))
+        ok((status, said) == (0, "") and check(at("bad.h5"), *near)[0] == 0,
+           f"{title}: {' '.join(mends)} mends it", said)
+        with h5py.File(at("bad.h5")) as file:
+            ok(np.allclose(file["particles/position"], x, rtol=1e-12, atol=0)
+               and np.allclose(file["particles/radius"], r, rtol=1e-12, atol=0),
+               f"{title}: to the grains themselves")
+quiet = call("pack", "-q", *settings("method=import"), text("bad", 1e3 * x, 1e3 * r), "-o",
+             at("bad.h5"))
+ok(quiet == (0, "", ""), "-q keeps warnings back", quiet)
+
+# ---- numbers, against places and pairs one by one -----------------------------------------
+
+run("pack", "-q", *settings("method=import"), *near, *tall, good, "-o", at("tall.h5"))
+box = check(at("tall.h5"))[1]["box"]
+places = random.uniform(0, 1, (40000, 3)) * [high[0], high[1], 8 * high[2]]
+far = np.ones(len(places), bool)
+for p, s in zip(x, r):
+    far &= np.linalg.norm(places - p, axis=1) > s + box["far"]
+ok(abs(far.mean() - box["empty"]) < 0.02, "the share of the box far from grains",
+   (far.mean(), box["empty"]))
+
+loose = text("gas", gas, r)
+status, report, _ = check(loose)
+ok(status == 1 and "bonds" in names(report), "grains that do not touch have no bonds")
+gaps = distance(gas)[first, second] / sums - 1
+order = np.argsort(gaps)
+piece = np.arange(n)
+for k in order:
+    a, b = piece[first[k]], piece[second[k]]
+    piece[piece == a] = b
+    if np.bincount(piece).max() >= np.ceil(0.95 * n):
+        break
+ok(np.isclose(report["bonds"]["joining_gap"], gaps[k], rtol=1e-9),
+   "the gap that joins them to one piece", (report["bonds"], gaps[k]))
+
+# ---- a replay without bonds ---------------------------------------------------------------
+
+run("pack", "-q", *settings("method=import"), loose, "-o", at("loose.h5"))
+with h5py.File(at("loose.h5"), "r+") as file:
+    file.attrs["schema"] = "craquelure/forces/1"
+    file["time"], file["saturation"] = [0.0, 1.0], [1.0, 0.0]
+    file["force"] = np.zeros((2, n, 3))
+    for name in ("capillary_pressure", "force_scale", "largest_force", "first_period_end_time"):
+        file["summary"].attrs[name] = 0.0
+few = settings("cycles=10", "time_step_safety=null")
+for by, why in [("packing", "the packing lists no bond between its"),
+                ("touching", "no two touch of"), ("distance", "no two are within bond.gap of")]:
+    status, _, said = call("dem-replay", *few, *settings(f"bond.by={by}"), at("loose.h5"), "-o",
+                           at("response.h5"))
+    ok(status == 65 and len(said.splitlines()) == 1
+       and f"dem-replay.bond.by: {why} {n} grains, so that none can break" in said
+       and not os.path.exists(at("response.h5")), f"bonds by {by}: none, and the replay ends", said)
+for words, title in [(["bond.by=none"], "contacts alone, as asked for"),
+                     (["bridges.volume=1e-18"], "bridges alone"),
+                     (["bond.by=distance", f"bond.gap={1.01 * gaps[k]}"], "bonds over the gap")]:
+    status, _, said = call("dem-replay", *few, *settings(*words), at("loose.h5"), "-o",
+                           at("response.h5"))
+    ok(status == 0 and os.path.exists(at("response.h5")), title, said)
+
+# Held grains that nothing is bonded to.
+status, _, said = call("dem-replay", *few,
+                       *settings("bond.by=distance", f"bond.gap={np.sort(gaps)[20]}",
+                                 "held.grains=[0]"), at("loose.h5"), "-o", at("response.h5"))
+ok(status == 0 and f"of {n} grains to those that are held" in said,
+   "that hardly a grain hangs on those held is said", said)
+
+done()
