@@ -251,7 +251,7 @@ endif
 
 # --- install --------------------------------------------------------------------------
 
-MAN := $(BUILD)/man/craquelure.1 $(STAGES:%=$(BUILD)/man/craquelure-%.1)
+MAN := $(BUILD)/man/craquelure.1 $(BUILD)/man/craquelure-run.1 $(STAGES:%=$(BUILD)/man/craquelure-%.1)
 COMPLETION := $(BUILD)/completion/craquelure
 FRONT := $(BUILD)/front/craquelure
 
@@ -261,15 +261,26 @@ $(BUILD)/front/craquelure: tools/craquelure VERSION
 $(BUILD)/man/craquelure.1: $(FRONT) tools/man-page $(PROGRAMS)
 	@mkdir -p $(@D) $(BUILD)/libexec && ln -sfn ../bin $(BUILD)/libexec/craquelure \
 		&& tools/man-page '' $(VERSION) $< >$@
+$(BUILD)/man/craquelure-run.1: tools/run tools/man-page VERSION
+	@mkdir -p $(@D) && tools/man-page run $(VERSION) $< >$@
 $(BUILD)/man/craquelure-%.1: $(BUILD)/bin/% tools/man-page VERSION
 	$(call quiet,MAN,$*)mkdir -p $(@D) && tools/man-page $* $(VERSION) $< >$@
-$(COMPLETION): tools/completion $(PROGRAMS)
-	@mkdir -p $(@D) && tools/completion $(PROGRAMS) >$@
+$(COMPLETION): tools/completion tools/run $(PROGRAMS)
+	@mkdir -p $(@D) && tools/completion $(PROGRAMS) tools/run >$@
+
+# What `craquelure run` and `demo` need, as it lies in the tree; samples and documents.
+shared_scripts := $(addprefix pipelines/,memo picture crack-patterns)
+shared := $(shared_scripts) Makefile VERSION README.md $(addprefix pipelines/,crack.mk common.sh \
+	style.gp) $(wildcard $(addsuffix [.-]*,$(shared_scripts)) docs/* samples/*.json \
+	schemas/*.json stages/*/version)
+shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 
 # Under DESTDIR: the file to put there, where, and with what mode.
 installed := $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
 	$(FRONT):bin/craquelure:755 $(foreach m,$(MAN),$m:share/man/man1/$(notdir $m):644) \
-	$(COMPLETION):share/bash-completion/completions/craquelure:644
+	$(COMPLETION):share/bash-completion/completions/craquelure:644 \
+	tools/run:share/craquelure/run:755 \
+	$(foreach f,$(shared),$f:share/craquelure/$f:$(call shared_mode,$f))
 
 .PHONY: install uninstall
 install: all $(FRONT) $(MAN) $(COMPLETION) ## install under PREFIX (and DESTDIR)
@@ -278,8 +289,8 @@ install: all $(FRONT) $(MAN) $(COMPLETION) ## install under PREFIX (and DESTDIR)
 uninstall: ## remove what install put there
 	@for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
 		rm -f '$(DESTDIR)$(PREFIX)'/$$to; done
-	@if [[ -d '$(DESTDIR)$(PREFIX)'/libexec/craquelure ]]; then \
-		rmdir '$(DESTDIR)$(PREFIX)'/libexec/craquelure; fi
+	@for folder in libexec share; do if [[ -d '$(DESTDIR)$(PREFIX)'/$$folder/craquelure ]]; then \
+		find '$(DESTDIR)$(PREFIX)'/$$folder/craquelure -depth -type d -empty -delete; fi; done
 
 # --- check ----------------------------------------------------------------------------
 

@@ -124,7 +124,7 @@ is 'a removed source relinks' 'one two' "$(compiled EXTRA_CFLAGS=-DX)"
 
 cd "$tree" || exit
 export PREFIX=/opt/x DESTDIR=$scratch/dest
-yes 'make install' make install
+yes 'make install' flock "$BIN" make install
 root=$scratch/dest/opt/x
 stages=$(cd "$BIN" && echo *)
 is 'every stage is installed' "$stages" "$(cd "$root/libexec/craquelure" && echo *)"
@@ -156,7 +156,7 @@ complete_words()
         _craquelure; echo "${COMPREPLY[*]}"' - \
         "$root/share/bash-completion/completions/craquelure" "$@"
 }
-is 'completion of stages' 'deform dem-replay dry' "$(complete_words craquelure d)"
+is 'completion of stages' 'deform dem-replay dry demo' "$(complete_words craquelure d)"
 is 'completion of options' '--threads' "$(complete_words craquelure dry --th)"
 is 'completion of parameters' 'liquid= liquid_density=' "$(complete_words craquelure dry --set liq)"
 

@@ -1,0 +1,103 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What `make install` puts in a place runs from there alone: another folder, without the tree, and
+# with names that make and its shell would take apart.
+source tests/interface/make_tap.sh
+
+prefix=$scratch/prefix
+place="$scratch/another place; touch PWN"
+yes 'make install' flock "$BIN" make install PREFIX="$prefix" DESTDIR=
+# Links would lead back.
+is 'only files that stand by themselves' '' "$(find "$prefix" -type l)"
+is 'nothing of it names the tree' '' "$(grep -rlF "$tree" "$prefix/share" "$prefix/bin" || true)"
+
+mkdir -p "$place/scenes"
+jq '.pack.counts = [2, 2, 3] | .["force-protocol"].steps = 10 | .["dem-replay"].cycles = 20' \
+    samples/stiff-5x5x10.json >"$place/scenes/small scene.json"
+jq '.pack = {"method": "import"}' "$place/scenes/small scene.json" >"$place/own.json"
+yes 'the tree runs the scene' make run SCENE="$(cp "$place/scenes/small scene.json" \
+    "$scratch/small.json" && echo "$scratch/small.json")" RUNS="$scratch/runs"
+
+cd "$place" || exit
+craquelure() { env -i PATH=/usr/bin:/bin "$prefix/bin/craquelure" "$@"; }
+made() { sed -n 's/^  RUN   //p' | sed 's|.*/||' | xargs; } # what was remade
+
+# --- run ---------------------------------------------------------------------------------
+
+all='packing.h5 tessellation.h5 network.h5 drying.h5 forces.h5 response.h5 crackstats.json'
+is 'a scene runs' "$all" "$(craquelure run 'scenes/small scene.json' 2>"$scratch/said" | made)"
+is 'in ./runs' "$all" "$(cd runs/small_scene && echo *.h5 *.json | xargs -n1 |
+    grep -xFf <(tr ' ' '\n' <<<"$all") | awk -v all="$all" 'BEGIN { n = split(all, order) }
+        { seen[$0] = 1 } END { for (k = 1; k <= n; k++) if (seen[order[k]]) print order[k] }' | xargs)"
+yes 'to the bytes of the tree' cmp runs/small_scene/crackstats.json "$scratch/runs/small/crackstats.json"
+again=$(craquelure run 'scenes/small scene.json')
+is 'again: nothing is remade' '' "$(made <<<"$again")"
+is 'and it says how many bonds broke, and where' 'artifacts: runs/small_scene' "$(tail -1 <<<"$again")"
+is 'a changed parameter remakes what depends on it' 'response.h5 crackstats.json' \
+    "$(craquelure run 'scenes/small scene.json' -s dem-replay.bond.normal_strength=1e3 2>/dev/null | made)"
+is 'which it is' 1000 \
+    "$(craquelure inspect runs/small_scene/response.h5 | jq .parameters.bond.normal_strength)"
+is 'the scene itself is as it was' 16000 \
+    "$(jq '.["dem-replay"].bond.normal_strength | floor' 'scenes/small scene.json')"
+craquelure run 'scenes/small scene.json' --runs="$scratch/else where" --name=other >"$scratch/shown" 2>&1
+is 'in a chosen folder, by a chosen name' "artifacts: $scratch/else where/other" \
+    "$(tail -1 "$scratch/shown")"
+yes 'where it is' test -s "$scratch/else where/other/crackstats.json"
+is 'a sample by its name' 0 "$(craquelure run stiff-5x5x10 -s dem-replay.cycles=1 \
+    -s 'pack.counts=[2,2,2]' -s force-protocol.steps=3 >/dev/null 2>&1; echo $?)"
+
+grains="my grains; touch PWN \$(touch PWN) 'x'.txt"
+craquelure inspect -d /particles/position runs/small_scene/packing.h5 |
+    jq -r '.[] | map(tostring) + ["250e-9"] | join(" ")' >"$grains"
+is 'grains of a file with an odd name' "$all" "$(craquelure run own.json --import "$grains" 2>/dev/null | made)"
+is 'are those imported' 12 "$(craquelure inspect -d /particles/radius runs/own/packing.h5 | jq length)"
+is 'the same by standard input: nothing is remade' '' \
+    "$(craquelure run own.json --import=- <"$grains" 2>/dev/null | made)"
+is 'no name was run as a command' '' "$(find "$scratch" -name PWN)"
+
+cat >mycrackstats <<'END'
+#!/bin/bash
+[[ $1 == --version ]] && echo 'mine 1' && exit
+echo '{"cracks": {"total": 7, "normal": 4, "shear": 3}, "bonds": 8}' >"${!#}"
+END
+chmod +x mycrackstats
+is 'a stage of one'\''s own' '7 of 8 bonds broke, 4 in tension, 3 in shear' \
+    "$(env -i PATH=/usr/bin:/bin CRACKSTATS=./mycrackstats "$prefix/bin/craquelure" run \
+        'scenes/small scene.json' 2>/dev/null | tail -2 | head -1)"
+
+# --- what is refused ---------------------------------------------------------------------
+
+# refused WHAT STATUS LINE WORD...
+refused()
+{
+    local what=$1 status=$2 line=$3 got
+    shift 3
+    got=$(craquelure "$@" 2>&1 >/dev/null </dev/null)
+    is "$what" "$status" "$(craquelure "$@" >/dev/null 2>&1 </dev/null; echo $?)"
+    is "$what: why" 1 "$(grep -c -- "$line" <<<"$got")"
+}
+refused 'no scene' 64 'craquelure run: which scene?' run
+refused 'a scene that is not there' 66 'nonesuch.json: no such file, nor a sample' run nonesuch.json
+refused 'an option that is none' 64 '--sets: no such option' run own.json --sets=1
+refused 'grains that are not there' 66 'no-grains.txt: no such file' run own.json --import=no-grains.txt
+refused 'a key that is none, before any work' 65 'crackstats.slice: unknown key' \
+    run 'scenes/small scene.json' --set crackstats.slice=3 --name=never
+is 'no work was done' no "$([[ -e runs/never ]] && echo yes || echo no)"
+echo 'three 2 1' >words.txt
+refused 'the status is that of the stage that failed' 65 'words.txt: line 1: must be four numbers' \
+    run own.json --import=words.txt
+
+# --- demo --------------------------------------------------------------------------------
+
+craquelure demo 'scenes/small scene.json' >"$scratch/demo" 2>/dev/null
+is 'demo says what broke in both limits' 'immobile: inviscid:' \
+    "$(grep -o '^[a-z]*:.* bonds broke' "$scratch/demo" | cut -d' ' -f1 | sort | xargs)"
+for picture in picture patterns; do
+    yes "and draws $picture.svg" grep -q '</svg>' "runs/small_scene/$picture.svg"
+done
+
+cd "$tree" || exit
+yes 'make uninstall' make uninstall PREFIX="$prefix" DESTDIR=
+is 'leaves nothing of ours' '' "$(find "$prefix" -type f; find "$prefix" -name 'craquelure*')"
+
+finish
