@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const double largest = 1e150, most_cycles = 0x1p53;
-static const char loads_name[] = "load_force";
+static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge";
 
 // ---- out ----------------------------------------------------------------------------
 
@@ -55,6 +55,21 @@ static struct dem_contact *join_contacts(const struct response *response,
     return all;
 }
 
+// Volume and force of the bridge of each contact; only where there are any.
+static void save_bridges(struct array_list *list, const struct dem_contact *contact,
+                         int n)
+{
+    double(*bridge)[2] = allocate((size_t)n, sizeof *bridge);
+    bool any = false;
+    for (int k = 0; k < n; k++) {
+        bridge[k][0] = contact[k].bridge_volume;
+        bridge[k][1] = contact[k].bridge_force;
+        any = any || bridge[k][0] > 0;
+    }
+    if (any) add_array(list, bridges_name, DEM_FLOAT64, 2 * (int64_t)n, bridge);
+    free(bridge);
+}
+
 static void save_contacts(struct array_list *list, const struct response *response)
 {
     int n;
@@ -78,6 +93,7 @@ static void save_contacts(struct array_list *list, const struct response *respon
     add_array(list, "contact_overlap", DEM_FLOAT64, n, overlap);
     add_array(list, "contact_force", DEM_FLOAT64, 3 * (int64_t)n, force);
     add_array(list, "contact_position", DEM_FLOAT64, 3 * (int64_t)n, position);
+    save_bridges(list, contact, n);
     free(of_each);
     free(contact);
     free(particle);
@@ -259,6 +275,10 @@ static struct dem_contact *read_contacts(const struct packing *packing, int64_t 
         read_array(reader, "contact_force", DEM_FLOAT64, 3 * n, -largest, largest);
     const struct vector *position =
         read_array(reader, "contact_position", DEM_FLOAT64, 3 * n, -largest, largest);
+    const bool wet = array_count(reader->list, bridges_name) > 0;
+    const double(*bridge)[2] =
+        wet ? read_array(reader, bridges_name, DEM_FLOAT64, 2 * n, -largest, largest)
+            : NULL;
     if (reader->failed) return NULL;
     struct dem_contact *contact = NEW_ARRAY(struct dem_contact, n);
     for (int64_t k = 0; k < n; k++)
@@ -266,7 +286,9 @@ static struct dem_contact *read_contacts(const struct packing *packing, int64_t 
                                           .bond = bond[k],
                                           .overlap = overlap[k],
                                           .force = force[k],
-                                          .position = position[k]};
+                                          .position = position[k],
+                                          .bridge_volume = wet ? bridge[k][0] : 0,
+                                          .bridge_force = wet ? bridge[k][1] : 0};
     return contact;
 }
 

@@ -80,7 +80,8 @@ static void append(struct contact_list *list, const int32_t pair[2])
     memcpy(list->pair[list->count++], pair, sizeof *list->pair);
 }
 
-// Pairs bonded at the start, or touching at a snapshot, each once; walls left out.
+// Pairs bonded at the start, or touching or joined by a liquid bridge at a snapshot,
+// each once; walls left out.
 static struct contact_list all_contacts(const struct packing *packing,
                                         const struct response *response)
 {
@@ -101,28 +102,65 @@ static struct contact_list all_contacts(const struct packing *packing,
     return list;
 }
 
-static void put_contact_forces(struct artifact *artifact,
-                               const struct response *response,
-                               const struct contact_list *list)
+// The row of LIST that a contact has, or -1: with a wall.
+static int row_of(const struct contact_list *list, const struct dem_contact *contact)
 {
-    struct vector *force =
-        NEW_ARRAY(struct vector, (size_t)response->n_snapshot * (size_t)list->count);
+    if (!list->count) return -1;
+    const int32_t(*found)[2] =
+        bsearch(contact->particle, list->pair, (size_t)list->count, sizeof *list->pair,
+                compare_pairs);
+    return found ? (int)(found - (const int32_t(*)[2])list->pair) : -1;
+}
+
+// 0 where a snapshot does not have the contact.
+struct contact_tables {
+    struct vector *force;
+    double *bridge_volume, *bridge_force, *bridge_gap;
+};
+
+static struct contact_tables tables_of(const struct response *response,
+                                       const struct contact_list *list)
+{
+    const size_t width = (size_t)list->count;
+    const size_t size = (size_t)response->n_snapshot * width;
+    const struct contact_tables tables = {
+        NEW_ARRAY(struct vector, size), NEW_ARRAY(double, size),
+        NEW_ARRAY(double, size), NEW_ARRAY(double, size)};
     for (int s = 0; s < response->n_snapshot; s++)
         for (int c = 0; c < response->snapshot[s].n_contact; c++) {
             const struct dem_contact *contact = &response->snapshot[s].contact[c];
-            const int32_t(*found)[2] =
-                list->count
-                    ? bsearch(contact->particle, list->pair, (size_t)list->count,
-                              sizeof *list->pair, compare_pairs)
-                    : NULL;
-            if (found)
-                force[(size_t)s * (size_t)list->count + (size_t)(found - list->pair)] =
-                    contact->force;
+            const int row = row_of(list, contact);
+            if (row < 0) continue;
+            const size_t at = (size_t)s * width + (size_t)row;
+            tables.force[at] = contact->force;
+            if (!(contact->bridge_volume > 0)) continue;
+            tables.bridge_volume[at] = contact->bridge_volume;
+            tables.bridge_force[at] = contact->bridge_force;
+            tables.bridge_gap[at] = -contact->overlap;
         }
-    artifact_put(artifact, "/contacts/particles", list->pair, list->count);
-    artifact_put_table(artifact, "/snapshots/contact_force", force,
-                       response->n_snapshot, list->count);
-    free(force);
+    return tables;
+}
+
+// Bridges only where there may be any.
+static void put_contacts(struct artifact *artifact, const struct response *response,
+                         const struct contact_list *list, bool wet)
+{
+    const int rows = response->n_snapshot, width = list->count;
+    const struct contact_tables tables = tables_of(response, list);
+    artifact_put(artifact, "/contacts/particles", list->pair, width);
+    artifact_put_table(artifact, "/snapshots/contact_force", tables.force, rows, width);
+    if (wet) {
+        artifact_put_table(artifact, "/snapshots/bridge_volume", tables.bridge_volume,
+                           rows, width);
+        artifact_put_table(artifact, "/snapshots/bridge_force", tables.bridge_force,
+                           rows, width);
+        artifact_put_table(artifact, "/snapshots/bridge_gap", tables.bridge_gap, rows,
+                           width);
+    }
+    free(tables.force);
+    free(tables.bridge_volume);
+    free(tables.bridge_force);
+    free(tables.bridge_gap);
 }
 
 // ---- snapshots ----------------------------------------------------------------------
@@ -186,7 +224,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     put_cracks(artifact, load, response);
     put_history(artifact, load, response);
     struct contact_list contacts = all_contacts(packing, response);
-    put_contact_forces(artifact, response, &contacts);
+    put_contacts(artifact, response, &contacts, settings->liquid.volume > 0);
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);

@@ -153,9 +153,11 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
     }
 }
 
-// Displacements of the grains, forces and cracks at the contacts.
+// Displacements of the grains; forces, cracks and liquid bridges at the contacts.
 static void response_series(const struct artifact *artifact, struct series *series)
 {
+    static const char *const bridge_name[] = {
+        "/snapshots/bridge_volume", "/snapshots/bridge_force", "/snapshots/bridge_gap"};
     struct packing packing = artifact_get_packing(artifact);
     const size_t n = (size_t)packing.n_particle;
     int n_snapshot;
@@ -165,6 +167,10 @@ static void response_series(const struct artifact *artifact, struct series *seri
     struct vector *force = artifact_get(artifact, "/snapshots/force", NULL);
     struct vector *contact_force =
         artifact_get(artifact, "/snapshots/contact_force", NULL);
+    double *bridge[3] = {NULL, NULL, NULL};
+    const bool wet = artifact_has_dataset(artifact, bridge_name[0]);
+    for (int k = 0; wet && k < 3; k++)
+        bridge[k] = artifact_get(artifact, bridge_name[k], NULL);
     struct crack_view view = crack_view_of(artifact);
     struct vector *moved = NEW_ARRAY(struct vector, n);
     for (int s = 0; s < n_snapshot; s++) {
@@ -177,11 +183,14 @@ static void response_series(const struct artifact *artifact, struct series *seri
             {"force", &force[at].x, 3, NULL},
             {"radius", packing.radius, 1, NULL},
             {0}};
+        const size_t row = (size_t)s * (size_t)view.n_contact;
         const struct vtu_array cells[] = {
-            {"contact_force", &contact_force[(size_t)s * (size_t)view.n_contact].x, 3,
-             NULL},
+            {"contact_force", &contact_force[row].x, 3, NULL},
             {"crack", view.state, 1,
              "0 holds, 1 broken in tension, 2 in shear, -1 no bond"},
+            {wet ? "bridge_volume" : NULL, wet ? bridge[0] + row : NULL, 1, NULL},
+            {"bridge_force", wet ? bridge[1] + row : NULL, 1, NULL},
+            {"bridge_gap", wet ? bridge[2] + row : NULL, 1, NULL},
             {0}};
         add_frame(series, time[s],
                   &(struct vtu_grid){.n_point = packing.n_particle,
@@ -195,6 +204,8 @@ static void response_series(const struct artifact *artifact, struct series *seri
     free(displacement);
     free(force);
     free(contact_force);
+    for (int k = 0; k < 3; k++)
+        free(bridge[k]);
     free(moved);
     crack_view_free(&view);
     packing_free(&packing);

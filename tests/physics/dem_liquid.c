@@ -278,6 +278,65 @@ static void test_conserves(void **state)
     packing_free(&packing);
 }
 
+// What contacts list is all that grains do to each other: it adds up to the net force
+// on each, and its virial, sum of x F, is the stress [Clausius]. Where each was when
+// these forces acted: a time step ago.
+static void test_stress_and_contacts_hold_bridges(void **state)
+{
+    (void)state;
+    struct packing packing = wet_grains();
+    packing.periodic[0] = false;
+    const struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_FULL);
+    struct dem *dem = thrown(&packing, &liquid, 1, 0.02);
+    run(dem, 40);
+    struct vector *x = NEW_ARRAY(struct vector, MANY),
+                  *v = NEW_ARRAY(struct vector, MANY),
+                  *net = NEW_ARRAY(struct vector, MANY),
+                  *moment = NEW_ARRAY(struct vector, MANY);
+    dem_positions(dem, x);
+    dem_velocities(dem, v);
+    dem_loads(dem, net, moment);
+    double virial[9] = {0}, largest = 0, left = 0, size = 0;
+    for (int i = 0; i < MANY; i++) {
+        const struct vector at = subtract(x[i], scale(dem_time_step(dem), v[i]));
+        for (int k = 0; k < 9; k++)
+            virial[k] += component(at, k / 3) * component(net[i], k % 3);
+        largest = fmax(largest, norm(net[i]));
+    }
+
+    int count, over_gaps = 0;
+    struct dem_contact *contact = dem_contacts(dem, &count);
+    for (int c = 0; c < count; c++) {
+        struct vector *on = net;
+        on[contact[c].particle[0]] = add(on[contact[c].particle[0]], contact[c].force);
+        on[contact[c].particle[1]] =
+            subtract(on[contact[c].particle[1]], contact[c].force);
+        if (contact[c].overlap >= 0) continue;
+        over_gaps++;
+        assert_true(contact[c].bridge_volume > 0);
+        assert_close(norm(contact[c].force), contact[c].bridge_force, 1e-12);
+    }
+    for (int i = 0; i < MANY; i++)
+        left = fmax(left, norm(net[i]));
+    if (!(over_gaps > 100 && left < 1e-12 * largest))
+        fail_msg("%d bridges over gaps, %g of %g N missing", over_gaps, left, largest);
+
+    const struct dem_census census = dem_census(dem);
+    const double volume = packing.upper.x * packing.upper.y * packing.upper.z;
+    for (int k = 0; k < 9; k++)
+        size = fmax(size, fabs(virial[k]) / volume);
+    for (int k = 0; k < 9; k++)
+        assert_within(census.stress[k / 3][k % 3], virial[k] / volume, 1e-10 * size);
+    assert_int_equal(census.contacts, count - over_gaps);
+    free(contact);
+    free(x);
+    free(v);
+    free(net);
+    free(moment);
+    dem_free(dem);
+    packing_free(&packing);
+}
+
 // The same from nm to km.
 static void test_is_scale_free(void **state)
 {
@@ -337,6 +396,7 @@ int main(void)
         cmocka_unit_test(test_shares_its_liquid),
         cmocka_unit_test(test_same_bytes_whoever_computes),
         cmocka_unit_test(test_conserves),
+        cmocka_unit_test(test_stress_and_contacts_hold_bridges),
         cmocka_unit_test(test_is_scale_free),
         cmocka_unit_test(test_refuses_what_it_cannot)};
     return cmocka_run_group_tests(tests, NULL, NULL);

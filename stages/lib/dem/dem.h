@@ -152,14 +152,17 @@ struct dem_crack {
     struct vector position; // m, the contact point
 };
 
-// A pair that touches or is bonded, as it was in the last cycle.
+// A pair that touches, is bonded or holds a liquid bridge, as it was in the last cycle.
 struct dem_contact {
     int32_t particle[2]; // lower first; the second is -1-w for wall w
     int32_t bond;        // the intact bond between them, or -1
     double overlap;      // m, < 0 apart
-    struct vector force; // N, F_ij of [K 4.10] with bond and dashpots: the second grain
-                         // feels it, the first its opposite; along n_ij in compression
+    struct vector force; // N, F_ij of [K 4.10] with bond, dashpots and bridge: the
+                         // second grain feels it, the first its opposite; along n_ij in
+                         // compression
     struct vector position; // m, the contact point [K 4.9]
+    double bridge_volume;   // m3, 0: no bridge between them
+    double bridge_force;    // N, > 0 when it pulls; part of FORCE
 };
 
 // kinetic + elastic + what was lost = what it began with + what was put in.
@@ -252,10 +255,10 @@ struct dem_momentum dem_momentum(const struct dem *dem);
 // How grains touch each other, in the last cycle, and the stress that they and walls
 // put on each other. O(pairs).
 struct dem_census {
-    int contacts;
+    int contacts;                         // touching or bonded
     double mean_overlap, largest_overlap; // over the mean radius
     double stress[3][3];                  // Pa, compression > 0, over the volume of the
-                                          // box; of contacts and bonds
+                                          // box; of contacts, bonds and liquid bridges
 };
 struct dem_census dem_census(const struct dem *dem);
 

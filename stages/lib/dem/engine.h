@@ -267,6 +267,7 @@ void count_bridges(struct dem *dem); // of each grain, from the pairs
 // before the pair sweep.
 void wet_groups(const struct dem *dem, int begin, int end);
 void settle_bridges(struct dem *dem); // at the end of a cycle
+struct dem_bridge bridge_of_pair(const struct dem *dem, int pair); // no volume: none
 
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);
@@ -357,6 +358,13 @@ static inline bool is_held(const struct dem *dem, int pair)
 {
     return dem->pairs.bonds && dem->pairs.bonds[pair / PAIRS_IN_GROUP]
                                        .normal_strength[pair % PAIRS_IN_GROUP] >= 0;
+}
+
+// Whether a liquid bridge joins the grains of a pair, whatever it pulls with.
+static inline bool is_bridged(const struct dem *dem, int pair)
+{
+    return dem->pairs.liquid &&
+           dem->pairs.liquid[pair / PAIRS_IN_GROUP].volume[pair % PAIRS_IN_GROUP] > 0;
 }
 
 // How pair P lies when its grains are at BACK time steps before now.

@@ -248,25 +248,28 @@ void free_liquid(struct liquid *liquid)
     free(liquid);
 }
 
+struct dem_bridge bridge_of_pair(const struct dem *dem, int pair)
+{
+    if (!is_bridged(dem, pair)) return (struct dem_bridge){.volume = 0};
+    const int lane = pair % PAIRS_IN_GROUP;
+    const struct liquid_group *group = &dem->pairs.liquid[pair / PAIRS_IN_GROUP];
+    const double length = dem->unit.length, radius = group->radius[lane] * length;
+    const int32_t a = dem->identity[dem->pairs.particle[pair][0]];
+    const int32_t b = dem->identity[dem->pairs.particle[pair][1]];
+    return (struct dem_bridge){
+        .particle = {a < b ? a : b, a < b ? b : a},
+        .volume = group->volume[lane] * radius * radius * radius,
+        .separation = -length * pair_geometry(dem, pair, places_ahead(dem)).overlap,
+        .force = group->pull[lane] * dem->unit.stiffness * length};
+}
+
 struct dem_bridge *dem_bridges(const struct dem *dem, int *count)
 {
     *count = 0;
     if (!dem->liquid) return NULL;
-    const double length = dem->unit.length, force = dem->unit.stiffness * length;
     struct dem_bridge *bridge = NEW_ARRAY(struct dem_bridge, dem->pairs.n_pair);
-    for (int p = 0; p < dem->pairs.n_pair; p++) {
-        const int lane = p % PAIRS_IN_GROUP;
-        const struct liquid_group *group = &dem->pairs.liquid[p / PAIRS_IN_GROUP];
-        const double radius = group->radius[lane] * length;
-        if (!(group->volume[lane] > 0)) continue;
-        const int32_t a = dem->identity[dem->pairs.particle[p][0]];
-        const int32_t b = dem->identity[dem->pairs.particle[p][1]];
-        bridge[(*count)++] = (struct dem_bridge){
-            .particle = {a < b ? a : b, a < b ? b : a},
-            .volume = group->volume[lane] * radius * radius * radius,
-            .separation = -length * pair_geometry(dem, p, places_ahead(dem)).overlap,
-            .force = group->pull[lane] * force};
-    }
+    for (int p = 0; p < dem->pairs.n_pair; p++)
+        if (is_bridged(dem, p)) bridge[(*count)++] = bridge_of_pair(dem, p);
     qsort(bridge, (size_t)*count, sizeof *bridge, compare_pairs);
     return bridge;
 }

@@ -111,18 +111,26 @@ static struct vector pair_force(const struct dem *dem, int pair)
                        pair % PAIRS_IN_GROUP);
 }
 
+static bool touches(const struct dem *dem, int pair, const struct pair_geometry *lie)
+{
+    return lie->overlap >= 0 || is_held(dem, pair);
+}
+
 static struct dem_contact pair_contact(const struct dem *dem, int pair,
                                        const struct pair_geometry *lie)
 {
     const int32_t a = dem->identity[dem->pairs.particle[pair][0]];
     const int32_t b = dem->identity[dem->pairs.particle[pair][1]];
     const double unit = dem->unit.stiffness * dem->unit.length;
+    const struct dem_bridge bridge = bridge_of_pair(dem, pair);
     return (struct dem_contact){.particle = {a < b ? a : b, a < b ? b : a},
                                 .bond = is_held(dem, pair) ? dem->pairs.bond[pair] : -1,
                                 .overlap = lie->overlap * dem->unit.length,
                                 .force =
                                     scale(a < b ? unit : -unit, pair_force(dem, pair)),
-                                .position = scale(dem->unit.length, lie->position)};
+                                .position = scale(dem->unit.length, lie->position),
+                                .bridge_volume = bridge.volume,
+                                .bridge_force = bridge.force};
 }
 
 static struct dem_contact wall_contact(const struct dem *dem,
@@ -161,7 +169,7 @@ struct dem_contact *dem_contacts(const struct dem *dem, int *count)
     int n = 0;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         const struct pair_geometry lie = pair_geometry(dem, p, places_ahead(dem));
-        if (lie.overlap >= 0 || is_held(dem, p))
+        if (touches(dem, p, &lie) || is_bridged(dem, p))
             contact[n++] = pair_contact(dem, p, &lie);
     }
     for (int k = 0; k < dem->n_wall_pair; k++) {
@@ -175,6 +183,13 @@ struct dem_contact *dem_contacts(const struct dem *dem, int *count)
     return contact;
 }
 
+static void count_contact(struct dem_census *census, double overlap)
+{
+    census->contacts++;
+    census->mean_overlap += overlap;
+    census->largest_overlap = fmax(census->largest_overlap, overlap);
+}
+
 struct dem_census dem_census(const struct dem *dem)
 {
     struct dem_census census = {.contacts = 0};
@@ -184,10 +199,8 @@ struct dem_census dem_census(const struct dem *dem)
     const double unit = dem->unit.stiffness / dem->unit.length / volume;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         const struct pair_geometry lie = pair_geometry(dem, p, places_ahead(dem));
-        if (lie.overlap < 0 && !is_held(dem, p)) continue;
-        census.contacts++;
-        census.mean_overlap += lie.overlap;
-        census.largest_overlap = fmax(census.largest_overlap, lie.overlap);
+        if (!touches(dem, p, &lie) && !is_bridged(dem, p)) continue;
+        if (touches(dem, p, &lie)) count_contact(&census, lie.overlap);
         const int32_t *end = dem->pairs.particle[p];
         const double branch =
             dem->place[end[0]].radius + dem->place[end[1]].radius - lie.overlap;
