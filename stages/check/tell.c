@@ -35,11 +35,12 @@ static void tell_facts(const struct checked *checked, FILE *out)
             100 * facts->empty);
     fprintf(out, "contacts   %d, largest overlap %.2g of the smaller radius\n",
             checked->contacts->count, facts->overlap);
-    fprintf(out,
-            "bonds      %d, %.3g a grain; the largest piece has %d grains, %d hang "
-            "together with the %d at the bottom\n",
-            n_bond, 2.0 * n_bond / facts->n, bonds->largest, bonds->supported,
-            bonds->at_bottom);
+    fprintf(out, "bonds      %d, %.3g a grain; the largest piece has %d grains", n_bond,
+            2.0 * n_bond / facts->n, bonds->largest);
+    if (bonds->at_bottom)
+        fprintf(out, ", %d hang together with the %d at the bottom", bonds->supported,
+                bonds->at_bottom);
+    fputc('\n', out);
 }
 
 static void tell_numbers(const char *prefix, const json_t *object, FILE *out)

@@ -65,7 +65,7 @@ static enum status check_periods(const struct domain *domain, const struct sizes
     return STATUS_OK;
 }
 
-enum status check_moved(const struct pack_parameters *parameters,
+enum status check_moved(const struct pack_parameters *parameters, bool given,
                         const struct domain *domain, const struct sizes *sizes,
                         struct reason *reason)
 {
@@ -73,6 +73,12 @@ enum status check_moved(const struct pack_parameters *parameters,
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.periodic: must be false along z for deposition: grains "
                       "need a floor");
+    if (given && parameters->method == METHOD_RADIUS_EXPANSION &&
+        parameters->dynamics.target == TARGET_PRESSURE)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "pack.target: must not be pressure for radius_expansion of INPUT, "
+            "whose lengths are scaled back at the end (domain_contraction)");
     enum status status = parameters->extra_layer
                              ? check_layer(domain, parameters->extra_side, reason)
                              : STATUS_OK;

@@ -12,6 +12,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // As loose as random points find room for.
 static double loose_fraction(const struct domain *domain)
@@ -339,6 +340,23 @@ static double stiffness_for(const struct dynamics_parameters *how, double radius
     return how->density * radius * radius * radius * 1e12;
 }
 
+// All places, and the box with them, LENGTHS times as far from its lower corner.
+static void stretch_all(const struct making *making, double lengths)
+{
+    struct packing *packing = making->packing;
+    struct domain *domain = making->domain;
+    const bool flat = domain->dimensions == 2;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double y = packing->position[i].y;
+        const struct vector from = subtract(packing->position[i], domain->lower);
+        packing->position[i] = add(domain->lower, scale(lengths, from));
+        if (flat) packing->position[i].y = y;
+    }
+    domain_stretch(domain, lengths);
+    packing->lower = domain->lower;
+    packing->upper = domain->upper;
+}
+
 // Loose points of grains as large as their room allows: shrunk, or in a larger box.
 static enum status make_loose(const struct making *making, int count, bool grow,
                               double *shrunk, struct reason *reason)
@@ -365,6 +383,28 @@ static enum status make_loose(const struct making *making, int count, bool grow,
     } while (status == STATUS_NOT_CONVERGED && loose > 0.01);
     gsl_rng_free(same);
     return status;
+}
+
+// Grains that are there, shrunk or drawn apart until none overlaps another.
+static enum status loosen(const struct making *making, bool grow, double *shrunk,
+                          struct reason *reason)
+{
+    struct packing *packing = making->packing;
+    const double least = 0.1;
+    *shrunk = fitting_size(packing);
+    if (*shrunk < least) {
+        packing_free(packing);
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "INPUT: grains are nearly in one place, or outside the box, and would "
+            "have to be %.3g as large not to overlap (part them by "
+            "pack.method=explosive_repulsion)",
+            *shrunk);
+    }
+    if (!grow) stretch_all(making, 1 / *shrunk);
+    for (int i = 0; i < packing->n_particle && grow; i++)
+        packing->radius[i] *= *shrunk;
+    return STATUS_OK;
 }
 
 // By volume: of the grains that carry the stress. By number it would be that of the
@@ -394,13 +434,33 @@ static enum status check_contraction(const struct domain *domain, struct reason 
                   "all axes (pack.periodic); between walls use radius_expansion");
 }
 
+// Grains that were there keep their SIZES: what they grew becomes room that is gone.
+static void restore_sizes(const struct making *making, const double *sizes)
+{
+    const double back = 1 / making->reached->growth;
+    making->reached->growth = 1;
+    making->reached->pressure /= back; // the same overlaps, of smaller grains
+    stretch_all(making, back);
+    const size_t n = (size_t)making->packing->n_particle;
+    memcpy(making->packing->radius, sizes, n * sizeof *sizes);
+    thicken_layer(making);
+}
+
 enum status densify(const struct making *making, int count, bool grow,
                     struct reason *reason)
 {
     enum status status = grow ? STATUS_OK : check_contraction(making->domain, reason);
-    double shrunk;
-    if (status == STATUS_OK) status = make_loose(making, count, grow, &shrunk, reason);
-    if (status != STATUS_OK) return status;
+    double shrunk, *sizes = NULL;
+    if (!count && grow)
+        sizes = duplicate(making->packing->radius, (size_t)making->packing->n_particle,
+                          sizeof *sizes);
+    if (status == STATUS_OK)
+        status = count ? make_loose(making, count, grow, &shrunk, reason)
+                       : loosen(making, grow, &shrunk, reason);
+    if (status != STATUS_OK) {
+        free(sizes);
+        return status;
+    }
 
     const double first_step = 1e-3;
     struct dem_wall wall[MOST_WALLS];
@@ -422,8 +482,10 @@ enum status densify(const struct making *making, int count, bool grow,
     if (status == STATUS_OK) {
         take_grains(making, d.dem);
         note_end(making, d.dem);
+        if (sizes) restore_sizes(making, sizes);
     }
     dem_free(d.dem);
+    free(sizes);
     if (status != STATUS_OK) packing_free(making->packing);
     return status;
 }

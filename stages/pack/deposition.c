@@ -133,10 +133,27 @@ static enum status check_fall(const struct making *making, const struct domain *
         height, cycles, dem_time_step(dem), (long long)making->how->most_cycles);
 }
 
+// Grains that are there fall from where they are.
+static enum status take_cloud(const struct making *making, struct domain *tall,
+                              struct reason *reason)
+{
+    *tall = *making->domain;
+    const double least = 0.95, fits = fitting_size(making->packing);
+    if (fits >= least) return STATUS_OK;
+    packing_free(making->packing);
+    return refuse(
+        reason, STATUS_BAD_DATA,
+        "INPUT: grains overlap each other or the walls, and would have to be %.3g "
+        "as large not to: they would fly apart instead of falling (part them by "
+        "pack.method=explosive_repulsion)",
+        fits);
+}
+
 enum status deposit(const struct making *making, int count, struct reason *reason)
 {
     struct domain tall;
-    enum status status = make_cloud(making, count, &tall, reason);
+    enum status status = count ? make_cloud(making, count, &tall, reason)
+                               : take_cloud(making, &tall, reason);
     if (status != STATUS_OK) return status;
     struct dem_wall wall[MOST_WALLS];
     const bool open = making->domain->shape != DOMAIN_SPHERE;

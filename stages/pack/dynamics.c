@@ -2,6 +2,8 @@
 #include "dynamics.h"
 
 #include "basics/memory.h"
+#include "geometry/neighbours.h"
+#include "geometry/porosity.h"
 #include "pack.h"
 
 #include <math.h>
@@ -51,6 +53,29 @@ static int cut_walls(const struct domain *domain, struct dem_wall *wall)
     if (domain->cut == CUT_SPHERE)
         *wall = round_wall(DEM_SPHERE, domain->cut_centre, domain->cut_radius, true);
     return 1;
+}
+
+double fitting_size(const struct packing *packing)
+{
+    double fits = 1;
+    const bool flat = packing_is_flat(packing);
+    int count;
+    int32_t(*pair)[2] = neighbour_pairs(packing, 0, &count);
+    for (int k = 0; k < count; k++) {
+        const int i = pair[k][0], j = pair[k][1];
+        fits = fmin(fits, norm(nearest_image(packing, i, j)) /
+                              (packing->radius[i] + packing->radius[j]));
+    }
+    free(pair);
+    for (int i = 0; i < packing->n_particle; i++)
+        for (int wall = 0; wall < WALL_COUNT; wall++) {
+            const int axis = wall / 2;
+            if (packing->periodic[axis] || (flat && axis == 1)) continue;
+            const double x = component(packing->position[i], axis);
+            const double at = wall_position(packing, wall);
+            fits = fmin(fits, (wall % 2 ? at - x : x - at) / packing->radius[i]);
+        }
+    return fits;
 }
 
 int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,

@@ -67,7 +67,8 @@ struct making {
 };
 
 // The methods. Each makes packing, domain and reached; DOMAIN comes as the user wants
-// it, and the box may come out smaller, or with its top on the highest grain.
+// it, and the box may come out smaller, or with its top on the highest grain. With
+// COUNT 0 they begin from the grains that PACKING has, which keep their sizes.
 // STATUS_NOT_CONVERGED: not reached in most_cycles, with what was. On success the
 // caller frees *PACKING.
 
@@ -78,13 +79,16 @@ enum status deposit(const struct making *making, int count, struct reason *reaso
 enum status densify(const struct making *making, int count, bool grow,
                     struct reason *reason);
 
-// Grains at random, overlapping, that push each other away; PACKING has grains already
-// if COUNT is 0.
+// Grains at random, overlapping, that push each other away.
 enum status repel(const struct making *making, int count, struct reason *reason);
 
 // ---- shared by them -----------------------------------------------------------------
 
 enum { MOST_WALLS = 16 };
+
+// How much smaller than they are the grains of PACKING have to be, none to overlap
+// another or a wall: 1 where none does.
+double fitting_size(const struct packing *packing);
 
 // The walls of a domain; without those that close it at the top if OPEN.
 int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,

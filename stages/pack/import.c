@@ -62,7 +62,8 @@ struct packing make_import(const struct invocation *invocation,
         import(invocation->n_input ? invocation->inputs[0] : "-", parameters, inputs);
     *domain = (struct domain){.dimensions = (int)parameters->dimensions,
                               .lower = packing.lower,
-                              .upper = packing.upper};
+                              .upper = packing.upper,
+                              .centre = scale(0.5, add(packing.lower, packing.upper))};
     for (int axis = 0; axis < 3; axis++)
         domain->periodic[axis] = packing.periodic[axis];
     return packing;

@@ -25,36 +25,44 @@ static const struct stage stage = {
     .notes =
         "INPUT, with method=import: text of \"x y z r\" lines (# comments), a LAMMPS "
         "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
-        "packing.h5. With method=explosive_repulsion the same, for grains to part.",
+        "packing.h5. With deposition, radius_expansion, domain_contraction and "
+        "explosive_repulsion the same, for grains to begin from.",
     .reports = "Write there, as JSON, what is said of the packing",
     .checkpoints = true};
 
-static struct packing make_packing(const struct invocation *invocation,
-                                   const struct pack_parameters *parameters,
-                                   json_t *inputs, struct domain *domain,
-                                   struct reached *reached)
+static bool moves_grains(int method)
 {
-    const int method = parameters->method;
-    const bool begins_from_input =
-        invocation->n_input && method == METHOD_EXPLOSIVE_REPULSION;
-    struct packing packing = {0};
-    if (method == METHOD_IMPORT || begins_from_input)
-        packing = make_import(invocation, parameters, inputs, domain);
-    if (method == METHOD_IMPORT) return packing;
-    if (invocation->n_input && !begins_from_input)
+    return method == METHOD_DEPOSITION || method == METHOD_RADIUS_EXPANSION ||
+           method == METHOD_DOMAIN_CONTRACTION || method == METHOD_EXPLOSIVE_REPULSION;
+}
+
+// Whether grains come from INPUT, to stay where they are or to be moved.
+static bool takes_input(const struct invocation *invocation, int method)
+{
+    if (method == METHOD_IMPORT) return true;
+    if (invocation->n_input && !moves_grains(method))
         die(STATUS_USAGE,
-            "%s: only method=import and explosive_repulsion take an input",
+            "%s: this method takes no input: import, deposition, radius_expansion, "
+            "domain_contraction and explosive_repulsion do",
             invocation->inputs[0]);
+    return invocation->n_input > 0;
+}
+
+// By any method but import; PACKING and DOMAIN are those to begin with if GIVEN.
+static void make_packing(const struct invocation *invocation,
+                         const struct pack_parameters *parameters, bool given,
+                         struct domain *domain, struct packing *packing,
+                         struct reached *reached)
+{
     struct progress progress = progress_begin(invocation->progress, invocation->quiet);
     struct reason reason;
-    const enum status status = make_grains(parameters, begins_from_input, &progress,
-                                           domain, &packing, reached, &reason);
+    const enum status status =
+        make_grains(parameters, given, &progress, domain, packing, reached, &reason);
     progress_end(&progress);
     const struct keeper *keeper = parameters->dynamics.keeper;
     if (status == STATUS_BAD_DATA && keeper->begin) // only what was kept can be
         die(status, "%s: %s", invocation->checkpoint, reason.text);
     if (status) die(status, "%s", reason.text);
-    return packing;
 }
 
 // Of the domain, not of the box around it; a box loses no digit.
@@ -204,15 +212,18 @@ int main(int argc, char **argv)
     struct pack_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     json_t *inputs = json_array();
+    struct domain domain;
+    struct packing packing = {0};
+    const bool given = takes_input(&invocation, parameters.method);
+    if (given) packing = make_import(&invocation, &parameters, inputs, &domain);
 
     struct checkpoint checkpoint;
     begin_checkpoint(&checkpoint, &invocation, inputs, parameters.method);
     parameters.dynamics.threads = invocation.threads;
     parameters.dynamics.keeper = &checkpoint.keeper;
-    struct domain domain;
     struct reached reached = {.dynamic = false};
-    struct packing packing =
-        make_packing(&invocation, &parameters, inputs, &domain, &reached);
+    if (parameters.method != METHOD_IMPORT)
+        make_packing(&invocation, &parameters, given, &domain, &packing, &reached);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
     look_at(&packing, &contacts, &invocation, &parameters);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);

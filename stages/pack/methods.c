@@ -266,6 +266,18 @@ static enum status move_grains_there(const struct making *making,
     }
 }
 
+// Of grains that are there: how large they are is all that moving asks.
+static struct sizes sizes_of(const struct packing *packing)
+{
+    struct sizes sizes = {.smallest = HUGE_VAL};
+    for (int i = 0; i < packing->n_particle; i++) {
+        sizes.smallest = fmin(sizes.smallest, packing->radius[i]);
+        sizes.largest = fmax(sizes.largest, packing->radius[i]);
+    }
+    sizes.radius = sizes.largest;
+    return sizes;
+}
+
 static enum status make_moved(const struct pack_parameters *parameters, bool given,
                               struct progress *progress, struct domain *domain,
                               struct packing *packing, struct reached *reached,
@@ -273,8 +285,9 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
 {
     struct sizes sizes;
     enum status status = check_target(parameters, reason);
-    if (!status) status = sizes_prepare(&parameters->sizes, &sizes, reason);
+    if (!status && !given) status = sizes_prepare(&parameters->sizes, &sizes, reason);
     if (status) return status;
+    if (given) sizes = sizes_of(packing);
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
     gsl_rng_set(random, (unsigned long)parameters->seed);
     const struct making making = {.how = &parameters->dynamics,
@@ -298,7 +311,7 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
         domain->periodic[1] = false;
         packing->periodic[1] = false;
     }
-    if (!status) status = check_moved(parameters, domain, &sizes, reason);
+    if (!status) status = check_moved(parameters, given, domain, &sizes, reason);
     if (!status) status = move_grains_there(&making, parameters, count, reason);
     gsl_rng_free(random);
     return status;

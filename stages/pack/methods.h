@@ -9,7 +9,7 @@
 
 // Grains by any method but import, the domain they lie in, and how the dynamics ended
 // if there was any. PACKING holds grains already, in DOMAIN, if GIVEN: those that
-// explosive repulsion begins from. On success the caller frees *PACKING; otherwise the
+// moving begins from. On success the caller frees *PACKING; otherwise the
 // reason names the key.
 enum status make_grains(const struct pack_parameters *parameters, bool given,
                         struct progress *progress, struct domain *domain,
@@ -18,7 +18,7 @@ enum status make_grains(const struct pack_parameters *parameters, bool given,
 
 // Refuses what moving grains cannot come to [check_moved.c]: STATUS_BAD_DATA, naming
 // the key.
-enum status check_moved(const struct pack_parameters *parameters,
+enum status check_moved(const struct pack_parameters *parameters, bool given,
                         const struct domain *domain, const struct sizes *sizes,
                         struct reason *reason);
 

@@ -16,8 +16,8 @@ const struct parameter pack_table[] = {
              "overlap; inward_spiral: a layer of grains from the walls inwards, each "
              "touching two others [K 3.1.2]; by moving grains [K 3.1.1]: deposition by "
              "gravity, radius_expansion and domain_contraction from loose points, "
-             "explosive_repulsion of overlapping ones (drawn, or from INPUT); import: "
-             "grains from INPUT"},
+             "explosive_repulsion of overlapping ones, all of grains drawn or those of "
+             "INPUT, which keep their sizes; import: grains of INPUT as they are"},
     {"dimensions", PARAMETER_INTEGER, "1", "3", AT(dimensions), BETWEEN(2, 3),
      .text = "2: all centres in one plane y, in a box one largest diameter thick "
              "(square and inward_spiral always; import: the extra layer is one row)"},

@@ -57,6 +57,19 @@ imported("grains with more volume than their box are refused", "1 1 1 0.005\n1 1
          "pack.lower and pack.upper leave them no room",
          "--set", "lower=[0.999,0.999,0.999]", "--set", "upper=[1.001,1.001,1.011]")
 
+# ---- own grains to move -------------------------------------------------------------------
+
+for method, line in [
+        ("deposition", "INPUT: grains overlap each other or the walls, and would have to be 0.5 as "
+                       r"large not to: .* \(part them by pack.method=explosive_repulsion\)"),
+        ("radius_expansion target=pressure target_value=1",
+         r"pack.target: must not be pressure for radius_expansion of INPUT, .*"),
+        ("domain_contraction", r"pack.method: domain_contraction closes in a box that repeats .*")]:
+    words = [w for each in f"method={method}".split() for w in ("--set", each)]
+    refused(f"own grains by {method}: refused", BAD_DATA,
+            ["pack", *words, text_file("grains", "0 0 0 1e-3\n0 0 1e-3 1e-3\n0 0 4e-3 1e-3\n")],
+            line)
+
 # ---- imported dumps ---------------------------------------------------------------------
 
 def dump(*rows, columns="id x y z radius", box="BOX BOUNDS pp ff ff", bounds=("0 9",) * 3,
