@@ -116,6 +116,8 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check(&parameters);
     const struct bridge bridge = bridge_of(&parameters);
+    struct reason reason;
+    if (bridge_check(&bridge, &reason)) die(STATUS_BAD_DATA, "%s", reason.text);
     const double rupture = rupture_distance(&bridge, parameters.model);
     struct curve_request request = {.profile = (int)parameters.profile};
     double *separation = separations_of(&parameters, rupture, &request.count);
@@ -125,7 +127,6 @@ int main(int argc, char **argv)
         "{s:s,s:f,s:f,s:f}", "schema", "craquelure/bridge/1", "effective_radius",
         bridge_effective_radius(&bridge), "dimensionless_volume",
         bridge_dimensionless_volume(&bridge), "rupture_distance", rupture);
-    struct reason reason;
     const enum status status =
         put_curve(report, &bridge, parameters.model, &request, &reason);
     if (status) die(status, "%s", reason.text);

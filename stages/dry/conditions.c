@@ -229,6 +229,18 @@ struct drying_scale drying_scale(const struct network *network,
     return scale;
 }
 
+enum status check_scale(const struct drying_conditions *conditions,
+                        const struct network *network, struct reason *reason)
+{
+    const double time = drying_scale(network, conditions).time, most = 1e150;
+    if (time >= 1 / most && time <= most) return STATUS_OK;
+    return refuse(
+        reason, STATUS_BAD_DATA,
+        "saturation_pressure = %g Pa, diffusivity = %g m2/s: the time in which "
+        "a throat dries must be from 1e-150 to 1e150 s, is %g s",
+        conditions->saturation_pressure, conditions->diffusivity, time);
+}
+
 double knudsen_radius(const struct drying_conditions *conditions)
 {
     if (!conditions->knudsen) return 0;

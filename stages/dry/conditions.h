@@ -36,6 +36,10 @@ int count_throats(const struct network *network);
 enum status check_steps(const struct drying_conditions *conditions,
                         const struct network *network, struct reason *reason);
 
+// STATUS_BAD_DATA if time would leave the range of numbers.
+enum status check_scale(const struct drying_conditions *conditions,
+                        const struct network *network, struct reason *reason);
+
 // Both arguments must have passed their checks.
 struct drying_scale drying_scale(const struct network *network,
                                  const struct drying_conditions *conditions);

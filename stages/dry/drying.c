@@ -275,6 +275,7 @@ enum status dry_network(const struct network *network,
     enum status status = check_conditions(conditions, reason);
     if (!status) status = check_gravity(network, conditions->gravity, reason);
     if (!status) status = check_throats(network, reason);
+    if (!status) status = check_scale(conditions, network, reason);
     if (!status) status = check_kelvin(conditions, network, reason);
     if (!status) status = check_steps(conditions, network, reason);
     if (status) return status;

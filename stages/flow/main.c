@@ -56,8 +56,8 @@ static const struct parameter table[] = {
     {"conductance", PARAMETER_CHOICE, "1", "\"hydraulic\"", AT(conductance),
      .choices = "hydraulic|effective",
      .text = "of a throat: by hydraulic radius [C 8] or effective radius [C 10]"},
-    {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", AT(factor), ABOVE(0),
-     .text = "alpha of [C 8]"},
+    {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", AT(factor),
+     BETWEEN(1e-100, 1e100), .text = "alpha of [C 8]"},
     {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", AT(pieces),
      .choices = "signed|unsigned",
      .text = "of throats whose pores lie on one side of the facet: signed, a partition "

@@ -126,6 +126,23 @@ setting("--set refuses what is out of range", BAD_DATA, "touching_gap=2",
         "pack.touching_gap: must be from 0 to 1, got 2")
 setting("--set refuses a key below a number", BAD_DATA, "radius.x=2",
         r"pack.radius: must be a number, got {\"x\":2}")
+for pressure in ["1e-308", "1e-200"]:
+    setting("vapour so thin that time overflows is refused", BAD_DATA,
+            f"saturation_pressure={pressure}",
+            rf"network: saturation_pressure = {pressure} Pa, diffusivity = \S+ m2/s: the time in "
+            r"which a throat dries must be from 1e-150 to 1e150 s, is \S+ s",
+            program=("dry", "network"))
+setting("a conductance that vanishes is refused", BAD_DATA, "conductance_factor=1e-300",
+        r"flow.conductance_factor: must be from 1e-100 to 1e\+100, got 1e-300",
+        program=("flow", "packing"))
+for model in ["exact", "table", "weigert", "willett-full", "willett-reduced", "rabinovich",
+              "rabinovich-lambert", "soulie"]:
+    for radius in ["1e-120", "1e130"]:
+        setting(f"volumes that overflow or vanish are refused by {model}", BAD_DATA,
+                f"radius={radius}",
+                r"volume must be from 1e-60 to 1e\+100 times the cube of the effective radius "
+                r"\(1e[-+]1\d0 m\), is 1e-12 m3",
+                program=("bridge", "--set", "volume=1e-12", "--set", f"model={model}"))
 setting("a square lattice is one layer", BAD_DATA, "method=square",
         "pack.counts: a square lattice is one layer: must be 1 along y, got 5")
 setting("too many grains are refused", BAD_DATA, "counts=[1000000,1000000,1000000]",

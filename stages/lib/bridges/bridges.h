@@ -45,6 +45,10 @@ enum bridge_flag {
 // 2 R1 R2/(R1 + R2) [G 1].
 double bridge_effective_radius(const struct bridge *bridge);
 
+// STATUS_BAD_DATA: a size or an angle is none, or the volume is too small or large for
+// the bodies to compute with.
+enum status bridge_check(const struct bridge *bridge, struct reason *reason);
+
 // Volume over the cube of the effective radius.
 double bridge_dimensionless_volume(const struct bridge *bridge);
 

@@ -5,7 +5,10 @@
 
 #include <math.h>
 
-static enum status check(const struct bridge *bridge, struct reason *reason)
+// Beyond these numbers leave the range of doubles on the way.
+static const double LEAST_VOLUME = 1e-60, MOST_VOLUME = 1e100;
+
+enum status bridge_check(const struct bridge *bridge, struct reason *reason)
 {
     for (int k = 0; k < 2; k++) {
         if (!(bridge->radius[k] > 0))
@@ -18,8 +21,15 @@ static enum status check(const struct bridge *bridge, struct reason *reason)
     }
     if (!isfinite(bridge_effective_radius(bridge)))
         return refuse(reason, STATUS_BAD_DATA, "two planes hold no bridge");
-    if (!(bridge_dimensionless_volume(bridge) > 0))
+    if (!(bridge->volume > 0))
         return refuse(reason, STATUS_BAD_DATA, "volume must be positive, is %g m3",
+                      bridge->volume);
+    const double volume = bridge_dimensionless_volume(bridge);
+    if (!(volume >= LEAST_VOLUME && volume <= MOST_VOLUME))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "volume must be from %g to %g times the cube of the effective "
+                      "radius (%g m), is %g m3",
+                      LEAST_VOLUME, MOST_VOLUME, bridge_effective_radius(bridge),
                       bridge->volume);
     return STATUS_OK;
 }
@@ -62,7 +72,7 @@ static struct bridge_state state_of(const struct bridge *bridge,
 enum status bridge_solve(const struct bridge *bridge, double separation,
                          struct bridge_state *state, struct reason *reason)
 {
-    const enum status bad = check(bridge, reason);
+    const enum status bad = bridge_check(bridge, reason);
     if (bad) return bad;
     const struct bodies bodies = bodies_of(bridge);
     const double gap = separation / bridge_effective_radius(bridge);
@@ -101,7 +111,7 @@ static double nearest_that_ruptures(const struct bodies *bodies, double volume)
 enum status bridge_solve_rupture(const struct bridge *bridge,
                                  struct bridge_state *state, struct reason *reason)
 {
-    const enum status bad = check(bridge, reason);
+    const enum status bad = bridge_check(bridge, reason);
     if (bad) return bad;
     const struct bodies bodies = bodies_of(bridge);
     struct equilibrium found;
