@@ -49,8 +49,7 @@ static struct artifact *open_input(const char *path)
     struct artifact *input = artifact_open(path, NULL);
     const char *schema = input->schema->name;
     if (strcmp(schema, "network") && strcmp(schema, "drying"))
-        die(STATUS_BAD_DATA, "%s: must be a network, is a %s", input_name(path),
-            schema);
+        refuse_kind(path, "network", schema);
     return input;
 }
 

@@ -31,7 +31,7 @@ refused("deform wants two inputs", USAGE, ["deform", "drying"],
 refused("deform refuses a packing", BAD_DATA, ["deform", "packing", "response"],
         "packing: must be a drying or a network, is a packing")
 refused("deform refuses a drying in place of a response", BAD_DATA, ["deform", "drying", "drying"],
-        "drying: must be a response, is a drying")
+        "drying: must be a response, is a drying: first run force-protocol, then dem-replay")
 refused("a lattice takes no input", USAGE, ["pack", "packing"],
         "packing: this method takes no input: import, deposition, radius_expansion, "
         "domain_contraction and explosive_repulsion do")

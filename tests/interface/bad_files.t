@@ -68,13 +68,17 @@ refused_in_shell("a closed standard input is refused", IO, "$BIN/tessellate -o o
 
 # ---- another artifact -------------------------------------------------------------------
 
-for reader, given in [("tessellate", "network"), ("merge-nodes", "packing"),
-                      ("dry", "packing"), ("force-protocol", "forces"),
-                      ("dem-replay", "drying"), ("crackstats", "forces"),
-                      ("invade", "drying")]:
+for reader, given, first in [
+        ("tessellate", "network", ""), ("merge-nodes", "packing", "tessellate"),
+        ("dry", "packing", "tessellate"), ("force-protocol", "forces", ""),
+        ("force-protocol", "packing", "tessellate, then dry"),
+        ("dem-replay", "drying", "force-protocol"), ("crackstats", "forces", "dem-replay"),
+        ("crackstats", "packing", "tessellate, then dry, then force-protocol, then dem-replay"),
+        ("invade", "drying", "")]:
     wanted = {"dry": "network", "invade": "network"} | {r: name for name, r in READER.items()}
     refused(f"{reader} refuses a {given}", BAD_DATA, [reader, given],
-            f"{given}: must be a {wanted[reader]}, is a {given}")
+            f"{given}: must be a {wanted[reader]}, is a {given}"
+            + f": first run {first}" * bool(first))
 refused("a JSON artifact is not an HDF5 file", BAD_DATA, ["crackstats", "crackstats"],
         "crackstats: is not an HDF5 file; parameters, in JSON, go by -p")
 damage("an unknown schema is named", "packing",

@@ -40,6 +40,10 @@ void artifact_close(struct artifact *artifact);
 struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
                                      const char *name);
 
+// Exits 65: PATH must be a WANTED, is a GOT ("network", "packing"); says which stages
+// lead from one to the other.
+_Noreturn void refuse_kind(const char *path, const char *wanted, const char *got);
+
 // Whether bytes begin as HDF5 files do.
 bool is_hdf5(const struct bytes *bytes);
 

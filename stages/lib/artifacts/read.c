@@ -63,6 +63,35 @@ char *artifact_get_text(const struct artifact *artifact, const char *name)
     return text;
 }
 
+// What is made of what, and by which stage.
+static const struct {
+    const char *kind, *next_stage;
+} chain[] = {{"packing", "tessellate"},
+             {"network", "dry"},
+             {"drying", "force-protocol"},
+             {"forces", "dem-replay"},
+             {"response", "crackstats"}};
+enum { KINDS = sizeof chain / sizeof *chain };
+
+static int place_in_chain(const char *kind)
+{
+    int place = 0;
+    while (place < KINDS && strcmp(chain[place].kind, kind))
+        place++;
+    return place;
+}
+
+void refuse_kind(const char *path, const char *wanted, const char *got)
+{
+    char stages[100] = "";
+    const int end = place_in_chain(wanted);
+    for (int k = place_in_chain(got); k < end && end < KINDS; k++)
+        snprintf(stages + strlen(stages), sizeof stages - strlen(stages), "%s%s",
+                 *stages ? ", then " : ": first run ", chain[k].next_stage);
+    die(STATUS_BAD_DATA, "%s: must be a %s, is a %s%s", input_name(path), wanted, got,
+        stages);
+}
+
 static struct schema *schema_of(const struct artifact *artifact, const char *name)
 {
     const char *path = input_name(artifact->path);
@@ -74,8 +103,7 @@ static struct schema *schema_of(const struct artifact *artifact, const char *nam
     if (!schema || strcmp(schema->id, id))
         die(STATUS_BAD_DATA, "%s: schema %s is unknown%s%s", path, id,
             schema ? "; this program knows " : "", schema ? schema->id : "");
-    if (name && strcmp(schema->name, name))
-        die(STATUS_BAD_DATA, "%s: must be a %s, is a %s", path, name, schema->name);
+    if (name && strcmp(schema->name, name)) refuse_kind(path, name, schema->name);
     free(id);
     return schema;
 }
