@@ -44,12 +44,9 @@ struct taken_weight take_weight(const struct artifact *input,
                                 struct replay_settings *settings)
 {
     const double of_forces = gravity_of_forces(input);
-    struct taken_weight taken = {.has_liquid = of_forces > 0,
+    struct taken_weight taken = {.gravity_of_liquid = of_forces,
                                  .gravity =
                                      choose_gravity(parameters, packing, of_forces)};
-    if (taken.gravity > 0 && of_forces > 0 && taken.gravity != of_forces)
-        report("gravity = %g m/s2 for the grains, but %g for the liquid in %s",
-               taken.gravity, of_forces, input_name(input->path));
     double *liquid = artifact_has_dataset(input, "/liquid_mass")
                          ? artifact_get(input, "/liquid_mass", NULL)
                          : NULL;
@@ -82,7 +79,11 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
             "gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 in "
             "dry, or in force-protocol and here, takes weight along",
             weight->numbers.grain < most ? "the body" : "a grain", most);
-    if (weight->gravity > 0 && !weight->has_liquid)
+    const double of_liquid = weight->gravity_of_liquid;
+    if (weight->gravity > 0 && of_liquid > 0 && weight->gravity != of_liquid)
+        report("gravity = %g m/s2 for the grains, but %g for the liquid in the forces",
+               weight->gravity, of_liquid);
+    if (weight->gravity > 0 && !(of_liquid > 0))
         report("the forces are without the weight of the liquid: "
                "force-protocol.gravity=%g adds it",
                weight->gravity);
@@ -137,7 +138,7 @@ const char *describe_weight(const struct taken_weight *weight, char text[200])
     if (weight->gravity == 0) return "";
     snprintf(text, 200,
              "weight of the grains%s: gravity %.17g m/s2, at rest before drying\n",
-             weight->has_liquid ? " and the liquid" : "", weight->gravity);
+             weight->gravity_of_liquid > 0 ? " and the liquid" : "", weight->gravity);
     return text;
 }
 

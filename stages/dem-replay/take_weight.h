@@ -9,7 +9,7 @@
 
 struct taken_weight {
     double gravity;              // m/s2; 0: left out
-    bool has_liquid;             // that of the liquid is in the forces
+    double gravity_of_liquid;    // in the forces; 0: they have no weight of it
     struct vector *standing;     // (n_particle) N, as add_weight returns it; NULL: none
     struct bond_numbers numbers; // with the gravity of the Earth where there is none
 };

@@ -231,6 +231,38 @@ static double permeability_of(const struct computation *flow,
            flow->grains.unit * component(flow->grains.box, axis) / imposed->drop;
 }
 
+// Of the box along AXIS, what the grains reach over.
+static double bed_share(const struct packing *packing, int axis)
+{
+    const double lower = component(packing->lower, axis);
+    const double upper = component(packing->upper, axis);
+    double from = upper, to = lower;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double x = component(packing->position[i], axis);
+        from = fmax(lower, fmin(from, x - packing->radius[i]));
+        to = fmin(upper, fmax(to, x + packing->radius[i]));
+    }
+    if (packing->periodic[axis] || packing->n_particle == 0) return 1;
+    return (to - from) / (upper - lower);
+}
+
+// The fluid has an easy way where there are no grains: above a bed that has settled.
+static void warn_of_empty_space(const struct packing *packing,
+                                const struct imposed *imposed)
+{
+    static const double much = 0.95;
+    for (int axis = 0; axis < 3 && imposed->along != ALONG_NONE; axis++) {
+        const double share = bed_share(packing, axis);
+        if (share >= much) continue;
+        report("grains reach over %.2g of the box along %c: %s", share, "xyz"[axis],
+               axis == imposed->along
+                   ? "permeability is that of the whole box, bed_permeability that of "
+                     "the bed"
+                   : "fluid passes beside them, and permeability is not that of the "
+                     "bed (end the box where the grains end: pack.lower, pack.upper)");
+    }
+}
+
 static void write(const struct computation *computation,
                   const struct flow_parameters *parameters,
                   const struct invocation *invocation, const struct artifact *input)
@@ -249,6 +281,9 @@ static void write(const struct computation *computation,
         .viscosity = parameters->viscosity,
         .weight = scale(parameters->density, vector_of(parameters->gravity)),
         .permeability = permeability_of(computation, &parameters->imposed),
+        .bed_share = parameters->imposed.along == ALONG_NONE
+                         ? 1
+                         : bed_share(&computation->packing, parameters->imposed.along),
         .columns = parameters->tensor ? computation->columns : NULL,
         .stress = parameters->stress ? &computation->stress : NULL};
     char model[700];
@@ -286,6 +321,7 @@ int main(int argc, char **argv)
     struct reason reason;
     const enum status status = compute(input, &parameters, &flow, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
+    if (!invocation.quiet) warn_of_empty_space(&flow.packing, &parameters.imposed);
     write(&flow, &parameters, &invocation, input);
 
     pore_stress_free(&flow.stress);

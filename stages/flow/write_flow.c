@@ -176,8 +176,11 @@ static double put_walls(struct artifact *artifact, const struct flow *flow)
 
 static void put_permeability(struct artifact *artifact, const struct flow *flow)
 {
-    if (!isnan(flow->permeability))
+    if (!isnan(flow->permeability)) {
         artifact_put_number(artifact, "/summary/permeability", flow->permeability);
+        artifact_put_number(artifact, "/summary/bed_permeability",
+                            flow->permeability * flow->bed_share);
+    }
     if (!flow->columns) return;
     double tensor[3][3];
     for (int i = 0; i < 3; i++)

@@ -18,6 +18,7 @@ struct flow {
     double viscosity;             // Pa s
     struct vector weight;         // density of the fluid times gravity, N m-3
     double permeability;          // m2; NAN: none
+    double bed_share;             // of the box along the flow, that grains reach over
     const struct vector *columns; // (3) of the permeability tensor; NULL: not asked for
     const struct pore_stress *stress; // NULL: not asked for
 };

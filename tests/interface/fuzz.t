@@ -232,7 +232,7 @@ def damaged_parameters(program):
     found = []
     for k in range(COUNT // 15):
         how = damage_parameters(program, random.Random(f"{program} {k}"))
-        found += try_all(f"parameters-{program}", [[program, "-p", "p.json", *given[:1]]], how, k)
+        found += try_all(f"parameters-{program}", [[program, "-q", "-p", "p.json", *given[:1]]], how, k)
     return found
 
 

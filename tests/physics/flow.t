@@ -5,13 +5,15 @@
 # out, forces sum to the pressure drop times the section, the tensor is symmetric.
 import csv
 import os
+import shutil
+import subprocess
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch
 
 REFERENCE = "tests/physics/flow_reference/"
 
@@ -207,6 +209,27 @@ with scratch() as folder:
     result = flow(overlapping)
     ok(result["summary"].attrs["closed_throats"] > 0 and np.abs(total(result)).max() < 1e-12,
        "overlap closes throats, and the forces still sum up", total(result))
+
+    # Empty space above a bed: the permeability of the bed is that of a box that ends where it
+    # ends, and a line says which is which.
+    run("pack", "-q", "--set", "method=deposition", "--set", "count=400", "--set", "radius=5e-4",
+        "--set", "seed=2", "-o", at("bed"))
+    with h5py.File(at("bed")) as bed:
+        top = (bed["particles/position"][:, 2] + bed["particles/radius"][:]).max()
+    found = {}
+    for height in 1, 1.3, 4:
+        shutil.copy(at("bed"), at("tall"))
+        with h5py.File(at("tall"), "r+") as bed:
+            bed["domain/upper"][2] = height * top
+        for along in "zx":
+            said = subprocess.run([f"{BIN}/flow", "--set", f"along={along}", at("tall"), "-o", at("through")],
+                                  capture_output=True, text=True).stderr
+            found[height, along] = h5py.File(at("through"))["summary"].attrs["bed_permeability"], said
+    tight = found[1, "z"][0]
+    ok(all(abs(found[height, "z"][0] / tight - 1) < 0.01 for height in (1.3, 4)),
+       "a bed is as permeable with empty space above it", found)
+    ok(found[1, "z"][1] == found[1, "x"][1] == "" and "bed_permeability that of the bed" in found[4, "z"][1]
+       and "fluid passes beside them" in found[4, "x"][1], "and the space is said", found)
 
     # What dem-replay takes.
     run("pack", "-q", "--set=method=cubic", "--set=counts=[3,3,4]", "-o", at("lattice"))
