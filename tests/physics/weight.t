@@ -83,6 +83,11 @@ with scratch() as folder:
                and "left out: gravity" not in str(response.attrs["model"]), f"{case}: nothing breaks",
                response.attrs["model"])
 
+    response, said = replay("engine=quasi-static", "quasi_static.large_displacements=true")
+    pairs, carried = response["contacts/particles"][:], response["snapshots/contact_force"][:]
+    wrong = abs(carried[:, :, 2] - above[pairs[:, 0]]).max() / above[0]
+    ok(wrong < 1e-6, "large displacements: contacts bear what is above", wrong)
+
     # ---- what breaks alone, and what does not -------------------------------------------
     # Bonds cannot pull: the row hangs from its upper end, and the highest bond bears n - 1 grains.
     hung = ("held.walls=[\"+z\"]",)
