@@ -4,7 +4,7 @@
 #include "artifacts/read_grains.h"
 #include "basics/memory.h"
 #include "basics/status.h"
-#include "geometry/neighbours.h"
+#include "geometry/fabric.h"
 #include "tell.h"
 
 #include <stdlib.h>
@@ -50,14 +50,6 @@ static const struct stage stage = {
              "refuses, or that is hardly meant.",
     .tells = true};
 
-static struct contacts find_contacts(const struct packing *packing, double gap)
-{
-    struct contacts contacts;
-    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &contacts.count);
-    contacts.pair = (const int32_t(*)[2])pair;
-    return contacts;
-}
-
 // The defaults of dem-replay are those of grains of 500 nm.
 static void judge_defaults(const struct packing_facts *facts, struct findings *findings)
 {
@@ -98,10 +90,7 @@ static void bond_text(struct packing *packing, const struct contacts *contacts,
 {
     const json_t *schema = json_object_get(json_array_get(inputs, 0), "schema");
     if (strcmp(json_string_value(schema), "text")) return;
-    free(packing->bond);
-    packing->n_bond = contacts->count;
-    packing->bond =
-        duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
+    bond_contacts(packing, contacts);
 }
 
 int main(int argc, char **argv)

@@ -4,7 +4,7 @@
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
-#include "geometry/neighbours.h"
+#include "geometry/fabric.h"
 #include "geometry/packing_check.h"
 #include "import.h"
 #include "methods.h"
@@ -155,24 +155,12 @@ static void write_packing(const struct packing *packing, const struct domain *do
     report_free(&said);
 }
 
-// The caller frees the pairs.
-static struct contacts find_contacts(const struct packing *packing, double gap)
-{
-    struct contacts contacts;
-    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &contacts.count);
-    contacts.pair = (const int32_t(*)[2])pair;
-    return contacts;
-}
-
 static void make_bonds(struct packing *packing, const struct contacts *contacts,
                        const struct pack_parameters *parameters, bool quiet)
 {
     if (parameters->bonds == BONDS_NONE) packing->n_bond = 0;
     if (parameters->bonds != BONDS_TOUCHING) return;
-    free(packing->bond);
-    packing->n_bond = contacts->count;
-    packing->bond =
-        duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
+    bond_contacts(packing, contacts);
     if (!packing->n_bond && packing->n_particle > 1 && !quiet)
         report("no two grains touch within touching_gap = %g: no bonds",
                parameters->touching_gap);

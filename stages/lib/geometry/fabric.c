@@ -6,6 +6,22 @@
 
 #include <stdlib.h>
 
+struct contacts find_contacts(const struct packing *packing, double gap)
+{
+    struct contacts contacts;
+    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &contacts.count);
+    contacts.pair = (const int32_t(*)[2])pair;
+    return contacts;
+}
+
+void bond_contacts(struct packing *packing, const struct contacts *contacts)
+{
+    free(packing->bond);
+    packing->n_bond = contacts->count;
+    packing->bond =
+        duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
+}
+
 int *wall_contacts(const struct packing *packing, double gap)
 {
     const bool flat = packing_is_flat(packing);

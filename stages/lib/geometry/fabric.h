@@ -5,6 +5,13 @@
 
 #include "geometry/porosity.h"
 
+// Pairs of grains whose surfaces are at most GAP radius sums apart. The caller frees
+// their pair.
+struct contacts find_contacts(const struct packing *packing, double gap);
+
+// Bonds them all, and no others.
+void bond_contacts(struct packing *packing, const struct contacts *contacts);
+
 // Walls of the box that each grain touches, a surface at most GAP radii off: not where
 // the box repeats, nor along y when the packing is flat. (n_particle); the caller frees
 // it.
