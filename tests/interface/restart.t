@@ -99,6 +99,31 @@ def killed(title, command):
            f"{title}: killed without a warning, the same bytes", f"{kills} kills: {said}")
 
 
+def without_a_place(title, command):
+    """The folder of the checkpoint goes while the run is on its way."""
+    with scratch() as folder:
+        whole, cut, shelf = (os.path.join(folder, name) for name in ("whole", "cut", "shelf"))
+        run(*command, "-o", whole)
+        for name, status in [(None, 0), ("SIGTERM", 73)]:
+            os.mkdir(shelf)
+            kept = os.path.join(shelf, "kept")
+            process = subprocess.Popen(
+                [f"{BIN}/{command[0]}", *map(str, command[1:]), "-o", cut, "--checkpoint", kept,
+                 "--checkpoint-every", "0.02"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            while not os.path.exists(kept) and process.poll() is None:
+                time.sleep(0.005)
+            shutil.rmtree(shelf)
+            if name:
+                process.send_signal(getattr(signal, name))
+            said = process.communicate(timeout=60)[1].decode()
+            ok(process.returncode == status and "kept: No such file or directory\n" in said
+               and ("no state is kept this time; the run goes on\n" in said or name)
+               and (name or read(whole) == read(cut)),
+               f"{title}: a checkpoint that cannot be written is said, "
+               + (f"with status {status} on {name}" if name else "and the run goes on"),
+               f"status {process.returncode}: {said}")
+
+
 def make_network(folder, name, count):
     made = run("pack", "-p", SCENE, "--set", f"counts=[{count},{count},{count}]")
     for stage in ["tessellate", "merge-nodes"]:
@@ -185,6 +210,8 @@ with scratch() as folder:
                ["dry", "-p", SCENE, "--set", f"liquid={liquid}", "--set", "kelvin=true", network])
     in_pieces("dry, viscous liquid with snapshots",
               [*dry, "--set", "liquid=viscous", "--set", "snapshots=[0.9,0.6,0.3]", small])
+
+    without_a_place("dry", [*dry, "--set", "liquid=viscous", small])
 
     # By the clock as often as can be.
     kept = os.path.join(folder, "kept")

@@ -9,6 +9,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -133,8 +134,8 @@ static void digest_state(const struct kept_state *state, uint8_t sum[32])
     EVP_MD_CTX_free(digest);
 }
 
-static void write_state(const struct checkpoint *checkpoint,
-                        const struct kept_state *state)
+static void write_here(const struct checkpoint *checkpoint,
+                       const struct kept_state *state)
 {
     struct invocation there = *checkpoint->invocation;
     there.output = there.checkpoint;
@@ -146,6 +147,21 @@ static void write_state(const struct checkpoint *checkpoint,
     artifact_put_arrays(artifact, "stage", &state->stage);
     artifact_finish(artifact, &there, json_incref(checkpoint->inputs),
                     "the state of a run on its way\n");
+}
+
+// By a child, whose failure is not the run's: hours of work do not end for a full disk.
+// STATUS_OK, or how the child ended; it said why.
+static int write_state(const struct checkpoint *checkpoint,
+                       const struct kept_state *state)
+{
+    const pid_t child = fork();
+    if (child <= 0) write_here(checkpoint, state);
+    if (child < 0) return STATUS_OK; // none could be had: we wrote it ourselves
+    if (child == 0) _exit(STATUS_OK);
+    int end;
+    while (waitpid(child, &end, 0) < 0 && errno == EINTR)
+        continue;
+    return WIFEXITED(end) ? WEXITSTATUS(end) : STATUS_IO;
 }
 
 // ---- whose it is --------------------------------------------------------------------
@@ -214,8 +230,12 @@ static void keep(void *context, const struct kept_state *state)
 {
     struct checkpoint *checkpoint = context;
     const int signal_now = stopped_by;
-    write_state(checkpoint, state);
+    const int status = write_state(checkpoint, state);
     checkpoint->written = now();
+    if (status && signal_now) exit(status);
+    if (status)
+        report("%s: no state is kept this time; the run goes on",
+               checkpoint->invocation->checkpoint);
     if (!signal_now) return;
     if (!checkpoint->invocation->quiet)
         report("stopped: %s: the same call goes on from %s", strsignal(signal_now),
