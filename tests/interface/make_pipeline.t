@@ -207,6 +207,7 @@ is 'two makes of one scene: the second waits and finds it made' 'make: status 0 
     "make: status $(make run SCENE=$scene >other 2>&1; echo $?) $(awk '$2 ~ /drying/ { print $1 }' other)"
 wait $first
 is 'and the first ends well too' 0 $?
+is 'and says what took long' drying "$(sed -n 's|^  TOOK  [2-9] s: .*/\(.*\)\.h5$|\1|p' said)"
 rm slow-dry
 settled 'after both'
 

@@ -12,6 +12,7 @@ struct progress {
     bool drawn;       // whether there is a line to clear
     double started;   // s
     double last_draw; // s
+    double left;      // s, as shown last; below 0: not yet
 };
 
 // AUTO draws only on a terminal, and only once the work has lasted a second.
@@ -19,6 +20,11 @@ struct progress progress_begin(enum progress_mode mode, bool quiet);
 
 // FRACTION done, 0 to 1. Cheap: draws at most ten times a second.
 void progress_update(struct progress *progress, double fraction);
+
+// The time left (s) when FRACTION has been done ELAPSED seconds after the beginning,
+// and LEFT (below 0: nothing) was said SINCE seconds ago. Work is seldom even: what is
+// said follows what the whole would take at the mean speed so far, but slowly.
+double progress_time_left(double elapsed, double fraction, double left, double since);
 
 // Clears the line.
 void progress_end(struct progress *progress);
