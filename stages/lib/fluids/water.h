@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Water, from 273.16 K to 373.15 K: the equations of IAPWS (fluids.h names the
+// releases), each of a temperature in K. Density and viscosity are those at 0.1 MPa.
+#ifndef CRAQUELURE_WATER_H
+#define CRAQUELURE_WATER_H
+
+double water_saturation_pressure(double temperature); // Pa
+double water_surface_tension(double temperature);     // N/m
+double water_density(double temperature);             // kg/m3
+double water_dynamic_viscosity(double temperature);   // Pa s
+
+#endif
