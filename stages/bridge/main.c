@@ -3,13 +3,15 @@
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "curve.h"
+#include "parameters/conditions.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 struct bridge_parameters {
-    double radius, other_radius, contact_angle, other_contact_angle;
-    double surface_tension, volume, from, to;
+    double radius, other_radius, other_contact_angle;
+    struct conditions given;
+    double volume, from, to;
     int64_t points, profile;
     struct number_list separations;
     int model;
@@ -30,10 +32,10 @@ static const struct parameter table[] = {
      .text = "the second body is a plane"},
     {"volume", PARAMETER_NUMBER, "m3", NULL, AT(volume), ABOVE(0),
      .text = "of the liquid"},
-    {"surface_tension", PARAMETER_NUMBER, "N/m", "0.0728", AT(surface_tension),
-     ABOVE(0), .text = "of the liquid; default: water at 20 degrees Celsius"},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(contact_angle),
-     BETWEEN(0, 170), .text = "of the liquid on the first body"},
+    FLUID_ROWS(AT(given)),
+    SURFACE_TENSION_ROW(AT(given)),
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(given.contact_angle),
+     BETWEEN(0, 170), .shared = true, .text = "of the liquid on the first body"},
     {"other_contact_angle", PARAMETER_NUMBER, "degree", "null", AT(other_contact_angle),
      BETWEEN(0, 170), .text = "on the second; null: as on the first"},
     {"points", PARAMETER_INTEGER, "1", "101", AT(points), BETWEEN(2, 1000000),
@@ -64,12 +66,12 @@ static struct bridge bridge_of(const struct bridge_parameters *given)
     const double degree = M_PI / 180;
     const double other =
         isnan(given->other_radius) ? given->radius : given->other_radius;
-    const double angle = isnan(given->other_contact_angle) ? given->contact_angle
+    const double angle = isnan(given->other_contact_angle) ? given->given.contact_angle
                                                            : given->other_contact_angle;
     return (struct bridge){
         .radius = {given->radius, given->plane ? INFINITY : other},
-        .contact_angle = {given->contact_angle * degree, angle * degree},
-        .surface_tension = given->surface_tension,
+        .contact_angle = {given->given.contact_angle * degree, angle * degree},
+        .surface_tension = given->given.property[FLUID_SURFACE_TENSION],
         .volume = given->volume};
 }
 
@@ -100,6 +102,15 @@ static double *separations_of(const struct bridge_parameters *given, double rupt
     return separation;
 }
 
+static void complete_liquid(struct conditions *given, bool quiet)
+{
+    const unsigned needed = 1u << FLUID_SURFACE_TENSION;
+    struct reason reason;
+    if (conditions_complete(given, needed, &reason))
+        die(STATUS_BAD_DATA, "bridge.%s", reason.text);
+    if (!quiet) conditions_note(given, needed);
+}
+
 static void check(const struct bridge_parameters *given)
 {
     if (given->plane && !isnan(given->other_radius))
@@ -112,9 +123,10 @@ static void check(const struct bridge_parameters *given)
 
 int main(int argc, char **argv)
 {
-    struct bridge_parameters parameters;
+    struct bridge_parameters parameters = {.given = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check(&parameters);
+    complete_liquid(&parameters.given, invocation.quiet);
     const struct bridge bridge = bridge_of(&parameters);
     struct reason reason;
     if (bridge_check(&bridge, &reason)) die(STATUS_BAD_DATA, "%s", reason.text);
@@ -130,10 +142,15 @@ int main(int argc, char **argv)
     const enum status status =
         put_curve(report, &bridge, parameters.model, &request, &reason);
     if (status) die(status, "%s", reason.text);
-    finish_json(report, &invocation, json_array(),
-                "axisymmetric liquid bridge at rest, contact lines free to move\n"
-                "left out: gravity, viscosity, contact-angle hysteresis, roughness, "
-                "evaporation\n");
+    char fluid[300], model[600];
+    snprintf(model, sizeof model,
+             "axisymmetric liquid bridge at rest, contact lines free to move\n"
+             "%s\n"
+             "left out: gravity, viscosity, contact-angle hysteresis, roughness, "
+             "evaporation\n",
+             conditions_describe(&parameters.given, 1u << FLUID_SURFACE_TENSION, fluid,
+                                 sizeof fluid));
+    finish_json(report, &invocation, json_array(), model);
     free(separation);
     invocation_free(&invocation);
     return STATUS_OK;

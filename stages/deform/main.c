@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // deform: the network of grains that have moved.
 #include "artifacts/artifact.h"
+#include "artifacts/liquid.h"
 #include "artifacts/write_network.h"
 #include "basics/compensated.h"
 #include "basics/memory.h"
@@ -55,6 +56,16 @@ static const struct stage stage = {
         "response of the same grains, whose last snapshot says where they are now; "
         "and, where they have another diagram by then, their network as it was "
         "tessellated anew, onto which the liquid is carried."};
+
+// ---- what is asked for --------------------------------------------------------------
+
+// The inputs, and the network whose grains have their new places.
+struct scene {
+    const struct deform_parameters *parameters;
+    const struct invocation *invocation;
+    struct artifact *input, *response;
+    struct network before, after;
+};
 
 // ---- input --------------------------------------------------------------------------
 
@@ -187,9 +198,11 @@ static void refuse_change(int changed, int n_node, const char *path)
 }
 
 static void write_moved(const struct network *network, const struct liquid *liquid,
-                        int changed, int closed, const struct invocation *invocation,
+                        int changed, int closed, const struct scene *scene,
                         json_t *inputs)
 {
+    const struct invocation *invocation = scene->invocation;
+    const struct liquid_properties told = artifact_get_liquid(scene->input);
     char model[700];
     snprintf(model, sizeof model,
              "%s\n"
@@ -207,6 +220,7 @@ static void write_moved(const struct network *network, const struct liquid *liqu
              changed);
     struct artifact *artifact = artifact_create("network", invocation->output);
     put_network_with_summary(artifact, network);
+    artifact_put_liquid(artifact, &told);
     artifact_put_number(artifact, "/summary/changed_nodes", changed);
     artifact_put_number(artifact, "/summary/closed_throats", closed);
     if (liquid->saturation) {
@@ -217,16 +231,6 @@ static void write_moved(const struct network *network, const struct liquid *liqu
     }
     artifact_finish(artifact, invocation, inputs, model);
 }
-
-// ---- what is asked for --------------------------------------------------------------
-
-// The inputs, and the network whose grains have their new places.
-struct scene {
-    const struct deform_parameters *parameters;
-    const struct invocation *invocation;
-    struct artifact *input, *response;
-    struct network before, after;
-};
 
 static json_t *digests(const struct scene *scene)
 {
@@ -267,8 +271,8 @@ static void move(struct scene *scene)
         struct carried kept = keep_liquid(before, saturation);
         liquid = settle(scene->input, after, &kept);
     }
-    write_moved(after, &liquid, changed, count_closed_throats(before, after),
-                scene->invocation, digests(scene));
+    write_moved(after, &liquid, changed, count_closed_throats(before, after), scene,
+                digests(scene));
     free(saturation);
     free(liquid.saturation);
 }
@@ -311,7 +315,7 @@ static void replace(struct scene *scene)
     surroundings_free(&around);
     json_t *inputs = digests(scene);
     json_array_append_new(inputs, input_digest(third));
-    write_moved(&anew, &liquid, 0, 0, scene->invocation, inputs);
+    write_moved(&anew, &liquid, 0, 0, scene, inputs);
     free(saturation);
     free(liquid.saturation);
     network_free(&anew);

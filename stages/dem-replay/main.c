@@ -176,26 +176,29 @@ static void write_response(const struct packing *packing, const struct load *loa
 {
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "%d grains held", "a rigid wall beneath"};
-    char engine[200], support[60], weights[200], model[1100];
+    char engine[200], support[60], weights[200], bridges[200] = "", model[1300];
     replay_engine(settings)->describe(settings, engine, sizeof engine);
     int n_held = 0;
     for (int i = 0; i < packing->n_particle; i++)
         n_held += settings->held[i];
     snprintf(support, sizeof support, supports[settings->support], n_held);
-    snprintf(model, sizeof model,
-             "%s\n"
-             "support: %s\n"
-             "overlaps of the packing %s\n"
-             "%s%s%s"
-             "left out: %s%smoments of capillary forces\n",
-             engine, support,
-             settings->unstressed ? "lie at rest" : "push from the start",
-             settings->begin ? "goes on from where an earlier replay ended\n" : "",
-             settings->liquid.volume > 0
-                 ? "liquid bridges between grains that have touched [G 2]\n"
-                 : "",
-             describe_weight(weight, weights), weight->gravity > 0 ? "" : "gravity, ",
-             settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
+    if (settings->liquid.volume > 0)
+        snprintf(bridges, sizeof bridges,
+                 "liquid bridges between grains that have touched [G 2], surface "
+                 "tension %.6g N/m, contact angle %.6g degrees\n",
+                 settings->liquid.surface_tension,
+                 settings->liquid.contact_angle * (180 / M_PI));
+    snprintf(
+        model, sizeof model,
+        "%s\n"
+        "support: %s\n"
+        "overlaps of the packing %s\n"
+        "%s%s%s"
+        "left out: %s%smoments of capillary forces\n",
+        engine, support, settings->unstressed ? "lie at rest" : "push from the start",
+        settings->begin ? "goes on from where an earlier replay ended\n" : "", bridges,
+        describe_weight(weight, weights), weight->gravity > 0 ? "" : "gravity, ",
+        settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, settings, response);
     put_weight(artifact, weight, response);
@@ -284,6 +287,10 @@ int main(int argc, char **argv)
     struct replay_settings *settings = &parameters.settings;
     complete_settings(&parameters, invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "forces");
+    char difference[300];
+    if (*complete_bridges(&parameters, input, difference, sizeof difference) &&
+        !invocation.quiet)
+        report("bridges: %s", difference);
     struct packing packing = artifact_get_packing(input);
     check_sizes(&packing, input->path);
     struct load load = read_load(input);

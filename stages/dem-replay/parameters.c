@@ -115,10 +115,13 @@ const struct parameter replay_table[] = {
              "shared on each grain; 0: none"},
     {"bridges.shared", PARAMETER_BOOLEAN, "1", "false", AT(settings.liquid.shared),
      .text = "each grain parts its liquid evenly among its bridges"},
-    {"bridges.surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274",
-     AT(settings.liquid.surface_tension), ABOVE(0), .text = "of their liquid"},
-    {"bridges.contact_angle", PARAMETER_NUMBER, "degree", "0",
-     AT(settings.liquid.contact_angle), BETWEEN(0, 170), .text = "of their liquid"},
+    {"bridges.surface_tension", PARAMETER_NUMBER, "N m-1", "null",
+     AT(bridge_liquid.surface_tension), ABOVE(0), .shared = true,
+     .text = "of their liquid; null: that of the forces, or where they tell none that "
+             "of water at 293.15 K"},
+    {"bridges.contact_angle", PARAMETER_NUMBER, "degree", "null",
+     AT(bridge_liquid.contact_angle), BETWEEN(0, 170), .shared = true,
+     .text = "of their liquid; null: that of the forces, or where they tell none 0"},
     {"bridges.model", PARAMETER_CHOICE, "1", "\"willett-full\"", AT(bridge_model),
      .choices = BRIDGE_MODEL_CHOICES,
      .text =
@@ -174,6 +177,25 @@ static void choose_bonds(const struct replay_parameters *parameters,
     settings->bond.shear_strength = settings->bond.normal_strength;
 }
 
+const char *complete_bridges(struct replay_parameters *parameters,
+                             const struct artifact *forces, char *difference,
+                             size_t size)
+{
+    const struct liquid_properties water = {
+        .surface_tension =
+            fluid_value(FLUID_WATER, FLUID_SURFACE_TENSION, 293.15, 1e5)};
+    const struct liquid_properties has = artifact_get_liquid(forces);
+    struct liquid_properties *told = &parameters->bridge_liquid;
+    liquid_complete(told, &has);
+    liquid_complete(told, &water);
+    struct dem_liquid *liquid = &parameters->settings.liquid;
+    liquid->surface_tension = told->surface_tension;
+    liquid->contact_angle = told->contact_angle * (M_PI / 180);
+    difference[0] = '\0';
+    if (liquid->volume > 0) liquid_differs(told, &has, "the forces", difference, size);
+    return difference;
+}
+
 void complete_settings(struct replay_parameters *parameters, int threads)
 {
     struct replay_settings *settings = &parameters->settings;
@@ -182,7 +204,6 @@ void complete_settings(struct replay_parameters *parameters, int threads)
     settings->engine = (enum engine)parameters->engine;
     settings->unstressed = !parameters->prestress;
     settings->liquid.model = (enum bridge_model)parameters->bridge_model;
-    settings->liquid.contact_angle *= M_PI / 180;
     choose_bonds(parameters, settings);
     settings->n_snapshot = parameters->snapshots.count;
     settings->snapshot = parameters->snapshots.value;

@@ -3,6 +3,7 @@
 #ifndef CRAQUELURE_REPLAY_PARAMETERS_H
 #define CRAQUELURE_REPLAY_PARAMETERS_H
 
+#include "artifacts/liquid.h"
 #include "bonds.h"
 #include "held.h"
 #include "parameters/parameters.h"
@@ -10,6 +11,7 @@
 
 struct replay_parameters {
     struct replay_settings settings;
+    struct liquid_properties bridge_liquid; // tension and angle
     struct held held;
     struct strength_scatter scatter;
     int support, engine, bond, bonds_by, strength_law, bridge_model;
@@ -23,5 +25,11 @@ extern const struct parameter replay_table[];
 // Completes the settings from the rest of PARAMETERS, which must outlive them. Exits
 // where they are not of use.
 void complete_settings(struct replay_parameters *parameters, int threads);
+
+// Gives bridges the liquid of FORCES where nothing else was given; where something was,
+// DIFFERENCE, which it returns, tells so in one line, else it is empty.
+const char *complete_bridges(struct replay_parameters *parameters,
+                             const struct artifact *forces, char *difference,
+                             size_t size);
 
 #endif

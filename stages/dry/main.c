@@ -2,8 +2,10 @@
 // dry: which throat empties when.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
+#include "artifacts/liquid.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "conditions.h"
 #include "drying.h"
 #include "mass_transfer.h"
 #include "network/enclosed.h"
@@ -164,18 +166,34 @@ static int empty_enclosed(struct network *network, unsigned open_walls,
     return enclosed;
 }
 
+// What was given for another liquid or temperature, as it seems, and what INPUT, which
+// another drying has left, knows better.
+static void note_fluids(const struct dry_parameters *parameters,
+                        const struct artifact *input)
+{
+    conditions_note(&parameters->given, ~0u);
+    const struct liquid_properties told = liquid_of(&parameters->given);
+    const struct liquid_properties left = artifact_get_liquid(input);
+    char text[300];
+    if (liquid_differs(&told, &left, input_name(input->path), text, sizeof text))
+        report("%s", text);
+}
+
 int main(int argc, char **argv)
 {
-    struct dry_parameters parameters = {0};
+    struct dry_parameters parameters = {.given = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check_snapshots(&parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);
 
-    complete_conditions(&parameters, &network);
+    struct reason reason;
+    if (complete_conditions(&parameters, &network, &reason))
+        die(STATUS_BAD_DATA, "dry.%s", reason.text);
     const struct mass_transfer transfer =
         give_mass_transfer(&network, &parameters, invocation.quiet);
-    struct reason reason;
+    if (!invocation.quiet && !check_conditions(&parameters.conditions, &reason))
+        note_fluids(&parameters, input);
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "dry.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);

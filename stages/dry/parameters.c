@@ -12,6 +12,7 @@ enum { MOST_THROATS_BY_EVENTS = 30000 };
 static const double COARSE_STEPS = 1e-3;
 
 #define AT(member) offsetof(struct dry_parameters, member)
+#define GIVEN AT(given)
 #define WALLS "-x|+x|-y|+y|-z|+z"
 
 const struct parameter dry_table[] = {
@@ -19,16 +20,9 @@ const struct parameter dry_table[] = {
      .choices = "inviscid|immobile|viscous",
      .text = "liquid of negligible viscosity (very slow drying), immobile (very fast) "
              "[K 5.4], or between the two, as viscosity says [K 3.10]"},
-    {"viscosity", PARAMETER_NUMBER, "m2 s-1", "1e-6", AT(conditions.viscosity),
-     ABOVE(0), .text = "kinematic, of viscous liquid [K Table 3.1]"},
-    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274",
-     AT(conditions.surface_tension), ABOVE(0),
-     .text = "of the liquid; of no effect in inviscid liquid without gravity or kelvin "
-             "[K Table 3.1]"},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(conditions.contact_angle),
-     BETWEEN(0, 89.999),
-     .text = "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) "
-             "/ r"},
+    VISCOSITY_ROW(GIVEN),
+    SURFACE_TENSION_ROW(GIVEN),
+    CONTACT_ANGLE_ROW(GIVEN, 89.999),
     {"gravity", PARAMETER_NUMBER, "m s-2", "0", AT(conditions.gravity), AT_LEAST(0),
      .text = "towards -z: liquid higher up gives way to gas more easily; 0: none"},
     {"knudsen", PARAMETER_BOOLEAN, "1", "false", AT(conditions.knudsen),
@@ -52,30 +46,18 @@ const struct parameter dry_table[] = {
              "outer and inner: those of a cylinder or sphere around the grains, and of "
              "what is cut out"},
     DRAWN_RADII_ROWS(AT(radii)),
-    {"temperature", PARAMETER_NUMBER, "K", "293.15", AT(conditions.temperature),
-     ABOVE(0), .text = "temperature [K Table 3.1]"},
-    {"gas_pressure", PARAMETER_NUMBER, "Pa", "1e5", AT(conditions.gas_pressure),
-     ABOVE(0), .text = "pressure of the gas"},
-    {"saturation_pressure", PARAMETER_NUMBER, "Pa", "2339",
-     AT(conditions.saturation_pressure), ABOVE(0),
-     .text = "equilibrium vapour pressure"},
-    {"air_vapour_pressure", PARAMETER_NUMBER, "Pa", "0",
-     AT(conditions.air_vapour_pressure), AT_LEAST(0),
-     .text = "vapour pressure in the drying air"},
-    {"diffusivity", PARAMETER_NUMBER, "m2 s-1", "2.5685e-5", AT(conditions.diffusivity),
-     ABOVE(0), .text = "of vapour in the gas"},
-    {"molar_mass", PARAMETER_NUMBER, "kg mol-1", "0.01802", AT(conditions.molar_mass),
-     ABOVE(0), .text = "of the liquid"},
-    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2",
-     AT(conditions.liquid_density), ABOVE(0), .text = "of the liquid"},
+    FLUID_ROWS(GIVEN),
+    VAPOUR_ROWS(GIVEN),
+    LIQUID_DENSITY_ROW(GIVEN),
     {"boundary_layer.from", PARAMETER_CHOICE, "1", "\"mass_transfer\"",
      AT(transfer_law), .choices = "mass_transfer|thickness|sherwood|plate|sphere",
      .text = "what its thickness is found from: the parameters so named, or air that "
              "flows along a plate [K 3.6] or around a sphere (Ranz and Marshall)"},
-    {"boundary_layer.mass_transfer", PARAMETER_NUMBER, "m s-1", "5.1",
+    {"boundary_layer.mass_transfer", PARAMETER_NUMBER, "m s-1", "null",
      AT(air.coefficient), ABOVE(0),
      .text =
-         "mass transfer coefficient: the layer is diffusivity / this thick [K 3.3.5]"},
+         "mass transfer coefficient: the layer is diffusivity / this thick [K 3.3.5]; "
+         "null: it is as thick as boundary_layer.thickness says"},
     {"boundary_layer.thickness", PARAMETER_NUMBER, "m", "5e-6", AT(air.thickness),
      ABOVE(0), .text = "thickness"},
     {"boundary_layer.sherwood", PARAMETER_NUMBER, "1", "2", AT(air.sherwood), ABOVE(0),
@@ -86,9 +68,10 @@ const struct parameter dry_table[] = {
              "diameter; 0: the longer edge of the open side of the box"},
     {"boundary_layer.air_velocity", PARAMETER_NUMBER, "m s-1", "1", AT(air.velocity),
      AT_LEAST(0), .text = "plate, sphere: of the air"},
-    {"boundary_layer.kinematic_viscosity", PARAMETER_NUMBER, "m2 s-1", "1.53e-5",
+    {"boundary_layer.kinematic_viscosity", PARAMETER_NUMBER, "m2 s-1", "null",
      AT(air.kinematic_viscosity), ABOVE(0),
-     .text = "plate, sphere: of the air; dry, 293 K, 1 bar"},
+     .text = "plate, sphere: of the air; null: of dry air at the temperature and "
+             "pressure"},
     {"boundary_layer.exchange", PARAMETER_CHOICE, "1", "\"lattice\"", AT(exchange),
      .choices = "lattice|lumped",
      .text =
@@ -144,10 +127,51 @@ static double *even_snapshots(double interval, int *count)
     return snapshot;
 }
 
-void complete_conditions(struct dry_parameters *parameters,
-                         const struct network *network)
+// What drying so cannot do without.
+static unsigned needed_properties(const struct dry_parameters *parameters)
+{
+    const struct drying_conditions *conditions = &parameters->conditions;
+    const bool flows = parameters->liquid == LIQUID_VISCOUS;
+    unsigned needed = 1u << FLUID_SATURATION_PRESSURE | 1u << FLUID_DIFFUSIVITY |
+                      1u << FLUID_MOLAR_MASS | 1u << FLUID_DENSITY;
+    if (flows) needed |= 1u << FLUID_VISCOSITY;
+    if (flows || conditions->gravity > 0 || conditions->kelvin)
+        needed |= 1u << FLUID_SURFACE_TENSION;
+    return needed;
+}
+
+static enum status complete_fluids(struct dry_parameters *parameters,
+                                   struct reason *reason)
+{
+    struct conditions *given = &parameters->given;
+    struct drying_conditions *conditions = &parameters->conditions;
+    const enum status status =
+        conditions_complete(given, needed_properties(parameters), reason);
+    conditions->temperature = given->temperature;
+    conditions->gas_pressure = given->gas_pressure;
+    conditions->air_vapour_pressure = given->air_vapour_pressure;
+    conditions->saturation_pressure = given->property[FLUID_SATURATION_PRESSURE];
+    conditions->diffusivity = given->property[FLUID_DIFFUSIVITY];
+    conditions->molar_mass = given->property[FLUID_MOLAR_MASS];
+    conditions->liquid_density = given->property[FLUID_DENSITY];
+    conditions->viscosity = given->property[FLUID_VISCOSITY];
+    conditions->surface_tension = given->property[FLUID_SURFACE_TENSION];
+    conditions->contact_angle = given->contact_angle;
+    struct air_flow *air = &parameters->air;
+    if (isnan(air->kinematic_viscosity))
+        air->kinematic_viscosity =
+            air_viscosity(given->temperature, given->gas_pressure);
+    if (parameters->transfer_law == TRANSFER_COEFFICIENT && isnan(air->coefficient))
+        parameters->transfer_law = TRANSFER_THICKNESS;
+    return status;
+}
+
+enum status complete_conditions(struct dry_parameters *parameters,
+                                const struct network *network, struct reason *reason)
 {
     struct drying_conditions *conditions = &parameters->conditions;
+    const enum status status = complete_fluids(parameters, reason);
+    if (status) return status;
     conditions->liquid = (enum liquid_limit)parameters->liquid;
     conditions->open_walls = parameters->open_walls;
     conditions->n_snapshot = parameters->snapshots.count;
@@ -163,4 +187,5 @@ void complete_conditions(struct dry_parameters *parameters,
     if (isnan(conditions->step_interval))
         conditions->step_interval =
             count_throats(network) > MOST_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
+    return STATUS_OK;
 }

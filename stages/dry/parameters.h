@@ -6,11 +6,13 @@
 #include "drying.h"
 #include "mass_transfer.h"
 #include "network/drawn_radii.h"
+#include "parameters/conditions.h"
 #include "parameters/parameters.h"
 
 enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 
 struct dry_parameters {
+    struct conditions given; // what the conditions get liquid and air from
     struct drying_conditions conditions;
     struct number_list snapshots;
     double snapshot_interval;
@@ -26,8 +28,8 @@ struct dry_parameters {
 extern const struct parameter dry_table[];
 
 // Gives the conditions what was not read right into them, and what NETWORK decides. The
-// caller frees .even_snapshots.
-void complete_conditions(struct dry_parameters *parameters,
-                         const struct network *network);
+// caller frees .even_snapshots. STATUS_BAD_DATA as conditions_complete.
+enum status complete_conditions(struct dry_parameters *parameters,
+                                const struct network *network, struct reason *reason);
 
 #endif

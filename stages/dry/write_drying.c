@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "write_drying.h"
 
+#include "artifacts/liquid.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "describe.h"
@@ -131,6 +132,20 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
     artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
 }
 
+static void put_fluids(struct artifact *artifact,
+                       const struct dry_parameters *parameters)
+{
+    const struct conditions *given = &parameters->given;
+    const struct liquid_properties liquid = liquid_of(given);
+    artifact_put_liquid(artifact, &liquid);
+    artifact_put_number(artifact, "/gas/pressure", given->gas_pressure);
+    artifact_put_number(artifact, "/gas/saturation_pressure",
+                        given->property[FLUID_SATURATION_PRESSURE]);
+    artifact_put_number(artifact, "/gas/vapour_pressure", given->air_vapour_pressure);
+    artifact_put_number(artifact, "/gas/diffusivity",
+                        given->property[FLUID_DIFFUSIVITY]);
+}
+
 void write_drying(const struct network *network, const struct drying_history *history,
                   const struct invocation *invocation, const struct artifact *input,
                   const struct dry_parameters *parameters,
@@ -138,23 +153,27 @@ void write_drying(const struct network *network, const struct drying_history *hi
 {
     const struct drying_conditions *conditions = &parameters->conditions;
     const enum transfer_law law = (enum transfer_law)parameters->transfer_law;
-    char model[2000], layer[300], flow[200], liquid[300], switches[500];
+    char model[3000], layer[300], flow[200], liquid[300], fluid[900], switches[500];
     snprintf(model, sizeof model,
              "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
              "boundary layer: %s\n"
              "boundary layer: %.17g m thick, from %s\n"
              "liquid: %s\n"
+             "%s, contact angle %.6g degrees; gas at %.6g Pa, with vapour of %.6g Pa\n"
              "throats shut in by those imposed empty, and empty as well: %d\n"
              "%s\n",
              describe_layer(conditions, history, layer),
              history->boundary_layer_thickness, describe_flow(law, transfer, flow),
              describe_liquid(conditions, history, liquid, sizeof liquid),
-             parameters->enclosed,
+             conditions_describe(&parameters->given, ~0u, fluid, sizeof fluid),
+             conditions->contact_angle, conditions->gas_pressure,
+             conditions->air_vapour_pressure, parameters->enclosed,
              describe_switches(conditions, switches, sizeof switches));
     struct artifact *artifact = artifact_create("drying", invocation->output);
     artifact_put_network(artifact, network);
     put_history(artifact, history);
     put_summary(artifact, history, parameters->conditions.open_walls);
+    put_fluids(artifact, parameters);
     put_boundary_layer(artifact, network, &parameters->conditions, history);
     put_profiles(artifact, network, history, conditions);
     if (conditions->n_snapshot > 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // force-protocol: the capillary force on every grain over the time of drying.
 #include "artifacts/artifact.h"
+#include "artifacts/liquid.h"
 #include "auxiliary.h"
 #include "balance.h"
 #include "basics/memory.h"
@@ -28,12 +29,14 @@ struct force_parameters {
 #define AT(member) offsetof(struct force_parameters, member)
 
 static const struct parameter table[] = {
-    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", AT(surface_tension),
-     ABOVE(0), .text = "of the liquid against the gas [K Table 3.1]"},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(contact_angle),
-     BETWEEN(0, 89.999),
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "null", AT(surface_tension),
+     ABOVE(0), .shared = true,
+     .text = "of the liquid against the gas; null: that of the drying"},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "null", AT(contact_angle),
+     BETWEEN(0, 89.999), .shared = true,
      .text = "imperfect wetting: menisci are less curved, and the contact line pulls "
-             "the grains towards the middle of the throat [K 3.14-3.18]"},
+             "the grains towards the middle of the throat [K 3.14-3.18]; null: that "
+             "of the drying"},
     {"force_scale", PARAMETER_NUMBER, "1", "1", AT(force_scale), AT_LEAST(0),
      .text = "factor on the physical force; K's own was chosen and is not given"},
     {"form", PARAMETER_CHOICE, "1", "\"solid-angle\"", AT(form),
@@ -87,6 +90,25 @@ static const struct stage stage = {
     .writes = "forces",
     .most_inputs = 1,
     .parameters = table};
+
+// What was not given is that of the drying; what was given otherwise is told in
+// DIFFERENCE.
+static void complete_liquid(struct force_parameters *parameters,
+                            const struct artifact *input, char *difference, size_t size)
+{
+    const struct liquid_properties has = artifact_get_liquid(input);
+    struct liquid_properties told = {.surface_tension = parameters->surface_tension,
+                                     .contact_angle = parameters->contact_angle};
+    liquid_complete(&told, &has);
+    if (isnan(told.surface_tension))
+        die(STATUS_BAD_DATA,
+            "force-protocol.surface_tension: must be given in N/m: %s does not say it",
+            input_name(input->path));
+    if (isnan(told.contact_angle)) told.contact_angle = 0;
+    parameters->surface_tension = told.surface_tension;
+    parameters->contact_angle = told.contact_angle;
+    liquid_differs(&told, &has, "the drying", difference, size);
+}
 
 static void check_end(const struct drying_record *record, double steps,
                       const char *path)
@@ -273,7 +295,7 @@ static void put_summary(struct artifact *artifact, const struct process *process
                         artifact_get_number(input, "/summary/first_period_end_time"));
 }
 
-static void describe(const struct force_parameters *parameters,
+static void describe(const struct force_parameters *parameters, const char *difference,
                      const struct rings *rings, char *text, size_t size)
 {
     static const char *const forms[] = {
@@ -304,13 +326,15 @@ static void describe(const struct force_parameters *parameters,
              "capillary force: %s%s\n"
              "throats in the open wall: %s\n"
              "%s\n"
+             "liquid: surface tension %.6g N/m, contact angle %.6g degrees%s%s\n"
              "contact line: %s\n"
              "%s\n"
              "%s\n",
              forms[parameters->form],
              parameters->balanced ? ", balanced at each throat" : "",
              parameters->open_surface == OPEN_SURFACE_IDLE ? "do not pull" : "pull",
-             suctions[parameters->suction],
+             suctions[parameters->suction], parameters->surface_tension,
+             parameters->contact_angle, *difference ? "; given: " : "", difference,
              parameters->contact_angle > 0 ? "pulls grains towards throats with menisci"
                                            : "none (perfect wetting)",
              left, weight);
@@ -318,12 +342,13 @@ static void describe(const struct force_parameters *parameters,
 
 static void write_forces(const struct packing *packing, const struct protocol *protocol,
                          const struct process *process, const struct findings *found,
-                         double gravity, const char *model,
-                         const struct invocation *invocation,
+                         double gravity, const struct liquid_properties *liquid,
+                         const char *model, const struct invocation *invocation,
                          const struct artifact *input)
 {
     struct artifact *artifact = artifact_create("forces", invocation->output);
     artifact_put_packing(artifact, packing);
+    artifact_put_liquid(artifact, liquid);
     artifact_put(artifact, "/time", protocol->time, protocol->n_time);
     artifact_put(artifact, "/saturation", protocol->saturation, protocol->n_time);
     artifact_put_table(artifact, "/force", protocol->force, protocol->n_time,
@@ -345,8 +370,11 @@ int main(int argc, char **argv)
     struct filling_record record =
         read_record(input, &network, parameters.suction == SUCTION_FIELD);
     check_end(&record.drying, (double)parameters.steps, input->path);
+    char difference[300], model[1400];
+    complete_liquid(&parameters, input, difference, sizeof difference);
     struct suction_law law = find_law(&network, &parameters, input->path);
     find_weight(&network, &record, &parameters, input, &law);
+    if (*difference && !invocation.quiet) report("%s", difference);
 
     struct wedges wedges;
     struct action action = {0};
@@ -365,10 +393,12 @@ int main(int argc, char **argv)
     struct protocol protocol = find_protocol(&process, &parameters);
     const struct findings found = examine(&process, &protocol, input->path);
     drop_auxiliary(&network.packing, &protocol);
-    char model[1100];
-    describe(&parameters, &rings, model, sizeof model);
+    describe(&parameters, difference, &rings, model, sizeof model);
+    struct liquid_properties liquid = artifact_get_liquid(input);
+    liquid.surface_tension = parameters.surface_tension;
+    liquid.contact_angle = parameters.contact_angle;
     write_forces(&network.packing, &protocol, &process, &found, parameters.gravity,
-                 model, &invocation, input);
+                 &liquid, model, &invocation, input);
 
     protocol_free(&protocol);
     action_free(&action);

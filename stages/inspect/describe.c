@@ -91,19 +91,24 @@ static void put_provenance(json_t *description, const struct artifact *artifact)
     }
 }
 
-static json_t *summary_of(const struct artifact *artifact)
+// By their groups: "summary", "liquid", ...
+static void put_attributes(json_t *description, const struct artifact *artifact)
 {
-    json_t *summary = json_object();
+    json_object_set_new(description, "summary", json_object());
     size_t k;
     json_t *entry;
     json_array_foreach(artifact->schema->attributes, k, entry)
     {
         if (!has_entry(artifact->file, entry)) continue;
         const char *name = json_string_value(json_object_get(entry, "name"));
-        json_object_set_new(summary, strrchr(name, '/') + 1,
+        const char *last = strrchr(name, '/');
+        char group[64];
+        snprintf(group, sizeof group, "%.*s", (int)(last - name - 1), name + 1);
+        if (!json_object_get(description, group))
+            json_object_set_new(description, group, json_object());
+        json_object_set_new(json_object_get(description, group), last + 1,
                             number(artifact_get_number(artifact, name), entry));
     }
-    return summary;
 }
 
 json_t *describe_artifact(const struct artifact *artifact)
@@ -112,7 +117,7 @@ json_t *describe_artifact(const struct artifact *artifact)
         json_pack("{s:s,s:s,s:I}", "schema", artifact->schema->id, "sha256",
                   artifact->sha256, "bytes", (json_int_t)artifact->image.size);
     put_provenance(description, artifact);
-    json_object_set_new(description, "summary", summary_of(artifact));
+    put_attributes(description, artifact);
     json_t *datasets = json_array();
     size_t k;
     json_t *entry;

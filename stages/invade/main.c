@@ -6,11 +6,13 @@
 #include "entry.h"
 #include "network/drawn_radii.h"
 #include "outcome.h"
+#include "parameters/conditions.h"
 #include "transport.h"
 
 #include <stdio.h>
 
 struct invade_parameters {
+    struct conditions given; // what `entry` gets its liquid from
     struct invasion_conditions invasion;
     struct entry_conditions entry;
     struct drawn_radii radii;
@@ -47,14 +49,10 @@ static const struct parameter table[] = {
      .choices = WALLS "|outer|inner",
      .text = "walls whose throats hold no liquid and let nothing through, as in dry"},
     DRAWN_RADII_ROWS(AT(radii)),
-    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274", AT(entry.surface_tension),
-     ABOVE(0), .text = "of the liquid [K Table 3.1]"},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(entry.contact_angle),
-     BETWEEN(0, 89.999),
-     .text = "imperfect wetting: the capillary pressure is 2 surface_tension cos(this) "
-             "/ r"},
-    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "998.2", AT(entry.liquid_density),
-     ABOVE(0), .text = "of the liquid, above that of the gas"},
+    FLUID_ROWS(AT(given)),
+    SURFACE_TENSION_ROW(AT(given)),
+    CONTACT_ANGLE_ROW(AT(given), 89.999),
+    LIQUID_DENSITY_ROW(AT(given)),
     {"gravity", PARAMETER_NUMBER, "m s-2", "0", AT(entry.gravity), AT_LEAST(0),
      .text = "towards -z: liquid higher up gives way to gas more easily; 0: none"},
     {0}};
@@ -160,24 +158,47 @@ static void put_transport(struct artifact *artifact, const struct transport *tra
                         transport->material[DIFFUSIVITY]);
 }
 
-static const char *describe(const struct invade_parameters *parameters, char text[600])
+static const char *describe(const struct invade_parameters *parameters, char *text,
+                            size_t size)
 {
-    char gravity[60];
+    const unsigned shown = 1u << FLUID_SURFACE_TENSION | 1u << FLUID_DENSITY;
+    char gravity[60], fluid[300];
     snprintf(gravity, sizeof gravity, "gravity: %.17g m/s2\n",
              parameters->entry.gravity);
-    snprintf(text, 600,
+    snprintf(text, size,
              "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
              "touches that takes the least pressure, of equals the shorter, then the "
              "higher\n"
              "%s\n%s"
+             "%s, contact angle %.6g degrees\n"
              "left out: viscosity, evaporation, compressibility, films, snap-off%s",
              parameters->rule == INVADE_THROATS ? "throat" : "node",
              parameters->invasion.trapping
                  ? "trapping: liquid leaves only through the outlet (Masson 2016)"
                  : "no trapping: liquid leaves from anywhere",
              parameters->entry.gravity > 0 ? gravity : "",
+             conditions_describe(&parameters->given, shown, fluid, sizeof fluid),
+             parameters->given.contact_angle,
              parameters->entry.gravity > 0 ? "" : ", gravity");
     return text;
+}
+
+static unsigned needed_properties(const struct invade_parameters *parameters)
+{
+    return 1u << FLUID_SURFACE_TENSION |
+           (parameters->entry.gravity > 0 ? 1u << FLUID_DENSITY : 0);
+}
+
+static void complete_entry(struct invade_parameters *parameters)
+{
+    struct conditions *given = &parameters->given;
+    struct entry_conditions *entry = &parameters->entry;
+    struct reason reason;
+    if (conditions_complete(given, needed_properties(parameters), &reason))
+        die(STATUS_BAD_DATA, "invade.%s", reason.text);
+    entry->surface_tension = given->property[FLUID_SURFACE_TENSION];
+    entry->contact_angle = given->contact_angle;
+    entry->liquid_density = given->property[FLUID_DENSITY];
 }
 
 static void check_walls(const struct invasion_conditions *conditions, bool transport)
@@ -194,12 +215,13 @@ static void check_walls(const struct invasion_conditions *conditions, bool trans
 
 int main(int argc, char **argv)
 {
-    struct invade_parameters parameters = {0};
+    struct invade_parameters parameters = {.given = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     struct invasion_conditions *conditions = &parameters.invasion;
     conditions->rule = (enum invasion_rule)parameters.rule;
     conditions->until_breakthrough = parameters.until == UNTIL_BREAKTHROUGH;
     check_walls(conditions, parameters.transport);
+    complete_entry(&parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_periodic_network(input);
 
@@ -221,14 +243,16 @@ int main(int argc, char **argv)
         status = transport_find(&network, conditions, &outcome, &transport, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[600];
+    char model[1000];
     struct artifact *artifact = artifact_create("invasion", invocation.output);
     artifact_put_network(artifact, &network);
     put_outcome(artifact, &network, &invasion, &outcome);
     put_summary(artifact, &network, conditions, &invasion, &outcome, &entry);
     if (parameters.transport) put_transport(artifact, &transport);
     artifact_finish(artifact, &invocation, one_input(input),
-                    describe(&parameters, model));
+                    describe(&parameters, model, sizeof model));
+    if (!invocation.quiet)
+        conditions_note(&parameters.given, needed_properties(&parameters));
 
     transport_free(&transport);
     outcome_free(&outcome);

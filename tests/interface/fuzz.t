@@ -60,7 +60,7 @@ READERS = {
     "drying": [["force-protocol", "--set", "steps=5"],
                ["force-protocol", "--set", "pressure=clusters", "--set", "largest_change=0.2",
                 "--set", "form=faces", "--set", "rings.left=volume"],
-               ["force-protocol", "--set", "pressure=field", "--set", "form=centres",
+               ["force-protocol", "-q", "--set", "pressure=field", "--set", "form=centres",
                 "--set", "contact_angle=30", "--set", "rings.left=suction", "--set", "steps=5"],
                ["dry", "--set", "start_saturation=0.5"], ["crackstats", "response"],
                ["deform", "--set", "on_change=keep", "damaged", "response"]],

@@ -59,7 +59,8 @@ with scratch() as one, scratch() as two:
     # A whole scene, or the stage's own section: the same parameters.
     import json
     with open(SCENE) as scene:
-        section = json.load(scene)["dry"]
+        scene = json.load(scene)
+    section = {key: value for key, value in scene["conditions"].items() if key != "comment"} | scene["dry"]
     own = os.path.join(one, "dry.json")
     with open(own, "w") as file:
         json.dump(dict(reversed(section.items())), file)

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, WATER, done, ok, run, scratch
 
 DIFFUSIVITY, GAS, FALL = 2.5685e-5, 8.31446261815324, -np.log1p(-2339 / 1e5)
 DENSITY = 1e5 * 0.01802 / (GAS * 293.15)
@@ -62,7 +62,8 @@ with scratch() as folder:
 
     def dry(name, *how):
         run("dry", "--quiet", *settings(["throat_radius.distribution=normal",
-                                         "boundary_layer.layers=4", *how]), at(name),
+                                         "boundary_layer.mass_transfer=5.1",
+                                         "boundary_layer.layers=4", *WATER, *how]), at(name),
             "-o", at("d"))
         file = h5py.File(at("d"))
         return {key: file[f"history/{key}"][:] for key in ("time", "saturation", "rate")} \
@@ -213,7 +214,8 @@ with scratch() as folder:
     area = box[0] * box[1]
     given = lambda law, *how: dry("n", f"boundary_layer.from={law}", *how)["rate"][0]
     Re, Sc = 3 * 2e-3 / 1.53e-5, 1.53e-5 / DIFFUSIVITY
-    flow = ["boundary_layer.flow_length=2e-3", "boundary_layer.air_velocity=3"]
+    flow = ["boundary_layer.flow_length=2e-3", "boundary_layer.air_velocity=3",
+            "boundary_layer.kinematic_viscosity=1.53e-5"]
     slow = [flow[0], "boundary_layer.air_velocity=0"]
     for label, rate, thickness in [
             ("given", given("thickness", "boundary_layer.thickness=7e-6"), 7e-6),
@@ -224,12 +226,12 @@ with scratch() as folder:
              2e-3 / (0.664 * Re**0.5 * Sc**(1 / 3))),
             ("around a sphere in air at rest: its radius", given("sphere", *slow), 1e-3)]:
         ok(abs(rate / one_dimension(area, thickness) - 1) < 1e-12, f"thickness {label}", rate)
-    said = subprocess.run([f"{BIN}/dry", "--set", "boundary_layer.thickness=7e-6", at("n"), "-o",
-                           at("d")], stderr=subprocess.PIPE, text=True).stderr
+    said = subprocess.run([f"{BIN}/dry", "--set", "boundary_layer.thickness=7e-6", "--set",
+                           "boundary_layer.mass_transfer=5.1", at("n"), "-o", at("d")], stderr=subprocess.PIPE, text=True).stderr
     ok("thickness = 7e-06 m does not count without boundary_layer.from=thickness" in said,
        "a thickness that does not count is said", said)
     Re = 0.3 * 2e-3 / 1.53e-5
-    rate = given("sphere", flow[0], "boundary_layer.air_velocity=0.3")
+    rate = given("sphere", flow[0], flow[2], "boundary_layer.air_velocity=0.3")
     ok(abs(rate / one_dimension(area, 2e-3 / (2 + 0.6 * Re**0.5 * Sc**(1 / 3))) - 1) < 1e-12,
        "thickness around a sphere in a draught")
 

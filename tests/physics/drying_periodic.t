@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import WATER, done, ok, run, scratch
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
@@ -25,7 +25,7 @@ with scratch() as folder:
         run("tessellate", *settings(how), at(name + ".p"), "-o", at(name + ".n"))
 
     def dry(name, *how):
-        run("dry", *settings(["boundary_layer.mass_transfer=5.1", *how]), at(name + ".n"),
+        run("dry", *settings(["boundary_layer.mass_transfer=5.1", *WATER, *how]), at(name + ".n"),
             "-o", at(name + ".d"))
         file = h5py.File(at(name + ".d"))
         return {k: file[f"history/{k}"][:] for k in ("time", "saturation", "rate")}

@@ -33,11 +33,11 @@ def drying(name, centres, radii, box, how, dry, merge=0.0, periodic=(0, 0, 0), l
     run("tessellate", *settings(how), "p", "-o", "t")
     how = ["measure=fraction", f"threshold={merge}"] if merge else []
     run("merge-nodes", *settings(how), "t", "-o", "n")
-    run("dry", *settings(dry), "--quiet", "n", "-o", name)
+    run("dry", *settings(["surface_tension=0.07274", *dry]), "--quiet", "n", "-o", name)
 
 
 def forces(name, *how, steps=40):
-    run("force-protocol", *settings([f"steps={steps}", *how]), name, "-o", "f")
+    run("force-protocol", "--quiet", *settings([f"steps={steps}", *how]), name, "-o", "f")
     with h5py.File("f") as file:
         return file["force"][:], file["time"][:], dict(file["summary"].attrs)
 

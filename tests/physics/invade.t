@@ -111,7 +111,8 @@ with scratch() as folder:
         for trapping in True, False:
             for gravity in 0, 1e7:
                 run("invade", "--set", f"rule={rule}", "--set", f"trapping={str(trapping).lower()}",
-                    "--set", f"gravity={gravity}", at("network.h5"), "-o", at("invasion.h5"))
+                    "--set", f"gravity={gravity}", "--set", f"surface_tension={TENSION}", "--set",
+                    f"liquid_density={DENSITY}", at("network.h5"), "-o", at("invasion.h5"))
                 with h5py.File(at("invasion.h5")) as file:
                     check(f"{rule}, {'trapping' if trapping else 'none trapped'}, gravity {gravity:g}",
                           file, rule, trapping, gravity)
@@ -121,7 +122,8 @@ with scratch() as folder:
     for inlet, outlet in ("+z", "-z"), ("-z", "+z"):
         for gravity in 0, 1e10: # against weight radii are nothing
             run("invade", "--set", f'inlet=["{inlet}"]', "--set", f'outlet=["{outlet}"]', "--set",
-                f"gravity={gravity}", "--set", "until=breakthrough", "--set", "trapping=false", at("network.h5"), "-o",
+                f"gravity={gravity}", "--set", "until=breakthrough", "--set", "trapping=false", "--set",
+                f"surface_tension={TENSION}", "--set", f"liquid_density={DENSITY}", at("network.h5"), "-o",
                 at("invasion.h5"))
             with h5py.File(at("invasion.h5")) as file:
                 s = file["summary"].attrs

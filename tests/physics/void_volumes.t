@@ -87,10 +87,10 @@ with scratch() as folder:
     merged = h5py.File(at("merged.h5"))
     ok(abs(shares(merged)[0] / expected - 1) < 1e-12, "merging nodes keeps the sum")
     ok((merged["throats/volume"][:] > 0).all(), "every throat has some")
-    run("dry", "--quiet", at("merged.h5"), "-o", at("drying.h5"))
+    run("dry", "--quiet", "--set", "liquid_density=998.2", at("merged.h5"), "-o", at("drying.h5"))
     mass = h5py.File(at("drying.h5"))["summary"].attrs["liquid_mass"]
     ok(abs(mass / (998.2 * expected * 125e-18) - 1) < 1e-12, "liquid fills the void when drying begins")
-    run("dry", "--quiet", "--set", "throat_radius.distribution=normal", at("merged.h5"), "-o", at("drawn.h5"))
+    run("dry", "--quiet", "--set", "liquid_density=998.2", "--set", "throat_radius.distribution=normal", at("merged.h5"), "-o", at("drawn.h5"))
     drawn = h5py.File(at("drawn.h5"))
     cylinders = np.pi * (drawn["throats/radius"][:]**2 * drawn["throats/length"][:]).sum()
     ok("throats/volume" not in drawn

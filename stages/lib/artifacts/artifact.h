@@ -66,8 +66,10 @@ struct dataset_values artifact_get_values(const struct artifact *artifact,
 // Whether an optional dataset is there.
 bool artifact_has_dataset(const struct artifact *artifact, const char *name);
 
-// A number from an attribute, "/summary/porosity"; whether an optional one is there.
+// Whether an optional attribute is there; also false where the schema has no such one.
 bool artifact_has_number(const struct artifact *artifact, const char *name);
+
+// A number from an attribute, "/summary/porosity".
 double artifact_get_number(const struct artifact *artifact, const char *name);
 
 // A text attribute of the whole artifact, or NULL when there is none: a foreign program

@@ -78,6 +78,7 @@ void parameters_print(const struct parameter *table, FILE *stream)
         if (strcmp(p->unit, "1")) column += fprintf(stream, " %s", p->unit);
         if (p->choices) print_choices(stream, p->choices, column);
         if (p->bound) fprintf(stream, "  [%s]", parameter_rule(p, rule));
+        if (p->shared) fprintf(stream, " *");
         fprintf(stream, "\n");
         print_wrapped(stream, p->text, 8);
     }

@@ -249,6 +249,18 @@ static void put(json_t *section, const char *key, json_t *value)
     json_object_set(section, key, value);
 }
 
+void parameters_give(json_t *section, const char *key, const json_t *other)
+{
+    const char *last = strrchr(key, '.');
+    json_t *value = json_object_get(other, last ? last + 1 : key);
+    char group[128];
+    snprintf(group, sizeof group, "%.*s", last ? (int)(last - key) : 0, key);
+    const json_t *inner = last ? find(section, group) : NULL;
+    if (inner && !json_is_object(inner)) return; // parameters_fill complains of it
+    if (!value || json_is_null(value) || find(section, key)) return;
+    put(section, key, value);
+}
+
 static bool is_prefix(const struct parameter *table, const char *path)
 {
     const size_t length = strlen(path);

@@ -45,6 +45,8 @@ struct parameter {
     double low, high;           // in the unit
     const char *choices;        // "inviscid|immobile"
     const char *text;           // one line for the user
+    bool shared; // the scene's section "conditions" may say it for all stages, under
+                 // the last part of KEY
 };
 
 // A row: what each parameter has, by place; then by name what it needs of the rest.
@@ -68,6 +70,10 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
 // Puts "key.path=value" into SECTION; the value is read as JSON, or else as text.
 // Exits 64 when there is no "=" or no key.
 void parameters_set(json_t *section, const char *assignment);
+
+// Gives SECTION what it lacks at KEY from OTHER, where that is under the last part of
+// KEY; null there says nothing.
+void parameters_give(json_t *section, const char *key, const json_t *other);
 
 // Whether null is a value that can be given.
 bool parameter_may_be_null(const struct parameter *parameter);

@@ -5,6 +5,7 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "parameters/command_line.h"
+#include "parameters/conditions.h"
 #include "parameters/spelling.h"
 
 #include <assert.h>
@@ -14,11 +15,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Sections a scene may hold: the stages, whether this one or another.
-static const char *const sections[] = {
-    "pack",   "tessellate", "merge-nodes",    "dry",    "force-protocol", "dem-replay",
-    "deform", "crackstats", "import-network", "invade", "bridge",         "flow",
-    "check",  NULL};
+// Sections a scene may hold: the stages, whether this one or another, and what several
+// of them share.
+static const char *const sections[] = {"pack",   "tessellate",     "merge-nodes",
+                                       "dry",    "force-protocol", "dem-replay",
+                                       "deform", "crackstats",     "import-network",
+                                       "invade", "bridge",         "flow",
+                                       "check",  "conditions",     NULL};
 
 enum {
     KEY_THREADS = 256,
@@ -138,6 +141,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     }
 }
 
+static bool shares(const struct parameter *table)
+{
+    for (const struct parameter *p = table; p->key; p++)
+        if (p->shared) return true;
+    return false;
+}
+
 // The text of --help behind the options: parameters with their defaults, what is read
 // and written.
 static char *help_filter(int key, const char *text, void *input)
@@ -149,6 +159,9 @@ static char *help_filter(int key, const char *text, void *input)
     FILE *stream = open_memstream(&help, &length);
     fprintf(stream, "Parameters (section \"%s\" of the scene):\n", stage->name);
     parameters_print(stage->parameters, stream);
+    if (shares(stage->parameters))
+        fprintf(stream, "\nParameters marked * may stand, once for all stages, in the "
+                        "section\n\"conditions\" of the scene.\n");
     if (stage->notes) fprintf(stream, "\n%s\n", stage->notes);
     fprintf(stream, "\nReads: %s\nWrites: %s (schemas/%s.json)\n",
             stage->reads ? stage->reads : "nothing", stage->writes, stage->writes);
@@ -199,12 +212,22 @@ static const char *nearest_section(const char *key)
     return nearest;
 }
 
-static json_t *section_of_scene(json_t *scene, const char *path, const char *stage)
+static json_t *object_of_scene(const json_t *scene, const char *path, const char *name)
+{
+    json_t *object = json_object_get(scene, name);
+    if (object && !json_is_object(object))
+        die(STATUS_BAD_DATA, "%s: %s: must be an object", path, name);
+    return object;
+}
+
+// With what it shares with others. A new reference.
+static json_t *section_of_scene(const json_t *scene, const char *path,
+                                const struct stage *stage)
 {
     const char *key;
     json_t *value;
     int unknown = 0;
-    json_object_foreach(scene, key, value)
+    json_object_foreach((json_t *)(uintptr_t)scene, key, value)
     {
         if (is_section(key) || !strcmp(key, "comment")) continue;
         report("%s: %s: unknown section; the nearest stage is %s", path, key,
@@ -212,10 +235,13 @@ static json_t *section_of_scene(json_t *scene, const char *path, const char *sta
         unknown++;
     }
     if (unknown) exit(STATUS_BAD_DATA);
-    json_t *section = json_object_get(scene, stage);
-    if (section && !json_is_object(section))
-        die(STATUS_BAD_DATA, "%s: %s: must be an object", path, stage);
-    return section ? json_incref(section) : json_object();
+    json_t *section = object_of_scene(scene, path, stage->name);
+    section = section ? json_incref(section) : json_object();
+    char where[300];
+    snprintf(where, sizeof where, "%s: conditions", path);
+    conditions_share(section, stage->parameters,
+                     object_of_scene(scene, path, "conditions"), where);
+    return section;
 }
 
 static json_t *load_section(const struct command_line *line)
@@ -223,7 +249,7 @@ static json_t *load_section(const struct command_line *line)
     if (!line->params) return json_object();
     json_t *json = load_json(line->params);
     if (!is_scene(json)) return json;
-    json_t *section = section_of_scene(json, line->params, line->stage->name);
+    json_t *section = section_of_scene(json, line->params, line->stage);
     json_decref(json);
     return section;
 }

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a body dries of and in: the liquid, the air, the temperature. A scene says it
+// once, in its section "conditions"; a stage whose own section says nothing else takes
+// it from there. What neither gives is that of the named liquid at the temperature.
+#ifndef CRAQUELURE_CONDITIONS_OF_SCENE_H
+#define CRAQUELURE_CONDITIONS_OF_SCENE_H
+
+#include "basics/status.h"
+#include "fluids/fluids.h"
+#include "parameters/parameters.h"
+
+struct conditions {
+    int fluid;            // enum fluid
+    double temperature;   // K
+    double gas_pressure;  // Pa
+    double contact_angle; // degrees
+    // NAN: not given.
+    double relative_humidity;   // of water vapour in the air, 0 to 1
+    double air_vapour_pressure; // of the liquid's vapour in the air, Pa
+    double property[FLUID_PROPERTIES];
+    unsigned given; // bit k: property k was given, and is not the liquid's by its name
+};
+
+// Nothing given: for a stage whose table has not all the rows. The gas is at 1e5 Pa.
+struct conditions conditions_unset(void);
+
+// All keys that the section "conditions" may have.
+extern const struct parameter conditions_table[];
+
+// Checks the section, NULL where a scene has none, and gives SECTION, a stage's own by
+// TABLE, what it lacks of the rows that are shared. Exits 65 as parameters_fill, with
+// WHERE in its messages.
+void conditions_share(json_t *section, const struct parameter *table,
+                      const json_t *conditions, const char *where);
+
+// Fills in the properties that were not given, and the vapour in the air (0 where
+// neither it nor the humidity was). One that is not known stays NAN. STATUS_BAD_DATA,
+// with the key: a temperature below 200 K; a property with its bit in NEEDED that is
+// not known, or not at this temperature; humidity of another liquid than water, or
+// beside the vapour pressure.
+enum status conditions_complete(struct conditions *conditions, unsigned needed,
+                                struct reason *reason);
+
+// One line: the liquid by name, and those properties with their bit in SHOWN.
+const char *conditions_describe(const struct conditions *conditions, unsigned shown,
+                                char *text, size_t size);
+
+// On stderr, what was given and is more than a tenth off what the named liquid has:
+// such as a saturation pressure that stays when the temperature is changed.
+void conditions_note(const struct conditions *conditions, unsigned needed);
+
+// ---- rows of a stage's table, AT: where struct conditions lies in its struct
+// ---------
+
+#define CONDITION_AT(at, member) (at) + offsetof(struct conditions, member)
+// clang-format off
+#define FLUID_ROWS(at) \
+    {"fluid", PARAMETER_CHOICE, "1", "\"water\"", CONDITION_AT(at, fluid), \
+     .choices = FLUID_CHOICES, .shared = true, \
+     .text = "liquid: properties that are null are its own at the temperature " \
+             "(docs/fluids.md); other: all that are needed must be given"}, \
+    {"temperature", PARAMETER_NUMBER, "K", "293.15", CONDITION_AT(at, temperature), \
+     ABOVE(0), .shared = true, .text = "temperature, the same everywhere"}
+#define VAPOUR_ROWS(at) \
+    {"gas_pressure", PARAMETER_NUMBER, "Pa", "1e5", CONDITION_AT(at, gas_pressure), \
+     ABOVE(0), .shared = true, .text = "pressure of the gas"}, \
+    {"saturation_pressure", PARAMETER_NUMBER, "Pa", "null", \
+     CONDITION_AT(at, property[FLUID_SATURATION_PRESSURE]), ABOVE(0), .shared = true, \
+     .text = "equilibrium vapour pressure; null: the fluid's"}, \
+    {"relative_humidity", PARAMETER_NUMBER, "1", "null", \
+     CONDITION_AT(at, relative_humidity), BETWEEN(0, 1), .shared = true, \
+     .text = "of the drying air, of saturation, where the liquid is water; null: as " \
+             "air_vapour_pressure says"}, \
+    {"air_vapour_pressure", PARAMETER_NUMBER, "Pa", "null", \
+     CONDITION_AT(at, air_vapour_pressure), AT_LEAST(0), .shared = true, \
+     .text = "pressure of the liquid's vapour in the drying air; null: as " \
+             "relative_humidity says, else 0"}, \
+    {"diffusivity", PARAMETER_NUMBER, "m2 s-1", "null", \
+     CONDITION_AT(at, property[FLUID_DIFFUSIVITY]), ABOVE(0), .shared = true, \
+     .text = "of vapour in the gas; null: the fluid's in air of gas_pressure"}, \
+    {"molar_mass", PARAMETER_NUMBER, "kg mol-1", "null", \
+     CONDITION_AT(at, property[FLUID_MOLAR_MASS]), ABOVE(0), .shared = true, \
+     .text = "of the liquid; null: the fluid's"}
+#define LIQUID_DENSITY_ROW(at) \
+    {"liquid_density", PARAMETER_NUMBER, "kg m-3", "null", \
+     CONDITION_AT(at, property[FLUID_DENSITY]), ABOVE(0), .shared = true, \
+     .text = "of the liquid, above that of the gas; null: the fluid's"}
+#define VISCOSITY_ROW(at) \
+    {"viscosity", PARAMETER_NUMBER, "m2 s-1", "null", \
+     CONDITION_AT(at, property[FLUID_VISCOSITY]), ABOVE(0), .shared = true, \
+     .text = "kinematic, of viscous liquid; null: the fluid's"}
+#define SURFACE_TENSION_ROW(at) \
+    {"surface_tension", PARAMETER_NUMBER, "N m-1", "null", \
+     CONDITION_AT(at, property[FLUID_SURFACE_TENSION]), ABOVE(0), .shared = true, \
+     .text = "of the liquid against the gas; null: the fluid's"}
+#define CONTACT_ANGLE_ROW(at, most) \
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0", \
+     CONDITION_AT(at, contact_angle), BETWEEN(0, most), .shared = true, \
+     .text = "imperfect wetting: the capillary pressure is 2 surface_tension " \
+             "cos(this) / r"}
+// clang-format on
+
+#endif
