@@ -98,6 +98,9 @@ static void test_books_of_each_law(void **state)
     assert_books_close(rubbing_setup(DEM_LINEAR), 2e-3);
     assert_books_close(rubbing_setup(DEM_TIMED), 2e-3);
     assert_books_close(rubbing_setup(DEM_HERTZ), 2e-3);
+    struct dem_setup whole = rubbing_setup(DEM_HERTZ);
+    whole.friction_feels_dashpot = true;
+    assert_books_close(whole, 2e-3);
 }
 
 static void test_books_of_local_damping(void **state)

@@ -309,6 +309,37 @@ static void test_sphere_as_plane(void **state)
     }
 }
 
+// Friction of the whole normal force. A steady slide of tan 3.8 and 6 beside LIGGGHTS
+// 3.8.0 (pair_style and fix wall/gran `gran model hertz tangential history`, steps of
+// 1e-7 s). At tangents around 2 slip and grip alternate from step to step, and the
+// shear dashpot with them, so that there the law by itself says no single number.
+static void test_friction_that_feels_the_dashpot(void **state)
+{
+    (void)state;
+    const double liggghts[][2] = {{3.811, 0.81542}, {6, 0.88285}};
+    for (double tangent = 0.1; tangent < 12; tangent *= 1.4) {
+        struct impact is = {.material = alloy,
+                            .radius = {0.1, 0},
+                            .elastic_plane = true,
+                            .friction_feels_dashpot = true,
+                            .velocity = {{0.2 * tangent, 0, -0.2}}};
+        if (tangent < 1.2 || tangent > 2.5) assert_like_the_law(is);
+        struct impact onto_sphere = is; // pairs have code of their own
+        onto_sphere.radius[1] = 1000;
+        const struct outcome got = run_hertz(&onto_sphere), wanted = run_hertz(&is);
+        WITHIN(got.velocity[0].x, wanted.velocity[0].x, 1e-3 * 0.2 * (1 + tangent));
+    }
+    for (int k = 0; k < 2; k++) {
+        const double across = 0.2 * liggghts[k][0];
+        struct impact is = {.material = alloy,
+                            .radius = {0.1, 0},
+                            .elastic_plane = true,
+                            .friction_feels_dashpot = true,
+                            .velocity = {{across, 0, -0.2}}};
+        WITHIN(run_hertz(&is).velocity[0].x / across, liggghts[k][1], 0.0015);
+    }
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -322,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_7_opposite_spins),
         cmocka_unit_test(test_8_unequal_spheres),
         cmocka_unit_test(test_sphere_as_plane),
+        cmocka_unit_test(test_friction_that_feels_the_dashpot),
         cmocka_unit_test(test_partial_slip_limits),
         cmocka_unit_test(test_timed_contact),
         cmocka_unit_test(test_linear_contact),

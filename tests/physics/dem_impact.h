@@ -18,6 +18,7 @@ struct impact {
     struct dem_material material, other; // of grains 0 and 1; OTHER.density 0: the same
     double radius[2];                    // m; the second 0: a plane
     bool elastic_plane;                  // of the grain's material; otherwise rigid
+    bool friction_feels_dashpot;
     struct vector velocity[2], spin[2];
     double time_step; // s
     double onset;     // time steps
@@ -68,6 +69,8 @@ static inline struct dem *start_impact(const struct impact *is, double gap)
                                     .wall = &plane,
                                     .time_step = is->time_step,
                                     .force_time_step = true,
+                                    .friction_feels_dashpot =
+                                        is->friction_feels_dashpot,
                                     .threads = 1};
     struct dem *dem;
     struct reason reason = {""};

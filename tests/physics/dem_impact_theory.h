@@ -80,14 +80,26 @@ enum { U, U_DOT, V, W, Q, STATES }; // overlap, its rate, speed across, spin, sp
 struct law_motion {
     struct contact_numbers c;
     double radius, mass, inertia;
+    bool feels_dashpot; // friction
     bool slips;
 };
+
+static inline double dashpot_force(const struct contact_numbers *c, const double *y)
+{
+    return c->normal_dashpot * pow(fmax(y[U], 0), 0.25) * y[U_DOT];
+}
+
+static inline double friction_limit(const struct law_motion *is, const double *y)
+{
+    const double spring = is->c.normal * pow(fmax(y[U], 0), 1.5);
+    const double whole = spring + dashpot_force(&is->c, y);
+    return is->c.friction * (is->feels_dashpot ? fmax(whole, 0) : spring);
+}
 
 static inline double side_force(const struct law_motion *is, const double *y)
 {
     const double overlap = fmax(y[U], 0);
-    const double limit = is->c.friction * is->c.normal * pow(overlap, 1.5);
-    if (is->slips) return copysign(limit, y[Q]);
+    if (is->slips) return copysign(friction_limit(is, y), y[Q]);
     const double surface = y[V] + (is->radius - 0.5 * overlap) * y[W];
     return y[Q] - is->c.shear_dashpot * pow(overlap, 0.25) * surface;
 }
@@ -95,8 +107,7 @@ static inline double side_force(const struct law_motion *is, const double *y)
 static inline void law_rates(const struct law_motion *is, const double *y, double *rate)
 {
     const double overlap = fmax(y[U], 0), arm = is->radius - 0.5 * overlap; // [K 4.9]
-    const double normal = is->c.normal * pow(overlap, 1.5) +
-                          is->c.normal_dashpot * pow(overlap, 0.25) * y[U_DOT];
+    const double normal = is->c.normal * pow(overlap, 1.5) + dashpot_force(&is->c, y);
     const double side = side_force(is, y);
     rate[U] = y[U_DOT];
     rate[U_DOT] = -normal / is->mass;
@@ -124,7 +135,9 @@ static inline void take_step(const struct law_motion *is, double *y, double h)
 // the axis that adds radius times itself to the speed of the surface.
 static inline struct outcome integrate_law(const struct impact *is)
 {
-    struct law_motion motion = {.c = contact_numbers(is), .radius = is->radius[0]};
+    struct law_motion motion = {.c = contact_numbers(is),
+                                .radius = is->radius[0],
+                                .feels_dashpot = is->friction_feels_dashpot};
     motion.mass = sphere_mass(is->material.density, motion.radius);
     motion.inertia = 0.4 * motion.mass * motion.radius * motion.radius;
     double y[STATES] = {0, closing_speed(is), is->velocity[0].x, -is->spin[0].y, 0};
@@ -135,10 +148,11 @@ static inline struct outcome integrate_law(const struct impact *is)
         const double later = fmax(y[U] + h * y[U_DOT], 0);
         const double kept = later < y[U] ? y[Q] * sqrt(later / y[U]) : y[Q];
         const double trial = kept - c->shear * sqrt(y[U]) * surface * h;
-        motion.slips = fabs(trial) > c->friction * c->normal * pow(later, 1.5);
+        const double then[STATES] = {later, y[U_DOT]};
+        motion.slips = fabs(trial) > friction_limit(&motion, then);
         if (motion.slips) y[Q] = copysign(y[Q], trial);
         take_step(&motion, y, h);
-        const double limit = c->friction * c->normal * pow(fmax(y[U], 0), 1.5);
+        const double limit = friction_limit(&motion, y);
         if (motion.slips || fabs(y[Q]) > limit) y[Q] = copysign(limit, y[Q]);
     } while (y[U] > 0);
     return (struct outcome){.velocity[0] = {y[V], 0, -y[U_DOT]},

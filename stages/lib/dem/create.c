@@ -378,6 +378,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     dem->kind = setup->law;
     dem->threads = setup->threads;
     dem->balance_energy = setup->balance_energy;
+    dem->friction_feels_dashpot = setup->friction_feels_dashpot;
     dem->skin = FIRST_SKIN;
     dem->least_gap = 1e-6;
     dem->expected_overlap = setup->largest_overlap > 0 ? setup->largest_overlap : 0.01;

@@ -139,6 +139,9 @@ struct dem_setup {
     // Grains that overlap at the start, or a plane, cylinder or sphere, do so at rest:
     // only what they come closer pushes (the reference gap of PFC).
     bool unstressed;
+    // Friction carries its share of the whole normal force while that pushes, dashpot
+    // included, as in LIGGGHTS; otherwise of the spring's [K 4.25].
+    bool friction_feels_dashpot;
     bool balance_energy; // keep the books that dem_energy reports
     int threads;         // >= 1; used where there is enough to share
 };

@@ -151,7 +151,8 @@ struct dem {
     double largest_radius, smallest_radius;
     double coordinate_error; // rounding of the positions as given
     bool unstressed;         // overlaps at the start count as none
-    double period[3];        // 0 where the box does not repeat
+    bool friction_feels_dashpot;
+    double period[3]; // 0 where the box does not repeat
     double box_lower[3], box_upper[3];
 
     int n_bond;

@@ -5,6 +5,11 @@
 // pair in tension would ring for ever. While an unbonded contact slides its shear
 // dashpot is off, so that a sliding grain feels friction and nothing more.
 //
+// What friction can carry is a share of the normal spring [K 4.25], or of the whole
+// normal force while it pushes. A sphere that slides throughout then loses mu times
+// what the spring gave, m (1 + e) v, as rigid bodies do, or mu times all that pushed,
+// which is more: a damped contact pulls at its end.
+//
 // A Hertz contact that unloads forgets shear force as its shear stiffness falls, F^s
 // times sqrt(U / U_old): with the incremental law alone a loop of loading would give
 // energy out of nothing (Elata & Berryman 1996). U_old = U + V^n dt, by leapfrog.
@@ -83,11 +88,18 @@ INLINE lanes spring_loss(struct lanes3 before, lanes stiffness_before,
     return 0.5 * (had - has);
 }
 
-// The shear spring of the contact, slip included [K 4.12-4.16, 4.25-4.26]; SLIPS says
-// where.
+// The normal force that friction goes by; PUSH is that of spring and dashpot.
+INLINE lanes pressing(const struct dem *dem, const struct law *law, lanes push)
+{
+    if (!dem->friction_feels_dashpot) return law->spring;
+    return only_where(above(push, splat(0)), push);
+}
+
+// The shear spring of the contact, slip at LIMIT included [K 4.12-4.16, 4.25-4.26];
+// SLIPS says where.
 INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
                                   const struct meeting *m, const struct law *law,
-                                  mask touch, mask held, lanes time_step,
+                                  lanes limit, mask touch, mask held, lanes time_step,
                                   unsigned features, mask *slips)
 {
     double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
@@ -99,7 +111,6 @@ INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
         only_where3(acts, subtract_scaled3(kept, law->shear_stiffness * time_step,
                                            m->shear_velocity));
 
-    const lanes limit = law->friction * law->spring;
     const lanes square = dot3(trial, trial);
     *slips = above(square, limit * limit);
     if (features & FEATURE_CONTACT_BOND) *slips = without(*slips, held);
@@ -137,8 +148,9 @@ INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
     if (!(features & FEATURE_TURN)) return load;
 
     mask slips;
-    const struct lanes3 shear =
-        shear_spring(dem, k, at, m, law, touch, held, time_step, features, &slips);
+    const lanes limit = law->friction * pressing(dem, law, load.normal);
+    const struct lanes3 shear = shear_spring(dem, k, at, m, law, limit, touch, held,
+                                             time_step, features, &slips);
     const mask sticks = either(held, without(touch, slips));
     const lanes damping = only_where(sticks, law->shear_damping);
     load.shear = subtract_scaled3(shear, damping, m->shear_velocity);

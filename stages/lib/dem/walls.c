@@ -188,8 +188,10 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
         return push;
     }
     const double turn = 0.5 * dt * dot(add(spin, wall->spin), n);
+    const double pressing =
+        dem->friction_feels_dashpot ? fmax(spring + dashpot, 0) : spring;
     const bool slips = advance_shear(dem, pair, lie, scale(dt, sideways), turn,
-                                     law.friction * spring, &push.slip);
+                                     law.friction * pressing, &push.slip);
     push.shear = pair->shear_force;
     if (!slips) {
         push.shear = subtract(push.shear, scale(law.shear_damping, sideways));
