@@ -28,7 +28,7 @@ struct deform_parameters {
 
 static const struct parameter table[] = {
     {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
-     offsetof(struct deform_parameters, clearance), .choices = "segment|line",
+     offsetof(struct deform_parameters, clearance), .choices = "segment|line|beside",
      .text = "clearance that radii go with, as in tessellate"},
     {"on_change", PARAMETER_CHOICE, "1", "\"refuse\"",
      offsetof(struct deform_parameters, on_change), .choices = "refuse|keep",
@@ -211,8 +211,7 @@ static void write_moved(const struct network *network, const struct liquid *liqu
              invocation->n_input > 2
                  ? "the network of the moved grains, as it was tessellated anew"
                  : "nodes where the grains around them are now, walls with the grains "
-                   "beside them; radii as the clearance to the grains beside the "
-                   "throats",
+                   "beside them; radii as the clearance of the throats",
              liquid->saturation
                  ? "liquid kept: what volumes leave over fills the narrowest menisci, "
                    "what they are short of leaves the widest"

@@ -11,27 +11,28 @@
 
 // ---- lengths and radii --------------------------------------------------------------
 
-// To the sides of FACE, of the throat from its corner FROM to TO.
-static double face_clearance(const struct network *network, int face, int64_t from,
-                             int64_t to, enum clearance how)
+// WAY with the sides of FACE, for the throat from its corner FROM to TO.
+static struct clear_way clear_of_face(struct clear_way way,
+                                      const struct network *network, int face,
+                                      int64_t from, int64_t to, enum clearance how)
 {
     const struct packing *packing = &network->packing;
     const int32_t *side = network->face_particles[face];
     const struct vector end[2] = {face_corner(network, from), face_corner(network, to)};
-    const double first =
-        clearance_of(packing->position[side[0]], packing->radius[side[0]], end, how);
-    if (side[1] < 0) return first;
-    return fmin(first, clearance_of(second_grain(network, face),
-                                    packing->radius[side[1]], end, how));
+    way = clear_of(way, packing->position[side[0]], packing->radius[side[0]], end, how);
+    if (side[1] < 0) return way;
+    return clear_of(way, second_grain(network, face), packing->radius[side[1]], end,
+                    how);
 }
 
-double *find_clearances(const struct network *network, enum clearance how,
-                        struct reason *reason)
+// (n_throat) Of the grains beside each; NULL with the reason.
+static struct clear_way *find_ways(const struct network *network, enum clearance how,
+                                   struct reason *reason)
 {
     struct incidence incidence = network_incidence(network);
-    double *least = NEW_ARRAY(double, network->n_throat);
+    struct clear_way *way = NEW_ARRAY(struct clear_way, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
-        least[t] = HUGE_VAL;
+        way[t] = nothing_beside;
     bool fits = true;
     for (int f = 0; f < network->n_face && fits; f++) {
         const int64_t begin = network->face_offset[f];
@@ -43,15 +44,32 @@ double *find_clearances(const struct network *network, enum clearance how,
                 refuse(reason, STATUS_BAD_DATA,
                        "/faces/nodes: face %d: no throat from its corner %d", f, k);
             else
-                least[t] = fmin(least[t],
-                                fmax(0, face_clearance(network, f, begin + k,
-                                                       begin + (k + 1) % count, how)));
+                way[t] = clear_of_face(way[t], network, f, begin + k,
+                                       begin + (k + 1) % count, how);
         }
     }
     incidence_free(&incidence);
-    if (fits) return least;
-    free(least);
+    if (fits) return way;
+    free(way);
     return NULL;
+}
+
+double *find_clearances(const struct network *network, enum clearance how,
+                        struct reason *reason)
+{
+    struct clear_way *way = find_ways(network, how, reason);
+    if (!way) return NULL;
+    struct sphere_cells grains = sphere_cells_make(&network->packing);
+    double *least = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++) {
+        const struct vector from = network->node_position[network->throat_nodes[t][0]];
+        const struct vector end[2] = {from, add(from, along_throat(network, t))};
+        const bool any = how == CLEARANCE_SEGMENT && isfinite(way[t].least);
+        least[t] = fmax(0, any ? least_clearance(&grains, end, way[t]) : way[t].least);
+    }
+    sphere_cells_free(&grains);
+    free(way);
+    return least;
 }
 
 double moved_radius(double radius, double before, double after)

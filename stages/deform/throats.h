@@ -7,9 +7,9 @@
 #include "network/clearance.h"
 #include "network/network.h"
 
-// (n_throat) Least clearance to the grains beside each throat, 0 where they overlap;
-// infinite where none is known. The caller frees it; NULL with the reason: a face
-// without a throat at its rim.
+// (n_throat) Least clearance of each throat, to the grains that HOW says, 0 where they
+// overlap it; infinite where none is known beside it. The caller frees it; NULL with
+// the reason: a face without a throat at its rim.
 double *find_clearances(const struct network *network, enum clearance how,
                         struct reason *reason);
 
@@ -17,8 +17,7 @@ double *find_clearances(const struct network *network, enum clearance how,
 double moved_radius(double radius, double before, double after);
 
 // Gives AFTER, a copy of BEFORE but for the places of grains and nodes, its lengths and
-// radii. With c the clearance to the grains beside a throat, 0 where they overlap, and
-// r its radius,
+// radii. With c the clearance of a throat, as above, and r its radius,
 //
 //     r' = r + (c' - c) min(1, r / c):
 //

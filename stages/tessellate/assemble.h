@@ -14,6 +14,7 @@ struct assembly {
     const struct nodes *nodes;
     const double *radius; // of generators, in units
     enum clearance clearance;
+    struct sphere_cells grains; // in units
 };
 
 // Fills the throats of the network.

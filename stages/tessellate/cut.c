@@ -26,6 +26,7 @@ struct cut {
     bool within;
     int wall;
     enum clearance clearance;
+    struct sphere_cells grains;
     bool *near;             // (n_node) whether a throat of it meets the surface
     bool *holds;            // (n_node) whether the body does
     int32_t (*crossing)[2]; // (n_throat) node where it enters and leaves the body; -1
@@ -226,16 +227,18 @@ static void add_throat(struct cut *cut, int f, struct corner a, struct corner b)
     const struct vector end[2] = {
         add(network->node_position[a.node], image_offset(packing, a.image)),
         add(network->node_position[b.node], image_offset(packing, b.image))};
-    double radius = HUGE_VAL;
+    struct clear_way way = nothing_beside;
     for (int side = 0; side < 2; side++) {
         const int32_t grain = network->face_particles[f][side];
         if (grain < 0) continue;
         const struct vector image =
             side ? image_offset(packing, face_image(cut, f)) : (struct vector){0};
-        radius =
-            fmin(radius, clearance_of(add(packing->position[grain], image),
-                                      packing->radius[grain], end, cut->clearance));
+        way = clear_of(way, add(packing->position[grain], image),
+                       packing->radius[grain], end, cut->clearance);
     }
+    const double radius = cut->clearance == CLEARANCE_SEGMENT
+                              ? least_clearance(&cut->grains, end, way)
+                              : way.least;
     loops_add_throat(&cut->loops, a, b, fmax(0, radius), distance(end[0], end[1]));
 }
 
@@ -371,6 +374,7 @@ static void find_crossings(struct cut *cut)
 
 static void cut_free(struct cut *cut)
 {
+    sphere_cells_free(&cut->grains);
     free(cut->near);
     free(cut->holds);
     free(cut->crossing);
@@ -394,6 +398,7 @@ enum status cut_network(struct network *network, int k, enum clearance clearance
                       .node_capacity = network->n_node};
     enum status status = check_sides(&cut, reason);
     if (status) return status;
+    cut.grains = sphere_cells_make(&network->packing);
     cut.near = NEW_ARRAY(bool, network->n_node);
     cut.holds = NEW_ARRAY(bool, network->n_node);
     cut.crossing = allocate((size_t)network->n_throat, sizeof *cut.crossing);

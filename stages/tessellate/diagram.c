@@ -137,6 +137,27 @@ static int count_closed(const struct network *network)
     return closed;
 }
 
+// PACKING in units, its grains where the generators have them.
+static struct sphere_cells cells_in_units(const struct generators *generators,
+                                          const struct packing *packing)
+{
+    const int n = packing->n_particle;
+    struct packing scaled = *packing;
+    scaled.position = NEW_ARRAY(struct vector, n);
+    scaled.radius = NEW_ARRAY(double, n);
+    scaled.lower = (struct vector){0};
+    scaled.upper = generators->box;
+    for (int i = 0; i < generators->n; i++)
+        if (is_grain(generators, i))
+            scaled.position[generators->origin[i].base] = generators->point[i].at;
+    for (int i = 0; i < n; i++)
+        scaled.radius[i] = packing->radius[i] / generators->unit;
+    struct sphere_cells cells = sphere_cells_make(&scaled);
+    free(scaled.position);
+    free(scaled.radius);
+    return cells;
+}
+
 // The network of the packing that NETWORK has.
 static void assemble(const struct generators *generators,
                      const struct triangulation *triangulation, struct nodes *nodes,
@@ -146,11 +167,13 @@ static void assemble(const struct generators *generators,
     for (int i = 0; i < generators->n; i++)
         radius[i] =
             network->packing.radius[generators->origin[i].particle] / generators->unit;
-    const struct assembly assembly = {generators, triangulation, nodes, radius,
-                                      clearance};
+    struct assembly assembly = {
+        generators, triangulation, nodes,
+        radius,     clearance,     cells_in_units(generators, &network->packing)};
     assemble_throats(&assembly, network);
     assemble_faces(&assembly, network);
     move_nodes(nodes, generators, network);
+    sphere_cells_free(&assembly.grains);
     free(radius);
 }
 

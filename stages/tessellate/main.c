@@ -23,9 +23,13 @@ static const struct parameter table[] = {
      .text = "power diagram (K's Dirichlet) or plain Voronoi; the same for grains of "
              "one size"},
     {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
-     offsetof(struct tessellate_parameters, clearance), .choices = "segment|line",
-     .text = "least clearance between throat and grains: over the throat itself, or "
-             "over the infinite line through it [K 3.7]"},
+     offsetof(struct tessellate_parameters, clearance),
+     .choices = "segment|line|beside",
+     .text =
+         "least clearance between throat and grains: from the throat itself to any "
+         "grain, from the infinite line through it to the grains beside it [K 3.7], "
+         "or from the throat to the grains beside it (all the same for grains of one "
+         "size, but for lines)"},
     {"throat_volume", PARAMETER_CHOICE, "1", "\"cylinder\"",
      offsetof(struct tessellate_parameters, volume), .choices = "cylinder|void",
      .text = "what a throat holds: the cylinder of its radius and length [K 3.3.4], or "
@@ -89,6 +93,11 @@ static const char *bounding(const struct packing *packing, enum boundary boundar
     return text;
 }
 
+static const char *const radius_rule[] = {
+    [CLEARANCE_SEGMENT] = "the throat to any grain",
+    [CLEARANCE_LINE] = "the infinite line through it to the grains beside it [K 3.7]",
+    [CLEARANCE_BESIDE] = "the throat to the grains beside it"};
+
 int main(int argc, char **argv)
 {
     struct tessellate_parameters parameters;
@@ -112,14 +121,13 @@ int main(int argc, char **argv)
     char model[700], bounded[300];
     snprintf(model, sizeof model,
              "%s diagram%s, %s\n"
-             "throat radius: least clearance over the %s\n"
+             "throat radius: least clearance from %s\n"
              "throat volume: %s\n"
              "%d throats without clearance, %d grains without a cell\n"
              "left out: boundary layer\n",
              how.power ? "power" : "Voronoi",
              how.layer ? " of a layer, staggered against its grains" : "",
-             bounding(&packing, how.boundary, bounded),
-             how.clearance == CLEARANCE_SEGMENT ? "throat" : "infinite line [K 3.7]",
+             bounding(&packing, how.boundary, bounded), radius_rule[how.clearance],
              parameters.volume == VOLUME_VOID ? "its share of the void"
                                               : "the cylinder of its radius and length",
              report.n_closed, packing.n_particle - report.n_cell);

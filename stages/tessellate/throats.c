@@ -20,20 +20,19 @@ struct candidates {
     struct candidate *at;
 };
 
-// The least clearance to the grains of the facet opposite corner K of CELL.
+// The least clearance of the throat of the facet opposite corner K of CELL.
 static double facet_clearance(const struct assembly *assembly, int cell, int k,
                               const struct vector end[2])
 {
-    double least = HUGE_VAL;
+    struct clear_way way = nothing_beside;
     for (int m = 0; m < 4; m++) {
         const int32_t point = assembly->triangulation->cell[cell].vertex[m];
         if (m == k || assembly->generators->origin[point].wall >= 0) continue;
-        const double here =
-            clearance_of(assembly->generators->point[point].at, assembly->radius[point],
-                         end, assembly->clearance);
-        if (here < least) least = here;
+        way = clear_of(way, assembly->generators->point[point].at,
+                       assembly->radius[point], end, assembly->clearance);
     }
-    return least;
+    if (assembly->clearance != CLEARANCE_SEGMENT) return way.least;
+    return least_clearance(&assembly->grains, end, way);
 }
 
 // Each facet has many copies where the box repeats: the one whose first corner is a

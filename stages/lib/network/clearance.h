@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How wide the way between grains is along a throat.
+//
+// A throat lies between the cells of the grains beside it: no grain has less power
+// (distance^2 - radius^2; in a Voronoi diagram distance) to any point of it than they
+// have. With p that power, a grain of radius R beside it has the clearance
+// sqrt(p + R^2) - R there, which falls with R: the largest of them is the nearest. Of
+// the other grains, with no less power, none that is no larger can be nearer; a larger
+// one can. So only grains larger than all beside a throat are looked for.
 #ifndef CRAQUELURE_CLEARANCE_H
 #define CRAQUELURE_CLEARANCE_H
 
-#include "geometry/vector.h"
+#include "geometry/packing.h"
+#include "geometry/sphere_cells.h"
 
 enum clearance {
-    CLEARANCE_SEGMENT, // least distance from the throat itself to the grains beside it
-    CLEARANCE_LINE     // [K 3.7]: least distance from the infinite line through it
+    CLEARANCE_SEGMENT, // least distance from the throat itself to any grain
+    CLEARANCE_LINE,    // [K 3.7]: from the infinite line through it to those beside it
+    CLEARANCE_BESIDE   // from the throat itself to those beside it
 };
 
 // How far the surface of a grain is from the throat between END [K 3.7, 3.8]; below 0
@@ -19,8 +28,32 @@ static inline double clearance_of(struct vector centre, double radius,
     const struct vector to = subtract(centre, end[0]);
     const double length2 = dot(along, along);
     double t = length2 > 0 ? dot(to, along) / length2 : 0;
-    if (how == CLEARANCE_SEGMENT) t = t < 0 ? 0 : t > 1 ? 1 : t;
+    if (how != CLEARANCE_LINE) t = t < 0 ? 0 : t > 1 ? 1 : t;
     return norm(subtract(to, scale(t, along))) - radius;
 }
+
+// What is known of the clearance of a throat.
+struct clear_way {
+    double least;   // to the grains seen so far
+    double largest; // radius of the grains beside it
+};
+
+static const struct clear_way nothing_beside = {HUGE_VAL, 0};
+
+// With one more grain beside the throat.
+static inline struct clear_way clear_of(struct clear_way way, struct vector centre,
+                                        double radius, const struct vector end[2],
+                                        enum clearance how)
+{
+    const double here = clearance_of(centre, radius, end, how);
+    return (struct clear_way){here < way.least ? here : way.least,
+                              radius > way.largest ? radius : way.largest};
+}
+
+// The least clearance of the throat between END, which is WAY by the grains beside it:
+// over those and all larger ones of GRAINS. Where the throat touches one already the
+// clearance stays what it is, at most 0. O(1) in packings of any sizes.
+double least_clearance(const struct sphere_cells *grains, const struct vector end[2],
+                       struct clear_way way);
 
 #endif
