@@ -167,8 +167,10 @@ enum status check_throats(const struct network *network, struct reason *reason)
                           network->throat_nodes[t][0]);
     }
     if (n == 0)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "/throats/kind: no throat holds liquid, there is nothing to dry");
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "/throats/kind: no throat holds liquid, there is nothing to dry: all "
+            "are imposed empty, or closed by grains");
     return STATUS_OK;
 }
 

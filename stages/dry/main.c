@@ -197,7 +197,8 @@ int main(int argc, char **argv)
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "dry.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);
-    if (parameters.imposed_empty)
+    parameters.shut = shut_closed_throats(&network);
+    if (parameters.imposed_empty || parameters.shut)
         parameters.enclosed =
             empty_enclosed(&network, parameters.open_walls, parameters.conditions.feet);
     double *start = read_start(input, &network, parameters.conditions.start_saturation);

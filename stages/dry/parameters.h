@@ -19,7 +19,8 @@ struct dry_parameters {
     double *even_snapshots; // in place of the list; NULL: none
     struct air_flow air;
     int liquid, transfer_law, exchange, feet;
-    int enclosed; // throats that others imposed empty have shut in
+    int shut;     // throats without clearance
+    int enclosed; // throats that those, and others imposed empty, have shut in
     int64_t layers;
     unsigned open_walls, imposed_empty;
     struct drawn_radii radii;

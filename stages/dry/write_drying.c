@@ -160,20 +160,23 @@ void write_drying(const struct network *network, const struct drying_history *hi
              "boundary layer: %.17g m thick, from %s\n"
              "liquid: %s\n"
              "%s, contact angle %.6g degrees; gas at %.6g Pa, with vapour of %.6g Pa\n"
-             "throats shut in by those imposed empty, and empty as well: %d\n"
+             "throats without clearance, shut to liquid, vapour and gas: %d\n"
+             "throats shut in by these and those imposed empty, and empty as well: %d\n"
              "%s\n",
              describe_layer(conditions, history, layer),
              history->boundary_layer_thickness, describe_flow(law, transfer, flow),
              describe_liquid(conditions, history, liquid, sizeof liquid),
              conditions_describe(&parameters->given, ~0u, fluid, sizeof fluid),
              conditions->contact_angle, conditions->gas_pressure,
-             conditions->air_vapour_pressure, parameters->enclosed,
+             conditions->air_vapour_pressure, parameters->shut, parameters->enclosed,
              describe_switches(conditions, switches, sizeof switches));
     struct artifact *artifact = artifact_create("drying", invocation->output);
     artifact_put_network(artifact, network);
     put_history(artifact, history);
     put_summary(artifact, history, parameters->conditions.open_walls);
     put_fluids(artifact, parameters);
+    artifact_put_number(artifact, "/summary/shut_throats", parameters->shut);
+    artifact_put_number(artifact, "/summary/enclosed_throats", parameters->enclosed);
     put_boundary_layer(artifact, network, &parameters->conditions, history);
     put_profiles(artifact, network, history, conditions);
     if (conditions->n_snapshot > 0)

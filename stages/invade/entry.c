@@ -27,9 +27,10 @@ static enum status check(const struct network *network,
                           t, volume);
     }
     if (n == 0)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "/throats/kind: no throat holds liquid, there is nothing to "
-                      "invade");
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "/throats/kind: no throat holds liquid, there is nothing to invade: all "
+            "are imposed empty, or closed by grains");
     return check_gravity(network, conditions->gravity, reason);
 }
 

@@ -19,6 +19,7 @@ struct invade_parameters {
     int rule, until;
     bool transport;
     unsigned imposed_empty;
+    int shut; // throats without clearance
 };
 
 enum { UNTIL_END, UNTIL_BREAKTHROUGH };
@@ -171,6 +172,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
              "higher\n"
              "%s\n%s"
              "%s, contact angle %.6g degrees\n"
+             "throats without clearance, shut to gas and liquid: %d\n"
              "left out: viscosity, evaporation, compressibility, films, snap-off%s",
              parameters->rule == INVADE_THROATS ? "throat" : "node",
              parameters->invasion.trapping
@@ -178,7 +180,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
                  : "no trapping: liquid leaves from anywhere",
              parameters->entry.gravity > 0 ? gravity : "",
              conditions_describe(&parameters->given, shown, fluid, sizeof fluid),
-             parameters->given.contact_angle,
+             parameters->given.contact_angle, parameters->shut,
              parameters->entry.gravity > 0 ? "" : ", gravity");
     return text;
 }
@@ -229,6 +231,7 @@ int main(int argc, char **argv)
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "invade.%s", reason.text);
     impose_empty_throats(&network, parameters.imposed_empty);
+    parameters.shut = shut_closed_throats(&network);
     struct entry entry;
     struct invasion invasion = {0};
     enum status status =
@@ -243,11 +246,12 @@ int main(int argc, char **argv)
         status = transport_find(&network, conditions, &outcome, &transport, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[1000];
+    char model[1100];
     struct artifact *artifact = artifact_create("invasion", invocation.output);
     artifact_put_network(artifact, &network);
     put_outcome(artifact, &network, &invasion, &outcome);
     put_summary(artifact, &network, conditions, &invasion, &outcome, &entry);
+    artifact_put_number(artifact, "/summary/shut_throats", parameters.shut);
     if (parameters.transport) put_transport(artifact, &transport);
     artifact_finish(artifact, &invocation, one_input(input),
                     describe(&parameters, model, sizeof model));

@@ -11,12 +11,13 @@ from tap import read
 @case("zero-throats")
 def zero_throats(scene):
     scene.stages("pack", "tessellate", "merge-nodes")
-    points_to = {"length": "merge-nodes", "radius": "overlap"}
     scene.refused("dry", 65, "/throats/length: row .*merge-nodes", input=scene.at("tessellate"))
-    for name, damage in (("radius", dict(throats__radius=0)), ("length", dict(throats__length=0))):
+    says = {"throats__radius": "/throats/kind: .*closed by grains",
+            "throats__length": "/throats/length: row 0.*merge-nodes"}
+    for name, words in says.items():
         bad = scene.at("bad")
-        rewrite(scene.at("merge-nodes"), bad, **damage)
-        reason = scene.refused("dry", 65, f"/throats/{name}: row 0.*{points_to[name]}", input=bad)
+        rewrite(scene.at("merge-nodes"), bad, **{name: 0})
+        reason = scene.refused("dry", 65, words, input=bad)
     scene.stage("dry")
     must(scene.get("dry", "history/saturation")[-1] == 0, "merged, it does not end dry")
     return f"dry: {reason}"

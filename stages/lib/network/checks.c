@@ -10,8 +10,7 @@ enum status check_throat_radius(const struct network *network, int throat,
     if (radius > 0 && isfinite(radius)) return STATUS_OK;
     return refuse(
         reason, STATUS_BAD_DATA,
-        "/throats/radius: row %d: must be above 0, is %g (grains that overlap "
-        "close it)",
+        "/throats/radius: row %d: must be above 0 where the throat takes part, is %g",
         throat, radius);
 }
 

@@ -134,6 +134,18 @@ int impose_empty_throats(struct network *network, unsigned walls)
     return n;
 }
 
+int shut_closed_throats(struct network *network)
+{
+    int n = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK || network->throat_radius[t] != 0)
+            continue;
+        network->throat_kind[t] = THROAT_IMPOSED_EMPTY;
+        n++;
+    }
+    return n;
+}
+
 double throat_volume(const struct network *network, int throat)
 {
     if (network->throat_volume) return network->throat_volume[throat];

@@ -13,7 +13,8 @@
 enum throat_kind {
     THROAT_NETWORK = 0,
     THROAT_BOUNDARY_LAYER = 1, // gas above the surface [K 3.3.5]
-    THROAT_IMPOSED_EMPTY = 2   // holds no liquid and lets nothing through [K 5.4]
+    THROAT_IMPOSED_EMPTY = 2   // holds no liquid and lets nothing through [K 5.4], or
+                               // is closed by grains
 };
 
 // The images are NULL unless the box repeats; then what is in another repetition of it
@@ -90,6 +91,10 @@ int face_throat(const struct network *network, const struct incidence *incidence
 // neither vapour nor gas passes through them [K 5.4]. Returns how many are so marked in
 // all.
 int impose_empty_throats(struct network *network, unsigned walls);
+
+// The same for throats without a radius, which grains close: no liquid, no vapour and
+// no gas. Returns how many of kind THROAT_NETWORK there were.
+int shut_closed_throats(struct network *network);
 
 // Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L
 // [K 3.3.4].
