@@ -32,6 +32,26 @@ static double solid_angle_at(struct vector u, struct vector v, struct vector fro
            fabs(solid_angle_between(none, half_solid_angle(v, from, to)));
 }
 
+// Of the disc of grain K in the facet, the segment beyond the side opposite to it: a
+// large grain sticks out between two small ones. 0 where it holds an end of that side.
+static double segment_beyond(const struct corner corner[3], int k)
+{
+    const struct corner *first = &corner[(k + 1) % 3], *second = &corner[(k + 2) % 3];
+    if (is_wall(first) && is_wall(second)) return 0;
+    const struct corner *begin = is_wall(first) ? second : first;
+    const struct corner *end = is_wall(first) ? first : second;
+    const struct vector side = towards(begin->at, end);
+    const double length = is_wall(end) ? depth(end, begin->at) : norm(side);
+    const struct vector along = is_wall(end) ? side : scale(1 / length, side);
+    const struct vector to = subtract(begin->at, corner[k].at);
+    const double foot = -dot(to, along), radius = corner[k].radius;
+    const double away = norm(add(to, scale(foot, along)));
+    if (!(away < radius)) return 0;
+    const double half = sqrt((radius - away) * (radius + away));
+    if (foot < half || foot > length - half) return 0;
+    return radius * radius * acos(away / radius) - away * half;
+}
+
 // What grain k takes of the facet and of the throat.
 static void measure_grain(const struct corner corner[3], int k, struct vector from,
                           struct vector to, bool partition, struct facet *facet)
@@ -40,7 +60,8 @@ static void measure_grain(const struct corner corner[3], int k, struct vector fr
     const struct vector u = towards(at, &corner[(k + 1) % 3]);
     const struct vector v = towards(at, &corner[(k + 2) % 3]);
     const double square = corner[k].radius * corner[k].radius;
-    facet->sector[k] = 0.5 * square * atan2(norm(cross(u, v)), dot(u, v));
+    facet->sector[k] =
+        0.5 * square * atan2(norm(cross(u, v)), dot(u, v)) - segment_beyond(corner, k);
     facet->surface[k] =
         square * solid_angle_at(u, v, subtract(from, at), subtract(to, at), partition);
     facet->volume -= corner[k].radius * facet->surface[k] / 3;
