@@ -10,6 +10,11 @@ SCENE = "samples/stiff-5x5x10.json"
 WATER = ["saturation_pressure=2339", "diffusivity=2.5685e-5", "molar_mass=0.01802",
          "liquid_density=998.2", "surface_tension=0.07274"]
 
+# K's protocol of cycles [K 4, 5.2], for dem-replay --set: so many time steps a load, at rest or not.
+CYCLES = ("engine=explicit", "damping_ratio=0.7", "local_damping=0", "time_step_safety=0.045",
+          "cycles=500", "ramp=0", "tolerance=null", "most_cycles=1000000", "unsettled=stop",
+          "density_scaling=false", "loose_grains=keep")
+
 count = 0
 failed = 0
 

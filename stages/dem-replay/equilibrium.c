@@ -175,6 +175,15 @@ bool break_one(struct equilibrium *e)
     return true;
 }
 
+void find_fragments(struct equilibrium *e)
+{
+    fragments_begin(&e->fragments);
+    for (int j = 0; j < e->n_joint; j++)
+        if (e->joint[j].is_bonded && !e->joint[j].is_gone)
+            fragments_join(&e->fragments, e->joint[j].grain[0], e->joint[j].grain[1]);
+    fragments_end(&e->fragments, e->setup.fixed, e->is_gone);
+}
+
 static enum status refuse_numbers(int grain, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,

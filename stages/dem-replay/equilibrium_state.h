@@ -109,6 +109,9 @@ void measure_load(struct equilibrium *equilibrium);
 struct net_load loads_of(const struct equilibrium *equilibrium,
                          const struct vector *from, struct vector *load);
 
+// Which grains intact bonds join, and which of these are held.
+void find_fragments(struct equilibrium *equilibrium);
+
 // The most overloaded bond breaks, if one is at its strength. Whether one was.
 bool break_one(struct equilibrium *equilibrium);
 

@@ -23,25 +23,30 @@ static void hold_largest(struct fragments *fragments, const bool *is_gone)
     int *size = NEW_ARRAY(int, fragments->n);
     int largest = 0;
     for (int i = 0; i < fragments->n; i++)
-        if (!is_gone[i]) size[fragments->of[i]]++;
+        if (!is_gone || !is_gone[i]) size[fragments->of[i]]++;
     for (int i = 1; i < fragments->n; i++)
         if (size[i] > size[largest]) largest = i;
     if (fragments->n > 0 && size[largest] > 1) fragments->is_held[largest] = true;
     free(size);
 }
 
-void fragments_find(struct fragments *fragments, const struct joint *joint, int n_joint,
-                    const uint8_t *fixed, const bool *is_gone)
+void fragments_begin(struct fragments *fragments)
 {
-    int32_t *of = fragments->of;
     for (int i = 0; i < fragments->n; i++) {
-        of[i] = i;
+        fragments->of[i] = i;
         fragments->is_held[i] = false;
     }
-    for (int j = 0; j < n_joint; j++) {
-        if (!joint[j].is_bonded || joint[j].is_gone) continue;
-        unite_sets(of, joint[j].grain[0], joint[j].grain[1]);
-    }
+}
+
+void fragments_join(struct fragments *fragments, int grain, int other)
+{
+    unite_sets(fragments->of, grain, other);
+}
+
+void fragments_end(struct fragments *fragments, const uint8_t *fixed,
+                   const bool *is_gone)
+{
+    int32_t *of = fragments->of;
     bool any = false;
     for (int i = 0; i < fragments->n; i++) {
         of[i] = set_root(of, i);

@@ -3,7 +3,8 @@
 #ifndef CRAQUELURE_FRAGMENTS_H
 #define CRAQUELURE_FRAGMENTS_H
 
-#include "joint.h"
+#include <stdbool.h>
+#include <stdint.h>
 
 struct fragments {
     int n;
@@ -14,9 +15,14 @@ struct fragments {
 struct fragments fragments_new(int n);
 void fragments_free(struct fragments *fragments);
 
+// Found in three calls: begin, join for each intact bond, end.
+void fragments_begin(struct fragments *fragments);
+void fragments_join(struct fragments *fragments, int grain, int other);
+
 // Held are those with a FIXED grain, or where there is none, the largest (the first of
-// equals), if it is more than one grain.
-void fragments_find(struct fragments *fragments, const struct joint *joint, int n_joint,
-                    const uint8_t *fixed, const bool *is_gone);
+// equals), if it is more than one grain. Grains that ARE GONE (NULL: none) do not
+// count.
+void fragments_end(struct fragments *fragments, const uint8_t *fixed,
+                   const bool *is_gone);
 
 #endif

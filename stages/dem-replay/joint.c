@@ -226,11 +226,13 @@ struct overload joint_overload(const struct joint *joint, const double strain[ST
     if (joint->is_point)
         return point_overload(joint, strain, normal_strength, shear_strength);
     const double *stiffness = joint->bond_stiffness;
+    const double beta = 1 - joint->moments_left_out;
     const double radius = joint->bond_radius, area = M_PI * radius * radius;
     const double bending = stiffness[STRAIN_BEND] * size_of_two(strain + STRAIN_BEND);
     const double shear = stiffness[STRAIN_ACROSS] * size_of_two(strain + STRAIN_ACROSS);
     const double twisting = stiffness[STRAIN_TWIST] * fabs(strain[STRAIN_TWIST]);
     const double tension = stiffness[STRAIN_ALONG] * strain[STRAIN_ALONG];
-    return (struct overload){(tension + 4 * bending / radius) / area / normal_strength,
-                             (shear + 2 * twisting / radius) / area / shear_strength};
+    return (struct overload){
+        (tension + beta * 4 * bending / radius) / area / normal_strength,
+        (shear + beta * 2 * twisting / radius) / area / shear_strength};
 }

@@ -38,6 +38,7 @@ struct joint {
     double arm[2];         // from the centres to the contact point
     double overlap;        // at the start
     double bond_radius;
+    double moments_left_out; // of its stresses: 1 - beta (dem_bond_material)
     // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice. Point of
     // glue, a contact bond [K 4.2]: the contact's springs, also in tension; what is in
     // contact when it breaks is OVERLAP from then on.

@@ -133,6 +133,7 @@ INLINE void find_overload(const struct joint *joint,
                           const struct bond_strength *strength,
                           const lanes load[STRAINS], lanes *most)
 {
+    const double beta = 1 - joint->moments_left_out;
     const double radius = joint->bond_radius, area = M_PI * radius * radius;
     const double share = strength->relative ? strength->relative[joint->bond] : 1;
     const double normal = 1 / (area * strength->normal * share);
@@ -143,8 +144,8 @@ INLINE void find_overload(const struct joint *joint,
     const lanes minus = -load[STRAIN_TWIST];
     lanes twisting = load[STRAIN_TWIST];
     take_larger(&minus, &twisting);
-    const lanes tension = normal * (load[STRAIN_ALONG] + 4 / radius * bending);
-    const lanes sliding = tangential * (shear + 2 / radius * twisting);
+    const lanes tension = normal * (load[STRAIN_ALONG] + beta * 4 / radius * bending);
+    const lanes sliding = tangential * (shear + beta * 2 / radius * twisting);
     take_larger(&tension, most);
     take_larger(&sliding, most);
 }

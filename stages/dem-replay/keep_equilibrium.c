@@ -55,6 +55,7 @@ static const struct part of_joint[] = {
     {offsetof(struct joint, arm), 2},
     {offsetof(struct joint, overlap), 1},
     {offsetof(struct joint, bond_radius), 1},
+    {offsetof(struct joint, moments_left_out), 1},
     {offsetof(struct joint, bond_stiffness), STRAINS},
     {offsetof(struct joint, point_overlap), 1},
     {offsetof(struct joint, contact_along), 1},

@@ -115,7 +115,7 @@ static bool let_go_of_loose(struct equilibrium *e, const struct displacement *st
 {
     for (int i = 0; i < e->n; i++)
         e->step[i] = moved_from(&start[i], &e->before[i]);
-    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    find_fragments(e);
     return let_go_beyond(e, e->step, furthest);
 }
 

@@ -136,7 +136,7 @@ struct way {
 
 static struct way begin_way(struct equilibrium *e, double before)
 {
-    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    find_fragments(e);
     withhold(e);
     return (struct way){.increment = 1, .before = before};
 }
@@ -266,7 +266,7 @@ static bool slip(struct equilibrium *e)
 // What is left of the load, or what nothing holds, leaves.
 static bool let_go_restless(struct equilibrium *e)
 {
-    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    find_fragments(e);
     return let_go_beyond(e, e->left, e->setup.tolerance * e->largest_load);
 }
 

@@ -66,6 +66,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     struct strength_scatter scatter = parameters->scatter;
     scatter.law = (enum strength_law)parameters->strength_law;
     bond_grains(packing, (enum bonds_by)parameters->bonds_by, parameters->bond_gap);
+    choose_engine(parameters, packing, settings);
     check_bonds(parameters, packing);
     settings->relative_strength = bond_strengths(&scatter, packing);
     struct held held = parameters->held;
@@ -167,6 +168,13 @@ static void run(const struct packing *packing, const struct load *load,
     if (status) die(status, "%s: %s", input_name(path), reason.text);
 }
 
+static const char *describe_loose(const struct replay_settings *settings)
+{
+    if (settings->engine != ENGINE_EXPLICIT) return "";
+    return settings->loose == LOOSE_UNLOADED ? "loose grains: their loads end\n"
+                                             : "loose grains: their loads go on\n";
+}
+
 static void write_response(const struct packing *packing, const struct load *load,
                            const struct replay_settings *settings,
                            const struct response *response,
@@ -176,7 +184,7 @@ static void write_response(const struct packing *packing, const struct load *loa
 {
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "%d grains held", "a rigid wall beneath"};
-    char engine[200], support[60], weights[200], bridges[200] = "", model[1300];
+    char engine[200], support[60], weights[200], bridges[200] = "", model[1500];
     replay_engine(settings)->describe(settings, engine, sizeof engine);
     int n_held = 0;
     for (int i = 0; i < packing->n_particle; i++)
@@ -188,17 +196,21 @@ static void write_response(const struct packing *packing, const struct load *loa
                  "tension %.6g N/m, contact angle %.6g degrees\n",
                  settings->liquid.surface_tension,
                  settings->liquid.contact_angle * (180 / M_PI));
-    snprintf(
-        model, sizeof model,
-        "%s\n"
-        "support: %s\n"
-        "overlaps of the packing %s\n"
-        "%s%s%s"
-        "left out: %s%smoments of capillary forces\n",
-        engine, support, settings->unstressed ? "lie at rest" : "push from the start",
-        settings->begin ? "goes on from where an earlier replay ended\n" : "", bridges,
-        describe_weight(weight, weights), weight->gravity > 0 ? "" : "gravity, ",
-        settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
+    snprintf(model, sizeof model,
+             "%s\n"
+             "engine: %s, %s\n"
+             "%s"
+             "support: %s\n"
+             "overlaps of the packing %s\n"
+             "%s%s%s"
+             "left out: %s%smoments of capillary forces\n",
+             engine, settings->engine == ENGINE_EXPLICIT ? "explicit" : "quasi-static",
+             settings->engine_reason, describe_loose(settings), support,
+             settings->unstressed ? "lie at rest" : "push from the start",
+             settings->begin ? "goes on from where an earlier replay ended\n" : "",
+             bridges, describe_weight(weight, weights),
+             weight->gravity > 0 ? "" : "gravity, ",
+             settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, settings, response);
     put_weight(artifact, weight, response);

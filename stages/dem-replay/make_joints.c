@@ -103,6 +103,7 @@ static void bond_joint(const struct joint_setup *setup, struct joint *joint, int
     joint->bond = bond;
     joint->is_bonded = true;
     joint->bond_radius = r;
+    joint->moments_left_out = setup->bond->moments_left_out;
     const double twist = r * r / 2, bend = r * r / 4; // J / A, I / A
     const double stiffness[STRAINS] = {along,          across,       across,
                                        across * twist, along * bend, along * bend};

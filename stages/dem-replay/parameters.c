@@ -17,9 +17,9 @@ const struct parameter replay_table[] = {
              "force-protocol's gravity), 0 with support=free; 0: no weight of grains"},
     {"friction", PARAMETER_NUMBER, "1", "0.5", AT(settings.material.friction),
      AT_LEAST(0), .text = "coefficient between grains"},
-    {"damping_ratio", PARAMETER_NUMBER, "1", "0.7", AT(settings.material.damping_ratio),
+    {"damping_ratio", PARAMETER_NUMBER, "1", "0", AT(settings.material.damping_ratio),
      AT_LEAST(0), .text = "of the dashpots at contacts, of critical [K 4.28]"},
-    {"local_damping", PARAMETER_NUMBER, "1", "0", AT(settings.material.local_damping),
+    {"local_damping", PARAMETER_NUMBER, "1", "0.7", AT(settings.material.local_damping),
      BETWEEN(0, 0.99),
      .text = "share of the net force on a grain taken off while it moves its way, "
              "added while it moves against it; for statics"},
@@ -43,6 +43,10 @@ const struct parameter replay_table[] = {
     {"bond.radius_fraction", PARAMETER_NUMBER, "1", "0.5858",
      AT(settings.bond.radius_fraction), BETWEEN(1e-6, 1),
      .text = "bond radius, of the smaller grain's"},
+    {"bond.moment_contribution", PARAMETER_NUMBER, "1", "1", AT(moment_contribution),
+     BETWEEN(0, 1),
+     .text = "parallel bonds: share of bending and twist that their stresses count "
+             "[K 4.41: 1]; beta of PFC"},
     {"bond.by", PARAMETER_CHOICE, "1", "\"packing\"", AT(bonds_by),
      .choices = "packing|touching|distance|none",
      .text = "which grains are bonded: those the packing lists, those that touch, "
@@ -84,9 +88,16 @@ const struct parameter replay_table[] = {
      .text = "and those with their centres between this corner"},
     {"held.upper", PARAMETER_POINT, "m", "null", AT(held.upper),
      .text = "and this one"},
-    {"engine", PARAMETER_CHOICE, "1", "\"explicit\"", AT(engine),
-     .choices = "explicit|quasi-static",
-     .text = "explicit: cycles of discrete elements [K 4]; quasi-static: equilibrium "
+    {"loose_grains", PARAMETER_CHOICE, "1", "\"unload\"", AT(loose),
+     .choices = "keep|unload",
+     .text =
+         "explicit: grains that no intact bonds join to a held grain (to the largest "
+         "fragment, where none is held) keep their load and fly, or lose it"},
+    {"engine", PARAMETER_CHOICE, "1", "\"auto\"", AT(engine),
+     .choices = "explicit|quasi-static|auto",
+     .text = "auto: quasi-static without friction, where it is by far faster, else "
+             "explicit; explicit: cycles of discrete elements [K 4]; quasi-static: "
+             "equilibrium "
              "itself, bonds breaking one by one"},
     {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8",
      AT(settings.equilibrium_tolerance), ABOVE(0),
@@ -129,23 +140,32 @@ const struct parameter replay_table[] = {
     {"bridges.pull_in_contact", PARAMETER_BOOLEAN, "1", "true",
      AT(settings.liquid.pulls_in_contact),
      .text = "also where grains overlap; false: only apart [G 4]"},
-    {"time_step_safety", PARAMETER_NUMBER_OR_NULL, "1", "0.045",
+    {"time_step_safety", PARAMETER_NUMBER_OR_NULL, "1", "null",
      AT(settings.time_step_safety), ABOVE(0),
      .text = "time step, of the critical one of two grains [K 4.47]; null: half the "
              "stability limit of the aggregate"},
+    {"density_scaling", PARAMETER_BOOLEAN, "1", "true", AT(settings.density_scaling),
+     .text =
+         "explicit: every grain has the inertia of the mean one, so that small ones "
+         "do not shorten the time step; equilibria do not depend on it"},
     {"allow_unstable", PARAMETER_BOOLEAN, "1", "false", AT(settings.force_time_step),
      .text = "run past the stability limit of the aggregate"},
-    {"cycles", PARAMETER_INTEGER, "1", "500", AT(settings.cycles), BETWEEN(1, 1e12),
+    {"cycles", PARAMETER_INTEGER, "1", "100", AT(settings.cycles), BETWEEN(1, 1e12),
      .text = "time steps at each step of the forces [K 5.2]"},
-    {"ramp", PARAMETER_INTEGER, "1", "0", AT(settings.ramp), BETWEEN(0, 1e12),
+    {"ramp", PARAMETER_INTEGER, "1", "5000", AT(settings.ramp), BETWEEN(0, 1e12),
      .text = "explicit: time steps over which the first load grows, before its cycles; "
              "0: it comes at once"},
-    {"tolerance", PARAMETER_NUMBER, "1", "null", AT(settings.tolerance), ABOVE(0),
+    {"tolerance", PARAMETER_NUMBER_OR_NULL, "1", "1e-3", AT(settings.tolerance),
+     ABOVE(0),
      .text = "then go on until the unbalanced ratio [K 4.20] is below this; null: go "
              "on at once"},
-    {"most_cycles", PARAMETER_INTEGER, "1", "1000000", AT(settings.most_cycles),
+    {"most_cycles", PARAMETER_INTEGER, "1", "10000", AT(settings.most_cycles),
      BETWEEN(1, 1e12),
-     .text = "more time steps than this at one step of the forces: not converged"},
+     .text = "more time steps than this at one step of the forces: it is unsettled"},
+    {"unsettled", PARAMETER_CHOICE, "1", "\"count\"", AT(unsettled),
+     .choices = "stop|count",
+     .text = "with tolerance: a step that did not come to rest within most_cycles ends "
+             "the replay with status 3, or is counted"},
     {"snapshots", PARAMETER_LIST, "1", "[1,0.9,0.75,0.6,0.3,0]", AT(snapshots),
      BETWEEN(0, 1),
      .text = "saturations at which displacements and contact forces are kept, highest "
@@ -171,6 +191,7 @@ static void choose_bonds(const struct replay_parameters *parameters,
                          struct replay_settings *settings)
 {
     settings->bond.kind = (enum dem_bond_kind)parameters->bond;
+    settings->bond.moments_left_out = 1 - parameters->moment_contribution;
     if (settings->bond.kind == DEM_PARALLEL_BOND) return;
     const double strength = parameters->contact_strength;
     settings->bond.normal_strength = isnan(strength) ? INFINITY : strength;
@@ -196,21 +217,57 @@ const char *complete_bridges(struct replay_parameters *parameters,
     return difference;
 }
 
+// What equilibria do well: without friction each load has one equilibrium, whatever
+// came before, and is found at once (docs/equilibrium.md).
+static bool suits_equilibria(const struct replay_settings *settings,
+                             const struct packing *packing)
+{
+    enum { MOST_GRAINS = 1500 };
+    return !(settings->material.friction > 0) && settings->support == SUPPORT_FIXED &&
+           settings->bond.kind == DEM_PARALLEL_BOND && settings->unstressed &&
+           !(settings->liquid.volume > 0) && packing->n_bond > 0 &&
+           packing->n_particle <= MOST_GRAINS;
+}
+
+static const char *why_cycles(const struct replay_settings *settings)
+{
+    return settings->material.friction > 0
+               ? "contacts have friction"
+               : "bonds, support, liquid bridges or the number of grains do not suit "
+                 "equilibria";
+}
+
+void choose_engine(const struct replay_parameters *parameters,
+                   const struct packing *packing, struct replay_settings *settings)
+{
+    enum { AUTO = 2 };
+    const bool suits = suits_equilibria(settings, packing);
+    if (parameters->engine != AUTO) {
+        settings->engine = (enum engine)parameters->engine;
+        settings->engine_reason = "as the parameters say";
+    } else {
+        settings->engine = suits ? ENGINE_QUASI_STATIC : ENGINE_EXPLICIT;
+        settings->engine_reason =
+            suits ? "no friction, parallel bonds, few grains" : why_cycles(settings);
+    }
+    const struct replay_engine *engine = replay_engine(settings);
+    struct reason reason;
+    const enum status status =
+        engine->check ? engine->check(settings, &reason) : STATUS_OK;
+    if (status) die(status, "%s", reason.text);
+}
+
 void complete_settings(struct replay_parameters *parameters, int threads)
 {
     struct replay_settings *settings = &parameters->settings;
     check_snapshots(&parameters->snapshots);
     settings->support = (enum support)parameters->support;
-    settings->engine = (enum engine)parameters->engine;
+    settings->loose = (enum loose_loads)parameters->loose;
+    settings->unsettled = (enum unsettled)parameters->unsettled;
     settings->unstressed = !parameters->prestress;
     settings->liquid.model = (enum bridge_model)parameters->bridge_model;
     choose_bonds(parameters, settings);
     settings->n_snapshot = parameters->snapshots.count;
     settings->snapshot = parameters->snapshots.value;
     settings->threads = threads;
-    const struct replay_engine *engine = replay_engine(settings);
-    struct reason reason;
-    const enum status status =
-        engine->check ? engine->check(settings, &reason) : STATUS_OK;
-    if (status) die(status, "%s", reason.text);
 }

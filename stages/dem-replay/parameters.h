@@ -14,9 +14,9 @@ struct replay_parameters {
     struct liquid_properties bridge_liquid; // tension and angle
     struct held held;
     struct strength_scatter scatter;
-    int support, engine, bond, bonds_by, strength_law, bridge_model;
+    int support, engine, loose, unsettled, bond, bonds_by, strength_law, bridge_model;
     bool prestress;
-    double bond_gap, contact_strength, gravity;
+    double bond_gap, contact_strength, moment_contribution, gravity;
     struct number_list snapshots;
 };
 
@@ -31,5 +31,10 @@ void complete_settings(struct replay_parameters *parameters, int threads);
 const char *complete_bridges(struct replay_parameters *parameters,
                              const struct artifact *forces, char *difference,
                              size_t size);
+
+// The engine that PARAMETERS name, or the one that suits the grains, with its reason.
+// Exits where it does not do what is asked of it.
+void choose_engine(const struct replay_parameters *parameters,
+                   const struct packing *packing, struct replay_settings *settings);
 
 #endif

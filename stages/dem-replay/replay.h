@@ -21,6 +21,16 @@ enum engine {
     ENGINE_QUASI_STATIC // equilibrium itself
 };
 
+enum loose_loads {
+    LOOSE_LOADED,  // loads of what came loose go on
+    LOOSE_UNLOADED // they end [loose.h]
+};
+
+enum unsettled {
+    UNSETTLED_STOPS,  // a load that does not come to rest: STATUS_NOT_CONVERGED
+    UNSETTLED_GOES_ON // it is counted
+};
+
 // Forces over time, as forces.h5 holds them.
 struct load {
     int n_time;
@@ -37,17 +47,21 @@ struct replay_settings {
     bool unstressed;           // overlaps of the packing do not push
     enum support support;
     enum engine engine;
+    const char *engine_reason;    // why this one
+    enum loose_loads loose;       // explicit
+    enum unsettled unsettled;     // explicit
     double equilibrium_tolerance; // quasi-static: left on a grain, of the largest load
     int64_t most_iterations;      // quasi-static: steps in time to one equilibrium
     double rolling;               // quasi-static, contact bonds: of shear stiffness
     bool large_displacements;     // quasi-static: on the geometry as it is
     double increment;             // then: of turns, rad, and of strains
+    bool density_scaling; // explicit: every grain has the inertia of the mean one
     double time_step_safety;
     bool force_time_step;
     int64_t cycles;      // at every step of the load
     int64_t ramp;        // before them at the first, while the load grows from nothing
     double tolerance;    // on [K 4.20]: go on until below; NAN: the cycles are enough
-    int64_t most_cycles; // beyond them at one step; then it has failed
+    int64_t most_cycles; // beyond them at one step; then it is unsettled
     int n_snapshot;
     const double *snapshot; // saturations, the highest first; SATURATION <= this
     int threads;
@@ -81,7 +95,7 @@ struct response {
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
-    int n_gone, first_gone;            // grains that left an equilibrium
+    int n_gone, first_gone;   // grains that left an equilibrium, or whose loads ended
     int n_unsettled;          // loads, but none, at whose end not all was at rest
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last

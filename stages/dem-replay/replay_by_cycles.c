@@ -3,11 +3,29 @@
 #include "replay_engine.h"
 
 #include "basics/memory.h"
+#include "loose.h"
 #include "reaction.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+struct by_cycles {
+    struct dem *dem;
+    struct loose_grains loose; // as far as loads of loose grains end
+    bool has_looked;           // for them
+    int n_crack;               // then
+};
+
+static struct dem *dem_of(const struct run *run)
+{
+    return ((const struct by_cycles *)run->state)->dem;
+}
+
+static struct loose_grains *loose_of(const struct run *run)
+{
+    return &((struct by_cycles *)run->state)->loose;
+}
 
 static void describe(const struct replay_settings *settings, char *text, size_t size)
 {
@@ -30,7 +48,7 @@ static double *strengths(const struct run *run, double mean)
     return strength;
 }
 
-static enum status create(struct run *run, struct reason *reason)
+static enum status create(struct run *run, struct dem **dem, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
     const struct packing *packing = run->packing;
@@ -49,11 +67,10 @@ static enum status create(struct run *run, struct reason *reason)
         .n_wall = settings->support == SUPPORT_WALL,
         .wall = &beneath,
         .time_step_safety = settings->time_step_safety,
+        .density_scaling = settings->density_scaling,
         .force_time_step = settings->force_time_step,
         .threads = settings->threads};
-    struct dem *dem;
-    const enum status status = dem_create(&dem, &setup, reason);
-    run->state = dem;
+    const enum status status = dem_create(dem, &setup, reason);
     free(normal);
     free(shear);
     return status;
@@ -62,13 +79,15 @@ static enum status create(struct run *run, struct reason *reason)
 static enum status restore(struct run *run, const struct array_list *list,
                            struct reason *reason)
 {
-    return dem_restore(run->state, list->array, list->count, reason);
+    return dem_restore(dem_of(run), list->array, list->count, reason);
 }
 
 static enum status begin(struct run *run, struct reason *reason)
 {
+    struct by_cycles *state = run->state = NEW_ARRAY(struct by_cycles, 1);
+    state->loose = loose_new(run->packing->n_particle);
     run->is_whole = run->settings->weight && !run->settings->begin;
-    const enum status status = create(run, reason);
+    const enum status status = create(run, &state->dem, reason);
     const struct array_list *earlier = run->settings->begin;
     if (status || !earlier) return status;
     if (saved_by_equilibria(earlier))
@@ -80,20 +99,59 @@ static enum status begin(struct run *run, struct reason *reason)
 
 // Forces keep their directions when grains turn as one, and would turn them further:
 // what is taken off follows the grains, often enough to bring all such motion to rest.
-enum { TAKE_OFF_EVERY = 16 }; // cycles
+// Loose grains are stopped less often: what they gain meanwhile breaks nothing (their
+// kinetic energy grows with the square of this).
+enum { TAKE_OFF_EVERY = 16, STOP_EVERY = 64 }; // cycles
+
+// Nothing can come loose without bonds, and liquid bridges hold what did.
+static bool unloads(const struct run *run)
+{
+    return run->settings->loose == LOOSE_UNLOADED && run->packing->n_bond > 0 &&
+           !(run->settings->liquid.volume > 0);
+}
+
+// Cycles after which the load is looked at again.
+static int64_t load_holds(const struct run *run)
+{
+    if (run->settings->support == SUPPORT_FREE) return TAKE_OFF_EVERY;
+    return unloads(run) ? STOP_EVERY : INT64_MAX;
+}
+
+// Nothing is loose as long as nothing was and no bond has broken since.
+static void follow_loose(struct run *run)
+{
+    struct by_cycles *state = run->state;
+    int n_crack;
+    dem_cracks(state->dem, &n_crack);
+    const bool is_known = state->has_looked && n_crack == state->n_crack;
+    if (!unloads(run) || (is_known && state->loose.n_loose == 0)) return;
+    find_loose(&state->loose, run->packing, run->settings->held, state->dem);
+    state->has_looked = true;
+    state->n_crack = n_crack;
+    const int64_t now = dem_cycle(state->dem) - run->place.began;
+    if (now % STOP_EVERY == 0) dem_stop(state->dem, state->loose.is_loose);
+}
+
+static void unload_loose(struct run *run)
+{
+    const struct loose_grains *loose = loose_of(run);
+    for (int i = 0; i < run->packing->n_particle; i++)
+        if (loose->is_loose[i]) run->force[i] = (struct vector){0, 0, 0};
+}
 
 static void take_off(struct run *run)
 {
     struct vector *state[3];
     for (int k = 0; k < 3; k++)
         state[k] = NEW_ARRAY(struct vector, run->packing->n_particle);
-    dem_displacements(run->state, state[0]);
-    dem_velocities(run->state, state[1]);
-    dem_spins(run->state, state[2]);
+    dem_displacements(dem_of(run), state[0]);
+    dem_velocities(dem_of(run), state[1]);
+    dem_spins(dem_of(run), state[2]);
     const struct moving_grains now = {state[0], state[1], state[2],
                                       run->settings->material.density,
-                                      TAKE_OFF_EVERY * dem_time_step(run->state)};
-    run->taken_off = take_off_net_load(run->packing, NULL, &now, run->force);
+                                      TAKE_OFF_EVERY * dem_time_step(dem_of(run))};
+    run->taken_off =
+        take_off_net_load(run->packing, loose_of(run)->is_loose, &now, run->force);
     for (int k = 0; k < 3; k++)
         free(state[k]);
 }
@@ -109,7 +167,7 @@ static int64_t ramp(const struct run *run)
 static void grow(struct run *run)
 {
     const struct vector *weight = run->settings->weight; // is on already
-    const int64_t next = dem_cycle(run->state) - run->place.began + 1;
+    const int64_t next = dem_cycle(dem_of(run)) - run->place.began + 1;
     const double share = (double)next / (double)ramp(run);
     for (int i = 0; next < ramp(run) && i < run->packing->n_particle; i++)
         run->force[i] =
@@ -122,8 +180,10 @@ static void apply_forces(struct run *run)
 {
     take_forces(run);
     grow(run);
+    follow_loose(run);
+    unload_loose(run);
     if (run->settings->support == SUPPORT_FREE) take_off(run);
-    dem_set_force(run->state, run->force);
+    dem_set_force(dem_of(run), run->force);
 }
 
 // ---- cycles -------------------------------------------------------------------------
@@ -132,7 +192,7 @@ static void apply_forces(struct run *run)
 // is unbalanced.
 static double unbalanced_ratio(const struct run *run)
 {
-    const double ratio = dem_unbalanced_ratio(run->state);
+    const double ratio = dem_unbalanced_ratio(dem_of(run));
     return isinf(ratio) ? 1 : ratio;
 }
 
@@ -140,19 +200,18 @@ static double unbalanced_ratio(const struct run *run)
 // which must not depend on it.
 static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
 {
-    const bool is_free = run->settings->support == SUPPORT_FREE;
-    const int64_t end = dem_cycle(run->state) + cycles;
-    const int64_t most =
-        is_free ? TAKE_OFF_EVERY : cycles_between_questions(run->packing->n_particle);
-    while (dem_cycle(run->state) < end) {
-        const int64_t now = dem_cycle(run->state), left = end - now;
-        const int64_t next = is_free ? most - (now - run->place.began) % most : most;
+    const int64_t end = dem_cycle(dem_of(run)) + cycles, holds = load_holds(run);
+    const int64_t most = cycles_between_questions(run->packing->n_particle);
+    while (dem_cycle(dem_of(run)) < end) {
+        const int64_t now = dem_cycle(dem_of(run)), left = end - now;
+        const int64_t held = holds - (now - run->place.began) % holds;
+        const int64_t next = held < most ? held : most;
         const enum status status =
-            dem_run(run->state, left < next ? left : next, reason);
+            dem_run(dem_of(run), left < next ? left : next, reason);
         if (status) return status;
-        if (is_free) apply_forces(run);
+        if ((dem_cycle(dem_of(run)) - run->place.began) % holds == 0) apply_forces(run);
         if (is_due(run->keeper))
-            keep_state(run->keeper, run->state,
+            keep_state(run->keeper, dem_of(run),
                        save_response(run->response, run->packing, run->load->n_time,
                                      run->place));
     }
@@ -166,7 +225,7 @@ static enum status settle(struct run *run, int64_t first, double tolerance,
 {
     enum { LOOK_EVERY = 16 };
     for (;;) {
-        const int64_t done = dem_cycle(run->state) - first;
+        const int64_t done = dem_cycle(dem_of(run)) - first;
         const int64_t left = most - done;
         const int64_t to_look = LOOK_EVERY - done % LOOK_EVERY;
         const bool looks = to_look == LOOK_EVERY || left <= 0;
@@ -188,9 +247,10 @@ static enum status run_on(struct run *run, struct reason *reason)
     const enum status status =
         settle(run, first, settings->tolerance, settings->most_cycles, reason);
     if (status || unbalanced_ratio(run) < settings->tolerance) return status;
+    if (settings->unsettled == UNSETTLED_GOES_ON) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "unbalanced ratio %g is not below %g after %lld cycles",
-                  dem_unbalanced_ratio(run->state), settings->tolerance,
+                  dem_unbalanced_ratio(dem_of(run)), settings->tolerance,
                   (long long)settings->most_cycles);
 }
 
@@ -201,18 +261,19 @@ static double calming_share(const struct run *run)
 {
     static const double share = 0.7;
     const double own = run->settings->material.local_damping;
-    const double limit = dem_time_step_limit(run->state) * (1 + own);
-    return fmax(own, fmin(share, limit / dem_time_step(run->state) - 1));
+    const double limit = dem_time_step_limit(dem_of(run)) * (1 + own);
+    return fmax(own, fmin(share, limit / dem_time_step(dem_of(run)) - 1));
 }
 
 // Bonds as strong as they are, the body as it is.
 static enum status give_strengths(struct run *run, struct reason *reason)
 {
-    struct dem *whole = run->state;
+    struct by_cycles *state = run->state;
+    struct dem *whole = state->dem;
     struct array_list list;
     list.array = dem_save(whole, &list.count);
     run->is_whole = false;
-    enum status status = create(run, reason);
+    enum status status = create(run, &state->dem, reason);
     if (!status) status = restore(run, &list, reason);
     dem_free_arrays(list.array, list.count);
     dem_free(whole);
@@ -225,8 +286,8 @@ static enum status stand(struct run *run, struct reason *reason)
     static const double settled = 1e-5; // a tenth of [K 5.2], as all goes on from here
     enum { MOST_STEPS = 100 };          // as long as so many of the load
     const struct replay_settings *settings = run->settings;
-    const int64_t done = dem_cycle(run->state) - run->place.began;
-    dem_set_local_damping(run->state, calming_share(run));
+    const int64_t done = dem_cycle(dem_of(run)) - run->place.began;
+    dem_set_local_damping(dem_of(run), calming_share(run));
     apply_forces(run);
     const enum status status = done > 0 ? STATUS_OK : run_cycles(run, 1, reason);
     if (status) return status;
@@ -245,15 +306,15 @@ static enum status advance(struct run *run, struct reason *reason)
     }
     if (run->place.step < 0) return stand(run, reason);
     if (run->settings->weight)
-        dem_set_local_damping(run->state, run->settings->material.local_damping);
+        dem_set_local_damping(dem_of(run), run->settings->material.local_damping);
     const int64_t full = run->place.began + ramp(run);
     enum status status = STATUS_OK;
     apply_forces(run);
-    while (!status && dem_cycle(run->state) < full) {
+    while (!status && dem_cycle(dem_of(run)) < full) {
         apply_forces(run);
         status = run_cycles(run, 1, reason);
     }
-    const int64_t left = full + run->settings->cycles - dem_cycle(run->state);
+    const int64_t left = full + run->settings->cycles - dem_cycle(dem_of(run));
     if (!status) status = run_cycles(run, left, reason);
     return status ? status : run_on(run, reason);
 }
@@ -262,31 +323,31 @@ static enum status advance(struct run *run, struct reason *reason)
 
 static int64_t cycles(const struct run *run)
 {
-    return dem_cycle(run->state);
+    return dem_cycle(dem_of(run));
 }
 
 static struct net_load reaction(const struct run *run)
 {
-    return reaction_of_dem(run->packing, run->state, run->settings->held,
+    return reaction_of_dem(run->packing, dem_of(run), run->settings->held,
                            run->settings->support == SUPPORT_WALL);
 }
 
 static const struct dem_crack *cracks(const struct run *run, int *count)
 {
-    return dem_cracks(run->state, count);
+    return dem_cracks(dem_of(run), count);
 }
 
 static void observe(const struct run *run, struct snapshot *snapshot)
 {
-    dem_displacements(run->state, snapshot->displacement);
-    dem_bonds_intact(run->state, snapshot->intact);
-    snapshot->contact = dem_contacts(run->state, &snapshot->n_contact);
+    dem_displacements(dem_of(run), snapshot->displacement);
+    dem_bonds_intact(dem_of(run), snapshot->intact);
+    snapshot->contact = dem_contacts(dem_of(run), &snapshot->n_contact);
 }
 
 static struct array_list save(const struct run *run)
 {
     struct array_list list;
-    list.array = dem_save(run->state, &list.count);
+    list.array = dem_save(dem_of(run), &list.count);
     return list;
 }
 
@@ -295,8 +356,8 @@ static void note_time_step(const struct run *run)
 {
     struct response *response = run->response;
     const double safety = run->settings->time_step_safety;
-    const double limit = dem_time_step_limit(run->state);
-    response->time_step = dem_time_step(run->state);
+    const double limit = dem_time_step_limit(dem_of(run));
+    response->time_step = dem_time_step(dem_of(run));
     // Where nothing can touch no step is too long: then what [K 4.47] says is written.
     response->time_step_limit =
         isinf(limit) ? response->time_step / (isnan(safety) ? 1 : safety) : limit;
@@ -304,7 +365,8 @@ static void note_time_step(const struct run *run)
 
 static void note_unsettled(const struct run *run)
 {
-    static const double settled = 1e-4; // [K 5.2]
+    const double wanted = run->settings->tolerance;
+    const double settled = isnan(wanted) ? 1e-4 : wanted; // [K 5.2]
     for (int k = 0; k < run->load->n_time; k++)
         run->response->n_unsettled += run->response->unbalanced_ratio[k] >= settled &&
                                       is_loaded(run->load, run->packing->n_particle, k);
@@ -312,9 +374,14 @@ static void note_unsettled(const struct run *run)
 
 static void end(struct run *run)
 {
-    if (run->state) note_time_step(run);
+    struct by_cycles *state = run->state;
+    if (state->dem) note_time_step(run);
     note_unsettled(run);
-    dem_free(run->state);
+    run->response->n_gone = state->loose.n_loose;
+    run->response->first_gone = state->loose.first_one;
+    loose_free(&state->loose);
+    dem_free(state->dem);
+    free(state);
 }
 
 const struct replay_engine replay_by_cycles = {

@@ -49,7 +49,7 @@ static enum status balance_small(struct equilibrium *e, struct reason *reason)
 {
     (void)reason;
     const double enough = e->setup.tolerance * e->largest_load;
-    fragments_find(&e->fragments, e->joint, e->n_joint, e->setup.fixed, e->is_gone);
+    find_fragments(e);
     bool rests;
     do {
         go_back(e);

@@ -21,7 +21,8 @@ AREA, INERTIA = np.pi * (FRACTION * R)**2, np.pi / 4 * (FRACTION * R)**4
 MATERIAL = (f"density={RHO}", "normal_stiffness=1e4", "shear_stiffness=1e4", f"gravity={G}",
             f"bond.normal_stiffness={BOND}", f"bond.shear_stiffness={BOND}",
             f"bond.radius_fraction={FRACTION}", "time_step_safety=null", "cycles=2000",
-            "bond.normal_strength=1e9", "bond.shear_strength=1e9")
+            "bond.normal_strength=1e9", "bond.shear_strength=1e9",
+            "ramp=0", "tolerance=null", "local_damping=0", "damping_ratio=0.7", "density_scaling=false")
 ENGINES = "explicit", "quasi-static"
 words = lambda settings: [word for s in settings for word in ("--set", s)]
 

@@ -129,6 +129,7 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
     dem->local_damping = setup->material.local_damping;
     const double area = length * length;
     dem->bond_kind = setup->bond.kind;
+    dem->bond_moments = 1 - setup->bond.moments_left_out;
     dem->bond_normal_stiffness = setup->bond.normal_stiffness * area / stiffness;
     dem->bond_shear_stiffness = setup->bond.shear_stiffness * area / stiffness;
 }

@@ -87,6 +87,13 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
     }
 }
 
+void dem_stop(struct dem *dem, const bool *which)
+{
+    for (int i = 0; i < dem->n_particle; i++)
+        for (int axis = 0; axis < 3 && which[dem->identity[i]]; axis++)
+            dem->motion[i].linear[axis] = dem->motion[i].angular[axis] = 0;
+}
+
 void dem_set_friction(struct dem *dem, double friction)
 {
     dem->pair_friction[0] = dem->law.friction = friction;

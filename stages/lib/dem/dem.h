@@ -62,6 +62,9 @@ struct dem_bond_material {
     double normal_strength;  // parallel: Pa, contact: N; >= 0; INFINITY never breaks
     double shear_strength;   // the same
     double radius_fraction;  // parallel: bond radius over the smaller grain's, in (0,1]
+    // Parallel: stresses count bending and twist times beta = 1 - this (the moment-
+    // contribution factor of later versions of PFC); 0: whole, as [K 4.41, 4.42].
+    double moments_left_out;
     enum dem_bond_kind kind;
 };
 
@@ -206,6 +209,9 @@ void dem_set_force(struct dem *dem, const struct vector *force);
 // before now; NULL leaves them.
 void dem_set_velocity(struct dem *dem, const struct vector *velocity,
                       const struct vector *spin);
+
+// Takes all motion from the grains that WHICH (n_particle) marks.
+void dem_stop(struct dem *dem, const bool *which);
 
 // From the next cycle on.
 void dem_set_gravity(struct dem *dem, struct vector gravity);

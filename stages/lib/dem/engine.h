@@ -122,6 +122,7 @@ struct dem {
     struct contact_law law;       // of every pair, unless FEATURE_OWN
     double bond_normal_stiffness; // per area
     double bond_shear_stiffness;
+    double bond_moments; // share of moments that stresses of parallel bonds count
     enum dem_bond_kind bond_kind;
     double local_damping;
     double time_step;

@@ -81,8 +81,8 @@ INLINE void let_go(struct carried *c, mask whole)
 }
 
 // Breaks the bonds of the lanes HELD that carry more than they can; how many. Stresses
-// are compared times A R: sigma_max A R = -F^n R + 4 |M^s| as A R^2 = 4 I, and
-// tau_max A R = |F^s| R + 2 |M^n| as A R^2 = 2 J. Squares spare the roots.
+// are compared times A R: sigma_max A R = -F^n R + 4 beta |M^s| as A R^2 = 4 I,
+// and tau_max A R = |F^s| R + 2 beta |M^n| as A R^2 = 2 J. Squares spare the roots.
 INLINE int break_overloaded(struct carried *c, const struct dem *dem, int k, int at,
                             mask held, lanes radius)
 {
@@ -90,10 +90,11 @@ INLINE int break_overloaded(struct carried *c, const struct dem *dem, int k, int
     const lanes square = radius * radius;
     const lanes bending_left =
         less_fused(c->tension, radius, load(g->normal_strength + at));
+    const double beta = dem->bond_moments;
     const lanes twist_size = magnitude(c->twist);
     const lanes shear_left =
-        less_fused(splat(2), twist_size, load(g->shear_strength + at));
-    const lanes bending_square = 16.0 * dot3(c->bending, c->bending);
+        less_fused(splat(2 * beta), twist_size, load(g->shear_strength + at));
+    const lanes bending_square = 16.0 * beta * beta * dot3(c->bending, c->bending);
     const lanes shear_square = square * dot3(c->shear, c->shear);
     // Also where nothing is left: then the right side is not positive.
     const mask by_normal =
@@ -103,7 +104,7 @@ INLINE int break_overloaded(struct carried *c, const struct dem *dem, int k, int
     const mask broken = either(by_normal, by_shear);
     if (!any(broken)) return 0;
     const lanes normal_load = square_root(bending_square) + c->tension * radius;
-    const lanes shear_load = 2.0 * twist_size + square_root(shear_square);
+    const lanes shear_load = 2.0 * beta * twist_size + square_root(shear_square);
     const int count = break_bonds(g, at, by_normal, by_shear, normal_load, shear_load);
     if (dem->pairs.loss)
         book(dem->pairs.loss[k].broken + at, broken, bond_energy(dem, c, square));
