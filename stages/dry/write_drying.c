@@ -153,13 +153,15 @@ void write_drying(const struct network *network, const struct drying_history *hi
 {
     const struct drying_conditions *conditions = &parameters->conditions;
     const enum transfer_law law = (enum transfer_law)parameters->transfer_law;
-    char model[3000], layer[300], flow[200], liquid[300], fluid[900], switches[500];
+    char model[3300], radii[RADII_TEXT], layer[300], flow[200], liquid[300], fluid[900],
+        switches[500];
     snprintf(model, sizeof model,
              "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
              "boundary layer: %s\n"
              "boundary layer: %.17g m thick, from %s\n"
              "liquid: %s\n"
              "%s, contact angle %.6g degrees; gas at %.6g Pa, with vapour of %.6g Pa\n"
+             "%s"
              "throats without clearance, shut to liquid, vapour and gas: %d\n"
              "throats shut in by these and those imposed empty, and empty as well: %d\n"
              "%s\n",
@@ -168,7 +170,9 @@ void write_drying(const struct network *network, const struct drying_history *hi
              describe_liquid(conditions, history, liquid, sizeof liquid),
              conditions_describe(&parameters->given, ~0u, fluid, sizeof fluid),
              conditions->contact_angle, conditions->gas_pressure,
-             conditions->air_vapour_pressure, parameters->shut, parameters->enclosed,
+             conditions->air_vapour_pressure,
+             describe_cut_radii(&parameters->radii, radii), parameters->shut,
+             parameters->enclosed,
              describe_switches(conditions, switches, sizeof switches));
     struct artifact *artifact = artifact_create("drying", invocation->output);
     artifact_put_network(artifact, network);

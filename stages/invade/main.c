@@ -163,7 +163,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
                             size_t size)
 {
     const unsigned shown = 1u << FLUID_SURFACE_TENSION | 1u << FLUID_DENSITY;
-    char gravity[60], fluid[300];
+    char gravity[60], fluid[300], radii[RADII_TEXT];
     snprintf(gravity, sizeof gravity, "gravity: %.17g m/s2\n",
              parameters->entry.gravity);
     snprintf(text, size,
@@ -172,6 +172,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
              "higher\n"
              "%s\n%s"
              "%s, contact angle %.6g degrees\n"
+             "%s"
              "throats without clearance, shut to gas and liquid: %d\n"
              "left out: viscosity, evaporation, compressibility, films, snap-off%s",
              parameters->rule == INVADE_THROATS ? "throat" : "node",
@@ -180,7 +181,8 @@ static const char *describe(const struct invade_parameters *parameters, char *te
                  : "no trapping: liquid leaves from anywhere",
              parameters->entry.gravity > 0 ? gravity : "",
              conditions_describe(&parameters->given, shown, fluid, sizeof fluid),
-             parameters->given.contact_angle, parameters->shut,
+             parameters->given.contact_angle,
+             describe_cut_radii(&parameters->radii, radii), parameters->shut,
              parameters->entry.gravity > 0 ? "" : ", gravity");
     return text;
 }
@@ -230,6 +232,7 @@ int main(int argc, char **argv)
     struct reason reason;
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "invade.%s", reason.text);
+    if (!invocation.quiet) report_cut_radii(&parameters.radii);
     impose_empty_throats(&network, parameters.imposed_empty);
     parameters.shut = shut_closed_throats(&network);
     struct entry entry;
@@ -246,7 +249,7 @@ int main(int argc, char **argv)
         status = transport_find(&network, conditions, &outcome, &transport, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[1100];
+    char model[1600];
     struct artifact *artifact = artifact_create("invasion", invocation.output);
     artifact_put_network(artifact, &network);
     put_outcome(artifact, &network, &invasion, &outcome);

@@ -180,6 +180,17 @@ with scratch() as folder:
     refused("a wall for both is refused", "invade.outlet: must have no wall in common",
             'outlet=["+z","-z"]')
     refused("trapping without an outlet is refused", "no throat reaches the outlet", "outlet=[]")
+    # 100 +- 60 nm: Simpson's rule in tests/physics/throat_radius.c has what is left.
+    words = sum((["--set", "throat_radius." + word] for word in
+                 ("distribution=normal", "mean=100e-9", "standard_deviation=60e-9")), [])
+    for stage in "invade", "dry":
+        says = subprocess.run([f"{BIN}/{stage}", *words, at("network.h5"), "-o", at("cut.h5")],
+                              capture_output=True, text=True).stderr
+        told = "4.78 % of the normal ones of 1e-07 +- 6e-08 m would not be above 0 and are drawn " \
+               "again, which leaves 1.063e-07 +- 5.417e-08 m"
+        with h5py.File(at("cut.h5")) as file:
+            model = file.attrs["model"].decode()
+        ok(told in says and told in model, f"{stage} says what cutting radii at 0 leaves", says)
     with h5py.File(at("network.h5"), "a") as file:
         file["throats/radius"][:] = 0
     refused("a network with all throats closed is refused", "/throats/kind: no throat holds liquid")

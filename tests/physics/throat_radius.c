@@ -155,6 +155,32 @@ static void correlation_only_moves_radii(void **state)
     }
 }
 
+// What is left of normal radii that may be below 0, beside Simpson's rule, and beside
+// what is drawn.
+static void what_is_cut_is_told(void **state)
+{
+    (void)state;
+    enum { STEPS = 100000 };
+    for (double spread = 0.2; spread < 2; spread += 0.3) {
+        double sum[3] = {0};
+        const double step = (1 + 12 * spread) / STEPS;
+        for (int k = 0; k <= STEPS; k++) {
+            const double r = k * step, x = (r - 1) / spread;
+            const double weight = k == 0 || k == STEPS ? 1 : k % 2 ? 4 : 2;
+            for (int m = 0; m < 3; m++)
+                sum[m] += weight * pow(r, m) * exp(-x * x / 2);
+        }
+        const double all = sum[0] * step / 3 / (sqrt(2 * M_PI) * spread);
+        double mean = 1, deviation = spread;
+        const double share = cut_normal(&mean, &deviation);
+        assert_within(share, 1 - all, 1e-9);
+        assert_within(mean, sum[1] / sum[0], 1e-9);
+        assert_within(deviation, sqrt(sum[2] / sum[0] - mean * mean), 1e-9);
+    }
+    double mean = 1, deviation = 0;
+    assert_true(cut_normal(&mean, &deviation) == 0 && mean == 1);
+}
+
 static void what_cannot_be_drawn_is_refused(void **state)
 {
     (void)state;
@@ -173,6 +199,7 @@ int main(void)
         cmocka_unit_test(each_law_is_met),
         cmocka_unit_test(neighbours_are_alike),
         cmocka_unit_test(correlation_only_moves_radii),
+        cmocka_unit_test(what_is_cut_is_told),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

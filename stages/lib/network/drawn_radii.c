@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "network/drawn_radii.h"
 
+#include <stdio.h>
+#include <string.h>
+
 static const struct parameter rows[] = {DRAWN_RADII_ROWS(0), {0}};
 
 // Of radii that are not drawn nothing may be asked: all must be as by default.
@@ -23,6 +26,38 @@ static enum status refuse_unused(const json_t *parameters, struct reason *reason
     }
     json_decref(defaults);
     return status;
+}
+
+static void describe_cut(double mean, double deviation, char text[RADII_TEXT])
+{
+    static const double noticeable = 1e-3;
+    double left = mean, spread = deviation;
+    const double share = cut_normal(&left, &spread);
+    const size_t used = strlen(text);
+    if (share < noticeable) return;
+    snprintf(text + used, RADII_TEXT - used,
+             "throat radii: %.3g %% of the normal ones of %.4g +- %.4g m would not be "
+             "above 0 and are drawn again, which leaves %.4g +- %.4g m\n",
+             100 * share, mean, deviation, left, spread);
+}
+
+const char *describe_cut_radii(const struct drawn_radii *radii, char text[RADII_TEXT])
+{
+    const struct radius_distribution *how = &radii->how;
+    const bool two_modes = radii->law == RADIUS_TWO_MODE + 1;
+    text[0] = '\0';
+    if (two_modes || radii->law == RADIUS_NORMAL + 1)
+        describe_cut(how->mean, how->deviation, text);
+    if (two_modes) describe_cut(how->second_mean, how->second_deviation, text);
+    return text;
+}
+
+void report_cut_radii(const struct drawn_radii *radii)
+{
+    char text[RADII_TEXT], *rest = text;
+    describe_cut_radii(radii, text);
+    for (char *line; (line = strtok_r(rest, "\n", &rest));)
+        report("%s; lognormal ones keep their mean and deviation", line);
 }
 
 enum status give_radii(struct network *network, const struct drawn_radii *radii,

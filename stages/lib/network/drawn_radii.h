@@ -19,6 +19,14 @@ struct drawn_radii {
 enum status give_radii(struct network *network, const struct drawn_radii *radii,
                        const json_t *parameters, struct reason *reason);
 
+// What cutting normal radii at 0 makes of their mean and standard deviation: a line for
+// each mode of which at least a thousandth is cut.
+enum { RADII_TEXT = 400 };
+const char *describe_cut_radii(const struct drawn_radii *radii, char text[RADII_TEXT]);
+
+// The same on standard error.
+void report_cut_radii(const struct drawn_radii *radii);
+
 // AT: where struct drawn_radii lies in the stage's parameter struct.
 #define DRAWN_RADII_AT(at, member) (at) + offsetof(struct drawn_radii, member)
 // clang-format off
@@ -33,7 +41,8 @@ enum status give_radii(struct network *network, const struct drawn_radii *radii,
      .text = "mean of drawn radii; two_mode: of the first mode"}, \
     {"throat_radius.standard_deviation", PARAMETER_NUMBER, "m", "1e-9", \
      DRAWN_RADII_AT(at, how.deviation), AT_LEAST(0), \
-     .text = "their standard deviation"}, \
+     .text = "their standard deviation; of normal ones before those that are not above 0 " \
+             "are drawn again"}, \
     {"throat_radius.second_mean", PARAMETER_NUMBER, "m", "40e-9", \
      DRAWN_RADII_AT(at, how.second_mean), ABOVE(0), \
      .text = "two_mode: mean of the second mode"}, \

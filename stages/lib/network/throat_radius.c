@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "basics/sorted.h"
 
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -17,6 +18,16 @@ static double normal(gsl_rng *generator, double mean, double deviation)
         radius = mean + gsl_ran_gaussian_ziggurat(generator, deviation);
     while (radius <= 0);
     return radius;
+}
+
+double cut_normal(double *mean, double *deviation)
+{
+    if (!(*deviation > 0)) return 0;
+    const double end = -*mean / *deviation, left = gsl_cdf_ugaussian_Q(end);
+    const double hazard = gsl_ran_ugaussian_pdf(end) / left;
+    *mean += *deviation * hazard;
+    *deviation *= sqrt(1 - hazard * (hazard - end));
+    return gsl_cdf_ugaussian_P(end);
 }
 
 static double lognormal(gsl_rng *generator, double mean, double deviation)

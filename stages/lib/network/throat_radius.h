@@ -34,4 +34,8 @@ enum status draw_radii(struct network *network,
                        const struct radius_distribution *distribution,
                        struct reason *reason);
 
+// The share of normal radii of MEAN and DEVIATION that are not above 0 and are drawn
+// again. Those two become the mean and standard deviation of what is left.
+double cut_normal(double *mean, double *deviation);
+
 #endif
