@@ -2,6 +2,7 @@
 #include "resume.h"
 
 #include "basics/memory.h"
+#include "check_state.h"
 
 #include <limits.h>
 
@@ -97,9 +98,10 @@ enum status go_on_from(struct run *run, const struct kept_state *kept,
 {
     struct state state = state_to_restore(&kept->stage);
     run_state(run, &state);
+    if (!state_is_whole(&state) || !run_fits(run))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/stage: is not the state of a drying of this network");
     if (run->conditions->liquid == LIQUID_VISCOUS)
         liquid_flow_forget(&run->flow, &run->phases);
-    if (state_is_whole(&state)) return STATUS_OK;
-    return refuse(reason, STATUS_BAD_DATA,
-                  "/stage: is not the state of a drying of this network");
+    return STATUS_OK;
 }

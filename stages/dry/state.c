@@ -37,7 +37,7 @@ static void pass(struct state *state, struct state_stream *stream, void *at, int
 {
     if (state->restoring) {
         state->failed |= n > stream->capacity - stream->n;
-        if (state->failed)
+        if (state->failed && n > 0)
             memset(at, 0, (size_t)n * size);
         else if (n > 0)
             memcpy(at, (char *)stream->data + (size_t)stream->n * size,
@@ -74,7 +74,7 @@ void state_integers(struct state *state, int32_t *at, int64_t n, int32_t least,
     pass(state, &state->integer, at, n, sizeof *at);
     for (int64_t k = 0; state->restoring && k < n; k++)
         state->failed |= at[k] < least || at[k] > most;
-    if (state->failed) memset(at, 0, (size_t)n * sizeof *at);
+    if (state->failed && n > 0) memset(at, 0, (size_t)n * sizeof *at);
 }
 
 void state_bytes(struct state *state, uint8_t *at, int64_t n, uint8_t most)
@@ -82,7 +82,7 @@ void state_bytes(struct state *state, uint8_t *at, int64_t n, uint8_t most)
     pass(state, &state->byte, at, n, 1);
     for (int64_t k = 0; state->restoring && k < n; k++)
         state->failed |= at[k] > most;
-    if (state->failed) memset(at, 0, (size_t)n);
+    if (state->failed && n > 0) memset(at, 0, (size_t)n);
 }
 
 void state_flags(struct state *state, bool *at, int64_t n)

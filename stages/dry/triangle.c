@@ -224,12 +224,13 @@ void triangle_state(struct triangle *triangle, int n, struct state *state)
 {
     int n_waiting = triangle->n_waiting;
     state_flags(state, &triangle->is_large, 1);
-    state_integer(state, &n_waiting, 0, MOST_SOURCES);
+    state_integer(state, &n_waiting, 0, MOST_SOURCES - 1);
     for (int i = 0; i < n; i++) {
         if (state->restoring) triangle_add_row(triangle, i);
         state_numbers(state, (double *)triangle->entry + triangle_row(triangle, i), i);
     }
-    if (n_waiting == 0) return;
+    state->failed |= n_waiting > 0 && !triangle->is_large;
+    if (n_waiting == 0 || state->failed) return;
     if (state->restoring) make_waiting_room(triangle, n);
     triangle->n_waiting = n_waiting;
     state_numbers(state, triangle->factor, n_waiting);
