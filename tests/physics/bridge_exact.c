@@ -301,6 +301,25 @@ static void test_no_jump_to_other_branches(void **state)
                 check_smooth(ratios[r], degrees, volume);
 }
 
+// The gap of rupture grows smoothly with the volume: long strides along a branch do not
+// end on another one. These few of nearly equal radii once did.
+static void test_rupture_is_smooth_in_volume(void **state)
+{
+    (void)state;
+    const double e = 0.052734375;
+    const struct bodies bodies = {{1 - e, 1 + e}, {0.2, 0.2}};
+    double last = 0;
+    for (int k = 0; k <= 200; k++) {
+        const double volume = 0.5 + 0.0025 * k;
+        struct equilibrium is;
+        if (find_rupture(&bodies, volume, &is)) fail_msg("no rupture: %g", volume);
+        if (k > 0 && !(is.gap > last && is.gap < 1.01 * last))
+            fail_msg("volume %g ruptures at %g, a smaller one at %g", volume, is.gap,
+                     last);
+        last = is.gap;
+    }
+}
+
 static void test_no_bridge(void **state)
 {
     (void)state;
@@ -319,18 +338,20 @@ static void test_no_bridge(void **state)
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_catenoid),
-                                       cmocka_unit_test(test_cylinder),
-                                       cmocka_unit_test(test_sphere),
-                                       cmocka_unit_test(test_vanishing_volume),
-                                       cmocka_unit_test(test_force_is_slope_of_energy),
-                                       cmocka_unit_test(test_scale_free),
-                                       cmocka_unit_test(test_exchange_of_bodies),
-                                       cmocka_unit_test(test_plane_is_a_large_sphere),
-                                       cmocka_unit_test(test_continuous_at_contact),
-                                       cmocka_unit_test(test_ruptures_from_below),
-                                       cmocka_unit_test(test_whole_range),
-                                       cmocka_unit_test(test_no_jump_to_other_branches),
-                                       cmocka_unit_test(test_no_bridge)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_catenoid),
+        cmocka_unit_test(test_cylinder),
+        cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_vanishing_volume),
+        cmocka_unit_test(test_force_is_slope_of_energy),
+        cmocka_unit_test(test_scale_free),
+        cmocka_unit_test(test_exchange_of_bodies),
+        cmocka_unit_test(test_plane_is_a_large_sphere),
+        cmocka_unit_test(test_continuous_at_contact),
+        cmocka_unit_test(test_ruptures_from_below),
+        cmocka_unit_test(test_rupture_is_smooth_in_volume),
+        cmocka_unit_test(test_whole_range),
+        cmocka_unit_test(test_no_jump_to_other_branches),
+        cmocka_unit_test(test_no_bridge)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

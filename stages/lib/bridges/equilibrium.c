@@ -179,6 +179,18 @@ static bool grow(const struct question *asked, double gap, struct state *state)
 
 // ---- along the branch --------------------------------------------------------------
 
+// Whether TO lies where the branch from FROM goes on. The condition of a DISTANCE along
+// its direction holds on a whole hyperplane, and far away in that other branches cross
+// it.
+static bool goes_on(const struct state *from, const struct state *to, double distance)
+{
+    const double most = 2 * distance + 1e-6; // and what is left of Newton's method
+    double apart[ARC_NUMBERS];
+    for (int n = 0; n < ARC_NUMBERS; n++)
+        apart[n] = to->unknowns.at[n] - from->unknowns.at[n];
+    return dot(apart, apart) < most * most;
+}
+
 // DISTANCE along the branch's direction at FROM. Returns whether there is a bridge.
 static bool reach(const struct problem *problem, double distance,
                   const struct state *from, struct state *to)
@@ -190,7 +202,8 @@ static bool reach(const struct problem *problem, double distance,
     *to = *from;
     to->unknowns = moved(&from->unknowns, from->direction, distance);
     return sensible(problem->bodies, &to->unknowns) &&
-           converge(&at, &to->unknowns, &to->steps) && judge(&at, from->direction, to);
+           converge(&at, &to->unknowns, &to->steps) && goes_on(from, to, distance) &&
+           judge(&at, from->direction, to);
 }
 
 // What is positive before the place looked for: GAP, or the end of stability
