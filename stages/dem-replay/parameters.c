@@ -19,6 +19,9 @@ const struct parameter replay_table[] = {
      AT_LEAST(0), .text = "coefficient between grains"},
     {"damping_ratio", PARAMETER_NUMBER, "1", "0", AT(settings.material.damping_ratio),
      AT_LEAST(0), .text = "of the dashpots at contacts, of critical [K 4.28]"},
+    {"tensile_damping", PARAMETER_BOOLEAN, "1", "true", AT(settings.tensile_damping),
+     .text = "dashpots may pull grains that part; false: the normal force of a contact "
+             "without a bond is never below 0 [G 3]"},
     {"local_damping", PARAMETER_NUMBER, "1", "0.7", AT(settings.material.local_damping),
      BETWEEN(0, 0.99),
      .text = "share of the net force on a grain taken off while it moves its way, "

@@ -44,6 +44,7 @@ struct replay_settings {
     double *relative_strength; // (n_bond) of those of `bond`; NULL: 1
     uint8_t *held;             // (n_particle) 1: neither moves nor turns
     struct dem_liquid liquid;  // of no volume: none
+    bool tensile_damping;      // dashpots may pull grains that part
     bool unstressed;           // overlaps of the packing do not push
     enum support support;
     enum engine engine;

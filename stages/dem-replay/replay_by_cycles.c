@@ -64,6 +64,7 @@ static enum status create(struct run *run, struct dem **dem, struct reason *reas
         .liquid = settings->liquid.volume > 0 ? &settings->liquid : NULL,
         .fixed = settings->held,
         .unstressed = settings->unstressed,
+        .no_tensile_damping = !settings->tensile_damping,
         .n_wall = settings->support == SUPPORT_WALL,
         .wall = &beneath,
         .time_step_safety = settings->time_step_safety,

@@ -103,6 +103,28 @@ static void test_books_of_each_law(void **state)
     assert_books_close(whole, 2e-3);
 }
 
+// Dashpots that do not pull take less. A bond's still do: bonded grains move as before.
+static void test_books_without_tensile_damping(void **state)
+{
+    (void)state;
+    struct dem_setup setup = rubbing_setup(DEM_LINEAR);
+    setup.no_tensile_damping = true;
+    assert_books_close(setup, 2e-3);
+
+    struct packing packing = bonded_pair();
+    struct vector moved[2];
+    for (int pulls = 0; pulls < 2; pulls++) {
+        struct dem_setup bonded = stiff_setup(&packing);
+        bonded.no_tensile_damping = !pulls;
+        struct dem *dem = shaken(&bonded, 1e-3, 3);
+        run(dem, 300);
+        moved[pulls] = displacement_of(dem, 1);
+        dem_free(dem);
+    }
+    assert_memory_equal(&moved[0], &moved[1], sizeof *moved);
+    packing_free(&packing);
+}
+
 static void test_books_of_local_damping(void **state)
 {
     (void)state;
@@ -161,6 +183,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_books_of_each_law),
+        cmocka_unit_test(test_books_without_tensile_damping),
         cmocka_unit_test(test_books_of_local_damping),
         cmocka_unit_test(test_books_of_broken_bonds),
     };

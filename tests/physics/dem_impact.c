@@ -106,6 +106,35 @@ static void test_timed_contact(void **state)
         }
 }
 
+// Without a pull the contact ends where its force does: with decay b = zeta w0 and w^2
+// = w0^2 - b^2 at the time (pi - atan2(2 b w, w^2 - b^2))/w, when the speed is e =
+// exp(-b t) of that before (Schwager & Poeschel 2007, Granular Matter 9, 465).
+static void test_dashpots_that_do_not_pull(void **state)
+{
+    (void)state;
+    const double radius[3][2] = {{1e-3, 0}, {1e-3, 1e-3}, {1e-3, 7e-3}};
+    for (int k = 0; k < 3; k++)
+        for (int tenths = 2; tenths <= 10; tenths++) {
+            struct impact is = {.law = DEM_TIMED,
+                                .material = {.density = 2500,
+                                             .contact_time = 1e-4,
+                                             .restitution = 0.1 * tenths},
+                                .radius = {radius[k][0], radius[k][1]},
+                                .velocity = {{0, 0, -0.3}, {0, 0, 0.2 * (k > 0)}},
+                                .time_step = 1e-4 / STEPS,
+                                .no_tensile_damping = true};
+            const double b = -log(0.1 * tenths) / 1e-4, w = M_PI / 1e-4;
+            const double t = (M_PI - atan2(2 * b * w, w * w - b * b)) / w;
+            const struct outcome got = run_impact(&is);
+            const double rebound = got.velocity[0].z - got.velocity[1].z;
+            WITHIN(rebound / closing_speed(&is), exp(-b * t), 1e-3);
+            assert_true(got.largest_pull == 0);
+            is.no_tensile_damping = false;
+            const struct outcome other = run_impact(&is);
+            assert_true(tenths == 10 || other.largest_pull > 1e-3 * other.peak_force);
+        }
+}
+
 // e = exp(-pi zeta / sqrt(1 - zeta^2)), t = pi sqrt(m / (k (1 - zeta^2))).
 static void test_linear_contact(void **state)
 {
@@ -356,6 +385,7 @@ int main(void)
         cmocka_unit_test(test_friction_that_feels_the_dashpot),
         cmocka_unit_test(test_partial_slip_limits),
         cmocka_unit_test(test_timed_contact),
+        cmocka_unit_test(test_dashpots_that_do_not_pull),
         cmocka_unit_test(test_linear_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -22,6 +22,7 @@ struct impact {
     struct vector velocity[2], spin[2];
     double time_step; // s
     double onset;     // time steps
+    bool no_tensile_damping;
 };
 
 struct outcome {
@@ -71,6 +72,7 @@ static inline struct dem *start_impact(const struct impact *is, double gap)
                                     .force_time_step = true,
                                     .friction_feels_dashpot =
                                         is->friction_feels_dashpot,
+                                    .no_tensile_damping = is->no_tensile_damping,
                                     .threads = 1};
     struct dem *dem;
     struct reason reason = {""};

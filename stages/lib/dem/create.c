@@ -127,6 +127,7 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
     }
     dem->contact_time = setup->material.contact_time / dem->unit.time;
     dem->local_damping = setup->material.local_damping;
+    dem->no_tensile_damping = setup->no_tensile_damping;
     const double area = length * length;
     dem->bond_kind = setup->bond.kind;
     dem->bond_moments = 1 - setup->bond.moments_left_out;

@@ -145,6 +145,9 @@ struct dem_setup {
     // Friction carries its share of the whole normal force while that pushes, dashpot
     // included, as in LIGGGHTS; otherwise of the spring's [K 4.25].
     bool friction_feels_dashpot;
+    // Dashpots do not pull grains that part, or one off a wall: the normal force of a
+    // contact that no bond holds is never below 0 [G 3]. Grains then rebound faster.
+    bool no_tensile_damping;
     bool balance_energy; // keep the books that dem_energy reports
     int threads;         // >= 1; used where there is enough to share
 };

@@ -125,6 +125,7 @@ struct dem {
     double bond_moments; // share of moments that stresses of parallel bonds count
     enum dem_bond_kind bond_kind;
     double local_damping;
+    bool no_tensile_damping;
     double time_step;
     double time_step_limit;
     bool step_is_automatic, step_was_shortened;

@@ -3,7 +3,9 @@
 //
 // Dashpots act where grains touch or an intact bond holds them: without them a bonded
 // pair in tension would ring for ever. While an unbonded contact slides its shear
-// dashpot is off, so that a sliding grain feels friction and nothing more.
+// dashpot is off, so that a sliding grain feels friction and nothing more. The normal
+// one pulls grains that part, unless no_tensile_damping: then F^n >= 0 where no bond
+// holds [G 3].
 //
 // What friction can carry is a share of the normal spring [K 4.25], or of the whole
 // normal force while it pushes. A sphere that slides throughout then loses mu times
@@ -140,11 +142,13 @@ INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
                                      unsigned features)
 {
     const lanes dashpot = law->normal_damping * m->normal_velocity;
-    struct pair_load load = {.normal = law->spring -
-                                       only_where(either(touch, held), dashpot)};
+    lanes damped = only_where(either(touch, held), dashpot);
+    if (dem->no_tensile_damping)
+        damped = choose(without(above(damped, law->spring), held), law->spring, damped);
+    struct pair_load load = {.normal = law->spring - damped};
     if (dem->pairs.loss)
         book(dem->pairs.loss[k].dashpots + at, either(touch, held),
-             dashpot * m->normal_velocity * time_step);
+             damped * m->normal_velocity * time_step);
     if (!(features & FEATURE_TURN)) return load;
 
     mask slips;

@@ -179,7 +179,8 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
     const double normal_velocity = dot(v, n);
     const struct vector sideways = subtract(v, scale(normal_velocity, n));
     const double spring = law.normal_stiffness * lie->overlap;
-    const double dashpot = -law.normal_damping * normal_velocity;
+    const double damping = -law.normal_damping * normal_velocity;
+    const double dashpot = dem->no_tensile_damping ? fmax(damping, -spring) : damping;
 
     struct push push = {.force = scale(spring + dashpot, n)};
     push.dashpots = -dashpot * normal_velocity * dt;
