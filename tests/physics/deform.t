@@ -30,7 +30,7 @@ with scratch() as folder:
             run("merge-nodes", *sets(merge), at(name), "-o", at(name))
         plain = run("merge-nodes", input=run("tessellate", at("packing")))
         forces = run("force-protocol", "--set", "steps=2", input=run("dry", "--quiet", input=plain))
-        run("dem-replay", "--quiet", *sets(["cycles=1", "snapshots=[1]"]), "-o", at("response"), input=forces)
+        run("dem-replay", "--quiet", *sets(["cycles=1", "snapshots=[1]", "bond.by=none"]), "-o", at("response"), input=forces)
         return h5py.File(at("packing"))
 
     def lay(displacement):
@@ -261,7 +261,7 @@ with scratch() as folder:
     def answer(*settings):
         """A response of the grains of the packing to lay displacements into."""
         forces = run("force-protocol", "--set", "steps=2", input=run("dry", "-q", input=run("tessellate", *settings, at("packing"))))
-        run("dem-replay", "-q", *"--set cycles=1 --set snapshots=[1] --set support=free".split(), "-o", at("response"),
+        run("dem-replay", "-q", *"--set cycles=1 --set snapshots=[1] --set support=free --set bond.by=none".split(), "-o", at("response"),
             input=forces)
 
     # A layer of discs, in their plane; grains in round walls, which go along.
