@@ -212,6 +212,13 @@ enum status restore_weight(struct response *response, int n_crack,
     return STATUS_OK;
 }
 
+static bool rises(const int32_t *step, int64_t n)
+{
+    for (int64_t k = 1; k < n; k++)
+        if (step[k] < step[k - 1]) return false;
+    return true;
+}
+
 // The engine knows the cracks; of those of whole steps the step is known too.
 static enum status restore_cracks(struct response *response, int n_time,
                                   const struct engine_past *past,
@@ -223,6 +230,8 @@ static enum status restore_cracks(struct response *response, int n_time,
     if (n > past->n_crack)
         return refuse(reader->reason, STATUS_BAD_DATA,
                       "crack_step: is longer than the cracks");
+    if (!rises(step, n))
+        return refuse(reader->reason, STATUS_BAD_DATA, "crack_step: must not fall");
     response->n_crack = (int)n;
     response->crack = duplicate(past->crack, (size_t)n, sizeof *past->crack);
     response->crack_step = duplicate(step, (size_t)n, sizeof *step);
@@ -249,6 +258,8 @@ static enum status restore_snapshots(struct response *response,
     const uint8_t *intact =
         read_array(reader, "snapshot_intact", DEM_UINT8, count * packing->n_bond, 0, 1);
     if (reader->failed) return STATUS_BAD_DATA;
+    if (!rises(step, count))
+        return refuse(reader->reason, STATUS_BAD_DATA, "snapshot_step: must not fall");
     for (size_t s = 0; s < (size_t)count; s++)
         response->snapshot[response->n_snapshot++] = (struct snapshot){
             .step = step[s],
@@ -258,6 +269,16 @@ static enum status restore_snapshots(struct response *response,
             .force = duplicate(force + s * n, n, sizeof *force),
             .intact = duplicate(intact + s * n_bond, n_bond, 1)};
     return STATUS_OK;
+}
+
+// Two grains, the lower first, or a grain and a wall; the first row that is not, or N.
+static int64_t first_unordered(const int32_t (*particle)[2], int64_t n)
+{
+    int64_t k = 0;
+    while (k < n && particle[k][0] >= 0 &&
+           (particle[k][1] < 0 || particle[k][0] < particle[k][1]))
+        k++;
+    return k;
 }
 
 // The contacts of all snapshots, N of them; NULL with the reason.
@@ -280,6 +301,14 @@ static struct dem_contact *read_contacts(const struct packing *packing, int64_t 
         wet ? read_array(reader, bridges_name, DEM_FLOAT64, 2 * n, -largest, largest)
             : NULL;
     if (reader->failed) return NULL;
+    const int64_t odd = first_unordered(particle, n);
+    if (odd < n) {
+        refuse(
+            reader->reason, STATUS_BAD_DATA,
+            "contact_particle: row %lld: the lower index must come first, got %d, %d",
+            (long long)odd, particle[odd][0], particle[odd][1]);
+        return NULL;
+    }
     struct dem_contact *contact = NEW_ARRAY(struct dem_contact, n);
     for (int64_t k = 0; k < n; k++)
         contact[k] = (struct dem_contact){.particle = {particle[k][0], particle[k][1]},

@@ -5,10 +5,10 @@
 #include "basics/memory.h"
 #include "charges.h"
 
+#include <math.h>
 #include <stdlib.h>
 
-// ---- clusters
-// -------------------------------------------------------------------------
+// ---- clusters ----------------------------------------------------------------------
 
 // Each identity has the throats it counts, or is listed once as unused.
 static bool identities_fit(const struct clusters *clusters)
@@ -93,8 +93,7 @@ static bool menisci_fit(const struct clusters *clusters)
     return fits;
 }
 
-// ---- phases
-// ---------------------------------------------------------------------------
+// ---- phases ------------------------------------------------------------------------
 
 // Liquid is counted where it is.
 static bool liquid_fits(const struct phases *phases)
@@ -135,8 +134,7 @@ static bool wet_nodes_fit(const struct phases *phases)
     return placed == phases->n_wet;
 }
 
-// ---- clocks
-// ---------------------------------------------------------------------------
+// ---- clocks ------------------------------------------------------------------------
 
 // A clock belongs to an account that has no other, and to a throat of it with liquid;
 // or it is listed once as unused.
@@ -206,8 +204,39 @@ static bool charges_fit(const struct clocks *clocks)
     return fits && placed == clocks->n_charge;
 }
 
-// ---- the run
-// --------------------------------------------------------------------------
+// ---- the history -------------------------------------------------------------------
+
+static bool lies_within(const double *value, int64_t n, double least, double most)
+{
+    for (int64_t k = 0; k < n; k++)
+        if (!(value[k] >= least && value[k] <= most)) return false;
+    return true;
+}
+
+static bool rises(const double *value, int n)
+{
+    for (int k = 1; k < n; k++)
+        if (value[k] < value[k - 1]) return false;
+    return true;
+}
+
+static bool history_fits(const struct recorder *recorder)
+{
+    const struct drying_history *history = recorder->history;
+    const int n = history->n_step, n_event = history->n_event;
+    for (int k = 0; k < n; k++)
+        if (history->change_offset[k + 1] < history->change_offset[k]) return false;
+    return history->change_offset[0] == 0 &&
+           history->change_offset[n] == recorder->n_change &&
+           lies_within(history->change_saturation, recorder->n_change, 0, 1) &&
+           lies_within(history->saturation, n, 0, 1) &&
+           lies_within(history->rate, n, 0, INFINITY) &&
+           lies_within(history->time, n, 0, INFINITY) && rises(history->time, n) &&
+           lies_within(history->event_time, n_event, 0, INFINITY) &&
+           rises(history->event_time, n_event);
+}
+
+// ---- the run -----------------------------------------------------------------------
 
 // Throats that have ended since the last step are listed once each. FLAGGED: is_ended
 // says of all whether they are; else they have no liquid any more.
@@ -248,7 +277,7 @@ bool run_fits(const struct run *run)
     return identities_fit(clusters) && pieces_fit(clusters) && menisci_fit(clusters) &&
            liquid_fits(phases) && wet_nodes_fit(phases) &&
            star_mesh_fits(&phases->vapour.mesh) && ended_fit(run, !has_clocks) &&
-           losses_fit(run) &&
+           losses_fit(run) && history_fits(&run->recorder) &&
            (!has_clocks || (owners_fit(&run->clocks) && losing_fit(&run->clocks) &&
                             charges_fit(&run->clocks)));
 }

@@ -244,8 +244,8 @@ static void keep(void *context, const struct kept_state *state)
     raise(signal_now);
 }
 
-void checkpoint_begin(struct checkpoint *checkpoint,
-                      const struct invocation *invocation, json_t *inputs)
+void checkpoint_begin(struct checkpoint *checkpoint, struct invocation *invocation,
+                      json_t *inputs)
 {
     *checkpoint = (struct checkpoint){
         .invocation = invocation, .inputs = inputs, .written = now()};
@@ -254,6 +254,7 @@ void checkpoint_begin(struct checkpoint *checkpoint,
         (struct keeper){.due = due, .keep = keep, .context = checkpoint};
     if (!access(invocation->checkpoint, F_OK)) {
         read_state(checkpoint);
+        invocation->resumed = true;
         checkpoint->keeper.begin = &checkpoint->begin;
     }
     catch_signals();

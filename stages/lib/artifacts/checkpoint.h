@@ -28,8 +28,8 @@ struct checkpoint {
 // Without
 // --checkpoint does nothing. INPUTS must last as long. Exits 65 when the file is not a
 // whole restart artifact or one of another run, which it then leaves where it is.
-void checkpoint_begin(struct checkpoint *checkpoint,
-                      const struct invocation *invocation, json_t *inputs);
+void checkpoint_begin(struct checkpoint *checkpoint, struct invocation *invocation,
+                      json_t *inputs);
 
 // After the output is written: removes the file.
 void checkpoint_end(struct checkpoint *checkpoint);

@@ -367,6 +367,9 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
         die(STATUS_BAD_DATA, "%s: gives no %s: %s",
             input_name(invocation->n_input ? invocation->inputs[0] : "-"),
             artifact->schema->name, reason.text);
+    if (status && invocation->resumed)
+        die(STATUS_BAD_DATA, "%s: is no state of this run: it comes to %s",
+            invocation->checkpoint, reason.text);
     if (status == STATUS_NO) // of sizes given, none by itself too large or small
         die(STATUS_BAD_DATA, "the results are out of range: %s", reason.text);
     if (status)

@@ -34,6 +34,7 @@ struct invocation {
     const char *report;      // of --report; NULL: not asked for; not "-" when OUTPUT is
     const char *checkpoint;  // of --checkpoint; NULL: not asked for
     double checkpoint_every; // s
+    bool resumed;            // the run goes on from that checkpoint
     int threads;
     bool tells; // in text, on standard output, for there is no -o
     bool quiet;
