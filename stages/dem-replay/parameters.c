@@ -136,10 +136,10 @@ const struct parameter replay_table[] = {
     {"bridges.contact_angle", PARAMETER_NUMBER, "degree", "null",
      AT(bridge_liquid.contact_angle), BETWEEN(0, 170), .shared = true,
      .text = "of their liquid; null: that of the forces, or where they tell none 0"},
-    {"bridges.model", PARAMETER_CHOICE, "1", "\"willett-full\"", AT(bridge_model),
+    {"bridges.model", PARAMETER_CHOICE, "1", "\"table\"", AT(bridge_model),
      .choices = BRIDGE_MODEL_CHOICES,
-     .text =
-         "of their force; table, of the exact solution, needs grains of one radius"},
+     .text = "of their force; table: the exact solution, interpolated; the others are "
+             "fits"},
     {"bridges.pull_in_contact", PARAMETER_BOOLEAN, "1", "true",
      AT(settings.liquid.pulls_in_contact),
      .text = "also where grains overlap; false: only apart [G 4]"},

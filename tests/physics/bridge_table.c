@@ -3,6 +3,7 @@
 #include "../test.h"
 #include "bridges/bridges.h"
 #include "bridges/equilibrium.h"
+#include "bridges/ratios.h"
 #include "bridges/table.h"
 
 #include <math.h>
@@ -76,6 +77,111 @@ static void test_error(void **state)
     check_table(0.4, 90, 1e-5);
 }
 
+// Of grains from 1 to LARGEST, at random radii, volumes and gaps, every other of nearly
+// equal ones; LEAST the smallest volume over the cube of the smallest radius. Errors up
+// to 0.9 of rupture, to 0.999, and of rupture itself, at most LIMIT.
+static void check_ratios(double largest, double degrees, double least, double most,
+                         const double limit[3])
+{
+    enum { CASES = 400 };
+    const double angle = degrees * M_PI / 180;
+    const struct bridge_sizes sizes = {{1, largest}, {least, most}};
+    struct bridge_ratios *ratios;
+    struct reason reason = {""};
+    if (bridge_ratios_create(&sizes, angle, &ratios, &reason))
+        fail_msg("%s", reason.text);
+    double worst[3] = {0};
+    for (int k = 0; k < CASES; k++) {
+        const double a = pow(largest, place(k, 0.754877666));
+        const double b =
+            k % 2 ? pow(largest, place(k, 0.819172513))
+                  : fmin(a * (1 + 0.1 * pow(place(k, 0.819172513), 4)), largest);
+        const double radius = 2 / (1 / a + 1 / b), s = bridge_asymmetry(a, b);
+        const double size = least * pow(most / least, place(k, 0.671043607));
+        const double volume = size / (radius * radius * radius);
+        const struct bodies bodies = {{radius / a, radius / b}, {angle, angle}};
+        struct equilibrium last, exact;
+        if (find_rupture(&bodies, volume, &last)) fail_msg("no rupture");
+        const double share = fmin(place(k, 0.569840290) * 1.05, 0.999);
+        const double gap = share * last.gap;
+        if (find_equilibrium(&bodies, volume, gap, &exact)) fail_msg("no bridge");
+        const double force = 2 * M_PI * arc_force(&bodies, &exact.arc);
+        const double steep = 1 + gap / (1.2 * sqrt(volume));
+        double ours;
+        bridge_ratios_forces(ratios, 1, &s, &volume, &gap, &ours);
+        const double error =
+            fabs(ours - force) / fmax(fabs(force), BRIDGE_TABLE_FLOOR / steep / steep);
+        const double rupture = bridge_ratios_rupture(ratios, s, volume);
+        worst[share > 0.9] = fmax(worst[share > 0.9], error);
+        worst[2] = fmax(worst[2], fabs(rupture / last.gap - 1));
+        assert_true(rupture <= bridge_ratios_rupture(ratios, 0, volume) * (1 + 1e-5));
+    }
+    print_message("# radii 1 to %g, %g degrees: errors at most %.1e %.1e, of rupture "
+                  "%.1e\n",
+                  largest, degrees, worst[0], worst[1], worst[2]);
+    for (int k = 0; k < 3; k++)
+        assert_true(worst[k] < limit[k]);
+    bridge_ratios_free(ratios);
+}
+
+static void test_unequal_radii(void **state)
+{
+    (void)state;
+    check_ratios(20, 0, 0.05, 0.05, (double[]){1e-5, 1e-4, 1e-5});
+    check_ratios(3, 20, 1e-4, 1e-2, (double[]){1e-5, 1e-4, 1e-5});
+    check_ratios(2, 45, 0.01, 0.01, (double[]){1e-5, 1e-3, 1e-4});
+}
+
+// Equal grains have the numbers of their own table, whatever others there are.
+static void test_equal_among_unequal(void **state)
+{
+    (void)state;
+    const struct bridge_sizes one = {{1, 1}, {1e-4, 1e-2}},
+                              many = {{1, 1.01}, {1e-4, 1e-2}};
+    struct bridge_ratios *ratios[2];
+    struct bridge_table *table;
+    struct reason reason;
+    const double angle[2] = {0.3, 0.3}, equal[2] = {1, 1}, none[64] = {0};
+    assert_false(bridge_table_create(equal, angle, &table, &reason));
+    assert_false(bridge_ratios_create(&one, 0.3, &ratios[0], &reason));
+    assert_false(bridge_ratios_create(&many, 0.3, &ratios[1], &reason));
+    double volume[64], gap[64], force[64];
+    for (int k = 0; k < 64; k++) {
+        volume[k] = 1e-4 * pow(100, place(k, 0.754877666));
+        gap[k] = 0.25 * place(k, 0.569840290);
+    }
+    for (int r = 0; r < 2; r++) {
+        bridge_ratios_forces(ratios[r], 64, none, volume, gap, force);
+        for (int k = 0; k < 64; k++) {
+            const double wanted = bridge_table_force(table, volume[k], gap[k]);
+            assert_memory_equal(&force[k], &wanted, sizeof wanted);
+        }
+        bridge_ratios_free(ratios[r]);
+    }
+    bridge_table_free(table);
+}
+
+// A volume that is not tabulated: as the nearest that is, gaps by the cube root.
+static void test_volumes_beyond(void **state)
+{
+    (void)state;
+    const struct bridge_sizes sizes = {{1, 2}, {1e-3, 1e-3}};
+    struct bridge_ratios *ratios;
+    struct reason reason;
+    assert_false(bridge_ratios_create(&sizes, 0, &ratios, &reason));
+    for (int k = 0; k < 2; k++) {
+        const double s = k ? bridge_asymmetry(1, 2) : 0;
+        const double volume[2] = {8e-9, 1e-9}, gap[2] = {2e-4, 1e-4};
+        double force[2];
+        for (int v = 0; v < 2; v++)
+            bridge_ratios_forces(ratios, 1, &s, &volume[v], &gap[v], &force[v]);
+        assert_close(force[1], force[0], 1e-12);
+        assert_close(2 * bridge_ratios_rupture(ratios, s, volume[1]),
+                     bridge_ratios_rupture(ratios, s, volume[0]), 1e-12);
+    }
+    bridge_ratios_free(ratios);
+}
+
 static void test_many_forces_of_models(void **state)
 {
     (void)state;
@@ -95,6 +201,9 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_error),
+                                       cmocka_unit_test(test_unequal_radii),
+                                       cmocka_unit_test(test_equal_among_unequal),
+                                       cmocka_unit_test(test_volumes_beyond),
                                        cmocka_unit_test(test_many_forces_of_models)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

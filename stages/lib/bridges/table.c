@@ -9,18 +9,6 @@
 
 typedef double quad __attribute__((vector_size(32)));
 typedef int64_t mask __attribute__((vector_size(32)));
-typedef float four __attribute__((vector_size(16)));
-
-// The terms of a patch's polynomial, still to be added up.
-static inline four terms_of(const eight row[2], float u, float w)
-{
-    const float square = w * w;
-    const eight rows = row[0] + u * u * row[1];
-    const four low = {rows[0], rows[1], rows[2], rows[3]};
-    const four high = {rows[4], rows[5], rows[6], rows[7]};
-    const four powers = {1, w, square, w * square};
-    return (low + u * high) * powers;
-}
 
 double bridge_table_force(const struct bridge_table *table, double volume, double gap)
 {

@@ -29,6 +29,7 @@ enum { WIDE = 64, NARROW = 4, PLACES = WIDE + NARROW };
 enum { TURNING_ORDER = 6, ORDER = 4 }; // coefficients of 1/A, and of all else
 
 typedef float eight __attribute__((vector_size(32)));
+typedef float four __attribute__((vector_size(16)));
 
 // Of the least volume, those above the third of the fraction.
 static const int least_bits = (1023 - OCTAVES) * EIGHTHS;
@@ -67,6 +68,13 @@ static inline struct volume_place place_volume(double volume)
     return (struct volume_place){(int)(bits >> 49) - least_bits, 2 * fraction - 3};
 }
 
+// The volume at U of a patch, from -1 to 1.
+static inline double patch_volume(int patch, double u)
+{
+    const double octave = ldexp(BRIDGE_TABLE_LEAST, patch / EIGHTHS);
+    return octave * (1 + (patch % EIGHTHS + 0.5 * (u + 1)) / EIGHTHS);
+}
+
 #define POLYNOMIAL(c, u)                                                               \
     (((c)[0] + (u) * (c)[1]) + (u) * (u) * ((c)[2] + (u) * (c)[3]) +                   \
      (u) * (u) * ((u) * (u)) * ((c)[4] + (u) * (c)[5]))
@@ -77,10 +85,29 @@ static inline double end_at(const struct bridge_table *table, struct volume_plac
     return (c[0] + u * c[1]) + u * u * (c[2] + u * c[3]);
 }
 
+static inline bool breaks_in(const double end[ORDER])
+{
+    bool breaks = false;
+    for (int k = 0; k < ORDER; k++)
+        breaks = breaks || fabs(end[k]) > 0;
+    return breaks;
+}
+
 // How many places of zeta are below it, from zeta in the wide ones.
 static inline double along(double wide)
 {
     return wide + (wide < NARROW ? wide : NARROW);
+}
+
+// The terms of a patch's polynomial, still to be added up.
+static inline four terms_of(const eight row[2], float u, float w)
+{
+    const float square = w * w;
+    const eight rows = row[0] + u * u * row[1];
+    const four low = {rows[0], rows[1], rows[2], rows[3]};
+    const four high = {rows[4], rows[5], rows[6], rows[7]};
+    const four powers = {1, w, square, w * square};
+    return (low + u * high) * powers;
 }
 
 struct place {

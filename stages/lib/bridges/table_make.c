@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A table from exact solutions at Chebyshev's nodes.
+#include "bridges/table_make.h"
 #include "basics/memory.h"
-#include "bridges/equilibrium.h"
-#include "bridges/table_layout.h"
 
 #include <stdlib.h>
 
@@ -27,12 +26,6 @@ static void fit(const double *value, int count, double *power)
         for (int p = 0; p <= n; p++)
             power[p] += sum * powers[n][p];
     }
-}
-
-static double patch_volume(int patch, double u)
-{
-    const double octave = ldexp(BRIDGE_TABLE_LEAST, patch / EIGHTHS);
-    return octave * (1 + (patch % EIGHTHS + 0.5 * (u + 1)) / EIGHTHS);
 }
 
 // zeta of node J of a place, from 0 at the turning point up.
@@ -104,14 +97,15 @@ static enum status fit_end(const struct bodies *bodies, int patch,
 
 // Where symmetry breaks well before the turning point, that is too far to make forces
 // steep, and the branch may wind on its way there: then A is where the bridge ruptures.
-static enum status fit_volumes(const struct bodies *bodies, int patch,
+static enum status fit_volumes(const struct bodies *bodies, int patch, bool to_rupture,
                                struct volume_patch *at, double end[ORDER])
 {
     const double well_before = 0.1;
     at->steepness = 1 / (1.2 * sqrt(patch_volume(patch, 0)));
-    enum status status = fit_turning(bodies, patch, false, at);
-    if (!status) status = fit_end(bodies, patch, at, end);
-    if (!status && end[0] < well_before) return STATUS_OK;
+    enum status status = STATUS_OK;
+    if (!to_rupture) status = fit_turning(bodies, patch, false, at);
+    if (!to_rupture && !status) status = fit_end(bodies, patch, at, end);
+    if (!to_rupture && !status && end[0] < well_before) return STATUS_OK;
     memset(end, 0, ORDER * sizeof *end);
     return fit_turning(bodies, patch, true, at);
 }
@@ -132,19 +126,26 @@ static void fit_place(const double value[ORDER][SAMPLES], int place, eight row[2
     }
 }
 
-static enum status fill_patch(const struct bodies *bodies, int patch,
-                              struct bridge_table *table)
+enum status make_patch(const struct bodies *bodies, int patch, bool to_rupture,
+                       struct volume_patch *at, double end[ORDER],
+                       eight force[PLACES][2])
 {
-    struct volume_patch *at = &table->volume[patch];
     double value[ORDER][SAMPLES];
-    enum status status = fit_volumes(bodies, patch, at, table->end[patch]);
+    enum status status = fit_volumes(bodies, patch, to_rupture, at, end);
     for (int v = 0; v < ORDER && !status; v++) {
         const double u = node(v, ORDER);
         status = sample(bodies, patch_volume(patch, u), at, u, value[v]);
     }
     for (int place = 0; place < PLACES && !status; place++)
-        fit_place(value, place, table->force[patch][place]);
+        fit_place(value, place, force[place]);
     return status;
+}
+
+static enum status fill_patch(const struct bodies *bodies, int patch,
+                              struct bridge_table *table)
+{
+    return make_patch(bodies, patch, false, &table->volume[patch], table->end[patch],
+                      table->force[patch]);
 }
 
 // The largest error of stable bridges at places between the nodes, on the border of two
@@ -175,14 +176,6 @@ static enum status measure(const struct bodies *bodies,
         *error = fmax(*error, fabs(ours - exact) / fmax(fabs(exact), least));
     }
     return STATUS_OK;
-}
-
-static bool breaks_in(const double end[ORDER])
-{
-    bool breaks = false;
-    for (int k = 0; k < ORDER; k++)
-        breaks = breaks || fabs(end[k]) > 0;
-    return breaks;
 }
 
 enum status bridge_table_create(const double radius[2], const double contact_angle[2],

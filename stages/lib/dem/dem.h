@@ -71,8 +71,8 @@ struct dem_bond_material {
 // Liquid bridges between grains [G 2]: one forms where two touch and lasts until it
 // ruptures, for the models at the distance of [G 2]. Walls hold none.
 struct dem_liquid {
-    enum bridge_model model; // not BRIDGE_EXACT; BRIDGE_TABLE, which is as exact, only
-                             // for grains of one radius
+    enum bridge_model model; // not BRIDGE_EXACT; BRIDGE_TABLE is as good and takes
+                             // seconds to make [bridges/ratios.h]
     double surface_tension;  // N/m, > 0
     double contact_angle;    // rad, in [0,pi)
     double volume;           // m3, > 0: of each bridge [G 4.1], or on each grain

@@ -66,9 +66,9 @@ struct material {
 
 // The liquid of a wet scene, and what holds for all of it.
 struct liquid {
-    struct dem_liquid is;       // scaled
-    struct bridge_table *table; // of BRIDGE_TABLE
-    double reach;               // the longest gap that any bridge can have
+    struct dem_liquid is;        // scaled
+    struct bridge_ratios *table; // of BRIDGE_TABLE
+    double reach;                // the longest gap that any bridge can have
     // (n_particle) bridges of each grain, at the end of the last cycle and as they come
     // and go in this one; whether the two differ.
     int32_t *bridges, *next;

@@ -9,6 +9,7 @@
 #include "dem/engine.h"
 
 #include "basics/memory.h"
+#include "bridges/ratios.h"
 #include "geometry/neighbours.h"
 
 #include <math.h>
@@ -22,7 +23,7 @@ enum { BATCH = 32 * PAIRS_IN_GROUP };
 struct pulling {
     int count;
     int pair[BATCH];
-    double volume[BATCH], gap[BATCH], force[BATCH];
+    double asymmetry[BATCH], volume[BATCH], gap[BATCH], force[BATCH];
 };
 
 double bridge_reach(const struct dem *dem)
@@ -31,9 +32,9 @@ double bridge_reach(const struct dem *dem)
 }
 
 // In effective radii [G 2]; of the table, where the exact bridge ruptures.
-static double rupture_gap(const struct liquid *liquid, double volume)
+static double rupture_gap(const struct liquid *liquid, double asymmetry, double volume)
 {
-    if (liquid->table) return bridge_table_rupture(liquid->table, volume);
+    if (liquid->table) return bridge_ratios_rupture(liquid->table, asymmetry, volume);
     const struct bridge bridge = {
         {1, 1}, {liquid->is.contact_angle, liquid->is.contact_angle}, 1, volume};
     return bridge_rupture_distance(&bridge);
@@ -60,7 +61,7 @@ static void set_volume(const struct dem *dem, struct liquid_group *group, int la
         volume_between(dem->liquid, i, j) / (radius * radius * radius);
     if (!(volume < group->volume[lane]) && !(volume > group->volume[lane])) return;
     group->volume[lane] = volume;
-    group->rupture[lane] = rupture_gap(dem->liquid, volume);
+    group->rupture[lane] = rupture_gap(dem->liquid, group->asymmetry[lane], volume);
 }
 
 static void count_bridge(struct liquid *liquid, int i, int j, int by)
@@ -115,6 +116,7 @@ static void keep_bridge(const struct dem *dem, int k, int lane, double gap,
         set_volume(dem, liquid, lane, i, j);
     if (!are || (gap <= 0 && !is->pulls_in_contact)) return;
     pulling->pair[pulling->count] = k * PAIRS_IN_GROUP + lane;
+    pulling->asymmetry[pulling->count] = liquid->asymmetry[lane];
     pulling->volume[pulling->count] = liquid->volume[lane];
     pulling->gap[pulling->count++] = gap;
 }
@@ -122,8 +124,8 @@ static void keep_bridge(const struct dem *dem, int k, int lane, double gap,
 static void find_forces(const struct liquid *liquid, struct pulling *pulling)
 {
     if (liquid->table)
-        bridge_table_forces(liquid->table, pulling->count, pulling->volume,
-                            pulling->gap, pulling->force);
+        bridge_ratios_forces(liquid->table, pulling->count, pulling->asymmetry,
+                             pulling->volume, pulling->gap, pulling->force);
     else
         bridge_model_forces(liquid->is.model, liquid->is.contact_angle, pulling->count,
                             pulling->volume, pulling->gap, pulling->force);
@@ -184,7 +186,9 @@ void set_bridge_radius(const struct dem *dem, int pair)
     const int lane = pair % PAIRS_IN_GROUP;
     const double a = dem->place[first_grain(group, lane)].radius;
     const double b = dem->place[second_grain(group, lane)].radius;
-    dem->pairs.liquid[pair / PAIRS_IN_GROUP].radius[lane] = 2 / (1 / a + 1 / b);
+    struct liquid_group *liquid = &dem->pairs.liquid[pair / PAIRS_IN_GROUP];
+    liquid->radius[lane] = 2 / (1 / a + 1 / b);
+    if (dem->liquid->table) liquid->asymmetry[lane] = bridge_asymmetry(a, b);
 }
 
 void form_bridges(struct dem *dem)
@@ -195,30 +199,33 @@ void form_bridges(struct dem *dem)
     }
 }
 
-// The longest gap that a bridge of any two grains can have.
-static double longest_gap(const struct dem *dem, const struct liquid *liquid)
+// Of a bridge, and least among grains that all touch as many others as find room about
+// the largest: so many smallest ones at four a square of their radius.
+static struct bridge_sizes sizes_of(const struct dem *dem, const struct liquid *liquid)
 {
-    double reach = 0;
-    const double radius[2] = {dem->smallest_radius, dem->largest_radius};
-    for (int k = 0; k < 2; k++) {
-        const double cube = radius[k] * radius[k] * radius[k];
-        const double volume = (liquid->is.shared ? 2 : 1) * liquid->is.volume / cube;
-        reach = fmax(reach, radius[k] * rupture_gap(liquid, volume));
-    }
-    return reach;
+    const double small = dem->smallest_radius, large = dem->largest_radius;
+    const double around = 4 * (1 + large / small) * (1 + large / small);
+    const double volume = liquid->is.volume;
+    return (struct bridge_sizes){{small, large},
+                                 {liquid->is.shared ? 2 * volume / around : volume,
+                                  liquid->is.shared ? 2 * volume : volume}};
 }
 
-static enum status make_table(struct dem *dem, struct liquid *liquid,
-                              struct reason *reason)
+// The longest gap that a bridge of any two grains can have: equal ones hold it longest
+// for their effective radius, and from the smallest to the largest some are looked at.
+static double longest_gap(const struct dem *dem, const struct liquid *liquid)
 {
-    const double one[2] = {1, 1}, angle = liquid->is.contact_angle;
-    if (dem->largest_radius - dem->smallest_radius > 1e-12 * dem->largest_radius)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "the table of exact bridges is for grains of one radius, these "
-                      "are from %g to %g m: another model will do",
-                      dem->smallest_radius * dem->unit.length,
-                      dem->largest_radius * dem->unit.length);
-    return bridge_table_create(one, (double[2]){angle, angle}, &liquid->table, reason);
+    enum { LOOKED_AT = 64 };
+    const double between = 1.001; // those looked at
+    const double ratio = dem->largest_radius / dem->smallest_radius;
+    const double volume = (liquid->is.shared ? 2 : 1) * liquid->is.volume;
+    double reach = 0;
+    for (int k = 0; k <= LOOKED_AT; k++) {
+        const double radius = dem->smallest_radius * pow(ratio, k / (double)LOOKED_AT);
+        const double gap = rupture_gap(liquid, 0, volume / (radius * radius * radius));
+        reach = fmax(reach, radius * gap);
+    }
+    return ratio > 1 ? between * reach : reach;
 }
 
 enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
@@ -232,7 +239,9 @@ enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
     liquid->bridges = NEW_ARRAY(int32_t, dem->n_particle);
     liquid->next = NEW_ARRAY(int32_t, dem->n_particle);
     if (is->model == BRIDGE_TABLE) {
-        const enum status status = make_table(dem, liquid, reason);
+        const struct bridge_sizes sizes = sizes_of(dem, liquid);
+        const enum status status =
+            bridge_ratios_create(&sizes, is->contact_angle, &liquid->table, reason);
         if (status) return status;
     }
     liquid->reach = longest_gap(dem, liquid);
@@ -242,7 +251,7 @@ enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
 void free_liquid(struct liquid *liquid)
 {
     if (!liquid) return;
-    bridge_table_free(liquid->table);
+    bridge_ratios_free(liquid->table);
     free(liquid->bridges);
     free(liquid->next);
     free(liquid);

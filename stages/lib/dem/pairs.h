@@ -71,8 +71,9 @@ struct loss_group {
 struct liquid_group {
     _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
     double radius[PAIRS_IN_GROUP];                    // effective [G 1]
-    double volume[PAIRS_IN_GROUP];                    // over its cube; 0: no bridge
-    double rupture[PAIRS_IN_GROUP]; // the gap at which it ruptures, over the radius
+    double asymmetry[PAIRS_IN_GROUP]; // of the two radii [bridges/ratios.h]
+    double volume[PAIRS_IN_GROUP];    // over its cube; 0: no bridge
+    double rupture[PAIRS_IN_GROUP];   // the gap at which it ruptures, over the radius
 };
 
 // The numbers of a contact with overlap U. Linear: normal force = stiffness U, shear

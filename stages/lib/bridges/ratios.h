@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exact force of bridges between grains of many sizes, at the price of a fit:
+// tables (bridges/table.h) at seventeen ratios of radii, and between them by
+// interpolation.
+//
+// Lengths are over each bridge's effective radius [G 1], as everywhere. What is left of
+// the radii then is their asymmetry,
+//     s = cbrt(|R1 - R2|/(R1 + R2)),
+// 0 between equal grains, 0.97 at 1 to 20, 1 on a plane. The cube root is what makes
+// forces smooth: where equal grains rupture by a break of symmetry, slightly unequal
+// ones do so at a gap that is shorter by the power 2/3 of the difference.
+#ifndef CRAQUELURE_BRIDGE_RATIOS_H
+#define CRAQUELURE_BRIDGE_RATIOS_H
+
+#include "basics/status.h"
+
+// What bridges there will be: only what they need is tabulated.
+struct bridge_sizes {
+    double radius[2]; // of the smallest and largest grain; any unit
+    double volume[2]; // of the smallest and largest bridge; its cube
+};
+
+struct bridge_ratios;
+
+// For one CONTACT_ANGLE (rad). Equal radii and one volume take a hundredth of a second,
+// radii of 1 to 20 some ten seconds of one core (OpenMP shares them out) and up to 20
+// MB; the same numbers on every call. Returns STATUS_OK, STATUS_BAD_DATA, or
+// STATUS_NOT_CONVERGED where the exact solution fails. The caller frees it.
+enum status bridge_ratios_create(const struct bridge_sizes *sizes, double contact_angle,
+                                 struct bridge_ratios **ratios, struct reason *reason);
+void bridge_ratios_free(struct bridge_ratios *ratios);
+
+// s of two grains; 0 where they differ by rounding only.
+double bridge_asymmetry(double first_radius, double second_radius);
+
+// Forces over surface tension and effective radius, positive when they pull, of COUNT
+// bridges: their asymmetries, their volumes over the cube of the effective radius,
+// their gaps over it. Between equal grains as bridge_table_force has them.
+// Docs/bridges.md has the errors between others. A volume that is not tabulated (of
+// bridges beyond SIZES, BRIDGE_TABLE_LEAST or BRIDGE_TABLE_MOST) is taken as the
+// nearest that is, with gaps made longer or shorter as the cube root of the volume.
+void bridge_ratios_forces(const struct bridge_ratios *ratios, int count,
+                          const double *asymmetry, const double *volume,
+                          const double *gap, double *force);
+
+// The gap at which a bridge ruptures; it is longest between equal grains.
+double bridge_ratios_rupture(const struct bridge_ratios *ratios, double asymmetry,
+                             double volume);
+
+#endif
