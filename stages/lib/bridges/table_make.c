@@ -5,14 +5,12 @@
 
 #include <stdlib.h>
 
-// Chebyshev's nodes and polynomials: node K of COUNT, from 1 down to -1.
-static double node(int k, int count)
+double chebyshev_node(int k, int count)
 {
     return cos(M_PI * (k + 0.5) / count);
 }
 
-// Interpolates VALUE at COUNT nodes; gives the coefficients of powers.
-static void fit(const double *value, int count, double *power)
+void fit_polynomial(const double *value, int count, double *power)
 {
     static const double powers[TURNING_ORDER][TURNING_ORDER] = {
         {1},           {0, 1},           {-1, 0, 2},
@@ -35,10 +33,7 @@ static double zeta_at(int place, double w)
     return (x < 2 * NARROW ? 0.5 * x : x - NARROW) / WIDE;
 }
 
-enum { SAMPLES = PLACES * ORDER };
-
-// F (1 + a/C)^2 at all places' nodes for one volume.
-static enum status sample(const struct bodies *bodies, double volume,
+enum status sample_forces(const struct bodies *bodies, double volume,
                           const struct volume_patch *patch, double u,
                           double values[SAMPLES])
 {
@@ -46,7 +41,8 @@ static enum status sample(const struct bodies *bodies, double volume,
     double gap[SAMPLES];
     struct equilibrium found[SAMPLES];
     for (int s = 0; s < SAMPLES; s++) { // from contact on: gaps rise
-        const double zeta = zeta_at(PLACES - 1 - s / ORDER, node(s % ORDER, ORDER));
+        const double zeta =
+            zeta_at(PLACES - 1 - s / ORDER, chebyshev_node(s % ORDER, ORDER));
         gap[s] = (1 - zeta * zeta) / (inverse + zeta * zeta * steepness);
     }
     const enum status status = follow_to_turning(bodies, volume, SAMPLES, gap, found);
@@ -67,13 +63,13 @@ static enum status fit_turning(const struct bodies *bodies, int patch, bool brok
     double inverse[TURNING_ORDER];
     for (int k = 0; k < TURNING_ORDER; k++) {
         struct equilibrium last;
-        const double volume = patch_volume(patch, node(k, TURNING_ORDER));
+        const double volume = patch_volume(patch, chebyshev_node(k, TURNING_ORDER));
         const enum status status =
             (broken ? find_rupture : find_turning)(bodies, volume, &last);
         if (status) return status;
         inverse[k] = 1 / last.gap;
     }
-    fit(inverse, TURNING_ORDER, at->turning);
+    fit_polynomial(inverse, TURNING_ORDER, at->turning);
     return STATUS_OK;
 }
 
@@ -84,28 +80,27 @@ static enum status fit_end(const struct bodies *bodies, int patch,
     double zeta[ORDER];
     for (int k = 0; k < ORDER; k++) {
         struct equilibrium last;
-        const double u = node(k, ORDER);
+        const double u = chebyshev_node(k, ORDER);
         const enum status status = find_rupture(bodies, patch_volume(patch, u), &last);
         if (status) return status;
         const double rest = 1 - last.gap * POLYNOMIAL(at->turning, u);
         zeta[k] = sqrt(fmax(rest, 0) / (1 + last.gap * at->steepness));
         if (zeta[k] < 1e-4) zeta[k] = 0;
     }
-    fit(zeta, ORDER, end);
+    fit_polynomial(zeta, ORDER, end);
     return STATUS_OK;
 }
 
 // Where symmetry breaks well before the turning point, that is too far to make forces
 // steep, and the branch may wind on its way there: then A is where the bridge ruptures.
-static enum status fit_volumes(const struct bodies *bodies, int patch, bool to_rupture,
+static enum status fit_volumes(const struct bodies *bodies, int patch,
                                struct volume_patch *at, double end[ORDER])
 {
     const double well_before = 0.1;
     at->steepness = 1 / (1.2 * sqrt(patch_volume(patch, 0)));
-    enum status status = STATUS_OK;
-    if (!to_rupture) status = fit_turning(bodies, patch, false, at);
-    if (!to_rupture && !status) status = fit_end(bodies, patch, at, end);
-    if (!to_rupture && !status && end[0] < well_before) return STATUS_OK;
+    enum status status = fit_turning(bodies, patch, false, at);
+    if (!status) status = fit_end(bodies, patch, at, end);
+    if (!status && end[0] < well_before) return STATUS_OK;
     memset(end, 0, ORDER * sizeof *end);
     return fit_turning(bodies, patch, true, at);
 }
@@ -115,26 +110,25 @@ static void fit_place(const double value[ORDER][SAMPLES], int place, eight row[2
 {
     double across[ORDER][ORDER], power[ORDER];
     for (int v = 0; v < ORDER; v++) {
-        fit(&value[v][place * ORDER], ORDER, power);
+        fit_polynomial(&value[v][place * ORDER], ORDER, power);
         for (int j = 0; j < ORDER; j++)
             across[j][v] = power[j];
     }
     for (int j = 0; j < ORDER; j++) {
-        fit(across[j], ORDER, power);
+        fit_polynomial(across[j], ORDER, power);
         for (int i = 0; i < ORDER; i++)
             row[i / 2][i % 2 * ORDER + j] = (float)power[i];
     }
 }
 
-enum status make_patch(const struct bodies *bodies, int patch, bool to_rupture,
-                       struct volume_patch *at, double end[ORDER],
-                       eight force[PLACES][2])
+enum status make_patch(const struct bodies *bodies, int patch, struct volume_patch *at,
+                       double end[ORDER], eight force[PLACES][2])
 {
     double value[ORDER][SAMPLES];
-    enum status status = fit_volumes(bodies, patch, to_rupture, at, end);
+    enum status status = fit_volumes(bodies, patch, at, end);
     for (int v = 0; v < ORDER && !status; v++) {
-        const double u = node(v, ORDER);
-        status = sample(bodies, patch_volume(patch, u), at, u, value[v]);
+        const double u = chebyshev_node(v, ORDER);
+        status = sample_forces(bodies, patch_volume(patch, u), at, u, value[v]);
     }
     for (int place = 0; place < PLACES && !status; place++)
         fit_place(value, place, force[place]);
@@ -144,7 +138,7 @@ enum status make_patch(const struct bodies *bodies, int patch, bool to_rupture,
 static enum status fill_patch(const struct bodies *bodies, int patch,
                               struct bridge_table *table)
 {
-    return make_patch(bodies, patch, false, &table->volume[patch], table->end[patch],
+    return make_patch(bodies, patch, &table->volume[patch], table->end[patch],
                       table->force[patch]);
 }
 

@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One patch of volumes of a table, from exact solutions; for the files that make
-// tables.
+// What tables are made of, from exact solutions; for the files that make them.
 #ifndef CRAQUELURE_BRIDGE_TABLE_MAKE_H
 #define CRAQUELURE_BRIDGE_TABLE_MAKE_H
 
 #include "bridges/equilibrium.h"
 #include "bridges/table_layout.h"
 
-// The patch PATCH of bridges between BODIES: how gaps become zeta, where in zeta they
-// rupture (END; 0 everywhere: at zeta 0) and the forces. If TO_RUPTURE zeta is 0 where
-// a bridge ruptures, also where its symmetry breaks before the turning point. Returns
-// STATUS_OK or STATUS_NOT_CONVERGED.
-enum status make_patch(const struct bodies *bodies, int patch, bool to_rupture,
-                       struct volume_patch *at, double end[ORDER],
-                       eight force[PLACES][2]);
+// Chebyshev's node K of COUNT, from 1 down to -1.
+double chebyshev_node(int k, int count);
+// Interpolates VALUE at COUNT of them, at most TURNING_ORDER; gives the coefficients of
+// powers.
+void fit_polynomial(const double *value, int count, double *power);
+
+// F (1 + a/C)^2 at the ORDER nodes of all places in zeta, for one volume, with A and C
+// as AT has them at U. STATUS_OK or STATUS_NOT_CONVERGED.
+enum { SAMPLES = PLACES * ORDER };
+enum status sample_forces(const struct bodies *bodies, double volume,
+                          const struct volume_patch *at, double u,
+                          double values[SAMPLES]);
+
+// The patch PATCH of a table of bridges between BODIES: how gaps become zeta, where in
+// zeta they rupture (END; 0 everywhere: at zeta 0) and the forces. STATUS_OK or
+// STATUS_NOT_CONVERGED.
+enum status make_patch(const struct bodies *bodies, int patch, struct volume_patch *at,
+                       double end[ORDER], eight force[PLACES][2]);
 
 #endif
