@@ -55,7 +55,6 @@ static const struct part of_joint[] = {
     {offsetof(struct joint, arm), 2},
     {offsetof(struct joint, overlap), 1},
     {offsetof(struct joint, bond_radius), 1},
-    {offsetof(struct joint, moments_left_out), 1},
     {offsetof(struct joint, bond_stiffness), STRAINS},
     {offsetof(struct joint, point_overlap), 1},
     {offsetof(struct joint, contact_along), 1},
@@ -213,7 +212,9 @@ static bool restore_kinds(struct equilibrium *e, struct array_reader *reader)
     e->n_joint = (int)n;
     e->joint = reallocate(e->joint, (size_t)n, sizeof *e->joint);
     for (int j = 0; j < e->n_joint; j++)
-        e->joint[j] = (struct joint){.grain = {kind[j][0], kind[j][1]},
+        e->joint[j] = (struct joint){.moments_left_out =
+                                         e->setup.bond.moments_left_out,
+                                     .grain = {kind[j][0], kind[j][1]},
                                      .bond = kind[j][2],
                                      .is_bonded = kind[j][3],
                                      .is_gone = kind[j][4],

@@ -131,7 +131,7 @@ for pressure in ["1e-308", "1e-200"]:
             f"saturation_pressure={pressure}",
             rf"network: saturation_pressure = {pressure} Pa, diffusivity = \S+ m2/s: the time in "
             r"which a throat dries must be from 1e-150 to 1e150 s, is \S+ s",
-            program=("dry", "network"))
+            program=("dry", "--quiet", "network"))
 setting("a conductance that vanishes is refused", BAD_DATA, "conductance_factor=1e-300",
         r"flow.conductance_factor: must be from 1e-100 to 1e\+100, got 1e-300",
         program=("flow", "packing"))

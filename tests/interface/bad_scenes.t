@@ -30,7 +30,8 @@ setting("no open wall is refused", BAD_DATA, "open=[]",
         "network: open walls: must be one at least, or nothing would dry", program=DRY)
 refused("a network without liquid is refused", BAD_DATA,
         ["dry", damaged("network", value("throats/kind", slice(None), 2))],
-        "damaged: /throats/kind: no throat holds liquid, there is nothing to dry")
+        "damaged: /throats/kind: no throat holds liquid, there is nothing to dry: "
+        "all are imposed empty, or closed by grains")
 setting("a share of throats above one is refused", BAD_DATA, "threshold=2",
         "merge-nodes.threshold: must be from 0 to 1 where it is a fraction, got 2",
         program=("merge-nodes", "--set", "measure=fraction", "network"))
@@ -57,7 +58,7 @@ setting("grains without mass to speak of are refused", BAD_DATA, "density=5e-324
 setting("a tolerance that is not met is reported", UNSTABLE, "tolerance=1e-12",
         r"forces: step \d of the load .*: unbalanced ratio \S+ is not below 1e-12 after 9 "
         "cycles", program=(*REPLAY, "--set", "time_step_safety=0.02", "--set", "cycles=9",
-                             "--set", "most_cycles=9"))
+                             "--set", "most_cycles=9", "--set", "unsettled=stop"))
 
 setting("a table of too many slices and intervals is refused", BAD_DATA, "slices=100000",
         "crackstats.slices: times intervals must be at most 1000000, got 100000 times 11",

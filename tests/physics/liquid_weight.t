@@ -25,7 +25,7 @@ with scratch() as folder:
         run("merge-nodes", *words(merge), "-o", at(name), input=made)
 
     def dry(name, *settings, output="drying"):
-        run("dry", "-q", *words((CLOSED, f"density={RHO}", *settings)), at(name), "-o", at(output))
+        run("dry", "-q", *words((CLOSED, f"liquid_density={RHO}", *settings)), at(name), "-o", at(output))
         return h5py.File(at(output))
 
     def forces(*settings, input="drying", output="forces"):
@@ -145,7 +145,7 @@ with scratch() as folder:
 
     # ---- refused ------------------------------------------------------------------------
     network("repeats", ("counts=[4,4,4]", f"radius={r}", "periodic=[false,false,true]"))
-    run("dry", "-q", "--set", f"density={RHO}", "--set", 'open=["+x"]', at("repeats"), "-o", at("drying"))
+    run("dry", "-q", "--set", f"liquid_density={RHO}", "--set", 'open=["+x"]', at("repeats"), "-o", at("drying"))
     said = subprocess.run([f"{BIN}/force-protocol", "--set", "gravity=9.81", at("drying"), "-o", at("forces")],
                           capture_output=True, text=True)
     ok(said.returncode == 65 and "force-protocol.gravity: must be 0 in a box that repeats along z" in said.stderr,
