@@ -104,6 +104,42 @@ static void a_loop_of_hysteresis(void **state)
     packing_free(&packing);
 }
 
+// A grain bonded over gaps to held ones on both sides and pushed over a gap against a
+// third, with a load across: the contact that closes carries next to nothing across
+// under this load, nor as it lasts (nothing where rest is found at once, not by a way
+// in time as here). What it grows by goes through both bonds, and through the contact
+// as far as their twist lets the grain turn. docs/equilibrium.md says so.
+static void a_contact_that_closes(void **state)
+{
+    (void)state;
+    const uint8_t fixed[4] = {1, 0, 1, 1};
+    struct packing packing = new_packing(4, 2);
+    const double gap = 1e-3 * RADIUS, aside = 2.01 * RADIUS, contact = stiffness / 2;
+    packing.position[0].x = -aside;
+    packing.position[2].x = aside;
+    packing.position[3].z = 2 * RADIUS + gap;
+    packing.bond[0][1] = packing.bond[1][0] = 1;
+    packing.bond[1][1] = 2;
+    packing.lower = (struct vector){-aside, -aside, -aside};
+    packing.upper = (struct vector){aside, aside, aside};
+    struct equilibrium *equilibrium = make(&packing, fixed, false, INFINITY);
+    const double pushed = 4 * glue * gap, load = 1e-3 * pushed, course[] = {1, 1, 1.1};
+    const double lever = contact / (glue * pow(radius_fraction, 2));
+    double first = 0;
+    for (int k = 0; k < 3; k++) {
+        struct vector moved[4], force[4] = {{0, 0, 0}};
+        force[1] = (struct vector){0, course[k] * load, pushed};
+        find(equilibrium, force, moved);
+        const double more = (course[k] - 1) * load / (2 * glue + contact / (1 + lever));
+        if (k == 0) first = moved[1].y;
+        assert_close(moved[1].z, (pushed + contact * gap) / (2 * glue + contact), 1e-9);
+        assert_close(first, load / (2 * glue), 0.01); // 0.85 of it if it stuck
+        assert_within(moved[1].y - first, more, 1e-9 * first + 0.005 * more);
+    }
+    equilibrium_free(equilibrium);
+    packing_free(&packing);
+}
+
 enum { ROW = 12 };
 
 // Moves of a row under PULL at its end of which the last SLID slide: each is held by
@@ -280,6 +316,7 @@ static void slip_that_is_judged_softly(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_loop_of_hysteresis),
+                                       cmocka_unit_test(a_contact_that_closes),
                                        cmocka_unit_test(a_front_of_slip),
                                        cmocka_unit_test(a_block_on_a_slope),
                                        cmocka_unit_test(a_load_is_without_rest_once),
