@@ -161,23 +161,31 @@ static void test_equal_among_unequal(void **state)
     bridge_table_free(table);
 }
 
-// A volume that is not tabulated: as the nearest that is, gaps by the cube root.
+// Of volumes that are not tabulated, from the nearest that is: force and rupture beside
+// the exact ones.
 static void test_volumes_beyond(void **state)
 {
     (void)state;
-    const struct bridge_sizes sizes = {{1, 2}, {1e-3, 1e-3}};
+    const struct bridge_sizes sizes = {{1, 2}, {1e-10, 2}};
+    const double volume[] = {5e-10, 1e-10, 1.3, 2}, within[] = {0.03, 0.08, 0.15, 0.25};
     struct bridge_ratios *ratios;
     struct reason reason;
     assert_false(bridge_ratios_create(&sizes, 0, &ratios, &reason));
-    for (int k = 0; k < 2; k++) {
-        const double s = k ? bridge_asymmetry(1, 2) : 0;
-        const double volume[2] = {8e-9, 1e-9}, gap[2] = {2e-4, 1e-4};
-        double force[2];
-        for (int v = 0; v < 2; v++)
-            bridge_ratios_forces(ratios, 1, &s, &volume[v], &gap[v], &force[v]);
-        assert_close(force[1], force[0], 1e-12);
-        assert_close(2 * bridge_ratios_rupture(ratios, s, volume[1]),
-                     bridge_ratios_rupture(ratios, s, volume[0]), 1e-12);
+    for (int k = 0; k < 8; k++) {
+        const double v = volume[k / 2], e = k % 2 ? 1.0 / 3 : 0;
+        const double s = k % 2 ? bridge_asymmetry(1, 2) : 0;
+        const struct bodies bodies = {{1 - e, 1 + e}, {0, 0}};
+        struct equilibrium last, exact;
+        assert_false(find_rupture(&bodies, v, &last));
+        assert_close(bridge_ratios_rupture(ratios, s, v), last.gap, v < 1 ? 1e-4 : 0.1);
+        for (int share = 0; share < 9; share++) {
+            const double gap = pow(0.1 * share, 3) * last.gap;
+            double force;
+            assert_false(find_equilibrium(&bodies, v, gap, &exact));
+            bridge_ratios_forces(ratios, 1, &s, &v, &gap, &force);
+            assert_close(force, 2 * M_PI * arc_force(&bodies, &exact.arc),
+                         within[k / 2]);
+        }
     }
     bridge_ratios_free(ratios);
 }

@@ -46,26 +46,6 @@ static struct blend blend_at(double asymmetry, int interval)
     return blend;
 }
 
-// Where a volume lies among the patches of RANGE; one outside is taken as the nearest,
-// and SHRINK is what a gap is then multiplied by.
-struct chosen {
-    struct volume_place at;
-    double volume, shrink;
-};
-
-static struct chosen choose_volume(struct range range, double volume)
-{
-    struct chosen chosen = {place_volume(volume), volume, 1};
-    const bool is_less = chosen.at.patch < range.first || volume < BRIDGE_TABLE_LEAST;
-    const bool is_more = chosen.at.patch > range.last || volume > BRIDGE_TABLE_MOST;
-    if (!is_less && !is_more) return chosen;
-    chosen.at.patch = is_less ? range.first : range.last;
-    chosen.at.u = is_less ? -1 : 1 - 1e-9; // not the first of the next patch
-    chosen.volume = patch_volume(chosen.at.patch, chosen.at.u);
-    chosen.shrink = cbrt(chosen.volume / volume);
-    return chosen;
-}
-
 static int interval_of(double asymmetry)
 {
     return asymmetry < 1 ? (int)(asymmetry * INTERVALS) : INTERVALS - 1;
@@ -80,17 +60,15 @@ static double inverse_at(const struct ratio_patch *patch, const struct blend *bl
     return sum;
 }
 
-// Between grains of unequal radii.
+// ---- volumes that are tabulated -----------------------------------------------------
+
 static double unequal_force(const struct bridge_ratios *ratios, double asymmetry,
-                            double volume, double given_gap)
+                            double volume, double gap)
 {
-    const int interval = interval_of(asymmetry);
-    const struct blend blend = blend_at(asymmetry, interval);
-    const struct chosen chosen = choose_volume(ratios->range[interval], volume);
-    const struct ratio_patch *patch = &ratios->patch[chosen.at.patch / IN_HALF];
-    const double u = u_in_half(chosen.at);
-    const double gap = fmax(given_gap, 0) * chosen.shrink;
-    const double rest = 1 - gap * inverse_at(patch, &blend, u);
+    const struct blend blend = blend_at(asymmetry, interval_of(asymmetry));
+    const struct volume_place at = place_volume(volume);
+    const struct ratio_patch *patch = &ratios->patch[at.patch / IN_HALF];
+    const double u = u_in_half(at), rest = 1 - gap * inverse_at(patch, &blend, u);
     if (!(rest > 0)) return 0;
     const double shrink = 1 / (1 + gap * patch->steepness);
     const double x = along(WIDE * sqrt(rest * shrink));
@@ -107,10 +85,52 @@ static double unequal_force(const struct bridge_ratios *ratios, double asymmetry
     return shrink * shrink * (double)((term[0] + term[1]) + (term[2] + term[3]));
 }
 
-static double equal_force(const struct bridge_ratios *ratios, double volume, double gap)
+static double tabulated_force(const struct bridge_ratios *ratios, double asymmetry,
+                              double volume, double gap)
 {
-    const struct chosen chosen = choose_volume(ratios->equal_range, volume);
-    return bridge_table_force(ratios->equal, chosen.volume, gap * chosen.shrink);
+    return asymmetry > 0 ? unequal_force(ratios, asymmetry, volume, gap)
+                         : bridge_table_force(ratios->equal, volume, gap);
+}
+
+static double tabulated_rupture(const struct bridge_ratios *ratios, double asymmetry,
+                                double volume)
+{
+    if (!(asymmetry > 0)) return bridge_table_rupture(ratios->equal, volume);
+    const struct blend blend = blend_at(asymmetry, interval_of(asymmetry));
+    const struct volume_place at = place_volume(volume);
+    return 1 / inverse_at(&ratios->patch[at.patch / IN_HALF], &blend, u_in_half(at));
+}
+
+// ---- any volume ---------------------------------------------------------------------
+
+// The nearest volume that is tabulated.
+static double nearest_volume(const struct bridge_ratios *ratios, double asymmetry,
+                             double volume)
+{
+    const struct range range =
+        asymmetry > 0 ? ratios->range[interval_of(asymmetry)] : ratios->equal_range;
+    const int patch = place_volume(volume).patch;
+    if (patch < range.first || volume < BRIDGE_TABLE_LEAST)
+        return patch_volume(range.first, -1);
+    if (patch > range.last || volume > BRIDGE_TABLE_MOST)
+        return patch_volume(range.last, 1 - 1e-9); // not the first of the next
+    return volume;
+}
+
+// Of a volume that is not: what the nearest has at the same zeta, with A as the cube
+// root of the volume and C as its square root.
+static double other_force(const struct bridge_ratios *ratios, double asymmetry,
+                          double volume, double nearest, double gap)
+{
+    const double inverse = 1 / tabulated_rupture(ratios, asymmetry, nearest);
+    const double steepness = 1 / (1.2 * sqrt(nearest));
+    const double spread = 1 + gap * steepness * sqrt(nearest / volume);
+    const double rest = 1 - gap * inverse * cbrt(nearest / volume);
+    if (!(rest > 0)) return 0;
+    const double square = rest / spread; // of zeta
+    const double there = (1 - square) / (inverse + square * steepness);
+    const double ratio = (1 + there * steepness) / spread;
+    return ratio * ratio * tabulated_force(ratios, asymmetry, nearest, there);
 }
 
 void bridge_ratios_forces(const struct bridge_ratios *ratios, int count,
@@ -121,22 +141,17 @@ void bridge_ratios_forces(const struct bridge_ratios *ratios, int count,
         bridge_table_forces(ratios->equal, count, volume, gap, force);
         return;
     }
-    for (int k = 0; k < count; k++)
-        force[k] = asymmetry[k] > 0
-                       ? unequal_force(ratios, asymmetry[k], volume[k], gap[k])
-                       : equal_force(ratios, volume[k], gap[k]);
+    for (int k = 0; k < count; k++) {
+        const double s = asymmetry[k], v = volume[k], a = fmax(gap[k], 0);
+        const double nearest = nearest_volume(ratios, s, v);
+        force[k] = nearest < v || nearest > v ? other_force(ratios, s, v, nearest, a)
+                                              : tabulated_force(ratios, s, v, a);
+    }
 }
 
 double bridge_ratios_rupture(const struct bridge_ratios *ratios, double asymmetry,
                              double volume)
 {
-    if (!(asymmetry > 0)) {
-        const struct chosen chosen = choose_volume(ratios->equal_range, volume);
-        return bridge_table_rupture(ratios->equal, chosen.volume) / chosen.shrink;
-    }
-    const int interval = interval_of(asymmetry);
-    const struct blend blend = blend_at(asymmetry, interval);
-    const struct chosen chosen = choose_volume(ratios->range[interval], volume);
-    const struct ratio_patch *patch = &ratios->patch[chosen.at.patch / IN_HALF];
-    return 1 / (inverse_at(patch, &blend, u_in_half(chosen.at)) * chosen.shrink);
+    const double nearest = nearest_volume(ratios, asymmetry, volume);
+    return tabulated_rupture(ratios, asymmetry, nearest) * cbrt(volume / nearest);
 }

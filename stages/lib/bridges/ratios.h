@@ -35,10 +35,12 @@ double bridge_asymmetry(double first_radius, double second_radius);
 
 // Forces over surface tension and effective radius, positive when they pull, of COUNT
 // bridges: their asymmetries, their volumes over the cube of the effective radius,
-// their gaps over it. Between equal grains as bridge_table_force has them.
-// Docs/bridges.md has the errors between others. A volume that is not tabulated (of
-// bridges beyond SIZES, BRIDGE_TABLE_LEAST or BRIDGE_TABLE_MOST) is taken as the
-// nearest that is, with gaps made longer or shorter as the cube root of the volume.
+// their gaps over it (below 0: as at contact). Between equal grains as
+// bridge_table_force has them; docs/bridges.md has the errors between others. What a
+// volume that is not tabulated (of bridges beyond SIZES, BRIDGE_TABLE_LEAST or
+// BRIDGE_TABLE_MOST) has is told from the nearest that is: the gap of rupture as the
+// cube root of the volume, the gap over which the force falls next to contact as its
+// square root.
 void bridge_ratios_forces(const struct bridge_ratios *ratios, int count,
                           const double *asymmetry, const double *volume,
                           const double *gap, double *force);
