@@ -26,7 +26,8 @@ def bridge_range(scene):
         effective = 2e-3 / (1 + 1 / ratio)
         for angle in (0, 60, 120):
             for volume in (1e-9, 1e-5, 1e-2, 1):
-                got = bridge(scene, volume=volume * effective**3, contact_angle=angle, **body)
+                got = bridge(scene, volume=volume * effective**3, contact_angle=angle, surface_tension=0.0728,
+                             **body)
                 force, neck = np.array(got["force"]), np.array(got["neck_radius"])
                 must(np.isfinite(force).all() and not any(got["flags"]),
                      f"{ratio} {angle} {volume}: {force}")
