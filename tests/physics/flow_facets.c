@@ -107,6 +107,7 @@ static void test_two_grains_and_a_wall(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_three_grains),
         cmocka_unit_test(test_two_grains_and_a_wall),

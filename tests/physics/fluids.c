@@ -231,6 +231,7 @@ static void nothing_is_told_beyond_its_range(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(water_has_the_saturation_pressure_of_iapws_95),
         cmocka_unit_test(water_has_the_surface_tension_of_iapws),
