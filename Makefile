@@ -64,7 +64,7 @@ HDF5_CPPFLAGS = $(call once,HDF5_CPPFLAGS,pkg-config --cflags hdf5-serial 2>/dev
 HDF5_LIBS = $(call once,HDF5_LIBS,pkg-config --libs-only-L hdf5-serial 2>/dev/null \
 	|| pkg-config --libs-only-L hdf5 2>/dev/null \
 	|| echo -L/usr/lib/$$($(CC) -print-multiarch)/hdf5/serial)
-CPPFLAGS = -Istages/lib $(HDF5_CPPFLAGS) -I/usr/include/suitesparse
+CPPFLAGS = -Istages/lib -Istages $(HDF5_CPPFLAGS) -I/usr/include/suitesparse
 STATIC_LIBS = $(call once,STATIC_LIBS,tools/static-libraries '$(CC)' $(HDF5_LIBS))
 SHARED_LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig
 LIBS = $(or $(STATIC_LIBS),$(SHARED_LIBS)) -lgsl -lgslcblas -ljansson -lcrypto -lstdc++ -lmpfr \
@@ -98,8 +98,11 @@ LIBRARY := $(BUILD)/libcraquelure.a
 CORES := $(BUILD)/libstages.a# all stages without their mains, for the tests
 
 object = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$(basename $1)))
-library_objects := $(call object,$(wildcard $(addprefix stages/lib/*/*.,c cpp S)))
-core_sources := $(filter-out %/main.c stages/lib/%,$(wildcard stages/*/*.c))
+# A stage and a library may have folders of its own, one deep.
+library_sources := $(wildcard $(foreach d,* */*,$(addprefix stages/lib/$d/*.,c cpp S)))
+library_objects := $(call object,$(library_sources))
+stage_sources = $(wildcard stages/$1/*.c stages/$1/*/*.c)
+core_sources := $(filter-out %/main.c,$(foreach s,$(STAGES),$(call stage_sources,$s)))
 
 # A test is a C program; support_*.c beside it is linked into each.
 tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
@@ -123,8 +126,8 @@ VERSION := $(file <VERSION)
 # everything, an added or removed source relinks. `strip`: make 4.3 may leave the newline that
 # ends a file of more than 200 bytes.
 flags := $(strip $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(VERSION))
-sources := $(sort $(wildcard stages/*/*.c $(addprefix stages/lib/*/*.,c cpp S) \
-	tests/*/support_*.c))
+sources := $(sort $(wildcard stages/*/main.c) $(core_sources) $(library_sources) \
+	$(wildcard tests/*/support_*.c))
 define note
 $(BUILD)/$1: $(if $(findstring |$($1)|,|$(strip $(file <$(BUILD)/$1))|),,FORCE)
 	@mkdir -p $$(@D) && printf '%s\n' '$($1)' >$$@
@@ -140,12 +143,11 @@ $(BUILD)/obj/%.o: %.S $(BUILD)/flags
 
 own_flags =
 $(BUILD)/obj/stages/lib/%.o: own_flags = -DCRAQUELURE_VERSION='"$(VERSION)"'
-$(BUILD)/obj/tests/%.o: own_flags = -Istages
 $(call object,stages/lib/artifacts/schemas.S): $(wildcard schemas/*.json)
 
 # A stage: its objects, with its version compiled in, and its program.
 define stage_rules
-$1_objects := $(call object,$(wildcard stages/$1/*.c))
+$1_objects := $(call object,$(call stage_sources,$1))
 $(BUILD)/obj/stages/$1/%.o: own_flags = \
 	-DSTAGE_VERSION=$(call version_of,$1) -DCRAQUELURE_VERSION='"$(VERSION)"'
 $$($1_objects): $(wildcard stages/$1/version)
@@ -172,7 +174,7 @@ endef
 $(foreach d,unit physics bench,$(eval $(call test_rules,$d)))
 
 .SECONDARY:
-include $(wildcard $(BUILD)/obj/*/*/*.d $(BUILD)/obj/*/*/*/*.d)
+include $(wildcard $(addsuffix /*.d,$(addprefix $(BUILD)/obj/,*/* */*/* */*/*/*)))
 
 # --- pipelines: re-run by content -----------------------------------------------------
 # pipelines/memo decides what is stale from what files hold, never from their times. It is
@@ -330,7 +332,7 @@ speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minu
 
 # --- house ----------------------------------------------------------------------------
 
-C_SOURCES := $(wildcard stages/*/*.[ch] stages/lib/*/*.[ch] stages/lib/*/*.cpp tests/*.h \
+C_SOURCES := $(wildcard $(foreach d,* */* lib/*/*,stages/$d/*.[ch] stages/$d/*.cpp) tests/*.h \
 	tests/*/*.[ch])
 
 .PHONY: format tidy help
