@@ -42,3 +42,74 @@ void find_loose(struct loose_grains *loose, const struct packing *packing,
         if (loose->is_loose[i] && loose->n_loose++ == 0) loose->first_one = i;
     }
 }
+
+// ---- relief -------------------------------------------------------------------------
+
+// A fragment as a packing of its own: entry k is grain GRAIN[k] of the whole one.
+struct part {
+    struct packing packing; // positions and radii of its own, the box of the whole
+    struct vector *displacement, *force; // (packing.n_particle)
+    const int *grain;
+};
+
+// Loose grains in the order of their fragments, (n_loose); the caller frees it.
+static int *sort_loose(const struct loose_grains *loose, int n)
+{
+    int *end = NEW_ARRAY(int, n + 1), *sorted = NEW_ARRAY(int, loose->n_loose + 1);
+    for (int i = 0; i < n; i++)
+        end[loose->fragments.of[i] + 1] += loose->is_loose[i];
+    for (int i = 0; i < n; i++)
+        end[i + 1] += end[i];
+    for (int i = 0; i < n; i++)
+        if (loose->is_loose[i]) sorted[end[loose->fragments.of[i]]++] = i;
+    free(end);
+    return sorted;
+}
+
+static void gather(struct part *part, const struct packing *whole,
+                   const struct vector *displacement, const struct vector *force)
+{
+    for (int k = 0; k < part->packing.n_particle; k++) {
+        const int i = part->grain[k];
+        part->packing.position[k] = whole->position[i];
+        part->packing.radius[k] = whole->radius[i];
+        part->displacement[k] = displacement[i];
+        part->force[k] = force[i];
+    }
+}
+
+static struct net_load sum_of(struct net_load a, struct net_load b)
+{
+    return (struct net_load){add(a.force, b.force), add(a.moment, b.moment)};
+}
+
+struct net_load relieve_loose(const struct loose_grains *loose,
+                              const struct packing *packing,
+                              const struct vector *displacement, struct vector *force)
+{
+    const int n = loose->n_loose;
+    struct part part = {.packing = *packing,
+                        .displacement = NEW_ARRAY(struct vector, n + 1),
+                        .force = NEW_ARRAY(struct vector, n + 1)};
+    part.packing.position = NEW_ARRAY(struct vector, n + 1);
+    part.packing.radius = NEW_ARRAY(double, n + 1);
+    const struct moving_grains moved = {.displacement = part.displacement};
+    int *sorted = sort_loose(loose, packing->n_particle);
+    const int32_t *fragment = loose->fragments.of;
+    struct net_load sum = {{0, 0, 0}, {0, 0, 0}};
+    for (int first = 0, end; first < n; first = end) {
+        for (end = first + 1; end < n; end++)
+            if (fragment[sorted[end]] != fragment[sorted[first]]) break;
+        part.grain = sorted + first;
+        part.packing.n_particle = end - first;
+        gather(&part, packing, displacement, force);
+        sum = sum_of(sum, take_off_net_load(&part.packing, NULL, &moved, part.force));
+        for (int k = 0; k < end - first; k++)
+            force[part.grain[k]] = part.force[k];
+    }
+    void *const owned[] = {part.displacement, part.force, part.packing.position,
+                           part.packing.radius, sorted};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    return sum;
+}

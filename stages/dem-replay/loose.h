@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that came loose, for the explicit engine: those of fragments (fragments.h)
-// without a held grain. Nothing balances the pull of liquid on them: as long as it
-// lasts they accelerate, and break what they meet, so that cracks would count time
-// steps. With loose_grains=unload their loads end as they come loose, and they are
-// brought to rest.
+// without a held grain. Nothing balances the net load of such a fragment: as long as it
+// lasts the fragment accelerates, and breaks what it meets, so that cracks would count
+// time steps. loose_grains=unload takes that net load off (inertia relief) and brings
+// the fragment to rest. A single grain then carries nothing; a larger fragment keeps
+// the part of its load that balances itself, and may crack on.
 #ifndef CRAQUELURE_LOOSE_H
 #define CRAQUELURE_LOOSE_H
 
 #include "dem/dem.h"
 #include "fragments.h"
 #include "geometry/packing.h"
+#include "net_load.h"
 
 struct loose_grains {
     struct fragments fragments;
@@ -25,5 +27,12 @@ void loose_free(struct loose_grains *loose);
 // bonds).
 void find_loose(struct loose_grains *loose, const struct packing *packing,
                 const uint8_t *held, const struct dem *dem);
+
+// Takes the net load off every loose fragment where DISPLACEMENT, in m (n_particle),
+// has brought it, as take_off_net_load does, so that FORCE, in N (n_particle), is left
+// with what balances itself in each. Returns the sum of what was taken off. O(grains).
+struct net_load relieve_loose(const struct loose_grains *loose,
+                              const struct packing *packing,
+                              const struct vector *displacement, struct vector *force);
 
 #endif

@@ -82,6 +82,7 @@ static struct net_load about_centre(const struct whole *whole,
 {
     struct net_load net = {0};
     for (int i = 0; i < whole->packing->n_particle; i++) {
+        if (whole_mass(whole, i) == 0) continue;
         net.force = add(net.force, force[i]);
         net.moment = add(net.moment, cross(whole_place(whole, i), force[i]));
     }
@@ -112,6 +113,19 @@ static struct net_load stopping(const struct whole *whole,
     return (struct net_load){scale(unit, sum.force), scale(unit, sum.moment)};
 }
 
+// SIGN times NET, about the centre of mass, as one acceleration and one angular
+// acceleration of all.
+static void spread(const struct whole *whole, struct net_load net, double sign,
+                   struct vector *force)
+{
+    const struct vector turn = whole_turn(whole, net.moment);
+    const struct vector push = scale(1 / whole->mass, net.force);
+    for (int i = 0; i < whole->packing->n_particle; i++) {
+        const struct vector each = add(push, cross(turn, whole_place(whole, i)));
+        force[i] = add(force[i], scale(sign * whole_mass(whole, i), each));
+    }
+}
+
 struct net_load take_off_net_load(const struct packing *packing, const bool *is_gone,
                                   const struct moving_grains *now, struct vector *force)
 {
@@ -122,11 +136,19 @@ struct net_load take_off_net_load(const struct packing *packing, const bool *is_
     const struct net_load stop = now && now->velocity
                                      ? stopping(&whole, now)
                                      : (struct net_load){{0, 0, 0}, {0, 0, 0}};
-    const struct vector turn = whole_turn(&whole, add(net.moment, stop.moment));
-    const struct vector push = scale(1 / whole.mass, add(net.force, stop.force));
-    for (int i = 0; i < packing->n_particle; i++) {
-        const struct vector each = add(push, cross(turn, whole_place(&whole, i)));
-        force[i] = subtract(force[i], scale(whole_mass(&whole, i), each));
-    }
+    const struct net_load off = {add(net.force, stop.force),
+                                 add(net.moment, stop.moment)};
+    spread(&whole, off, -1, force);
     return about_corner(&whole, net);
+}
+
+void put_on_net_load(const struct packing *packing, const bool *is_gone,
+                     const struct vector *displacement, struct net_load load,
+                     struct vector *force)
+{
+    const struct whole whole = whole_of(packing, is_gone, displacement);
+    if (whole.mass == 0) return;
+    const struct vector moment =
+        subtract(scale(1 / whole.length, load.moment), cross(whole.centre, load.force));
+    spread(&whole, (struct net_load){load.force, moment}, 1, force);
 }

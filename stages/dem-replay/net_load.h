@@ -29,6 +29,13 @@ struct net_load take_off_net_load(const struct packing *packing, const bool *is_
                                   const struct moving_grains *now,
                                   struct vector *force);
 
+// Puts LOAD on the grains as one: an acceleration and an angular acceleration, by mass,
+// of those that ARE GONE (NULL) none, where they were moved by DISPLACEMENT (NULL:
+// not).
+void put_on_net_load(const struct packing *packing, const bool *is_gone,
+                     const struct vector *displacement, struct net_load load,
+                     struct vector *force);
+
 // Grains as one body. Masses in units of the first grain's, lengths of its radius, from
 // the lower corner of the box: no large numbers.
 struct whole {

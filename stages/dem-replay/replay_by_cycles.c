@@ -133,15 +133,24 @@ static void follow_loose(struct run *run)
     if (now % STOP_EVERY == 0) dem_stop(state->dem, state->loose.is_loose);
 }
 
-static void unload_loose(struct run *run)
+// What is taken off loose fragments pressed them on the others: what rests on a wall
+// takes it over, so that the wall still bears the net load of all. Held grains bear
+// what comes.
+static void take_off_loose(struct run *run, const struct vector *displacement)
 {
     const struct loose_grains *loose = loose_of(run);
-    for (int i = 0; i < run->packing->n_particle; i++)
-        if (loose->is_loose[i]) run->force[i] = (struct vector){0, 0, 0};
+    const struct net_load off =
+        relieve_loose(loose, run->packing, displacement, run->force);
+    if (run->settings->support == SUPPORT_WALL)
+        put_on_net_load(run->packing, loose->is_loose, displacement, off, run->force);
 }
 
+// Of loose fragments, and of all that is left where nothing holds it.
 static void take_off(struct run *run)
 {
+    const bool is_free = run->settings->support == SUPPORT_FREE;
+    const struct loose_grains *loose = loose_of(run);
+    if (!is_free && loose->n_loose == 0) return;
     struct vector *state[3];
     for (int k = 0; k < 3; k++)
         state[k] = NEW_ARRAY(struct vector, run->packing->n_particle);
@@ -151,8 +160,10 @@ static void take_off(struct run *run)
     const struct moving_grains now = {state[0], state[1], state[2],
                                       run->settings->material.density,
                                       TAKE_OFF_EVERY * dem_time_step(dem_of(run))};
-    run->taken_off =
-        take_off_net_load(run->packing, loose_of(run)->is_loose, &now, run->force);
+    if (loose->n_loose > 0) take_off_loose(run, state[0]);
+    if (is_free)
+        run->taken_off =
+            take_off_net_load(run->packing, loose->is_loose, &now, run->force);
     for (int k = 0; k < 3; k++)
         free(state[k]);
 }
@@ -182,8 +193,7 @@ static void apply_forces(struct run *run)
     take_forces(run);
     grow(run);
     follow_loose(run);
-    unload_loose(run);
-    if (run->settings->support == SUPPORT_FREE) take_off(run);
+    take_off(run);
     dem_set_force(dem_of(run), run->force);
 }
 
