@@ -250,12 +250,12 @@ with scratch() as folder:
     ok(all(refused) and os.path.exists(at("other/7/precious")) and not os.path.exists(at("none")),
        "refused in a line, and nothing lost", refused)
 
-    still = {"engine": "quasi-static"}
+    still = {"engine": "quasi-static", "support": "fixed"}
     loop("equilibria", "samples/stiff-5x5x10.json",
          {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 30}, "dem-replay": still}, False)
     gone = still | {"support": "wall", "quasi_static": {"large_displacements": True}} # nothing presses it there
     loop("grains that all leave", "samples/stiff-5x5x10.json",
-         {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 12}, "dem-replay": gone}, False)
+         {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 12, "force_scale": 1}, "dem-replay": gone}, False)
     with open(at("grains that all leave/course.tsv"), encoding="utf-8") as file:
         ok("\tnan\n" in file.read().split("\n\n\n")[1], "and no body is left to tell its shrinkage")
     loop("irregular", "samples/soft-300.json", quick | {"pack": {"count": 120}, "dry": {"liquid_density": 800}}, True)
