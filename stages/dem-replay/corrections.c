@@ -64,11 +64,6 @@ bool corrections_are_costly(const struct corrections *c)
     return c->work > fmax(most, most_factors * stiffness_work(c->stiffness));
 }
 
-void corrections_count_work(struct corrections *c, double more)
-{
-    c->work += more;
-}
-
 // ---- rows ---------------------------------------------------------------------------
 
 static void make_room(struct corrections *c)
@@ -179,58 +174,6 @@ bool corrections_add(struct corrections *c, int count, const struct correction *
     if (batch.count[batch.groups] > 0) batch.groups++;
     if (batch.groups > 0) add_batch(c, &batch);
     return fits;
-}
-
-struct unit_load corrections_row(const struct corrections *c, int row)
-{
-    return (struct unit_load){c->entry[c->entry_of[row]].joint, c->strain_of[row]};
-}
-
-int corrections_of(const struct corrections *c, int joint)
-{
-    return c->of[joint] < 0 ? 0 : c->entry[c->of[joint]].count;
-}
-
-const double *corrections_compliance(const struct corrections *c, int row)
-{
-    return compliance_of(c, row);
-}
-
-void corrections_strain_lanes(const struct corrections *c, int count, double *strain)
-{
-    for (int k = 0; k < c->n_addition; k++)
-        if (c->addition[k].first >= count)
-            stiffness_strain_lanes(c->stiffness, &c->addition[k].halves,
-                                   strain + (long)c->addition[k].first * LANES);
-}
-
-static bool any(int count, const double *value)
-{
-    for (int k = 0; k < count; k++)
-        if (value[k] != 0) return true;
-    return false;
-}
-
-void corrections_take_off_lanes(const struct corrections *c, const double *load)
-{
-    for (int k = 0; k < c->n_addition; k++) {
-        const struct halves *halves = &c->addition[k].halves;
-        const double *of = load + (long)c->addition[k].first * LANES;
-        if (any(halves->columns * LANES, of))
-            stiffness_take_off_lanes(c->stiffness, halves, of);
-    }
-}
-
-void corrections_take_off_lane(const struct corrections *c, int lane,
-                               const double *load)
-{
-    for (int k = 0; k < c->n_addition; k++) {
-        const struct halves *halves = &c->addition[k].halves;
-        double of[LANES];
-        for (int l = 0; l < halves->columns; l++)
-            of[l] = load[((long)c->addition[k].first + l) * LANES + lane];
-        if (any(halves->columns, of)) stiffness_take_off(c->stiffness, halves, of);
-    }
 }
 
 // ---- the way ------------------------------------------------------------------------

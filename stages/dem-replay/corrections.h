@@ -32,28 +32,11 @@ bool corrections_add(struct corrections *corrections, int count,
                      const struct correction *new);
 int corrections_count(const struct corrections *corrections); // of strains
 
-// Rows in the order in which they came: the strain of each, how many a joint has, and
-// how the strains of all, (count), answer its load.
-struct unit_load corrections_row(const struct corrections *corrections, int row);
-int corrections_of(const struct corrections *corrections, int joint);
-const double *corrections_compliance(const struct corrections *corrections, int row);
-
-// As stiffness_strain_lanes, for the rows that came after the first COUNT, and
-// stiffness_take_off_lanes, for all (count * LANES).
-void corrections_strain_lanes(const struct corrections *corrections, int count,
-                              double *strain);
-void corrections_take_off_lanes(const struct corrections *corrections,
-                                const double *load);
-// Of one LANE, which the stiffness has taken.
-void corrections_take_off_lane(const struct corrections *corrections, int lane,
-                               const double *load);
-
 // Multiplications spent on dense systems since there were no corrections.
 double corrections_work(const struct corrections *corrections);
 // Whether that is more than 100 factors take, and more than 1e10 (a second or two):
 // then what is not found is not looked for in other ways.
 bool corrections_are_costly(const struct corrections *corrections);
-void corrections_count_work(struct corrections *corrections, double more);
 
 // Finds q for grains that move on from STRAIN (n_joint) under the load that the
 // stiffness has begun with, where SHARE of their answers counts; strains to ENOUGH,

@@ -100,7 +100,6 @@ enum status equilibrium_new(struct equilibrium **result,
     e->fragments = fragments_new(n);
     e->soft[0] = e->soft[1] = softness(e);
     make_room_for_joints(e);
-    e->foresight = foresight_new(e);
     e->may_leave = !setup->large_displacements;
     e->kind = e->may_leave ? &small_displacements : &large_displacements;
     if (setup->large_displacements) e->large = large_new(e);
@@ -114,7 +113,6 @@ void equilibrium_free(struct equilibrium *e)
     fragments_free(&e->fragments);
     free_room_for_joints(e);
     large_free(e->large);
-    foresight_free(e->foresight);
     void *const owned[] = {e->joint, e->trial,  e->load, e->dashpots, e->left,
                            e->step,  e->before, e->rest, e->is_gone,  e->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
@@ -213,21 +211,11 @@ static enum status check_small(const struct equilibrium *e, struct reason *reaso
     return STATUS_OK;
 }
 
-void equilibrium_expect(struct equilibrium *e, int count, const struct vector *force)
-{
-    foresight_expect(e->foresight, count, force);
-}
-
 enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
                              struct reason *reason)
 {
     e->force = force;
     e->n_load++;
-    foresight_check(e->foresight, force);
-    if (foreseen(e)) {
-        foresight_go_on(e->foresight);
-        return STATUS_OK;
-    }
     load_grains(e);
     measure_load(e);
     if (e->large) e->large->tried = 0;
@@ -236,6 +224,5 @@ enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
         const enum status status = e->kind->balance(e, reason);
         if (status) return status;
     } while (break_one(e));
-    foresight_go_on(e->foresight);
     return check_small(e, reason);
 }

@@ -49,20 +49,15 @@ enum status equilibrium_new(struct equilibrium **result,
                             struct reason *reason);
 void equilibrium_free(struct equilibrium *equilibrium);
 
-// The forces of the next COUNT equilibria, one after the other (count * n_particle) N,
-// which are kept, not copied: those that lie ahead are found together [foresee.h].
-void equilibrium_expect(struct equilibrium *equilibrium, int count,
-                        const struct vector *force);
-
 // The next one, under FORCE (n_particle) N, with the history of those before.
 // STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small;
 // or if they may be large, equilibrium ends on the way.
 enum status equilibrium_find(struct equilibrium *equilibrium,
                              const struct vector *force, struct reason *reason);
 
-// Forgets what only speeds up those that come; what was expected is to be said anew.
-// From there on all is as after equilibrium_restore from what equilibrium_save gave
-// then: the same bytes. It costs a factor: whether there have been many since the last.
+// Forgets what only speeds up those that come. From there on all is as after
+// equilibrium_restore from what equilibrium_save gave then: the same bytes. It costs a
+// factor: whether there have been many since the last.
 bool equilibrium_may_forget(const struct equilibrium *equilibrium);
 void equilibrium_forget(struct equilibrium *equilibrium);
 // A new list, to be freed with dem_free_arrays. STATUS_BAD_DATA: it is not one of such

@@ -9,27 +9,18 @@
 
 // What is gone has no load; where nothing holds the others, theirs is then balanced
 // among themselves: if they may move far, where they are [large_free.c].
-struct net_load loads_of(const struct equilibrium *e, const struct vector *from,
-                         struct vector *load)
-{
-    const double unit = e->stiffness * e->length;
-    struct net_load taken_off = {{0, 0, 0}, {0, 0, 0}};
-    for (int i = 0; i < e->n; i++)
-        load[i] =
-            e->is_gone[i] || e->setup.fixed[i] ? (struct vector){0, 0, 0} : from[i];
-    if (e->setup.is_free && !e->large)
-        taken_off = take_off_net_load(e->packing, e->is_gone, NULL, load);
-    for (int i = 0; i < e->n; i++)
-        load[i] = scale(1 / unit, load[i]);
-    return taken_off;
-}
-
 void load_grains(struct equilibrium *e)
 {
-    struct vector *load = NEW_ARRAY(struct vector, e->n);
-    e->taken_off = loads_of(e, e->force, load);
+    const double unit = e->stiffness * e->length;
+    const struct vector none = {0, 0, 0};
+    struct vector *load = duplicate(e->force, (size_t)e->n, sizeof *load);
     for (int i = 0; i < e->n; i++)
-        e->load[i].shift = load[i];
+        if (e->is_gone[i] || e->setup.fixed[i]) load[i] = none;
+    e->taken_off = (struct net_load){none, none};
+    if (e->setup.is_free && !e->large)
+        e->taken_off = take_off_net_load(e->packing, e->is_gone, NULL, load);
+    for (int i = 0; i < e->n; i++)
+        e->load[i].shift = scale(1 / unit, load[i]);
     free(load);
 }
 
@@ -58,7 +49,6 @@ void measure_load(struct equilibrium *e)
 
 struct net_load equilibrium_load(const struct equilibrium *e, struct vector *force)
 {
-    realise(e->foresight);
     for (int i = 0; i < e->n; i++)
         force[i] = scale(e->stiffness * e->length, e->load[i].shift);
     return e->setup.is_free && e->large ? take_off_there(e, force) : e->taken_off;

@@ -6,7 +6,6 @@
 
 #include "corrections.h"
 #include "equilibrium.h"
-#include "foresee.h"
 #include "fragments.h"
 #include "large.h"
 #include "make_joints.h"
@@ -93,7 +92,6 @@ struct equilibrium {
     int n_crack, crack_capacity;
     struct dem_crack *crack;
     struct large *large; // NULL: displacements are small
-    struct foresight *foresight;
 };
 
 struct joint_setup joints_of(const struct equilibrium *equilibrium);
@@ -105,9 +103,6 @@ void make_room_for_joints(struct equilibrium *equilibrium);
 void load_grains(struct equilibrium *equilibrium);
 // The largest of it so far, where the grains are at the trial.
 void measure_load(struct equilibrium *equilibrium);
-// The same of the forces FROM (n), into LOAD (n); what was taken off.
-struct net_load loads_of(const struct equilibrium *equilibrium,
-                         const struct vector *from, struct vector *load);
 
 // Which grains intact bonds join, and which of these are held.
 void find_fragments(struct equilibrium *equilibrium);
@@ -138,13 +133,5 @@ int least_balanced(const struct equilibrium *equilibrium); // the first grain of
 
 void pull(struct displacement *sum, struct displacement load); // taken off SUM
 struct displacement scaled(double share, struct displacement a);
-
-// [K 4.20] of sums over grains and joints.
-struct unbalanced {
-    double left, largest_left, carried;
-    int moving, carrying; // grains, joints
-};
-double unbalanced_ratio(const struct equilibrium *equilibrium,
-                        const struct unbalanced *sum);
 
 #endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the next equilibrium follows from, as named arrays, and back: grains, joints
-// with their history, and what was counted. The factor, its corrections and what is
-// foreseen would only speed it up; but rounding hangs on them, so they are forgotten
-// when this is kept.
+// with their history, and what was counted. The factor and its corrections would only
+// speed it up; but rounding depends on them, so they are forgotten when this is kept.
 #include "equilibrium_state.h"
 
 #include "basics/memory.h"
@@ -24,9 +23,6 @@ bool equilibrium_may_forget(const struct equilibrium *e)
 
 void equilibrium_forget(struct equilibrium *e)
 {
-    realise(e->foresight);
-    foresight_free(e->foresight);
-    e->foresight = foresight_new(e);
     corrections_clear(e->corrections);
     memset(e->grown, 0, (size_t)e->n_joint * sizeof *e->grown);
     e->factors = e->n_load = 0;
@@ -212,8 +208,7 @@ static bool restore_kinds(struct equilibrium *e, struct array_reader *reader)
     e->n_joint = (int)n;
     e->joint = reallocate(e->joint, (size_t)n, sizeof *e->joint);
     for (int j = 0; j < e->n_joint; j++)
-        e->joint[j] = (struct joint){.moments_left_out =
-                                         e->setup.bond.moments_left_out,
+        e->joint[j] = (struct joint){.moments_left_out = e->setup.bond.moments_left_out,
                                      .grain = {kind[j][0], kind[j][1]},
                                      .bond = kind[j][2],
                                      .is_bonded = kind[j][3],

@@ -44,7 +44,6 @@ int equilibrium_snaps(const struct equilibrium *e, int *last)
 // displacements are told without that, large ones are found without [large_free.c].
 void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
 {
-    realise(e->foresight);
     struct displacement *moved = duplicate(e->trial, (size_t)e->n, sizeof *moved);
     if (e->setup.is_free && !e->large) stand_at_start(e, moved);
     for (int i = 0; i < e->n; i++)
@@ -88,7 +87,6 @@ struct dem_contact *equilibrium_contacts(const struct equilibrium *e, int *count
 {
     struct dem_contact *contact = NEW_ARRAY(struct dem_contact, e->n_joint);
     *count = 0;
-    realise(e->foresight);
     for (int j = 0; j < e->n_joint; j++) {
         const struct joint *joint = &e->joint[j];
         if (joint->is_gone || !(joint->is_bonded || joint->contact.touch)) continue;
@@ -123,14 +121,6 @@ void equilibrium_reaction(const struct equilibrium *e, struct vector about,
                           struct vector *force, struct vector *moment)
 {
     *force = *moment = (struct vector){0, 0, 0};
-    if (e->setup.has_wall) realise(e->foresight);
-    if (is_foreseen(e)) {
-        for (int i = 0; i < e->n; i++)
-            if (e->setup.fixed[i])
-                add_reaction(e, foreseen_pull(e, i), e->packing->position[i], about,
-                             force, moment);
-        return;
-    }
     for (int j = 0; j < e->n_joint; j++)
         for (int end = 0; end < 2 && !e->joint[j].is_gone; end++) {
             const int grain = e->joint[j].grain[end];
@@ -140,31 +130,24 @@ void equilibrium_reaction(const struct equilibrium *e, struct vector about,
         }
 }
 
-double unbalanced_ratio(const struct equilibrium *e, const struct unbalanced *sum)
-{
-    if (!(sum->left > 0)) return 0;
-    // Of loads that are gone there may be rounding left on grains and in joints alike.
-    const double nothing = e->setup.tolerance * e->largest_load;
-    if (sum->largest_left <= nothing && sum->carried <= sum->carrying * nothing)
-        return 0;
-    return sum->carried > 0 ? sum->left / sum->moving / (sum->carried / sum->carrying)
-                            : 1; // all is unbalanced
-}
-
 double equilibrium_unbalanced_ratio(const struct equilibrium *e)
 {
-    if (is_foreseen(e)) return foreseen_unbalanced_ratio(e);
-    struct unbalanced sum = {.largest_left = largest_left(e)};
+    double left = 0, carried = 0;
+    int moving = 0, carrying = 0; // grains, joints
     for (int i = 0; i < e->n; i++) {
         if (e->setup.fixed[i] || e->is_gone[i]) continue;
-        sum.left += norm(e->left[i].shift);
-        sum.moving++;
+        left += norm(e->left[i].shift);
+        moving++;
     }
     for (int j = 0; j < e->n_joint; j++) {
         const double *load = e->resistance[j].load; // along axes that are perpendicular
         const double force = norm((struct vector){load[0], load[1], load[2]});
-        sum.carried += force;
-        sum.carrying += force > 0 || (e->joint[j].is_bonded && !e->joint[j].is_gone);
+        carried += force;
+        carrying += force > 0 || (e->joint[j].is_bonded && !e->joint[j].is_gone);
     }
-    return unbalanced_ratio(e, &sum);
+    if (!(left > 0)) return 0;
+    // Of loads that are gone there may be rounding left on grains and in joints alike.
+    const double nothing = e->setup.tolerance * e->largest_load;
+    if (largest_left(e) <= nothing && carried <= carrying * nothing) return 0;
+    return carried > 0 ? left / moving / (carried / carrying) : 1; // all is unbalanced
 }

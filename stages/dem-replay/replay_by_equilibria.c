@@ -12,7 +12,6 @@
 
 struct equilibria {
     struct equilibrium *last;
-    bool is_expecting;                 // told which forces come
     int restless_before, snaps_before; // of an earlier replay
     struct kept_state kept;            // the last
 };
@@ -92,14 +91,12 @@ static enum status repeat(struct run *run, struct reason *reason)
     const struct vector *force =
         saved_loads(run->settings->begin, run->packing, &n_load, reason);
     if (!force) return STATUS_BAD_DATA;
-    equilibrium_expect(state->last, n_load, force);
     for (int k = 0; k < n_load; k++) {
         memcpy(run->force, force + (size_t)k * n, n * sizeof *run->force);
         const enum status status = find(run, reason);
         if (status) return status;
-        if (!equilibrium_may_forget(state->last)) continue;
-        equilibrium_forget(state->last); // as in one piece
-        equilibrium_expect(state->last, n_load - 1 - k, force + (size_t)(k + 1) * n);
+        if (equilibrium_may_forget(state->last))
+            equilibrium_forget(state->last); // as in one piece
     }
     state->restless_before = equilibrium_restless(state->last, &grain);
     state->snaps_before = equilibrium_snaps(state->last, &grain);
@@ -130,7 +127,6 @@ static void keep(struct run *run)
     struct equilibria *state = run->state;
     if (equilibrium_may_forget(state->last)) {
         equilibrium_forget(state->last);
-        state->is_expecting = false;
         if (!run->keeper || !run->keeper->due) return;
         free_kept_state(&state->kept);
         state->kept = (struct kept_state){
@@ -141,21 +137,9 @@ static void keep(struct run *run)
         run->keeper->keep(run->keeper->context, &state->kept);
 }
 
-static void expect(struct run *run)
-{
-    struct equilibria *state = run->state;
-    const int step = run->place.step;
-    if (state->is_expecting) return;
-    equilibrium_expect(state->last, run->load->n_time - step,
-                       run->load->force +
-                           (size_t)step * (size_t)run->packing->n_particle);
-    state->is_expecting = true;
-}
-
 static enum status advance(struct run *run, struct reason *reason)
 {
     keep(run);
-    if (run->place.step >= 0) expect(run);
     return find(run, reason);
 }
 

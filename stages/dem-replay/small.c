@@ -28,7 +28,7 @@ static bool approach_small(struct equilibrium *e)
     e->enough = e->setup.tolerance * e->largest_load;
     if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
     const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
-    if (largest_left(e) <= well) return true; // foreseen
+    if (largest_left(e) <= well) return true; // the load is the same
     bool is_fresh = e->factors == 0 ||
                     corrections_work(e->corrections) > 16 * stiffness_work(e->matrix);
     if (is_fresh && !factor(e)) return false;
@@ -53,7 +53,6 @@ static enum status balance_small(struct equilibrium *e, struct reason *reason)
     bool rests;
     do {
         go_back(e);
-        foresee(e);
         rests = come_to_rest(e);
     } while (let_go_beyond(e, e->trial, furthest) ||
              (!rests && let_go_beyond(e, e->left, enough)));

@@ -2,9 +2,7 @@
 #include "stiffness.h"
 
 #include "basics/memory.h"
-#include "sparse/vector_kernels.h"
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,11 +27,8 @@ struct stiffness {
     int *start, *row; // lower triangle by columns, upper halves of diagonal blocks too
     double *value;
     struct supernodal *factor;
-    double *load;                     // (n_moving * DEGREES)
-    double *begun, *left;             // the same, halves of answers
-    int *place;                       // (n_moving * DEGREES) of all degrees of freedom
-    double *begun_lanes, *left_lanes; // of LANES of each; NULL: not yet
-    double *kept_lanes;               // of begun ones
+    double *load;         // (n_moving * DEGREES)
+    double *begun, *left; // the same, halves of answers
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -124,10 +119,8 @@ void stiffness_free(struct stiffness *s)
 {
     if (!s) return;
     supernodal_free(s->factor);
-    void *const owned[] = {s->number,     s->block,     s->block_of, s->diagonal,
-                           s->start,      s->row,       s->value,    s->load,
-                           s->begun,      s->left,      s->place,    s->begun_lanes,
-                           s->left_lanes, s->kept_lanes};
+    void *const owned[] = {s->number, s->block, s->block_of, s->diagonal, s->start,
+                           s->row,    s->value, s->load,     s->begun,    s->left};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(s);
@@ -304,111 +297,7 @@ void stiffness_product(const struct stiffness *s, const struct halves *a,
     halves_product(s->factor, a, b, product);
 }
 
-// ---- lanes --------------------------------------------------------------------------
-
-enum { GRAIN_LANES = DEGREES * LANES };
-
-static void make_lanes(struct stiffness *s)
-{
-    const size_t numbers = (size_t)s->n_moving * GRAIN_LANES;
-    s->begun_lanes = allocate_aligned(numbers, sizeof(double));
-    s->left_lanes = allocate_aligned(numbers, sizeof(double));
-    s->kept_lanes = allocate_aligned(numbers, sizeof(double));
-    s->place = NEW_ARRAY(int, s->n_moving *DEGREES);
-    for (int i = 0; i < s->n; i++)
-        for (int k = 0; k < DEGREES && s->number[i] >= 0; k++)
-            s->place[s->number[i] * DEGREES + k] = i * DEGREES + k;
-}
-
-void stiffness_begin_lanes(struct stiffness *s, const double *load)
-{
-    if (s->n_moving == 0) return;
-    if (!s->begun_lanes) make_lanes(s);
-    supernodal_forward_lanes(s->factor, s->place, load, s->begun_lanes);
-}
-
-void stiffness_keep_lanes(struct stiffness *s)
-{
-    double *const begun = s->begun_lanes;
-    s->begun_lanes = s->kept_lanes;
-    s->kept_lanes = begun;
-}
-
-void stiffness_combine_lanes(struct stiffness *s, const double share[LANES][LANES])
-{
-    if (s->n_moving == 0) return;
-    double minus[LANES][LANES];
-    for (int k = 0; k < LANES; k++)
-        for (int l = 0; l < LANES; l++)
-            minus[k][l] = -share[k][l];
-    const int n = s->n_moving * DEGREES;
-    memset(s->begun_lanes, 0, (size_t)n * LANES * sizeof *s->begun_lanes);
-    vector_kernels()->take_off_eight(n, s->kept_lanes, LANES, minus[0], LANES,
-                                     s->begun_lanes);
-}
-
-void stiffness_take_lanes(struct stiffness *s)
-{
-    if (s->n_moving == 0) return;
-    memcpy(s->left_lanes, s->begun_lanes,
-           (size_t)s->n_moving * GRAIN_LANES * sizeof *s->left_lanes);
-}
-
-void stiffness_finish_lanes(struct stiffness *s, double *answer)
-{
-    for (int i = 0; i < s->n; i++)
-        if (s->number[i] < 0)
-            memset(answer + (long)i * GRAIN_LANES, 0, GRAIN_LANES * sizeof *answer);
-    if (s->n_moving == 0) return;
-    supernodal_backward_lanes(s->factor, s->place, s->left_lanes, answer);
-}
-
-void stiffness_strain_lanes(const struct stiffness *s, const struct halves *halves,
-                            double *strain)
-{
-    halves_apply_lanes(s->factor, halves, s->begun_lanes, strain);
-}
-
-void stiffness_take_off_lanes(struct stiffness *s, const struct halves *halves,
-                              const double *load)
-{
-    halves_take_off_lanes(s->factor, halves, load, s->left_lanes);
-}
-
-void stiffness_take_lane(struct stiffness *s, int lane)
-{
-    for (long k = 0; k < (long)s->n_moving * DEGREES; k++)
-        s->left[k] = s->begun_lanes[k * LANES + lane];
-}
-
-void stiffness_finish_lane(struct stiffness *s, int lane, double *answer)
-{
-    if (s->n_moving == 0) return;
-    supernodal_backward(s->factor, s->left, s->load);
-    for (int i = 0; i < s->n; i++)
-        for (int k = 0; k < DEGREES && s->number[i] >= 0; k++)
-            answer[(long)i * GRAIN_LANES + k * LANES + lane] =
-                s->load[s->number[i] * DEGREES + k];
-}
-
-int stiffness_place(const struct stiffness *s, int j)
-{
-    int first = INT_MAX;
-    for (int end = 0; end < 2; end++) {
-        const int32_t grain = s->joint[j].grain[end];
-        if (grain < 0 || s->number[grain] < 0) continue;
-        const int place = supernodal_place(s->factor, s->number[grain] * DEGREES);
-        if (place < first) first = place;
-    }
-    return first;
-}
-
 double stiffness_work(const struct stiffness *s)
 {
     return s->factor ? supernodal_work(s->factor) : 0;
-}
-
-double stiffness_numbers(const struct stiffness *s)
-{
-    return s->factor ? supernodal_numbers(s->factor) : 0;
 }

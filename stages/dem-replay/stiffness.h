@@ -49,31 +49,7 @@ void stiffness_strain(const struct stiffness *stiffness, const struct halves *ha
 void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves,
                         const double *load);
 
-// The same of LANES loads side by side, LOAD and ANSWER (n * 6 * LANES), STRAIN and
-// LOAD of halves (columns * LANES). They are taken as they were begun, loads taken off
-// these, and finished.
-void stiffness_begin_lanes(struct stiffness *stiffness, const double *load);
-// Keeps what was begun with; begins with SHARE[k][l] of each lane k of that in lane l.
-void stiffness_keep_lanes(struct stiffness *stiffness);
-void stiffness_combine_lanes(struct stiffness *stiffness,
-                             const double share[LANES][LANES]);
-void stiffness_take_lanes(struct stiffness *stiffness);
-void stiffness_finish_lanes(struct stiffness *stiffness, double *answer);
-void stiffness_strain_lanes(const struct stiffness *stiffness,
-                            const struct halves *halves, double *strain);
-void stiffness_take_off_lanes(struct stiffness *stiffness, const struct halves *halves,
-                              const double *load);
-
-// The same of one LANE alone, off which stiffness_take_off takes loads.
-void stiffness_take_lane(struct stiffness *stiffness, int lane);
-void stiffness_finish_lane(struct stiffness *stiffness, int lane, double *answer);
-
-// Where the way of a joint's loads through the factor begins: those that begin near
-// each other have more of it in common.
-int stiffness_place(const struct stiffness *stiffness, int joint);
-
-// Multiplications that a factor takes, and numbers in it.
+// Multiplications that a factor takes.
 double stiffness_work(const struct stiffness *stiffness);
-double stiffness_numbers(const struct stiffness *stiffness);
 
 #endif

@@ -3,7 +3,6 @@
 #include "sparse/supernodal.h"
 #include "../test.h"
 #include "basics/memory.h"
-#include "sparse/dense_symmetric.h"
 #include "sparse/dense_system.h"
 #include "sparse/vector_kernels.h"
 
@@ -129,56 +128,6 @@ static void halves_make_the_same_products(void **state)
     free(s);
 }
 
-// And what halves are taken off in all lanes at once.
-static void lanes_are_answers_each(void **state)
-{
-    (void)state;
-    struct springs *s = make_springs(0.1);
-    struct supernodal *factor = supernodal_new(N, s->start, s->row);
-    assert_true(supernodal_factor(factor, s->value));
-    static double x[N * LANES], half[N * LANES], product[2 * LANES];
-    double one[N], single[2], alone[N];
-    for (int k = 0; k < N * LANES; k++)
-        x[k] = sin(k);
-    int place[N]; // of the rows of x and the answer: from the last to the first
-    for (int k = 0; k < N; k++)
-        place[k] = N - 1 - k;
-    const int index[2] = {3, 500};
-    struct halves halves;
-    supernodal_halves(factor, 1, &(int){2}, 1, index, (double[]){2, -1}, &halves);
-    supernodal_forward_lanes(factor, place, x, half);
-    halves_apply_lanes(factor, &halves, half, product);
-    for (int l = 0; l < LANES; l++) {
-        for (int i = 0; i < N; i++)
-            one[i] = x[place[i] * LANES + l];
-        supernodal_forward(factor, one, alone);
-        halves_apply(factor, &halves, alone, single);
-        for (int k = 0; k < 2; k++)
-            assert_true(fabs(product[k * LANES + l] - single[k]) < 1e-12);
-    }
-    double share[2 * LANES];
-    for (int l = 0; l < LANES; l++) {
-        share[l] = l;
-        share[LANES + l] = -l;
-        x[place[3] * LANES + l] -= 2 * l;
-        x[place[500] * LANES + l] -= l;
-    }
-    halves_take_off_lanes(factor, &halves, share, half);
-    static double answer[N * LANES];
-    supernodal_backward_lanes(factor, place, half, answer);
-    for (int l = 0; l < LANES; l++) {
-        double left[N];
-        for (int i = 0; i < N; i++)
-            one[i] = answer[place[i] * LANES + l];
-        multiply(s, one, left);
-        for (int i = 0; i < N; i++)
-            assert_true(fabs(left[i] - x[place[i] * LANES + l]) < 1e-12);
-    }
-    halves_free(&halves);
-    supernodal_free(factor);
-    free(s);
-}
-
 // Nothing holds the cube: a pivot is rounding, the answer to a load in balance a number
 // all the same. A matrix that is none is refused.
 static void a_pivot_of_rounding_stays_a_number(void **state)
@@ -232,7 +181,7 @@ static void vectors_of_any_width(void **state)
     (void)state;
     enum { M = 51, COLUMNS = 13, K = 17 };
     double a[M * K + 8], sum[2][LANES][LANES] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
-    double d[2][M * M] = {{0}}, left[2][K * LANES];
+    double d[2][M * M] = {{0}};
     double work[M * PACKED];
     double matrix[2][M * M];
     int order[2][M];
@@ -246,9 +195,6 @@ static void vectors_of_any_width(void **state)
         both[wide]->multiply_transposed(M - 1, M - 1, K, a, M, a, M, d[wide], M, true,
                                         work);
         both[wide]->add_product_of_eight(K, a, 8, a + 9, sum[wide]);
-        for (int k = 0; k < K * LANES; k++)
-            left[wide][k] = cos(k);
-        both[wide]->take_off_eight(K, a, LANES, a + 3, 7, left[wide]);
         for (int k = 0; k < M * M; k++)
             matrix[wide][k] = sin(k * k);
         assert_true(both[wide]->factor_dense(M, matrix[wide], M, order[wide], work));
@@ -256,14 +202,6 @@ static void vectors_of_any_width(void **state)
     assert_memory_equal(matrix[0], matrix[1], sizeof matrix[0]);
     assert_memory_equal(order[0], order[1], sizeof order[0]);
     assert_memory_equal(c[0], c[1], sizeof c[0]);
-    assert_memory_equal(left[0], left[1], sizeof left[0]);
-    for (int k = 0; k < K * LANES; k++) {
-        double expected = cos(k);
-        for (int column = 0; column < 7; column++)
-            expected -=
-                a[k / LANES * LANES + column] * a[3 + column * LANES + k % LANES];
-        assert_true(fabs(left[1][k] - expected) < 1e-12);
-    }
     assert_memory_equal(sum[0], sum[1], sizeof sum[0]);
     for (int i = 0; i < M; i++)
         for (int j = 0; j < COLUMNS; j++) {
@@ -282,57 +220,14 @@ static void vectors_of_any_width(void **state)
         }
 }
 
-// The first half of the pivots positive, the rest negative; at once, and from the
-// system of the first DONE on; one that is not is refused.
-static void check_symmetric_system(int n, int done)
-{
-    enum { MOST = 110, STRIDE = MOST + 3 };
-    static double whole[MOST][MOST], matrix[MOST * STRIDE + 8];
-    static double work[DENSE_SYMMETRIC_WORK * MOST];
-    double sign[MOST], x[MOST], right[MOST];
-    for (int i = 0; i < n; i++) {
-        sign[i] = i < n / 2 ? 1 : -1;
-        x[i] = right[i] = cos(i);
-        for (int j = 0; j <= i; j++)
-            whole[i][j] = whole[j][i] = i == j ? n * sign[i] : sin(3 * i + 7 * j);
-    }
-    for (int size = done, kept = 0;; size = n) {
-        for (int j = 0; j < size; j++)
-            for (int i = j < kept ? done : j; i < size; i++)
-                matrix[j * STRIDE + i] = whole[i][j];
-        assert_true(
-            dense_symmetric_factor(size, kept ? done : 0, matrix, STRIDE, sign, work));
-        kept = dense_symmetric_kept(done);
-        if (size == n) break;
-    }
-    dense_symmetric_solve(n, matrix, STRIDE, sign, x);
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++)
-            right[i] -= whole[i][j] * x[j];
-        assert_true(fabs(right[i]) < 1e-12);
-    }
-}
-
-static void symmetric_systems(void **state)
-{
-    (void)state;
-    for (int n = 1; n <= 110; n += n < 30 ? 1 : 20)
-        for (int done = 0; done <= n; done += 3)
-            check_symmetric_system(n, done);
-    double wrong[1 + 8] = {-1}, work[DENSE_SYMMETRIC_WORK];
-    assert_false(dense_symmetric_factor(1, 0, wrong, 1, (double[]){1}, work));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(answers_are_those_of_the_matrix),
         cmocka_unit_test(halves_make_the_same_products),
         cmocka_unit_test(a_pivot_of_rounding_stays_a_number),
-        cmocka_unit_test(lanes_are_answers_each),
         UNIT_TEST_WHERE(has_wide_vectors(), "no wide vectors here",
                         vectors_of_any_width),
-        cmocka_unit_test(symmetric_systems),
         cmocka_unit_test(dense_systems)};
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -17,16 +17,6 @@ static inline four load_four(const double *from)
     return *(const four *)from;
 }
 
-static inline void store_four(double *to, four a)
-{
-    *(four *)to = a;
-}
-
-static inline four all_four(double a)
-{
-    return a - (four){0};
-}
-
 // A B + C, written out, as compilers do not contract alike.
 static inline four fused(four a, four b, four c)
 {

@@ -160,30 +160,3 @@ void halves_take_off(const struct supernodal *f, const struct halves *halves,
                     fma(-share[c], from[c], half[super->first + i]);
     }
 }
-
-void halves_apply_lanes(const struct supernodal *f, const struct halves *halves,
-                        const double *half, double *product)
-{
-    double sum[LANES][LANES] = {{0}};
-    const double *from = halves->value;
-    for (int k = 0; k < halves->n_super; k++) {
-        const struct supernode *super = &f->super[halves->super[k]];
-        add_product(super->columns, from, halves->lanes,
-                    half + (long)super->first * LANES, LANES, sum);
-        from += (long)super->columns * halves->lanes;
-    }
-    memcpy(product, sum, (size_t)halves->columns * sizeof *sum);
-}
-
-void halves_take_off_lanes(const struct supernodal *f, const struct halves *halves,
-                           const double *share, double *half)
-{
-    const struct vector_kernels *kernels = vector_kernels();
-    const double *from = halves->value;
-    for (int k = 0; k < halves->n_super; k++) {
-        const struct supernode *super = &f->super[halves->super[k]];
-        kernels->take_off_eight(super->columns, from, halves->lanes, share,
-                                halves->columns, half + (long)super->first * LANES);
-        from += (long)super->columns * halves->lanes;
-    }
-}

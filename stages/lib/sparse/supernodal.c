@@ -117,11 +117,6 @@ void supernodal_free(struct supernodal *f)
     free(f);
 }
 
-int supernodal_place(const struct supernodal *f, int row)
-{
-    return f->place[row];
-}
-
 double supernodal_work(const struct supernodal *f)
 {
     double work = 0;
@@ -129,11 +124,6 @@ double supernodal_work(const struct supernodal *f)
         for (int c = 0; c < f->super[s].columns; c++)
             work += 0.5 * (f->super[s].rows - c) * (double)(f->super[s].rows - c);
     return work;
-}
-
-double supernodal_numbers(const struct supernodal *f)
-{
-    return (double)f->size;
 }
 
 // ---- numbers ------------------------------------------------------------------------

@@ -19,32 +19,21 @@ void supernodal_free(struct supernodal *factor);
 // is one that no number holds.
 bool supernodal_factor(struct supernodal *factor, const double *value);
 
-// Where ROW of the matrix is in the order of the factor.
-int supernodal_place(const struct supernodal *factor, int row);
-
 // Whether the matrix last factored, with that DIAGONAL (n), was positive: whether no
 // pivot was negative or what rounding leaves.
 bool supernodal_is_positive(const struct supernodal *factor, const double *diagonal);
 
-// Multiplications that a factor takes, and numbers in it.
+// Multiplications that a factor takes.
 double supernodal_work(const struct supernodal *factor);
-double supernodal_numbers(const struct supernodal *factor);
 
 // The two halves of a solution: HALF (n), in the order of the factor, of the right-hand
 // side X (n), and the answer X from it.
 void supernodal_forward(struct supernodal *factor, const double *x, double *half);
 void supernodal_backward(struct supernodal *factor, const double *half, double *x);
 
-// The same of LANES right-hand sides side by side: HALF (n * LANES), X with row k at
-// PLACE[k] * LANES. What HALF was is gone after the second.
-enum { LANES = 8 };
-void supernodal_forward_lanes(const struct supernodal *factor, const int *place,
-                              const double *x, double *half);
-void supernodal_backward_lanes(const struct supernodal *factor, const int *place,
-                               double *half, double *x);
-
 // L^-1 of sparse right-hand sides: not 0 only on the way from their rows to the root of
 // the elimination tree. Products of such halves are entries of B^T A^-1 B.
+enum { LANES = 8 };
 struct halves {
     int columns;         // LANES at most
     int lanes;           // that they take
@@ -74,10 +63,5 @@ void halves_apply(const struct supernodal *factor, const struct halves *halves,
                   const double *half, double *product);
 void halves_take_off(const struct supernodal *factor, const struct halves *halves,
                      const double *share, double *half);
-// The same for HALF (n * LANES), PRODUCT and SHARE (columns * LANES).
-void halves_apply_lanes(const struct supernodal *factor, const struct halves *halves,
-                        const double *half, double *product);
-void halves_take_off_lanes(const struct supernodal *factor, const struct halves *halves,
-                           const double *share, double *half);
 
 #endif

@@ -12,19 +12,14 @@ enum { PACKED = 48 }; // columns of B that multiply_transposed takes together
 
 struct vector_kernels {
     // X (n * LANES), in the order of the factor, as far as SUPER is concerned: becomes
-    // L^-1 X, or L^-T X.
+    // L^-1 X.
     void (*forward_eight)(const struct supernode *super, double *x);
-    void (*backward_eight)(const struct supernode *super, double *x);
     // The rows below END of the columns FIRST to END - 1, eight at most, of a panel
     // that is done with so far.
     void (*finish_columns)(const struct supernode *super, int first, int end);
     // SUM grows by A^T B, (n) rows of lanes, one, four or eight of A, eight of B.
     void (*add_product_of_eight)(int n, const double *a, int a_lanes, const double *b,
                                  double sum[LANES][LANES]);
-    // N rows of X, eight lanes each, less COLUMNS of the LANES of FROM times SHARE,
-    // eight lanes for each of them.
-    void (*take_off_eight)(int n, const double *from, int lanes, const double *share,
-                           int columns, double *x);
     // As dense_kernels.h says.
     void (*multiply_transposed)(int m, int n, int k, const double *a, int a_stride,
                                 const double *b, int b_stride, double *c, int c_stride,

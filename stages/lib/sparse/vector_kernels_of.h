@@ -111,34 +111,6 @@ INLINE void forward_columns(const struct supernode *super, int first, int wide,
     }
 }
 
-INLINE void backward_columns(const struct supernode *super, int first, int wide,
-                             int parts, double *x)
-{
-    const int rows = super->rows;
-    const double *panel = super->panel + (long)first * rows;
-    vector left[MOST][PARTS];
-    UNROLLED for (int j = 0; j < wide; j++) UNROLLED for (int q = 0; q < parts; q++)
-        left[j][q] = load(lanes_of(super, first + j, parts, x) + NUMBERS * q);
-    for (int i = first + wide; i < rows; i++) {
-        const double *at = lanes_of(super, i, parts, x);
-        vector of_row[PARTS];
-        UNROLLED for (int q = 0; q < parts; q++) of_row[q] = load(at + NUMBERS * q);
-        UNROLLED for (int j = 0; j < wide; j++) UNROLLED for (int q = 0; q < parts; q++)
-            left[j][q] = less(left[j][q], panel[(long)j * rows + i], of_row[q]);
-    }
-    UNROLLED for (int j = wide - 1; j >= 0; j--)
-    {
-        const double pivot = panel[(long)j * rows + first + j];
-        UNROLLED for (int q = 0; q < parts; q++)
-        {
-            UNROLLED for (int l = 0; l < wide; l++) if (l > j) left[j][q] =
-                less(left[j][q], panel[(long)j * rows + first + l], left[l][q]);
-            left[j][q] = divided(left[j][q], pivot, 1 / pivot);
-            store(lanes_of(super, first + j, parts, x) + NUMBERS * q, left[j][q]);
-        }
-    }
-}
-
 INLINE void forward(const struct supernode *super, int parts, double *x)
 {
     const int columns = super->columns;
@@ -148,16 +120,6 @@ INLINE void forward(const struct supernode *super, int parts, double *x)
     for (; first + 2 <= columns; first += 2)
         forward_columns(super, first, 2, parts, x);
     if (first < columns) forward_columns(super, first, 1, parts, x);
-}
-
-INLINE void backward(const struct supernode *super, int parts, double *x)
-{
-    int end = super->columns;
-    if (end % MOST % 2) backward_columns(super, --end, 1, parts, x);
-    while (end % MOST)
-        backward_columns(super, end -= 2, 2, parts, x);
-    while (end > 0)
-        backward_columns(super, end -= MOST, MOST, parts, x);
 }
 
 #if BYTES == 32
@@ -170,11 +132,6 @@ void forward_four(const struct supernode *super, double *x)
 static void forward_eight(const struct supernode *super, double *x)
 {
     forward(super, PARTS, x);
-}
-
-static void backward_eight(const struct supernode *super, double *x)
-{
-    backward(super, PARTS, x);
 }
 
 // ---- the factor ---------------------------------------------------------------------
@@ -257,32 +214,6 @@ static void add_product_of_eight(int n, const double *a, int a_lanes, const doub
 #endif
     for (int i = 0; i < a_lanes; i += 4)
         add_tile(n, a + i, a_lanes, b, 4, PARTS, sum[i]);
-}
-
-INLINE void take_off(int n, const double *from, int lanes, const double *share,
-                     int columns, double *x)
-{
-    vector of_share[LANES][PARTS];
-    UNROLLED for (int c = 0; c < columns; c++) UNROLLED for (int q = 0; q < PARTS; q++)
-        of_share[c][q] = load(share + c * LANES + NUMBERS * q);
-    for (; n > 0; n--, from += lanes, x += LANES) {
-        vector left[PARTS];
-        UNROLLED for (int q = 0; q < PARTS; q++) left[q] = load(x + NUMBERS * q);
-        UNROLLED for (int c = 0; c < columns; c++)
-            UNROLLED for (int q = 0; q < PARTS; q++) left[q] =
-                less(left[q], from[c], of_share[c][q]);
-        UNROLLED for (int q = 0; q < PARTS; q++) store(x + NUMBERS * q, left[q]);
-    }
-}
-
-static void take_off_eight(int n, const double *from, int lanes, const double *share,
-                           int columns, double *x)
-{
-    int first = 0;
-    for (; first + 4 <= columns; first += 4)
-        take_off(n, from + first, lanes, share + first * LANES, 4, x);
-    for (; first < columns; first++)
-        take_off(n, from + first, lanes, share + first * LANES, 1, x);
 }
 
 // A tile of TALL vectors of rows and WIDE columns stays in registers.
@@ -379,10 +310,8 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
 
 const struct vector_kernels NAMED(vector_kernels) = {
     .forward_eight = forward_eight,
-    .backward_eight = backward_eight,
     .finish_columns = finish_columns,
     .add_product_of_eight = add_product_of_eight,
-    .take_off_eight = take_off_eight,
     .multiply_transposed = multiply,
     .factor_dense = factor_dense,
 };
