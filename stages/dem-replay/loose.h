@@ -9,7 +9,7 @@
 #define CRAQUELURE_LOOSE_H
 
 #include "dem/dem.h"
-#include "fragments.h"
+#include "geometry/fragments.h"
 #include "geometry/packing.h"
 #include "net_load.h"
 

@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_REACTION_H
 #define CRAQUELURE_REACTION_H
 
-#include "equilibrium.h"
-#include "net_load.h"
+#include "geometry/net_load.h"
+#include "quasi_static/equilibrium.h"
 
 // On the grains, in the last cycle, or of the last equilibrium under FORCE
 // (n_particle). With the load it is what the grains gain of momentum a second, so

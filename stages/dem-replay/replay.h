@@ -6,7 +6,7 @@
 #include "basics/status.h"
 #include "dem/dem.h"
 #include "dem/keeper.h"
-#include "net_load.h"
+#include "geometry/net_load.h"
 
 #include <stdbool.h>
 

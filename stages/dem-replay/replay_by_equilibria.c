@@ -3,7 +3,7 @@
 #include "replay_engine.h"
 
 #include "basics/memory.h"
-#include "equilibrium.h"
+#include "quasi_static/equilibrium.h"
 #include "reaction.h"
 
 #include <stdio.h>

@@ -2,8 +2,8 @@
 // Slip in equilibrium (dem-replay, engine=quasi-static) against closed forms: a grain
 // sheared to and fro, a row drawn through what holds it by friction, a block on a
 // slope.
-#include "dem-replay/joint.h"
 #include "dem_scene.h"
+#include "quasi_static/joint.h"
 #include "support_equilibrium.h"
 
 static const double stiffness = 3e4; // N/m, of a grain: half of it at a contact

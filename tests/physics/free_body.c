@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A body that nothing holds, under forces that keep their directions: its net load is
 // taken off, and it shrinks without moving or turning as one.
-#include "dem-replay/net_load.h"
 #include "dem_scene.h"
+#include "geometry/net_load.h"
 #include "support_equilibrium.h"
 #include "support_irregular.h"
 

@@ -3,8 +3,8 @@
 // quasi_static.large_displacements): beside one held where that holds nothing, the
 // Euler load of half a row, scenes turned and elsewhere, and cycles.
 #include "bent_row.h"
-#include "dem-replay/equilibrium_state.h"
-#include "dem-replay/net_load.h"
+#include "geometry/net_load.h"
+#include "quasi_static/equilibrium_state.h"
 #include "support_irregular.h"
 
 #include "basics/memory.h"

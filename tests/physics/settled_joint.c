@@ -3,7 +3,7 @@
 // its equilibria, by the law that Newton's method goes by, whatever surrounds it.
 #include "../random.h"
 #include "../test.h"
-#include "dem-replay/settle_joint.h"
+#include "quasi_static/settle_joint.h"
 
 #include <math.h>
 

@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
 #define CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
 
-#include "dem-replay/equilibrium.h"
 #include "dem-replay/replay.h"
+#include "quasi_static/equilibrium.h"
 
 struct equilibrium *make_equilibrium(const struct equilibrium_setup *setup);
 void next_equilibrium(struct equilibrium *equilibrium, const struct vector *force);

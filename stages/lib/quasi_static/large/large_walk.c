@@ -4,7 +4,7 @@
 // steps of time.
 #include "large.h"
 
-#include "equilibrium_state.h"
+#include "quasi_static/equilibrium_state.h"
 
 #include <math.h>
 #include <stdlib.h>

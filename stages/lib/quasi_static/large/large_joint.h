@@ -7,7 +7,7 @@
 #ifndef CRAQUELURE_LARGE_JOINT_H
 #define CRAQUELURE_LARGE_JOINT_H
 
-#include "joint.h"
+#include "quasi_static/joint.h"
 
 // How a joint lies.
 struct lie {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that come near each other on the way: sought anew when one has moved so far
 // that some may.
-#include "equilibrium_state.h"
+#include "quasi_static/equilibrium_state.h"
 
 #include "basics/memory.h"
 #include "geometry/neighbours.h"

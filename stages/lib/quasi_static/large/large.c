@@ -2,7 +2,7 @@
 #include "large.h"
 
 #include "basics/memory.h"
-#include "equilibrium_state.h"
+#include "quasi_static/equilibrium_state.h"
 
 #include <stdlib.h>
 #include <string.h>

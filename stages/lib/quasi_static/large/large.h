@@ -11,8 +11,8 @@
 #ifndef CRAQUELURE_LARGE_H
 #define CRAQUELURE_LARGE_H
 
-#include "equilibrium.h"
 #include "large_joint.h"
+#include "quasi_static/equilibrium.h"
 #include "sparse/anderson.h"
 
 struct large {

@@ -5,7 +5,7 @@
 #define CRAQUELURE_STIFFNESS_H
 
 #include "joint.h"
-#include "large_joint.h"
+#include "quasi_static/large/large_joint.h"
 #include "sparse/supernodal.h"
 
 struct stiffness;

@@ -2,7 +2,7 @@
 // The softest mode of a body that nothing holds, among those without momentum, and
 // whether it is resisted: by Davidson's method, as the factor holds the body, which is
 // turned over else, and so is not that of the stiffness itself.
-#include "equilibrium_state.h"
+#include "quasi_static/equilibrium_state.h"
 
 #include "basics/memory.h"
 

@@ -6,10 +6,10 @@
 
 #include "corrections.h"
 #include "equilibrium.h"
-#include "fragments.h"
-#include "large.h"
+#include "geometry/fragments.h"
+#include "geometry/net_load.h"
 #include "make_joints.h"
-#include "net_load.h"
+#include "quasi_static/large/large.h"
 #include "stiffness.h"
 
 #include <math.h>

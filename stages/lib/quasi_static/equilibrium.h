@@ -18,7 +18,7 @@
 #define CRAQUELURE_EQUILIBRIUM_H
 
 #include "dem/keeper.h"
-#include "net_load.h"
+#include "geometry/net_load.h"
 
 struct equilibrium_setup {
     const struct packing *packing; // with its bonds

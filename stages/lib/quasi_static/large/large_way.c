@@ -4,7 +4,7 @@
 #include "large.h"
 
 #include "basics/memory.h"
-#include "equilibrium_state.h"
+#include "quasi_static/equilibrium_state.h"
 
 #include <math.h>
 #include <stdlib.h>
