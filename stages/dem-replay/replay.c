@@ -61,23 +61,6 @@ static enum status begin(struct run *run, struct reason *reason)
 
 // ---- a step of the load -------------------------------------------------------------
 
-bool is_loaded(const struct load *load, int n, int step)
-{
-    const struct vector *force = load->force + (size_t)step * (size_t)n;
-    for (int i = 0; i < n; i++)
-        if (norm(force[i]) > 0) return true;
-    return false;
-}
-
-void take_forces(struct run *run)
-{
-    const size_t n = (size_t)run->packing->n_particle;
-    const struct vector *force = run->place.step < 0
-                                     ? run->settings->weight
-                                     : run->load->force + (size_t)run->place.step * n;
-    memcpy(run->force, force, n * sizeof *run->force);
-}
-
 static enum status advance(struct run *run, struct reason *reason)
 {
     const int step = run->place.step;

@@ -1,62 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equilibrium_state.h"
 
-#include "basics/memory.h"
-
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-static const struct displacement nothing = {{0, 0, 0}, {0, 0, 0}};
-
-void pull(struct displacement *sum, struct displacement load)
-{
-    sum->shift = subtract(sum->shift, load.shift);
-    sum->turn = subtract(sum->turn, load.turn);
-}
-
-struct displacement scaled(double share, struct displacement a)
-{
-    return (struct displacement){scale(share, a.shift), scale(share, a.turn)};
-}
-
-// The strains that joints, as they lie, have when grains have MOVED (n).
-static void strain_joints(const struct equilibrium *e, const struct displacement *moved,
-                          double (*strain)[STRAINS])
-{
-    for (int j = 0; j < e->n_joint; j++) {
-        const int32_t *grain = e->joint[j].grain;
-        joint_strains(&e->joint[j], &moved[grain[0]],
-                      grain[1] < 0 ? NULL : &moved[grain[1]], strain[j]);
-    }
-}
-
-void strain_trial(struct equilibrium *e)
-{
-    strain_joints(e, e->trial, e->strain);
-}
-
-// What is left of the load at the trial.
-void resist(struct equilibrium *e)
-{
-    for (int i = 0; i < e->n; i++) {
-        e->left[i] = e->load[i];
-        pull(&e->left[i], scaled(e->damping, e->dashpots[i]));
-    }
-    e->kind->resist(e);
-    for (int i = 0; i < e->n; i++)
-        if (e->setup.fixed[i] || e->is_gone[i]) e->left[i] = nothing;
-}
-
-double largest_left(const struct equilibrium *e)
-{
-    double most = 0;
-    for (int i = 0; i < e->n; i++)
-        most = fmax(most, size_of(e->left[i]));
-    return most;
-}
-
-// ---- one step -----------------------------------------------------------------------
 
 // As everything is now; what slips, and begins to touch, is left to corrections. Then
 // the bond alone is in the factor across the contact, or else the contact as if it
@@ -159,39 +104,6 @@ static enum outcome find_step(struct equilibrium *e)
     return FOUND;
 }
 
-// What is marked leaves: its load counts no more, and nothing touches it.
-void let_go(struct equilibrium *e, const bool *leaves)
-{
-    for (int i = 0; i < e->n; i++) {
-        if (!leaves[e->fragments.of[i]] || e->is_gone[i]) continue;
-        e->is_gone[i] = true;
-        if (e->n_gone++ == 0) e->first_gone = i;
-    }
-    load_grains(e);
-    for (int j = 0; j < e->n_joint; j++)
-        for (int end = 0; end < 2; end++) {
-            const int32_t grain = e->joint[j].grain[end];
-            if (grain >= 0 && e->is_gone[grain]) e->joint[j].is_gone = true;
-        }
-    resist(e);
-}
-
-bool let_go_beyond(struct equilibrium *e, const struct displacement *moves, double most)
-{
-    bool *leaves = NEW_ARRAY(bool, e->n);
-    bool any = false;
-    for (int i = 0; i < e->n; i++) {
-        const int fragment = e->fragments.of[i];
-        if (e->is_gone[i] || e->fragments.is_held[fragment]) continue;
-        if (!(size_of(moves[i]) <= most)) any = leaves[fragment] = true;
-    }
-    if (any) let_go(e, leaves);
-    free(leaves);
-    return any;
-}
-
-// ---- the way ------------------------------------------------------------------------
-
 // One round: a step, or a new factor where the old one does not do. Whether it did
 // anything.
 bool improve(struct equilibrium *e, bool *is_fresh)
@@ -215,71 +127,4 @@ bool improve(struct equilibrium *e, bool *is_fresh)
     resist(e);
     e->iterations++;
     return true;
-}
-
-void keep_history(struct equilibrium *e)
-{
-    memcpy(e->before, e->trial, (size_t)e->n * sizeof *e->before);
-    for (int j = 0; j < e->n_joint; j++) {
-        for (int k = 0; k < STRAINS; k++)
-            e->grown[j][k] = e->strain[j][k] - e->joint[j].strain[k];
-        memcpy(e->joint[j].strain, e->strain[j], sizeof e->joint[j].strain);
-        e->joint[j].contact = e->resistance[j].contact;
-        if (e->joint[j].contact.touch == TOUCH_BEGINS)
-            e->joint[j].contact.touch = TOUCH_STICKS;
-    }
-    if (e->kind->keep_history) e->kind->keep_history(e);
-}
-
-void go_back(struct equilibrium *e)
-{
-    memcpy(e->trial, e->before, (size_t)e->n * sizeof *e->trial);
-    memset(e->dashpots, 0, (size_t)e->n * sizeof *e->dashpots);
-}
-
-int least_balanced(const struct equilibrium *e)
-{
-    int worst = 0;
-    for (int i = 1; i < e->n; i++)
-        if (size_of(e->left[i]) > size_of(e->left[worst])) worst = i;
-    return worst;
-}
-
-// The way to rest with dashpots at all joints, by steps in time that grow as things
-// come to rest and shrink where one cannot be found. Whether it came to rest.
-static bool creep(struct equilibrium *e)
-{
-    const double stiffest = 1e4, softest = 1e-2;
-    double growth = 16;
-    e->damping = 1;
-    go_back(e);
-    for (int64_t k = 0; k < e->setup.most_iterations && e->damping <= stiffest; k++) {
-        const bool found = e->kind->approach(e);
-        if (found) {
-            keep_history(e);
-            if (e->damping == 0) return true;
-            e->damping = e->damping > softest ? e->damping / growth : 0;
-            growth = 16;
-        } else {
-            e->damping = fmax(8 * e->damping, softest);
-            growth = 2;
-        }
-        go_back(e);
-    }
-    e->damping = 0;
-    resist(e);
-    return false;
-}
-
-bool come_to_rest(struct equilibrium *e)
-{
-    e->damping = 0;
-    if (e->kind->approach(e)) {
-        keep_history(e);
-        return true;
-    }
-    if (!e->is_restless) return creep(e);
-    go_back(e);
-    resist(e);
-    return false;
 }

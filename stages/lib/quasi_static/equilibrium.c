@@ -38,42 +38,6 @@ static double softness(const struct equilibrium *e)
     return 1e-9 * least;
 }
 
-struct joint_setup joints_of(const struct equilibrium *e)
-{
-    return (struct joint_setup){.packing = e->packing,
-                                .material = &e->setup.material,
-                                .bond = &e->setup.bond,
-                                .has_wall = e->setup.has_wall,
-                                .unstressed = e->setup.unstressed,
-                                .rolling = e->setup.rolling,
-                                .length = e->length,
-                                .stiffness = e->stiffness};
-}
-
-static void free_room_for_joints(struct equilibrium *e)
-{
-    void *const of_joints[] = {e->strain,   e->more,       e->grown, e->tangent,
-                               e->factored, e->resistance, e->unlike};
-    for (size_t k = 0; k < sizeof of_joints / sizeof *of_joints; k++)
-        free(of_joints[k]);
-    corrections_free(e->corrections);
-    stiffness_free(e->matrix);
-}
-
-void make_room_for_joints(struct equilibrium *e)
-{
-    free_room_for_joints(e);
-    e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
-    e->more = allocate((size_t)e->n_joint, sizeof *e->more);
-    e->grown = allocate((size_t)e->n_joint, sizeof *e->grown);
-    e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
-    e->factored = NEW_ARRAY(struct factored, e->n_joint);
-    e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
-    e->unlike = NEW_ARRAY(struct correction, e->n_joint);
-    e->matrix = stiffness_new(e->n, e->setup.fixed, e->n_joint, e->joint);
-    e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
-}
-
 enum status equilibrium_new(struct equilibrium **result,
                             const struct equilibrium_setup *setup,
                             struct reason *reason)
@@ -120,67 +84,7 @@ void equilibrium_free(struct equilibrium *e)
     free(e);
 }
 
-// ---- bonds --------------------------------------------------------------------------
-
-static void record_crack(struct equilibrium *e, struct joint *joint, int mode)
-{
-    const int i = joint->grain[0];
-    const struct vector from =
-        add(e->trial[i].shift, scale(joint->arm[0], joint->axis[0]));
-    GROW_ARRAY(e->crack, e->n_crack, e->crack_capacity);
-    e->crack[e->n_crack++] = (struct dem_crack){
-        .bond = joint->bond,
-        .mode = (uint8_t)mode,
-        .cycle = e->iterations,
-        .position = add(e->packing->position[i], scale(e->length, from))};
-    joint_break(joint, e->strain[joint - e->joint]);
-}
-
-static struct overload overload_of(const struct equilibrium *e, int j)
-{
-    const struct joint *joint = &e->joint[j];
-    const double unit = e->setup.bond.kind == DEM_CONTACT_BOND // of strengths
-                            ? e->stiffness * e->length
-                            : e->stiffness / e->length;
-    const double share =
-        e->setup.relative_strength ? e->setup.relative_strength[joint->bond] : 1;
-    return joint_overload(joint, e->strain[j],
-                          share * e->setup.bond.normal_strength / unit,
-                          share * e->setup.bond.shear_strength / unit);
-}
-
-// The first of those that are as much overloaded as any, as far as rounding leaves
-// open.
-bool break_one(struct equilibrium *e)
-{
-    const double equal = 1 - 1e-8;
-    double *larger = NEW_ARRAY(double, e->n_joint), most = 0;
-    for (int j = 0; j < e->n_joint; j++) {
-        if (!e->joint[j].is_bonded || e->joint[j].is_gone) continue;
-        const struct overload overload = overload_of(e, j);
-        larger[j] = fmax(overload.normal, overload.shear);
-        most = fmax(most, larger[j]);
-    }
-    int worst = 0;
-    while (most >= strong && larger[worst] < equal * most)
-        worst++;
-    free(larger);
-    if (!(most >= strong)) return false;
-    const struct overload overload = overload_of(e, worst);
-    record_crack(e, &e->joint[worst],
-                 overload.normal >= overload.shear ? DEM_CRACK_NORMAL
-                                                   : DEM_CRACK_SHEAR);
-    return true;
-}
-
-void find_fragments(struct equilibrium *e)
-{
-    fragments_begin(&e->fragments);
-    for (int j = 0; j < e->n_joint; j++)
-        if (e->joint[j].is_bonded && !e->joint[j].is_gone)
-            fragments_join(&e->fragments, e->joint[j].grain[0], e->joint[j].grain[1]);
-    fragments_end(&e->fragments, e->setup.fixed, e->is_gone);
-}
+// ---- one load -----------------------------------------------------------------------
 
 static enum status refuse_numbers(int grain, struct reason *reason)
 {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 // What is gone has no load; where nothing holds the others, theirs is then balanced
-// among themselves: if they may move far, where they are [large_free.c].
+// among themselves: if they may move far, where they are [rigid_motion.c].
 void load_grains(struct equilibrium *e)
 {
     const double unit = e->stiffness * e->length;

@@ -29,11 +29,6 @@ static const double strong = 1 - 1e-9;
 // Forces on many grains add up: where it comes easily, less is left than may be.
 static const double well_below = 1e-3;
 
-static inline double size_of(struct displacement a)
-{
-    return fmax(norm(a.shift), norm(a.turn));
-}
-
 struct equilibrium;
 
 // What depends on how far grains may move.
@@ -98,6 +93,7 @@ struct joint_setup joints_of(const struct equilibrium *equilibrium);
 
 // What there is for each joint, and the matrix, for as many joints as there are now.
 void make_room_for_joints(struct equilibrium *equilibrium);
+void free_room_for_joints(struct equilibrium *equilibrium);
 
 // The force from outside becomes the load, as far as grains are there and free.
 void load_grains(struct equilibrium *equilibrium);
@@ -109,6 +105,10 @@ void find_fragments(struct equilibrium *equilibrium);
 
 // The most overloaded bond breaks, if one is at its strength. Whether one was.
 bool break_one(struct equilibrium *equilibrium);
+
+// The strains of joints, as they lie, when grains have MOVED (n).
+void strain_joints(const struct equilibrium *equilibrium,
+                   const struct displacement *moved, double (*strain)[STRAINS]);
 
 // Steps on the way [balance.c]: strains at the trial, and what is left there; a factor
 // as all is there, if there is one; a better trial; the trial becomes the last
@@ -131,7 +131,14 @@ void go_back(struct equilibrium *equilibrium);
 bool come_to_rest(struct equilibrium *equilibrium);
 int least_balanced(const struct equilibrium *equilibrium); // the first grain of those
 
-void pull(struct displacement *sum, struct displacement load); // taken off SUM
-struct displacement scaled(double share, struct displacement a);
-
+// A body that nothing holds [rigid_motion.c]. Displacements at the trial, (n) m, a new
+// array; what would move it as one is taken off what is left; and what does is taken
+// off STEP (n).
+struct vector *displaced(const struct equilibrium *equilibrium);
+void take_off_as_one(struct equilibrium *equilibrium);
+void stand_still(const struct equilibrium *equilibrium, struct displacement *step);
+// The same of small displacements MOVED (n), all of them.
+void stand_at_start(const struct equilibrium *equilibrium, struct displacement *moved);
+// A MODE (n) without momentum, as what grows by itself is.
+void keep_momentum(const struct equilibrium *equilibrium, struct displacement *mode);
 #endif

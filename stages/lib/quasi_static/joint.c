@@ -3,17 +3,12 @@
 
 #include <string.h>
 
-static struct displacement no_displacement(void)
-{
-    return (struct displacement){{0, 0, 0}, {0, 0, 0}};
-}
-
 // The surfaces' shear strain is that of the centres less (a_i turn_i + a_j turn_j) x n.
 struct displacement joint_arm(const struct joint *joint, int end, int strain)
 {
     const struct vector *axis = joint->axis;
     const double sign = end ? 1 : -1;
-    struct displacement arm = no_displacement();
+    struct displacement arm = no_displacement;
     switch (strain) {
     case STRAIN_ALONG:
         arm.shift = scale(sign, axis[0]);
@@ -36,8 +31,8 @@ void joint_strains(const struct joint *joint, const struct displacement *first,
                    const struct displacement *second, double strain[STRAINS])
 {
     const struct vector *axis = joint->axis;
-    const struct displacement i = first ? *first : no_displacement();
-    const struct displacement j = second ? *second : no_displacement();
+    const struct displacement i = first ? *first : no_displacement;
+    const struct displacement j = second ? *second : no_displacement;
     const struct vector shift = subtract(j.shift, i.shift);
     const struct vector turn = subtract(j.turn, i.turn);
     const struct vector rolling =

@@ -5,15 +5,10 @@
 #ifndef CRAQUELURE_JOINT_H
 #define CRAQUELURE_JOINT_H
 
-#include "geometry/vector.h"
+#include "displacement.h"
 
 #include <stdbool.h>
 #include <stdint.h>
-
-// Lengths in mean radii, stiffnesses in the largest of a joint.
-struct displacement {
-    struct vector shift, turn; // m over the unit of length; rad
-};
 
 enum strain { STRAIN_ALONG, STRAIN_ACROSS, STRAIN_TWIST = 3, STRAIN_BEND, STRAINS = 6 };
 

@@ -41,7 +41,7 @@ int equilibrium_snaps(const struct equilibrium *e, int *last)
 }
 
 // Where nothing holds the grains, nor says where they are as one, rounding does: small
-// displacements are told without that, large ones are found without [large_free.c].
+// displacements are told without that, large ones are found without [rigid_motion.c].
 void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
 {
     struct displacement *moved = duplicate(e->trial, (size_t)e->n, sizeof *moved);

@@ -36,14 +36,6 @@ struct large {
 struct large *large_new(struct equilibrium *equilibrium);
 void large_free(struct large *large);
 
-// A body that nothing holds [large_free.c]. Displacements at the trial, (n) m, a new
-// array; what would move it as one is taken off what is left; and what does is taken
-// off STEP (n).
-struct vector *displaced(const struct equilibrium *equilibrium);
-void take_off_as_one(struct equilibrium *equilibrium);
-void stand_still(const struct equilibrium *equilibrium, struct displacement *step);
-// The same of small displacements MOVED (n), all of them.
-void stand_at_start(const struct equilibrium *equilibrium, struct displacement *moved);
 // How stiff the factor has to hold it so that it is positive where the body is stable.
 double hold_of(const struct equilibrium *equilibrium);
 // As large_softest, by the factor there is [large_mode.c]; its STIFFNESS, which may be
@@ -51,15 +43,11 @@ double hold_of(const struct equilibrium *equilibrium);
 int free_softest(struct equilibrium *equilibrium, double *stiffness);
 // Whether no motion but as one grows by itself, by the last factor.
 bool free_is_stable(struct equilibrium *equilibrium);
-// A MODE (n) without momentum, as what grows by itself is.
-void keep_momentum(const struct equilibrium *equilibrium, struct displacement *mode);
 // Takes off LEFT (n) what the part of the stiffness that comes of loads turning with
 // joints makes of displacements MOVED (n).
 void take_off_turning(const struct equilibrium *equilibrium,
                       const struct displacement *moved, struct displacement *left);
 
-struct displacement moved_from(const struct displacement *from,
-                               const struct displacement *to);
 // Of a grain since the last equilibrium, at the trial.
 struct displacement since_before(const struct equilibrium *equilibrium, int grain);
 // Joints lie from now on, for the factor and what corrects it, as at the trial.

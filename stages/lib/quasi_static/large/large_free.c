@@ -1,13 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body that nothing holds, under forces that keep their directions. Wherever it goes,
-// accelerations of the grains as one, times their masses, take the net force and moment
-// off, on the geometry as it is: so there is an equilibrium for each place and each
-// direction it may have as a whole. Of these the one is meant in which the grains that
-// are there, by their masses, have the mean place and the mean direction that they
-// began with,
-//     sum m u = 0,  sum m X x u + I turn = 0,
-// X where they began, about their centre, and I of a grain: the rotation that fits them
-// best is none.
 #include "quasi_static/equilibrium_state.h"
 
 #include "basics/memory.h"
@@ -15,134 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const struct displacement nothing = {{0, 0, 0}, {0, 0, 0}};
-
-struct vector *displaced(const struct equilibrium *e)
-{
-    struct vector *displacement = NEW_ARRAY(struct vector, e->n);
-    for (int i = 0; i < e->n; i++)
-        displacement[i] = scale(e->length, e->trial[i].shift);
-    return displacement;
-}
-
-// ---- loads --------------------------------------------------------------------------
-
-void take_off_as_one(struct equilibrium *e)
-{
-    struct vector *moved = displaced(e);
-    const struct whole there = whole_of(e->packing, e->is_gone, moved);
-    const double unit = there.length / e->length;
-    struct vector force = {0, 0, 0}, moment = {0, 0, 0};
-    for (int i = 0; i < e->n; i++) {
-        if (e->is_gone[i]) continue;
-        const struct displacement *left = &e->left[i];
-        const struct vector arm = scale(unit, whole_place(&there, i));
-        force = add(force, left->shift);
-        moment = add(moment, add(cross(arm, left->shift), left->turn));
-    }
-    if (there.mass > 0) {
-        const struct vector push = scale(1 / there.mass, force);
-        const struct vector turn = whole_turn(&there, scale(1 / unit, moment));
-        for (int i = 0; i < e->n; i++) {
-            const struct vector each = add(push, cross(turn, whole_place(&there, i)));
-            e->left[i].shift =
-                subtract(e->left[i].shift, scale(whole_mass(&there, i), each));
-        }
-    }
-    free(moved);
-}
-
-// ---- motion -------------------------------------------------------------------------
-
-// Of a grain of MASS about its own centre, a sphere: so a row has a direction about
-// itself.
-static double own_inertia(const struct whole *whole, int i, double mass)
-{
-    const double radius = whole->packing->radius[i] / whole->length;
-    return 0.4 * mass * radius * radius;
-}
-
-// Of the places where grains began and where they are: how the mean direction answers a
-// turn as one. Symmetric, as long as it is that of the beginning.
-static void mix_inertia(struct whole *there, const struct whole *start)
-{
-    for (int axis = 0; axis < 3; axis++)
-        there->inertia[axis] = (struct vector){0, 0, 0};
-    for (int i = 0; i < there->packing->n_particle; i++) {
-        const double mass = whole_mass(there, i), own = own_inertia(there, i, mass);
-        const struct vector x = whole_place(start, i), r = whole_place(there, i);
-        for (int axis = 0; axis < 3; axis++) {
-            struct vector part = add(scale(-0.5 * mass * component(x, axis), r),
-                                     scale(-0.5 * mass * component(r, axis), x));
-            set_component(&part, axis, component(part, axis) + mass * dot(x, r) + own);
-            there->inertia[axis] = add(there->inertia[axis], part);
-        }
-    }
-}
-
-// The mean of STEP, by masses: how far THERE is to shift and turn as one for it.
-static struct displacement mean_motion(const struct whole *there,
-                                       const struct whole *start, double unit,
-                                       const struct displacement *step)
-{
-    struct vector shift = {0, 0, 0}, moment = {0, 0, 0};
-    for (int i = 0; i < there->packing->n_particle; i++) {
-        const double mass = whole_mass(there, i);
-        const struct vector part = scale(mass, step[i].shift);
-        const struct vector own = scale(own_inertia(there, i, mass), step[i].turn);
-        shift = add(shift, part);
-        moment = add(moment, scale(1 / unit, cross(whole_place(start, i), part)));
-        moment = add(moment, own);
-    }
-    return (struct displacement){scale(1 / there->mass, shift),
-                                 whole_turn(there, moment)};
-}
-
-// STEP without what changes the mean place, and the mean direction of START.
-static void stand(const struct equilibrium *e, const struct whole *start,
-                  struct whole *there, struct displacement *step)
-{
-    enum { PASSES = 2 }; // for what is not symmetric
-    const double unit = there->length / e->length;
-    mix_inertia(there, start);
-    for (int pass = 0; pass < PASSES && there->mass > 0; pass++) {
-        const struct displacement mean = mean_motion(there, start, unit, step);
-        for (int i = 0; i < e->n; i++) {
-            if (e->is_gone[i]) continue;
-            const struct vector arm = scale(unit, whole_place(there, i));
-            const struct vector way = add(mean.shift, cross(mean.turn, arm));
-            pull(&step[i], (struct displacement){way, mean.turn});
-        }
-    }
-}
-
-void stand_still(const struct equilibrium *e, struct displacement *step)
-{
-    struct vector *moved = displaced(e);
-    const struct whole start = whole_of(e->packing, e->is_gone, NULL);
-    struct whole there = whole_of(e->packing, e->is_gone, moved);
-    stand(e, &start, &there, step);
-    free(moved);
-}
-
-void stand_at_start(const struct equilibrium *e, struct displacement *moved)
-{
-    const struct whole start = whole_of(e->packing, e->is_gone, NULL);
-    struct whole there = start;
-    stand(e, &start, &there, moved);
-}
-
-void keep_momentum(const struct equilibrium *e, struct displacement *mode)
-{
-    struct vector *moved = displaced(e);
-    const struct whole start = whole_of(e->packing, e->is_gone, moved);
-    struct whole there = start;
-    stand(e, &start, &there, mode);
-    free(moved);
-}
-
-// ---- the factor ---------------------------------------------------------------------
 
 void take_off_turning(const struct equilibrium *e, const struct displacement *moved,
                       struct displacement *left)
@@ -189,7 +52,7 @@ double hold_of(const struct equilibrium *e)
         for (int i = 0; i < e->n; i++) {
             const struct vector arm =
                 scale(there.length / e->length, whole_place(&there, i));
-            turn[i] = e->is_gone[i] ? nothing
+            turn[i] = e->is_gone[i] ? no_displacement
                                     : (struct displacement){cross(about, arm), about};
         }
         memset(load, 0, (size_t)e->n * sizeof *load);

@@ -122,16 +122,6 @@ static void append_near(struct equilibrium *e)
     free(now.position);
 }
 
-void large_make_room(struct equilibrium *e)
-{
-    struct large *large = e->large;
-    const size_t count = (size_t)e->n_joint;
-    large->start = reallocate(large->start, count, sizeof *large->start);
-    large->before = reallocate(large->before, count, sizeof *large->before);
-    large->now = reallocate(large->now, count, sizeof *large->now);
-    large->more = reallocate(large->more, count, sizeof *large->more);
-}
-
 bool large_meet(struct equilibrium *e)
 {
     struct large *large = e->large;

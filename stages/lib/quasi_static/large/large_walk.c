@@ -7,7 +7,6 @@
 #include "quasi_static/equilibrium_state.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 // ---- how it begins ------------------------------------------------------------------
 
