@@ -10,8 +10,8 @@
 
 #include "dem/dem.h"
 #include "geometry/fragments.h"
+#include "geometry/net_load.h"
 #include "geometry/packing.h"
-#include "net_load.h"
 
 struct loose_grains {
     struct fragments fragments;

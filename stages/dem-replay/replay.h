@@ -4,8 +4,8 @@
 #define CRAQUELURE_REPLAY_H
 
 #include "basics/status.h"
+#include "checkpoint/keeper.h"
 #include "dem/dem.h"
-#include "dem/keeper.h"
 #include "geometry/net_load.h"
 
 #include <stdbool.h>

@@ -3,6 +3,7 @@
 #include "replay_engine.h"
 
 #include "basics/memory.h"
+#include "dem/keep.h"
 #include "loose.h"
 #include "reaction.h"
 

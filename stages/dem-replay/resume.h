@@ -3,7 +3,8 @@
 #ifndef CRAQUELURE_RESUME_H
 #define CRAQUELURE_RESUME_H
 
-#include "dem/keeper.h"
+#include "checkpoint/keeper.h"
+#include "dem/dem.h"
 #include "replay.h"
 
 // Where in the load a replay is.

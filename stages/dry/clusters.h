@@ -9,7 +9,7 @@
 #define CRAQUELURE_CLUSTERS_H
 
 #include "network/network.h"
-#include "state.h"
+#include "checkpoint/stream.h"
 
 #include <stdbool.h>
 

@@ -17,7 +17,7 @@
 
 #include "basics/status.h"
 #include "boundary_layer.h"
-#include "dem/keeper.h"
+#include "checkpoint/keeper.h"
 #include "network/network.h"
 
 // How the liquid moves between the throats of a cluster.

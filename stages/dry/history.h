@@ -4,7 +4,7 @@
 #define CRAQUELURE_HISTORY_H
 
 #include "drying.h"
-#include "state.h"
+#include "checkpoint/stream.h"
 
 // A history that grows; it has no step yet.
 struct recorder {

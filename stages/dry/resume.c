@@ -77,6 +77,8 @@ static void run_state(struct run *run, struct state *state)
     if (!is_viscous && !run->conditions->kelvin) clocks_state(&run->clocks, state);
 }
 
+static const char streams[] = "drying";
+
 // Clocks are cut anywhere.
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
@@ -87,7 +89,7 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
     if (!is_due(keeper)) return;
     struct state state = state_to_keep();
     run_state(run, &state);
-    struct kept_state kept = {.stage = state_list(&state)};
+    struct kept_state kept = {.stage = state_list(&state, streams)};
     state_free(&state);
     keeper->keep(keeper->context, &kept);
     free_kept_state(&kept);
@@ -96,7 +98,7 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
 enum status go_on_from(struct run *run, const struct kept_state *kept,
                        struct reason *reason)
 {
-    struct state state = state_to_restore(&kept->stage);
+    struct state state = state_to_restore(&kept->stage, streams);
     run_state(run, &state);
     if (!state_is_whole(&state) || !run_fits(run))
         return refuse(reason, STATUS_BAD_DATA,

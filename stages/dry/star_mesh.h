@@ -14,7 +14,7 @@
 #define CRAQUELURE_STAR_MESH_H
 
 #include "basics/compensated.h"
-#include "state.h"
+#include "checkpoint/stream.h"
 
 #include <stdbool.h>
 

@@ -4,7 +4,7 @@
 #ifndef CRAQUELURE_TRIANGLE_H
 #define CRAQUELURE_TRIANGLE_H
 
-#include "state.h"
+#include "checkpoint/stream.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,6 +2,7 @@
 #include "dynamics.h"
 
 #include "basics/memory.h"
+#include "dem/keep.h"
 #include "geometry/neighbours.h"
 #include "geometry/porosity.h"
 #include "pack.h"
@@ -160,7 +161,7 @@ enum status go_on(const struct making *making, struct dem *dem, double *protocol
     if (status != STATUS_OK) return status;
     struct array_reader reader = {.list = &state->stage, .reason = reason};
     const double *kept =
-        read_array(&reader, "protocol", DEM_FLOAT64, count, -1e150, 1e150);
+        read_array(&reader, "protocol", ARRAY_FLOAT64, count, -1e150, 1e150);
     if (reader.failed) return STATUS_BAD_DATA;
     memcpy(protocol, kept, (size_t)count * sizeof *kept);
     return STATUS_OK;
@@ -171,7 +172,7 @@ void may_keep(const struct making *making, const struct dem *dem,
 {
     struct array_list list = {NULL, 0};
     if (!is_due(making->how->keeper)) return;
-    add_array(&list, "protocol", DEM_FLOAT64, count, protocol);
+    add_array(&list, "protocol", ARRAY_FLOAT64, count, protocol);
     keep_state(making->how->keeper, dem, list);
 }
 

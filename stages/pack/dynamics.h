@@ -5,7 +5,7 @@
 
 #include "basics/progress.h"
 #include "dem/dem.h"
-#include "dem/keeper.h"
+#include "checkpoint/keeper.h"
 #include "domain.h"
 #include "geometry/packing.h"
 #include "sizes.h"

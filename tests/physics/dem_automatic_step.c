@@ -124,14 +124,14 @@ static void goes_on_to_the_same_bytes(struct dem *dem, const struct dem_setup *s
     given.time_step = 0.9 * dem_time_step(dem);
     struct dem *copy = create(setup), *other = create(&given);
     int count, n_after;
-    struct dem_array *array = dem_save(dem, &count), *after[2];
+    struct named_array *array = dem_save(dem, &count), *after[2];
     struct reason reason = {""};
     assert_int_equal(dem_restore(copy, array, count, &reason), STATUS_OK);
     assert_int_equal(dem_restore(other, array, count, &reason), STATUS_OK);
     assert_true(dem_time_step(other) == given.time_step);
     assert_true(dem_time_step(copy) == dem_time_step(dem));
     assert_close(dem_time_step_limit(copy), dem_time_step_limit(dem), 1e-15);
-    dem_free_arrays(array, count);
+    free_arrays(array, count);
     run(dem, 2000);
     run(copy, 2000);
     after[0] = dem_save(dem, &count);
@@ -139,10 +139,9 @@ static void goes_on_to_the_same_bytes(struct dem *dem, const struct dem_setup *s
     assert_int_equal(count, n_after);
     for (int k = 0; k < count; k++)
         assert_memory_equal(after[0][k].data, after[1][k].data,
-                            (size_t)after[0][k].count *
-                                dem_number_size(after[0][k].type));
+                            (size_t)after[0][k].count * number_size(after[0][k].type));
     for (int k = 0; k < 2; k++)
-        dem_free_arrays(after[k], count);
+        free_arrays(after[k], count);
     dem_free(copy);
     dem_free(other);
 }

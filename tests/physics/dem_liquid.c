@@ -227,13 +227,13 @@ static void test_same_bytes_whoever_computes(void **state)
         struct dem *more = thrown(&packing, &liquid, threads, 0.02);
         run(more, 160);
         int count; // stop, and go on in another
-        struct dem_array *kept = dem_save(more, &count);
+        struct named_array *kept = dem_save(more, &count);
         struct dem *again = thrown(&packing, &liquid, threads, 0.02);
         struct reason reason = {""};
         if (dem_restore(again, kept, count, &reason)) fail_msg("%s", reason.text);
         run(again, 240);
         assert_same(one, again);
-        dem_free_arrays(kept, count);
+        free_arrays(kept, count);
         dem_free(more);
         dem_free(again);
     }

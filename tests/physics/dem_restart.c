@@ -78,7 +78,7 @@ static void assert_same_sums(const struct dem *a, const struct dem *b)
 static void assert_same_state(const struct dem *a, const struct dem *b)
 {
     int n, m;
-    struct dem_array *p = dem_save(a, &n), *q = dem_save(b, &m);
+    struct named_array *p = dem_save(a, &n), *q = dem_save(b, &m);
     assert_int_equal(n, m);
     for (int k = 0; k < n; k++) {
         static const size_t size[] = {8, 4, 8, 1};
@@ -87,8 +87,8 @@ static void assert_same_state(const struct dem *a, const struct dem *b)
         assert_same(p[k].name, p[k].data, q[k].data,
                     (size_t)p[k].count * size[p[k].type]);
     }
-    dem_free_arrays(p, n);
-    dem_free_arrays(q, m);
+    free_arrays(p, n);
+    free_arrays(q, m);
 }
 
 static void assert_same_everything(const struct dem *a, const struct dem *b)
@@ -115,10 +115,10 @@ static struct dem *restored(const struct dem *from, struct dem_setup setup, int 
     struct dem *dem = create(&setup);
     struct reason reason = {""};
     int count;
-    struct dem_array *array = dem_save(from, &count);
+    struct named_array *array = dem_save(from, &count);
     if (dem_restore(dem, array, count, &reason) != STATUS_OK)
         fail_msg("dem_restore: %s", reason.text);
-    dem_free_arrays(array, count);
+    free_arrays(array, count);
     return dem;
 }
 
@@ -357,7 +357,7 @@ static void no_grains(void **state)
 // ---- what is refused ----------------------------------------------------------------
 
 static enum status try_restore(const struct dem_setup *setup,
-                               const struct dem_array *array, int count)
+                               const struct named_array *array, int count)
 {
     struct dem *dem = create(setup);
     struct reason reason = {""};
@@ -384,10 +384,10 @@ static void damaged_arrays(void **state)
     struct dem *dem = create(&setup);
     pull(dem, 0);
     int count;
-    struct dem_array *array = dem_save(dem, &count);
+    struct named_array *array = dem_save(dem, &count);
     dem_free(dem);
     for (int k = 0; k < count; k++) {
-        struct dem_array *of = &array[k];
+        struct named_array *of = &array[k];
         assert_true(of->count > 0); // each is tried
         const int64_t was = of->count;
         of->count--;
@@ -398,23 +398,23 @@ static void damaged_arrays(void **state)
         int32_t *integer = of->data;
         int64_t *large = of->data;
         uint8_t *small = of->data;
-        const double number_was = of->type == DEM_FLOAT64 ? number[at] : 0;
-        const int32_t integer_was = of->type == DEM_INT32 ? integer[at] : 0;
-        const int64_t large_was = of->type == DEM_INT64 ? large[at] : 0;
-        const uint8_t small_was = of->type == DEM_UINT8 ? small[at] : 0;
-        if (of->type == DEM_FLOAT64) number[at] = NAN;
-        if (of->type == DEM_INT32) integer[at] = INT32_MIN;
-        if (of->type == DEM_INT64) large[at] = -1;
-        if (of->type == DEM_UINT8) small[at] = 7;
+        const double number_was = of->type == ARRAY_FLOAT64 ? number[at] : 0;
+        const int32_t integer_was = of->type == ARRAY_INT32 ? integer[at] : 0;
+        const int64_t large_was = of->type == ARRAY_INT64 ? large[at] : 0;
+        const uint8_t small_was = of->type == ARRAY_UINT8 ? small[at] : 0;
+        if (of->type == ARRAY_FLOAT64) number[at] = NAN;
+        if (of->type == ARRAY_INT32) integer[at] = INT32_MIN;
+        if (of->type == ARRAY_INT64) large[at] = -1;
+        if (of->type == ARRAY_UINT8) small[at] = 7;
         assert_int_equal(try_restore(&setup, array, count), STATUS_BAD_DATA);
-        if (of->type == DEM_FLOAT64) number[at] = number_was;
-        if (of->type == DEM_INT32) integer[at] = integer_was;
-        if (of->type == DEM_INT64) large[at] = large_was;
-        if (of->type == DEM_UINT8) small[at] = small_was;
+        if (of->type == ARRAY_FLOAT64) number[at] = number_was;
+        if (of->type == ARRAY_INT32) integer[at] = integer_was;
+        if (of->type == ARRAY_INT64) large[at] = large_was;
+        if (of->type == ARRAY_UINT8) small[at] = small_was;
     }
     assert_int_equal(try_restore(&setup, array, count), STATUS_OK);
     assert_int_equal(try_restore(&setup, array, count - 1), STATUS_BAD_DATA);
-    dem_free_arrays(array, count);
+    free_arrays(array, count);
     packing_free(&packing);
 }
 
@@ -430,7 +430,7 @@ static void flipped_bits(void **state)
     struct dem *dem = create(&setup);
     run(dem, 10);
     int count;
-    struct dem_array *array = dem_save(dem, &count);
+    struct named_array *array = dem_save(dem, &count);
     dem_free(dem);
     uint64_t seed = 1;
     for (int k = 0; k < count; k++) {
@@ -445,7 +445,7 @@ static void flipped_bits(void **state)
             *byte = was;
         }
     }
-    dem_free_arrays(array, count);
+    free_arrays(array, count);
     packing_free(&packing);
 }
 
@@ -457,9 +457,9 @@ static void another_scene(void **state)
     struct dem_setup setup = stiff_setup(&packing), larger = stiff_setup(&other);
     struct dem *dem = create(&setup);
     int count;
-    struct dem_array *array = dem_save(dem, &count);
+    struct named_array *array = dem_save(dem, &count);
     assert_int_equal(try_restore(&larger, array, count), STATUS_BAD_DATA);
-    dem_free_arrays(array, count);
+    free_arrays(array, count);
     dem_free(dem);
     packing_free(&packing);
     packing_free(&other);

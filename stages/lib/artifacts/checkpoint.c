@@ -44,13 +44,13 @@ static void catch_signals(void)
 
 static const char *const type_names[] = {"float64", "int32", "int64", "uint8"};
 
-static enum dem_array_type type_of(const json_t *entry)
+static enum array_type type_of(const json_t *entry)
 {
     const char *name = json_string_value(json_object_get(entry, "type"));
-    int type = DEM_FLOAT64;
+    int type = ARRAY_FLOAT64;
     while (strcmp(type_names[type], name))
         type++;
-    return (enum dem_array_type)type;
+    return (enum array_type)type;
 }
 
 static int numbers_in_row(const json_t *entry)
@@ -65,7 +65,7 @@ void artifact_put_arrays(struct artifact *artifact, const char *group,
                          const struct array_list *list)
 {
     for (int k = 0; k < list->count; k++) {
-        const struct dem_array *array = &list->array[k];
+        const struct named_array *array = &list->array[k];
         char name[64];
         snprintf(name, sizeof name, "/%s/%s", group, array->name);
         const json_t *entry = schema_dataset(artifact->schema, name);
@@ -102,22 +102,23 @@ struct array_list artifact_get_arrays(const struct artifact *artifact,
 // Of the arrays by name, as their order in the file tells nothing.
 static int by_name(const void *a, const void *b)
 {
-    const struct dem_array *const *p = a, *const *q = b;
+    const struct named_array *const *p = a, *const *q = b;
     return strcmp((*p)->name, (*q)->name);
 }
 
 static void digest_list(EVP_MD_CTX *digest, const struct array_list *list)
 {
-    const struct dem_array **sorted = NEW_ARRAY(const struct dem_array *, list->count);
+    const struct named_array **sorted =
+        NEW_ARRAY(const struct named_array *, list->count);
     for (int k = 0; k < list->count; k++)
         sorted[k] = &list->array[k];
     qsort(sorted, (size_t)list->count, sizeof *sorted, by_name);
     for (int k = 0; k < list->count; k++) {
-        const struct dem_array *array = sorted[k];
+        const struct named_array *array = sorted[k];
         EVP_DigestUpdate(digest, array->name, strlen(array->name) + 1);
         EVP_DigestUpdate(digest, &array->count, sizeof array->count);
         EVP_DigestUpdate(digest, array->data,
-                         (size_t)array->count * dem_number_size(array->type));
+                         (size_t)array->count * number_size(array->type));
     }
     free(sorted);
 }

@@ -5,10 +5,10 @@
 #define CRAQUELURE_CHECKPOINT_H
 
 #include "artifacts/artifact.h"
-#include "dem/keeper.h"
+#include "checkpoint/keeper.h"
 
 // The arrays of an engine or stage as the datasets of GROUP, "engine". The caller frees
-// those it gets with dem_free_arrays; there are none where the artifact has no such
+// those it gets with free_arrays; there are none where the artifact has no such
 // group.
 void artifact_put_arrays(struct artifact *artifact, const char *group,
                          const struct array_list *list);

@@ -18,6 +18,7 @@
 
 #include "basics/status.h"
 #include "bridges/bridges.h"
+#include "checkpoint/named_arrays.h"
 #include "geometry/packing.h"
 
 #include <stdbool.h>
@@ -307,28 +308,21 @@ const struct dem_crack *dem_cracks(const struct dem *dem, int *count);
 // ---- restart ------------------------------------------------------------------------
 // The whole state as named arrays, so that an engine created from the same setup and
 // given them goes on to the same bytes as one that never stopped [restart.c].
-enum dem_array_type { DEM_FLOAT64, DEM_INT32, DEM_INT64, DEM_UINT8 };
-struct dem_array {
-    char name[32]; // "pair_shear_force"
-    enum dem_array_type type;
-    int64_t count;
-    void *data;
-};
-// A new list of *COUNT arrays, to be freed with dem_free_arrays.
-struct dem_array *dem_save(const struct dem *dem, int *count);
-void dem_free_arrays(struct dem_array *array, int count);
-// The one of that name, or NULL.
-const struct dem_array *dem_find_array(const struct dem_array *array, int count,
-                                       const char *name);
-size_t dem_number_size(enum dem_array_type type); // bytes
-// Whether ARRAY, which may be NULL, is of TYPE and has COUNT numbers from LEAST to
-// MOST.
-enum status dem_check_array(const struct dem_array *array, const char *name,
-                            enum dem_array_type type, int64_t count, double least,
-                            double most, struct reason *reason);
+// A new list of *COUNT arrays, to be freed with free_arrays.
+struct named_array *dem_save(const struct dem *dem, int *count);
 // STATUS_BAD_DATA: arrays that are not those of such an engine; the engine must then be
 // freed.
-enum status dem_restore(struct dem *dem, const struct dem_array *array, int count,
+enum status dem_restore(struct dem *dem, const struct named_array *array, int count,
                         struct reason *reason);
+
+// The names of checkpoint/named_arrays.h that dem-replay still has.
+#define dem_array named_array
+#define DEM_FLOAT64 ARRAY_FLOAT64
+#define DEM_INT32 ARRAY_INT32
+#define DEM_INT64 ARRAY_INT64
+#define DEM_UINT8 ARRAY_UINT8
+#define dem_free_arrays free_arrays
+#define dem_find_array find_array
+#define dem_number_size number_size
 
 #endif

@@ -11,49 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t dem_number_size(enum dem_array_type type)
-{
-    switch (type) {
-    case DEM_FLOAT64:
-        return sizeof(double);
-    case DEM_INT32:
-        return sizeof(int32_t);
-    case DEM_INT64:
-        return sizeof(int64_t);
-    default:
-        return sizeof(uint8_t);
-    }
-}
-
-static double value_at(enum dem_array_type type, const void *at)
-{
-    switch (type) {
-    case DEM_FLOAT64:
-        return *(const double *)at;
-    case DEM_INT32:
-        return *(const int32_t *)at;
-    case DEM_INT64:
-        return (double)*(const int64_t *)at;
-    default:
-        return *(const uint8_t *)at;
-    }
-}
-
 // ---- out ----------------------------------------------------------------------------
 
-static struct dem_array new_array(const char *name, enum dem_array_type type,
-                                  int64_t count)
+static struct named_array gather(const struct column *c)
 {
-    struct dem_array array = {.type = type, .count = count};
-    snprintf(array.name, sizeof array.name, "%s", name);
-    array.data = allocate((size_t)count, dem_number_size(type));
-    return array;
-}
-
-static struct dem_array gather(const struct column *c)
-{
-    const size_t size = dem_number_size(c->type);
-    struct dem_array array = new_array(c->name, c->type, c->rows * c->width);
+    const size_t size = number_size(c->type);
+    struct named_array array = new_array(c->name, c->type, c->rows * c->width);
     char *to = array.data;
     for (int64_t row = 0; row < c->rows; row++)
         for (int k = 0; k < c->width; k++, to += size)
@@ -63,67 +26,33 @@ static struct dem_array gather(const struct column *c)
 
 static const char bonds_name[] = "bond_intact";
 
-struct dem_array *dem_save(const struct dem *dem, int *count)
+struct named_array *dem_save(const struct dem *dem, int *count)
 {
     // Only read through the list; it serves dem_restore too.
     const struct column_list list = list_columns((struct dem *)(uintptr_t)dem);
-    struct dem_array *array = NEW_ARRAY(struct dem_array, list.count + 1);
+    struct named_array *array = NEW_ARRAY(struct named_array, list.count + 1);
     for (int k = 0; k < list.count; k++)
         array[k] = gather(&list.column[k]);
-    array[list.count] = new_array(bonds_name, DEM_UINT8, dem->n_bond);
+    array[list.count] = new_array(bonds_name, ARRAY_UINT8, dem->n_bond);
     dem_bonds_intact(dem, array[list.count].data);
     *count = list.count + 1;
     return array;
 }
 
-void dem_free_arrays(struct dem_array *array, int count)
-{
-    for (int k = 0; array && k < count; k++)
-        free(array[k].data);
-    free(array);
-}
-
-const struct dem_array *dem_find_array(const struct dem_array *array, int count,
-                                       const char *name)
-{
-    for (int k = 0; k < count; k++)
-        if (!strncmp(array[k].name, name, sizeof array[k].name)) return &array[k];
-    return NULL;
-}
-
-enum status dem_check_array(const struct dem_array *array, const char *name,
-                            enum dem_array_type type, int64_t count, double least,
-                            double most, struct reason *reason)
-{
-    if (!array || array->type != type || array->count != count)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "%s: must be %lld numbers of its type, as this scene has them",
-                      name, (long long)count);
-    for (int64_t k = 0; k < count; k++) {
-        const char *at = (const char *)array->data + (size_t)k * dem_number_size(type);
-        const double value = value_at(type, at);
-        if (value >= least && value <= most) continue;
-        return refuse(reason, STATUS_BAD_DATA,
-                      "%s: number %lld: must be from %g to %g, got %g", name,
-                      (long long)k, least, most, value);
-    }
-    return STATUS_OK;
-}
-
 // ---- in -----------------------------------------------------------------------------
 
 struct saved {
-    const struct dem_array *array;
+    const struct named_array *array;
     int count;
     struct reason *reason;
 };
 
-static const struct dem_array *find(const struct saved *saved, const char *name,
-                                    enum dem_array_type type, int64_t count,
-                                    double least, double most)
+static const struct named_array *find(const struct saved *saved, const char *name,
+                                      enum array_type type, int64_t count, double least,
+                                      double most)
 {
-    const struct dem_array *array = dem_find_array(saved->array, saved->count, name);
-    return dem_check_array(array, name, type, count, least, most, saved->reason) ==
+    const struct named_array *array = find_array(saved->array, saved->count, name);
+    return check_array(array, name, type, count, least, most, saved->reason) ==
                    STATUS_OK
                ? array
                : NULL;
@@ -132,7 +61,7 @@ static const struct dem_array *find(const struct saved *saved, const char *name,
 // How many rows of WIDTH there are, or -1.
 static int rows_of(const struct saved *saved, const char *name, int width)
 {
-    const struct dem_array *array = dem_find_array(saved->array, saved->count, name);
+    const struct named_array *array = find_array(saved->array, saved->count, name);
     if (array && array->count % width == 0 && array->count / width <= INT32_MAX / 4)
         return (int)(array->count / width);
     refuse(saved->reason, STATUS_BAD_DATA, "%s: is missing, or too long", name);
@@ -143,7 +72,7 @@ static int rows_of(const struct saved *saved, const char *name, int width)
 static enum status take_order(struct dem *dem, const struct saved *saved)
 {
     const int n = dem->n_particle;
-    const struct dem_array *array = find(saved, "identity", DEM_INT32, n, 0, n - 1);
+    const struct named_array *array = find(saved, "identity", ARRAY_INT32, n, 0, n - 1);
     if (!array) return STATUS_BAD_DATA;
     const int32_t *identity = array->data;
     bool *seen = NEW_ARRAY(bool, n);
@@ -162,8 +91,8 @@ static enum status take_order(struct dem *dem, const struct saved *saved)
 
 static enum status take_broken(struct dem *dem, const struct saved *saved)
 {
-    const struct dem_array *array =
-        find(saved, bonds_name, DEM_UINT8, dem->n_bond, 0, 1);
+    const struct named_array *array =
+        find(saved, bonds_name, ARRAY_UINT8, dem->n_bond, 0, 1);
     if (!array) return STATUS_BAD_DATA;
     for (int b = 0; b < dem->n_bond; b++)
         if (!((const uint8_t *)array->data)[b])
@@ -200,12 +129,12 @@ static enum status take_list(struct dem *dem, const struct saved *saved)
 {
     const int n = rows_of(saved, "pair_particle", 2);
     if (n < 0) return STATUS_BAD_DATA;
-    const struct dem_array *pairs =
-        find(saved, "pair_particle", DEM_INT32, 2 * (int64_t)n, 0, dem->n_particle - 1);
+    const struct named_array *pairs = find(saved, "pair_particle", ARRAY_INT32,
+                                           2 * (int64_t)n, 0, dem->n_particle - 1);
     if (!pairs) return STATUS_BAD_DATA;
-    const struct dem_array *bonds = NULL;
+    const struct named_array *bonds = NULL;
     if (dem->n_bond > 0) {
-        bonds = find(saved, "pair_bond", DEM_INT32, n, -1, dem->n_bond - 1);
+        bonds = find(saved, "pair_bond", ARRAY_INT32, n, -1, dem->n_bond - 1);
         if (!bonds) return STATUS_BAD_DATA;
     }
     const int32_t *bond = bonds ? bonds->data : NULL;
@@ -229,8 +158,8 @@ static enum status make_room(struct dem *dem, const struct saved *saved)
     dem->crack_capacity = n_crack + 1;
     dem->crack =
         reallocate(dem->crack, (size_t)dem->crack_capacity, sizeof *dem->crack);
-    dem->step_was_shortened = dem_find_array(saved->array, saved->count, "time_step");
-    const bool pushed = dem_find_array(saved->array, saved->count, "applied_force");
+    dem->step_was_shortened = find_array(saved->array, saved->count, "time_step");
+    const bool pushed = find_array(saved->array, saved->count, "applied_force");
     if (pushed && !dem->applied)
         dem->applied = NEW_ARRAY(struct vector, dem->n_particle);
     return STATUS_OK;
@@ -238,10 +167,10 @@ static enum status make_room(struct dem *dem, const struct saved *saved)
 
 static enum status scatter(const struct column *c, const struct saved *saved)
 {
-    const struct dem_array *array =
+    const struct named_array *array =
         find(saved, c->name, c->type, c->rows * c->width, c->least, c->most);
     if (!array) return STATUS_BAD_DATA;
-    const size_t size = dem_number_size(c->type);
+    const size_t size = number_size(c->type);
     const char *from = array->data;
     for (int64_t row = 0; row < c->rows; row++)
         for (int k = 0; k < c->width; k++, from += size)
@@ -317,7 +246,7 @@ static void derive(struct dem *dem)
     compare_mobilities(dem);
 }
 
-enum status dem_restore(struct dem *dem, const struct dem_array *array, int count,
+enum status dem_restore(struct dem *dem, const struct named_array *array, int count,
                         struct reason *reason)
 {
     const struct saved saved = {array, count, reason};

@@ -7,7 +7,7 @@ static const double largest_count = 0x1p53;
 
 char *column_address(const struct column *c, int64_t row, int k)
 {
-    const size_t size = dem_number_size(c->type), at = (size_t)row;
+    const size_t size = number_size(c->type), at = (size_t)row;
     char *const begin = (char *)c->base + c->offset;
     if (!c->in_lanes) return begin + at * c->stride + (size_t)k * size;
     const size_t lane = at % PAIRS_IN_GROUP;
@@ -25,7 +25,7 @@ static void add_time_step(struct column_list *list, struct dem *dem)
 {
     if (!dem->step_was_shortened) return;
     add_column(list, (struct column){.name = "time_step",
-                                     .type = DEM_FLOAT64,
+                                     .type = ARRAY_FLOAT64,
                                      .width = 1,
                                      .rows = 1,
                                      .base = &dem->time_step,
@@ -37,22 +37,22 @@ static void add_scalars(struct column_list *list, struct dem *dem)
 {
     const struct {
         const char *name;
-        enum dem_array_type type;
+        enum array_type type;
         int width;
         void *at;
         double least, most;
-    } of[] = {{"cycle", DEM_INT64, 1, &dem->cycle, 0, largest_count},
-              {"search_cycle", DEM_INT64, 1, &dem->search_cycle, 0, largest_count},
-              {"searches_in_order", DEM_INT32, 1, &dem->searches_in_order, 0, 1e9},
-              {"skin", DEM_FLOAT64, 1, &dem->skin, smallest, largest},
-              {"travelled", DEM_FLOAT64, 1, &dem->travelled, 0, largest},
-              {"closed_in", DEM_FLOAT64, 1, &dem->closed_in, 0, largest},
-              {"box_lower", DEM_FLOAT64, 3, dem->box_lower, -largest, largest},
-              {"box_upper", DEM_FLOAT64, 3, dem->box_upper, -largest, largest},
-              {"gravity", DEM_FLOAT64, 3, &dem->gravity, -largest, largest},
-              {"friction", DEM_FLOAT64, 1, dem->pair_friction, 0, largest},
-              {"local_damping", DEM_FLOAT64, 1, &dem->local_damping, 0, 1},
-              {"books", DEM_FLOAT64, 8, &dem->books, -largest, largest}};
+    } of[] = {{"cycle", ARRAY_INT64, 1, &dem->cycle, 0, largest_count},
+              {"search_cycle", ARRAY_INT64, 1, &dem->search_cycle, 0, largest_count},
+              {"searches_in_order", ARRAY_INT32, 1, &dem->searches_in_order, 0, 1e9},
+              {"skin", ARRAY_FLOAT64, 1, &dem->skin, smallest, largest},
+              {"travelled", ARRAY_FLOAT64, 1, &dem->travelled, 0, largest},
+              {"closed_in", ARRAY_FLOAT64, 1, &dem->closed_in, 0, largest},
+              {"box_lower", ARRAY_FLOAT64, 3, dem->box_lower, -largest, largest},
+              {"box_upper", ARRAY_FLOAT64, 3, dem->box_upper, -largest, largest},
+              {"gravity", ARRAY_FLOAT64, 3, &dem->gravity, -largest, largest},
+              {"friction", ARRAY_FLOAT64, 1, dem->pair_friction, 0, largest},
+              {"local_damping", ARRAY_FLOAT64, 1, &dem->local_damping, 0, 1},
+              {"books", ARRAY_FLOAT64, 8, &dem->books, -largest, largest}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++)
         add_column(list, (struct column){.name = of[k].name,
                                          .type = of[k].type,
@@ -76,7 +76,7 @@ static struct column *add_numbers(struct column_list *list, const char *name,
                                   struct where at, int width, int64_t rows)
 {
     return add_column(list, (struct column){.name = name,
-                                            .type = DEM_FLOAT64,
+                                            .type = ARRAY_FLOAT64,
                                             .width = width,
                                             .rows = rows,
                                             .base = at.base,
@@ -87,8 +87,8 @@ static struct column *add_numbers(struct column_list *list, const char *name,
 }
 
 static struct column *add_integers(struct column_list *list, const char *name,
-                                   enum dem_array_type type, struct where at,
-                                   int64_t rows, double least, double most)
+                                   enum array_type type, struct where at, int64_t rows,
+                                   double least, double most)
 {
     struct column *column = add_numbers(list, name, at, 1, rows);
     column->type = type;
@@ -100,7 +100,7 @@ static struct column *add_integers(struct column_list *list, const char *name,
 static void add_grains(struct column_list *list, struct dem *dem)
 {
     const int n = dem->n_particle;
-    add_integers(list, "identity", DEM_INT32, WHOLE(dem->identity), n, 0, n - 1);
+    add_integers(list, "identity", ARRAY_INT32, WHOLE(dem->identity), n, 0, n - 1);
     add_numbers(list, "start", WHOLE(dem->start), 3, n);
     add_numbers(list, "displacement", OF(dem->place, struct place, displacement), 3, n);
     add_numbers(list, "radius", OF(dem->place, struct place, radius), 1, n)->least =
@@ -134,9 +134,9 @@ static void add_walls(struct column_list *list, struct dem *dem)
     WALL("wall_resistance", resistance, 1);
 #undef WALL
     struct wall_pair *pair = dem->wall_pair;
-    add_integers(list, "wall_pair_particle", DEM_INT32,
+    add_integers(list, "wall_pair_particle", ARRAY_INT32,
                  OF(pair, struct wall_pair, particle), n_pair, 0, dem->n_particle - 1);
-    add_integers(list, "wall_pair_wall", DEM_INT32, OF(pair, struct wall_pair, wall),
+    add_integers(list, "wall_pair_wall", ARRAY_INT32, OF(pair, struct wall_pair, wall),
                  n_pair, 0, n - 1);
 #define PAIR(name, member, width)                                                      \
     add_numbers(list, name, OF(pair, struct wall_pair, member), width, n_pair)
@@ -153,9 +153,9 @@ static void add_cracks(struct column_list *list, struct dem *dem)
     const int n = dem->n_crack;
 #define CRACK(name, type, member, most)                                                \
     add_integers(list, name, type, OF(dem->crack, struct dem_crack, member), n, 0, most)
-    CRACK("crack_bond", DEM_INT32, bond, dem->n_bond - 1);
-    CRACK("crack_mode", DEM_UINT8, mode, DEM_CRACK_SHEAR);
-    CRACK("crack_cycle", DEM_INT64, cycle, largest_count);
+    CRACK("crack_bond", ARRAY_INT32, bond, dem->n_bond - 1);
+    CRACK("crack_mode", ARRAY_UINT8, mode, DEM_CRACK_SHEAR);
+    CRACK("crack_cycle", ARRAY_INT64, cycle, largest_count);
 #undef CRACK
     add_numbers(list, "crack_position", OF(dem->crack, struct dem_crack, position), 3,
                 n);
@@ -172,13 +172,13 @@ static void add_pairs(struct column_list *list, struct dem *dem)
 {
     const struct pair_list *pairs = &dem->pairs;
     const int n = pairs->n_pair;
-    add_integers(list, "pair_particle", DEM_INT32, WHOLE(pairs->particle), n, 0,
+    add_integers(list, "pair_particle", ARRAY_INT32, WHOLE(pairs->particle), n, 0,
                  dem->n_particle - 1)
         ->width = 2;
     if (dem->n_bond > 0)
-        add_integers(list, "pair_bond", DEM_INT32, WHOLE(pairs->bond), n, -1,
+        add_integers(list, "pair_bond", ARRAY_INT32, WHOLE(pairs->bond), n, -1,
                      dem->n_bond - 1);
-    add_integers(list, "group_idle", DEM_UINT8, WHOLE(pairs->idle), pairs->n_group, 0,
+    add_integers(list, "group_idle", ARRAY_UINT8, WHOLE(pairs->idle), pairs->n_group, 0,
                  1);
 #define LANES(name, groups, type, member, width)                                       \
     add_lanes(list, dem, name, OF(pairs->groups, type, member), width)

@@ -9,7 +9,7 @@
 // WIDTH numbers in each of ROWS rows; LEAST and MOST are what they may be.
 struct column {
     const char *name;
-    enum dem_array_type type;
+    enum array_type type;
     int width;
     int64_t rows;
     void *base;

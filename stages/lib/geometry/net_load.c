@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "net_load.h"
+#include "geometry/net_load.h"
 
 #include <gsl/gsl_eigen.h>
 #include <math.h>

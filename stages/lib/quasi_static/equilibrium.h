@@ -17,7 +17,7 @@
 #ifndef CRAQUELURE_EQUILIBRIUM_H
 #define CRAQUELURE_EQUILIBRIUM_H
 
-#include "dem/keeper.h"
+#include "checkpoint/keeper.h"
 #include "geometry/net_load.h"
 
 struct equilibrium_setup {

@@ -3,11 +3,11 @@
 // one function, which writes when a state is kept and reads when one is gone on from,
 // so that the two cannot differ. What follows from the network and the conditions, or
 // is room to work in, is not in it.
-#ifndef CRAQUELURE_DRY_STATE_H
-#define CRAQUELURE_DRY_STATE_H
+#ifndef CRAQUELURE_CHECKPOINT_STREAM_H
+#define CRAQUELURE_CHECKPOINT_STREAM_H
 
 #include "basics/compensated.h"
-#include "dem/keeper.h"
+#include "checkpoint/named_arrays.h"
 
 #include <stdint.h>
 
@@ -24,9 +24,9 @@ struct state {
 
 // What a run goes on from, kept or restored by the same calls: NAME_state(..., STATE)
 // writes what NAME has, or reads it. The caller frees with state_free; LIST must live
-// as long.
+// as long. The lists have PREFIX_numbers, PREFIX_integers and PREFIX_bytes.
 struct state state_to_keep(void);
-struct state state_to_restore(const struct array_list *list);
+struct state state_to_restore(const struct array_list *list, const char *prefix);
 
 // Each writes N values at AT, or reads them. Integers lie from LEAST to MOST, bytes
 // from 0 to MOST; a state with others has failed.
@@ -44,7 +44,7 @@ void state_long(struct state *state, int64_t *at); // 0 to 2^53
 void *state_room(struct state *state, void *array, int64_t *n, size_t size);
 
 // All is written: the lists for a keeper, which frees them.
-struct array_list state_list(const struct state *state);
+struct array_list state_list(const struct state *state, const char *prefix);
 
 // All is read: whether that was all there is, and none failed.
 bool state_is_whole(const struct state *state);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "state.h"
+#include "checkpoint/stream.h"
 
 #include "basics/memory.h"
 
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,20 +15,33 @@ struct state state_to_keep(void)
     return (struct state){.restoring = false};
 }
 
-static struct state_stream open_stream(const struct array_list *list, const char *name,
-                                       enum dem_array_type type)
+// "drying_numbers"
+struct stream_name {
+    char text[32];
+};
+static struct stream_name stream_name(const char *prefix, const char *kind)
 {
-    const struct dem_array *array = dem_find_array(list->array, list->count, name);
+    struct stream_name name;
+    snprintf(name.text, sizeof name.text, "%s_%s", prefix, kind);
+    return name;
+}
+
+static struct state_stream open_stream(const struct array_list *list,
+                                       const char *prefix, const char *kind,
+                                       enum array_type type)
+{
+    const struct named_array *array =
+        find_array(list->array, list->count, stream_name(prefix, kind).text);
     if (!array || array->type != type) return (struct state_stream){0};
     return (struct state_stream){.data = array->data, .capacity = array->count};
 }
 
-struct state state_to_restore(const struct array_list *list)
+struct state state_to_restore(const struct array_list *list, const char *prefix)
 {
     return (struct state){.restoring = true,
-                          .number = open_stream(list, "drying_numbers", DEM_FLOAT64),
-                          .integer = open_stream(list, "drying_integers", DEM_INT32),
-                          .byte = open_stream(list, "drying_bytes", DEM_UINT8)};
+                          .number = open_stream(list, prefix, "numbers", ARRAY_FLOAT64),
+                          .integer = open_stream(list, prefix, "integers", ARRAY_INT32),
+                          .byte = open_stream(list, prefix, "bytes", ARRAY_UINT8)};
 }
 
 // --- values ------------------------------------------------------------------------
@@ -117,14 +131,18 @@ void *state_room(struct state *state, void *array, int64_t *n, size_t size)
 
 // --- all of it ---------------------------------------------------------------------
 
-struct array_list state_list(const struct state *state)
+static void add_stream(struct array_list *list, const char *prefix, const char *kind,
+                       enum array_type type, const struct state_stream *stream)
+{
+    add_array(list, stream_name(prefix, kind).text, type, stream->n, stream->data);
+}
+
+struct array_list state_list(const struct state *state, const char *prefix)
 {
     struct array_list list = {NULL, 0};
-    add_array(&list, "drying_numbers", DEM_FLOAT64, state->number.n,
-              state->number.data);
-    add_array(&list, "drying_integers", DEM_INT32, state->integer.n,
-              state->integer.data);
-    add_array(&list, "drying_bytes", DEM_UINT8, state->byte.n, state->byte.data);
+    add_stream(&list, prefix, "numbers", ARRAY_FLOAT64, &state->number);
+    add_stream(&list, prefix, "integers", ARRAY_INT32, &state->integer);
+    add_stream(&list, prefix, "bytes", ARRAY_UINT8, &state->byte);
     return list;
 }
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Arrays of numbers by name: what the state of a run is kept as. An artifact holds each
+// as a dataset; who reads one says which type, length and range it must have.
+#ifndef CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H
+#define CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H
+
+#include "basics/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum array_type { ARRAY_FLOAT64, ARRAY_INT32, ARRAY_INT64, ARRAY_UINT8 };
+
+struct named_array {
+    char name[32]; // "pair_shear_force"
+    enum array_type type;
+    int64_t count;
+    void *data;
+};
+
+struct array_list {
+    struct named_array *array;
+    int count;
+};
+
+size_t number_size(enum array_type type); // bytes
+
+// COUNT zeros, to be freed with free_arrays.
+struct named_array new_array(const char *name, enum array_type type, int64_t count);
+
+// Adds a copy of the COUNT numbers of DATA to LIST.
+void add_array(struct array_list *list, const char *name, enum array_type type,
+               int64_t count, const void *data);
+void free_arrays(struct named_array *array, int count);
+
+// The one of COUNT that is called NAME, or NULL.
+const struct named_array *find_array(const struct named_array *array, int count,
+                                     const char *name);
+
+// How many numbers are called NAME, 0 when there are none.
+int64_t array_count(const struct array_list *list, const char *name);
+
+// Whether ARRAY, which may be NULL, is of TYPE and has COUNT numbers from LEAST to
+// MOST: STATUS_BAD_DATA if not.
+enum status check_array(const struct named_array *array, const char *name,
+                        enum array_type type, int64_t count, double least, double most,
+                        struct reason *reason);
+
+// Reads LIST; after the first array that is not as it should be, nothing any more.
+struct array_reader {
+    const struct array_list *list;
+    struct reason *reason; // of that
+    bool failed;
+};
+
+// The numbers called NAME if they are COUNT, each from LEAST to MOST; otherwise NULL.
+const void *read_array(struct array_reader *reader, const char *name,
+                       enum array_type type, int64_t count, double least, double most);
+
+#endif
