@@ -272,8 +272,8 @@ $(COMPLETION): tools/completion tools/run $(PROGRAMS)
 
 # What `craquelure run` and `demo` need, as it lies in the tree; samples and documents.
 shared_scripts := $(addprefix pipelines/,memo picture crack-patterns)
-shared := $(shared_scripts) Makefile VERSION README.md $(addprefix pipelines/,crack.mk common.sh \
-	style.gp) $(wildcard $(addsuffix [.-]*,$(shared_scripts)) docs/*.md docs/pictures/* \
+shared := $(shared_scripts) Makefile VERSION $(addprefix pipelines/,crack.mk common.sh \
+	style.gp) $(wildcard $(addsuffix [.-]*,$(shared_scripts)) *.md docs/*.md docs/pictures/* \
 	samples/*.json schemas/*.json stages/*/version)
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 
