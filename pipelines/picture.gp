@@ -9,7 +9,7 @@ set xrange [1:0]
 set xtics (1, 0.9, 0.75, 0.6, 0.45, 0.3, 0.15, 0)
 set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1
 set xlabel "network saturation (drying runs to the right)" offset 0,0.3
-set key right top Left reverse samplen 2.5 spacing 1.3 width -3
+set key left top Left reverse samplen 2.5 spacing 1.3 width -5 maxrows 2 # above the curves
 set tmargin at screen 0.92
 set bmargin at screen 0.2
 
@@ -22,8 +22,8 @@ set style line 3 pointtype 7 pointsize 0.9 linecolor rgb red
 set lmargin at screen 0.085
 set rmargin at screen 0.48
 set ylabel "drying rate / first rate" offset 1,0
-set yrange [0:1.05]
-set ytics 0.2
+set yrange [0:1.35]
+set ytics 0, 0.2, 1
 plot table("inviscid", "rate") with steps linestyle 1 linecolor rgb blue title "negligible viscosity", \
      table("immobile", "rate") with steps linestyle 2 linecolor rgb blue title "immobile liquid", \
      table("inviscid", "first_period") with points linestyle 3 title "end of first period", \
@@ -34,7 +34,6 @@ set rmargin at screen 0.975
 set ylabel "broken bonds so far" offset 1,0
 set yrange [0:top]
 set ytics autofreq
-set key left top maxrows 2 width -8
 grey = "#666666"
 plot keyentry with lines linestyle 1 linecolor rgb gold title "shear", \
      keyentry with lines linestyle 1 linecolor rgb black title "normal", \
