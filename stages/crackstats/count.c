@@ -55,6 +55,13 @@ void counts_free(struct counts *counts)
     *counts = (struct counts){0};
 }
 
+void count_all(double all[MODE_COUNT], const struct counts *counts)
+{
+    for (int mode = 0; mode < MODE_COUNT; mode++)
+        all[mode] =
+            counts->period[PERIOD_FIRST][mode] + counts->period[PERIOD_SECOND][mode];
+}
+
 void count_cracks(struct counts *counts, const struct run *run, struct classes classes)
 {
     for (int k = 0; k < run->n_crack; k++) {

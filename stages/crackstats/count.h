@@ -46,6 +46,9 @@ struct slices slices_of_bond(const struct packing *packing, int bond, int n);
 struct counts counts_new(struct classes classes);
 void counts_free(struct counts *counts);
 
+// Those of both periods.
+void count_all(double all[MODE_COUNT], const struct counts *counts);
+
 // Adds the cracks of RUN. One at the very end of the first period counts there.
 void count_cracks(struct counts *counts, const struct run *run, struct classes classes);
 

@@ -26,4 +26,6 @@ const struct fact_name fact_names[FACT_COUNT] = {
     [SPRING_BACK] = {"shrinkage", "spring_back"},
     [FRONT_CORRELATION] = {"front", "correlation"},
     [FRONT_SATURATION] = {"front", "saturation"},
+    [UNSETTLED_LOADS] = {"unsettled", "loads"},
+    [UNSETTLED_CRACKS] = {"unsettled", "cracks"},
 };

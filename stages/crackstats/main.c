@@ -46,7 +46,8 @@ static const struct stage stage = {
     .most_inputs = 1000000,
     .parameters = table,
     .notes = "A drying among the inputs is that of the response before it: then the "
-             "cracks are set against the liquid of their slices."};
+             "cracks are set against the liquid of their slices. Intervals are of the mean "
+             "over the runs that are given; one run has none: repeat it over seeds."};
 
 // The inputs, and which is next.
 struct reading {

@@ -3,16 +3,43 @@
 
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "unsettled.h"
 
 #include <stdlib.h>
 
-static double end_of_drying(const struct artifact *response)
+// Rings of liquid and weight stay when the last throat is empty.
+static bool is_loaded_at_last(const struct artifact *response, int n_snapshot)
 {
-    int n_time;
-    double *time = artifact_get(response, "/history/time", &n_time);
-    const double end = n_time ? time[n_time - 1] : 0;
-    free(time);
-    return end;
+    if (n_snapshot == 0) return false;
+    const struct dataset_values force =
+        artifact_get_values(response, "/snapshots/force");
+    const size_t row = force.count / (size_t)n_snapshot;
+    bool is_loaded = false;
+    for (size_t k = force.count - row; k < force.count && !is_loaded; k++)
+        is_loaded = force.value[k] != 0;
+    free(force.value);
+    return is_loaded;
+}
+
+static void read_unsettled(struct run *run, const struct artifact *response,
+                           const double *time, int n_time)
+{
+    const double unsettled = artifact_get_number(response, "/summary/steps_unsettled");
+    if (unsettled > n_time)
+        die(STATUS_BAD_DATA,
+            "%s: /summary/steps_unsettled: must be at most the %d steps of "
+            "/history/time, got %.0f",
+            input_name(response->path), n_time, unsettled);
+    run->n_unsettled = (int)unsettled;
+    double *ratio = artifact_get(response, "/history/unbalanced_ratio", NULL);
+    double *saturation = artifact_get(response, "/history/saturation", NULL);
+    const bool is_dry =
+        run->n_snapshot > 0 && run->snapshot_saturation[run->n_snapshot - 1] == 0;
+    run->n_unsettled_crack = unsettled_cracks(
+        run, &(struct loads){n_time, time, ratio, saturation,
+                             is_dry && is_loaded_at_last(response, run->n_snapshot)});
+    free(ratio);
+    free(saturation);
 }
 
 // Bonds never heal, and nothing breaks after the end.
@@ -45,12 +72,16 @@ struct run read_run(const struct artifact *response)
             artifact_get(response, "/weight_cracks/bond", &run.n_weight_crack);
     run.first_period_end =
         artifact_get_number(response, "/summary/first_period_end_time");
-    run.end = end_of_drying(response);
+    int n_time;
+    double *time = artifact_get(response, "/history/time", &n_time);
+    run.end = n_time ? time[n_time - 1] : 0;
     check_cracks(&run, response->path);
     run.snapshot_saturation =
         artifact_get(response, "/snapshots/saturation", &run.n_snapshot);
     run.displacement = artifact_get(response, "/snapshots/displacement", NULL);
     run.intact = artifact_get(response, "/snapshots/bond_intact", NULL);
+    read_unsettled(&run, response, time, n_time);
+    free(time);
     return run;
 }
 

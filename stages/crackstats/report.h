@@ -9,11 +9,12 @@
 
 // Puts in tables that are means over the runs: cracks, periods, profile, by_saturation,
 // by_time, profiles, clusters, fragments, orientation, deformation, front; with their
-// scatter and intervals of CONFIDENCE in profile, by_saturation and by_time.
+// scatter and intervals of CONFIDENCE in cracks, periods, profile, by_saturation,
+// by_time and orientation.
 void report_tables(json_t *report, const struct study *study, double confidence);
 
-// Puts in the facts: mean, sd and confidence_interval over the runs (null for one run),
-// each run's own; and the test of the groups.
+// Puts in what intervals are of, and the facts: mean, sd and confidence_interval over
+// the runs (null for one run), each run's own; and the test of the groups.
 struct groups {
     int first;   // runs in the first, tested against the others; 0: no test
     bool paired; // the groups are as large, and runs belong together in their order

@@ -117,11 +117,21 @@ static json_t *test(const struct study *study, struct groups groups)
     return test;
 }
 
+static json_t *what_intervals_are(int runs, double confidence)
+{
+    if (runs == 1) return json_string("one run: no interval; repeat over seeds");
+    return json_sprintf("%g %% confidence interval of the mean over %d runs, by "
+                        "Student's t",
+                        100 * confidence, runs);
+}
+
 void report_facts(json_t *report, const struct study *study, double confidence,
                   struct groups groups)
 {
     const struct column all = {study, 0, study->n_run, confidence, false};
     const bool many = study->n_run > 1;
+    json_object_set_new(report, "interval_of",
+                        what_intervals_are(study->n_run, confidence));
     json_object_set_new(report, "mean", table(all, mean_of));
     json_object_set_new(report, "sd", many ? table(all, deviation_of) : json_null());
     json_object_set_new(report, "confidence_interval",

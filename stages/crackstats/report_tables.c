@@ -145,9 +145,12 @@ static json_t *fabric(const double sum[9])
     return rows;
 }
 
-static json_t *orientation(const struct orientation *of, double runs)
+static json_t *orientation(const struct study *study, double confidence)
 {
-    json_t *list = classes(of->cracks, INCLINATION_CLASSES, 0, 90, runs);
+    const struct orientation *of = &study->orientation;
+    const double runs = study->n_run;
+    json_t *list = scattered(classes(of->cracks, INCLINATION_CLASSES, 0, 90, runs),
+                             study->squares.inclination, study->n_run, confidence);
     size_t k;
     json_t *entry;
     json_array_foreach(list, k, entry)
@@ -202,13 +205,15 @@ void report_tables(json_t *report, const struct study *study, double confidence)
     const struct counts *counts = &study->counts;
     const struct squares *squares = &study->squares;
     const double runs = study->n_run;
-    const double *first = counts->period[PERIOD_FIRST];
-    const double *second = counts->period[PERIOD_SECOND];
-    const double both[MODE_COUNT] = {first[MODE_NORMAL] + second[MODE_NORMAL],
-                                     first[MODE_SHEAR] + second[MODE_SHEAR]};
     const int n_slice = study->classes.n_slice, n = study->classes.n_interval;
-    json_object_set_new(report, "cracks", by_mode(both, runs));
-    json_object_set_new(report, "periods", periods(counts, runs));
+    double all[MODE_COUNT];
+    count_all(all, counts);
+    json_t *cracks = by_mode(all, runs);
+    put_scatter(cracks, squares->all[0], study->n_run, confidence);
+    json_object_set_new(report, "cracks", cracks);
+    json_object_set_new(
+        report, "periods",
+        scattered(periods(counts, runs), squares->period, study->n_run, confidence));
     json_object_set_new(report, "profile",
                         scattered(classes(counts->slice, n_slice, 0, 1, runs),
                                   squares->slice, study->n_run, confidence));
@@ -221,7 +226,7 @@ void report_tables(json_t *report, const struct study *study, double confidence)
     json_object_set_new(report, "profiles", profiles(study));
     json_object_set_new(report, "clusters", size_distribution(study->clusters, runs));
     json_object_set_new(report, "fragments", size_distribution(study->fragments, runs));
-    json_object_set_new(report, "orientation", orientation(&study->orientation, runs));
+    json_object_set_new(report, "orientation", orientation(study, confidence));
     json_object_set_new(report, "deformation", deformation(study));
     json_object_set_new(report, "front", front(study));
 }

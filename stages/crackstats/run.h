@@ -17,6 +17,8 @@ struct run {
     int n_weight_crack;           // under the weight alone, before drying
     int32_t *weight_crack;        // (n_weight_crack) bonds
     double first_period_end, end; // s
+    int n_unsettled;              // loads that did not come to rest
+    int n_unsettled_crack;        // cracks that opened under them
     int n_snapshot;
     double *snapshot_saturation; // (n_snapshot)
     struct vector *displacement; // (n_snapshot * n_particle) m

@@ -39,8 +39,13 @@ static void add_squares(double (*sum)[COLUMN_COUNT], const double (*of)[MODE_COU
 }
 
 void squares_add(struct squares *squares, const struct counts *run,
-                 struct classes classes)
+                 const struct orientation *orientation, struct classes classes)
 {
+    double all[1][MODE_COUNT];
+    count_all(all[0], run);
+    add_squares(squares->all, all, 1);
+    add_squares(squares->period, run->period, PERIOD_COUNT);
+    add_squares(squares->inclination, orientation->cracks, INCLINATION_CLASSES);
     add_squares(squares->slice, run->slice, classes.n_slice);
     add_squares(squares->saturation, run->saturation, classes.n_interval);
     add_squares(squares->time, run->time, classes.n_interval);

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the counts of each slice and interval scatter over the runs.
+// How the counts of each period, slice, interval and inclination scatter over the runs.
 #ifndef CRAQUELURE_CRACKSTATS_SCATTER_H
 #define CRAQUELURE_CRACKSTATS_SCATTER_H
 
 #include "count.h"
+#include "orientation.h"
 
 enum { COLUMN_COUNT = MODE_COUNT + 1 }; // the modes, and both together
 
 // Sums over the runs of the squares of their counts.
 struct squares {
+    double all[1][COLUMN_COUNT];
+    double period[PERIOD_COUNT][COLUMN_COUNT];
+    double inclination[INCLINATION_CLASSES][COLUMN_COUNT];
     double (*slice)[COLUMN_COUNT];      // (n_slice)
     double (*saturation)[COLUMN_COUNT]; // (n_interval)
     double (*time)[COLUMN_COUNT];       // (n_interval)
@@ -17,9 +21,9 @@ struct squares {
 struct squares squares_new(struct classes classes);
 void squares_free(struct squares *squares);
 
-// Adds the counts of one RUN.
+// Adds the counts of one RUN and its cracks by ORIENTATION.
 void squares_add(struct squares *squares, const struct counts *run,
-                 struct classes classes);
+                 const struct orientation *orientation, struct classes classes);
 
 // Standard deviation (n - 1) of RUNS counts, two or more, from their sum and the sum of
 // their squares: whole numbers, whose difference rounding does not touch.

@@ -40,13 +40,11 @@ static void note_modes(double *value, const double of[MODE_COUNT])
 
 static void note_counts(double *value, const struct counts *counts, int n_bond)
 {
-    const double *first = counts->period[PERIOD_FIRST];
-    const double *second = counts->period[PERIOD_SECOND];
-    note_modes(value + FIRST_NORMAL, first);
-    note_modes(value + SECOND_NORMAL, second);
-    note_modes(value + CRACKS_NORMAL,
-               (const double[]){first[MODE_NORMAL] + second[MODE_NORMAL],
-                                first[MODE_SHEAR] + second[MODE_SHEAR]});
+    note_modes(value + FIRST_NORMAL, counts->period[PERIOD_FIRST]);
+    note_modes(value + SECOND_NORMAL, counts->period[PERIOD_SECOND]);
+    double all[MODE_COUNT];
+    count_all(all, counts);
+    note_modes(value + CRACKS_NORMAL, all);
     value[CRACKS_SHARE] = n_bond ? value[CRACKS_TOTAL] / n_bond : NAN;
 }
 
@@ -120,7 +118,9 @@ void study_add(struct study *study, const struct run *run, const struct liquid *
     double *value = study->facts[study->n_run++].value;
     struct counts counts = counts_new(study->classes);
     count_cracks(&counts, run, study->classes);
-    squares_add(&study->squares, &counts, study->classes);
+    struct orientation orientation = {0};
+    add_orientation(&orientation, run);
+    squares_add(&study->squares, &counts, &orientation, study->classes);
     note_counts(value, &counts, run->packing.n_bond);
     note_clusters(value, run, &study->clusters);
     note_pieces(value, run, &study->fragments);
@@ -128,6 +128,8 @@ void study_add(struct study *study, const struct run *run, const struct liquid *
     for (int s = 0; s < run->n_snapshot; s++)
         study->snapshot_saturation[s] += run->snapshot_saturation[s];
     note_front(value, run, liquid, counts.place, study);
+    value[UNSETTLED_LOADS] = run->n_unsettled;
+    value[UNSETTLED_CRACKS] = run->n_unsettled_crack;
     counts_free(&counts);
     count_cracks(&study->counts, run, study->classes);
     add_orientation(&study->orientation, run);

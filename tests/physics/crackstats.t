@@ -90,7 +90,52 @@ with scratch() as folder:
        and sum(s["size"] * s["count"] for s in stats["fragments"]) == len(position),
        "clusters hold all cracks, fragments all grains", stats["clusters"])
     ok(stats["sd"] is None and stats["confidence_interval"] is None and stats["test"] is None
-       and stats["profile"][0]["sd"] is None, "one run has no scatter")
+       and all(row["sd"] is None and row["confidence_interval"] is None
+               for row in [stats["profile"][0], stats["cracks"], *stats["periods"],
+                           *stats["orientation"]["inclination"]]), "one run has no scatter")
+    ok(stats["interval_of"] == "one run: no interval; repeat over seeds", "which is said",
+       stats["interval_of"])
+
+    # ---- loads that did not come to rest --------------------------------------------
+    def unsettled(ratio, count, cracks, pull=None):
+        """By crackstats, of a response in which COUNT loads of these RATIOs did not settle, with
+        CRACKS under each, and nothing or PULL on the grains at the last snapshot."""
+        shutil.copy(at("response"), at("restless"))
+        with h5py.File(at("restless"), "r+") as file:
+            times = file["history/time"][:]
+            file["history/unbalanced_ratio"][...] = ratio
+            file["summary"].attrs["steps_unsettled"] = count
+            if pull is not None:
+                file["snapshots/force"][-1] = pull
+            assert len(times) == len(ratio) and file["history/saturation"][-1] == 0
+        by_hand(at("restless"), list(range(sum(cracks))), np.repeat(times, cracks),
+                [0] * sum(cracks), [0] * sum(cracks))
+        of = crackstats(at("restless"))["each"][0]["unsettled"]
+        return of["loads"], of["cracks"]
+
+    steps = h5py.File(at("response"))["history/time"].shape[0]
+    ratio, cracks = np.full(steps, 1e-6), np.arange(steps)
+    ok(unsettled(ratio, 0, cracks) == (0, 0), "all loads came to rest")
+    ratio[[1, 3]] = 0.02, 0.01
+    ok(unsettled(ratio, 2, cracks) == (2, 1 + 3), "cracks under the two loads that did not")
+    ratio[-1] = 0.5
+    ok(unsettled(ratio, 2, cracks, 0) == (2, 1 + 3), "what is dry has no load")
+    ok(unsettled(ratio, 3, cracks, 1e-9) == (3, 1 + 3 + cracks[-1]), "but where something still pulls")
+    ok(unsettled(ratio, steps, cracks, 1e-9) == (steps, sum(cracks)), "none came to rest")
+    with h5py.File(at("restless"), "r+") as file:
+        file["summary"].attrs["steps_unsettled"] = steps + 1
+    ok(refused("/summary/steps_unsettled: must be at most", at("restless")), "more of them than loads are refused")
+    # By cycles, a real one: those above the tolerance.
+    run("dem-replay", "-p", SCENE, "--set", "cycles=100", "--set", "tolerance=6e-3", "--set", "most_cycles=100",
+        "--set", "engine=explicit", "--set", "unsettled=count", "--set", "bond.normal_strength=3e3", at("forces"), "-o", at("hurried"))
+    with h5py.File(at("hurried")) as file:
+        above = file["history/unbalanced_ratio"][:] >= 6e-3
+        above[-1] &= file["history/saturation"][-1] > 0
+        opened = np.diff(file["history/cracks"][:], prepend=0)
+        counted = crackstats(at("hurried"))["mean"]["unsettled"]
+        ok(0 < above.sum() < 4 and above.sum() == file["summary"].attrs["steps_unsettled"] == counted["loads"]
+           and counted["cracks"] == opened[above].sum() and opened.sum() > 0,
+           "a replay in haste: loads above the tolerance, and cracks under them", counted)
 
     # ---- none, one, all -------------------------------------------------------------
     everything = list(range(len(bonds)))
@@ -134,6 +179,27 @@ with scratch() as folder:
     interval = crackstats(*paths[:10])["confidence_interval"]["cracks"]["total"]
     ok(np.allclose(interval, 20 + 10 * np.array([-0.5297804, 2.0297804]), atol=1e-6),
        "the interval of the mean, as published", interval)
+    # Student's t of one and two degrees of freedom at 95 % has a closed form.
+    for n, t in (2, np.tan(0.95 * np.pi / 2)), (3, 0.95 * np.sqrt(2 / (1 - 0.95 ** 2))):
+        few = crackstats(*paths[:n])
+        half = t * np.std(first[:n], ddof=1) / np.sqrt(n)
+        wanted = [np.mean(first[:n]) - half, np.mean(first[:n]) + half]
+        rows = [few["cracks"], few["periods"][1]]
+        ok(all(np.allclose(row["confidence_interval"]["total"], wanted, rtol=1e-12)
+               and row["confidence_interval"]["normal"] == row["confidence_interval"]["total"]
+               and np.isclose(row["sd"]["total"], np.std(first[:n], ddof=1), rtol=1e-14) for row in rows)
+           and few["periods"][0]["confidence_interval"]["total"] == [0, 0],
+           f"{n} runs: all cracks and those of each period have the closed form's interval", rows)
+        ok(few["interval_of"] == f"95 % confidence interval of the mean over {n} runs, by Student's t",
+           "and it is said of what", few["interval_of"])
+    ok(crackstats("--set", "confidence=0.9", *paths[:2])["interval_of"].startswith("90 % "),
+       "with the confidence asked for")
+    tilted = [[sum(upright[:n]), n - sum(upright[:n])] for n in first[:3]]
+    inclination = few["orientation"]["inclination"]
+    ok(all(np.allclose(row["confidence_interval"]["normal"], np.mean(counts) + t * np.std(counts, ddof=1)
+                       / np.sqrt(3) * np.array([-1, 1]), rtol=1e-12)
+           for row, counts in zip([inclination[0], inclination[-1]], np.transpose(tilted))),
+       "and classes of inclination", inclination)
     ok(np.isclose(stats["sd"]["cracks"]["total"], np.std(first + second, ddof=1))
        and [e["cracks"]["total"] for e in stats["each"]] == first + second,
        "standard deviation, and each run's own")

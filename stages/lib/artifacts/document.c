@@ -35,6 +35,8 @@ static bool has_json_type(const json_t *value, const char *type)
         return !strncmp(type, "array", 5);
     case JSON_INTEGER:
         return !strncmp(type, "integer", 7) || !strncmp(type, "number", 6);
+    case JSON_STRING:
+        return !strncmp(type, "string", 6);
     case JSON_REAL:
         return !strncmp(type, "number", 6);
     default:
@@ -56,6 +58,7 @@ enum status check_document(const json_t *document, const struct schema *schema,
         const char *name = json_string_value(json_object_get(entry, "name"));
         const char *type = json_string_value(json_object_get(entry, "type"));
         const json_t *value = json_object_get(document, name + 1);
+        if (!value && json_is_true(json_object_get(entry, "optional"))) continue;
         if (!value) return refuse(reason, STATUS_BAD_DATA, "%s: is missing", name);
         if (!has_json_type(value, type))
             return refuse(reason, STATUS_BAD_DATA, "%s: must be of type %s", name,
