@@ -193,6 +193,7 @@ THREADS ?=# of each stage
 # Stops at once where a word of the variable $1, or no word, is not $2 (whole): it must be $3.
 must = $(if $(shell printf '%s\n' $(foreach w,$($1),$(call quoted,$w)) | grep -qvxE '$2' && echo so),$(error $1 must be $3, got '$($1)'))
 whole := [1-9][0-9]{0,6}
+natural := 0|[1-9][0-9]{0,9}
 number := ([0-9]+\.?|[0-9]*\.[0-9]+)([eE][-+]?[0-9]+)?
 $(if $(THREADS),$(call must,THREADS,$(whole),a whole number))
 
@@ -216,6 +217,9 @@ step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),ve
 report = $(call artifact,$1,stage=$2 version=1,$(wildcard pipelines/$2 pipelines/$2.gp \
 	pipelines/$2-*.awk pipelines/$2.awk pipelines/common.* pipelines/style.gp) $3,pipelines/$2 \
 	$(or $4,$3) $1,$(BUILD)/bin/inspect)
+
+# The words $1 in their order, each once.
+once_each = $(if $1,$(firstword $1) $(call once_each,$(filter-out $(firstword $1),$1)))
 
 # Whether goal $1, or a file in its folder $2, is asked for.
 asked = $(filter $1 $2/%,$(MAKECMDGOALS))
@@ -273,7 +277,7 @@ $(COMPLETION): tools/completion tools/run $(PROGRAMS)
 # What `craquelure run` and `demo` need, as it lies in the tree; samples and documents.
 shared_scripts := $(addprefix pipelines/,memo picture crack-patterns)
 shared := $(shared_scripts) Makefile VERSION $(addprefix pipelines/,crack.mk common.sh \
-	style.gp) $(wildcard $(addsuffix [.-]*,$(shared_scripts)) *.md docs/*.md docs/pictures/* \
+	headline.jq style.gp) $(wildcard $(addsuffix [.-]*,$(shared_scripts)) *.md docs/*.md docs/pictures/* \
 	samples/*.json schemas/*.json stages/*/version)
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 

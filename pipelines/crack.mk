@@ -2,8 +2,10 @@
 # From a scene to its cracks:
 #
 #     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
-#     make demo                        ->  the sample in both drying limits, and its pictures
+#     make demo                        ->  the sample in both drying limits, for several draws of
+#                                          the throat radii, and pictures of the first
 #     make demo SCENE=samples/x.json   ->  the same for another scene
+#     make demo DEMO_SEEDS="3 4 5"     ->  the same for these draws
 
 SCENE ?=
 IMPORT ?=# what `pack` reads, for a scene that imports its grains
@@ -44,8 +46,8 @@ $(call dem-replay,$1/response.h5,$2,,$1/forces.h5)
 $(call crackstats,$1/crackstats.json,$2,,$1/response.h5 $1/drying.h5)
 endef
 
-crack_words := "\(.cracks.total) of \(.bonds) bonds broke," + \
-	" \(.cracks.normal) in tension, \(.cracks.shear) in shear"
+# Prints what $1, a crackstats.json, comes down to; $2: a word before it.
+headline = printf '%s' '$2' && jq -rf pipelines/headline.jq --arg draws 'draws of the throat radii' $1
 
 # --- one scene ------------------------------------------------------------------------
 
@@ -65,7 +67,7 @@ sections: | $(run_stages:%=$(BUILD)/bin/%)
 endif
 run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
 ifdef really
-	@jq -r '$(crack_words)' $(run_folder)/crackstats.json 2>/dev/null || true
+	@$(call headline,$(run_folder)/crackstats.json) 2>/dev/null || true
 	@echo 'artifacts: $(run_folder)'
 endif
 else
@@ -74,6 +76,8 @@ run:
 endif
 
 # --- the demonstration ----------------------------------------------------------------
+
+DEMO_SEEDS ?=# of the throat radii; pictures show the first [eight from the scene's own on]
 
 demo_scene := $(or $(SCENE),samples/stiff-5x5x10.json)
 demo_folder := $(RUNS)/$(basename $(notdir $(demo_scene)))
@@ -84,11 +88,33 @@ demo_picture := $(if $(wildcard pipelines/picture),$(demo_folder)/picture.svg)
 demo: ## from the stiff aggregate of the samples to its cracks and a picture, in both limits
 
 ifneq ($(filter demo $(demo_folder)/%,$(MAKECMDGOALS)),)
+# The scene's own seed; none where it takes the network's radii and draws none.
+demo_own := $(shell jq -r '.dry.throat_radius | select((.distribution // "network") != "network") \
+	| .seed // 1 | floor' $(demo_scene) 2>/dev/null)
+ifneq ($(strip $(DEMO_SEEDS)),)
+$(call must,DEMO_SEEDS,$(natural),whole numbers)
+$(if $(demo_own),,$(error DEMO_SEEDS: $(demo_scene) draws no throat radii: dry.throat_radius.distribution says how))
+endif
+demo_seeds := $(or $(call once_each,$(DEMO_SEEDS)),$(if $(demo_own),$(shell seq $(demo_own) $$(($(demo_own) + 7)))))
+demo_first := $(firstword $(demo_seeds))
+demo_others := $(wordlist 2,$(words $(demo_seeds)),$(demo_seeds))
+
+# The runs of limit $1: the first in its folder, as `make run` has it, the others in one each.
+demo_run_folders = $(demo_folder)/$1 $(demo_others:%=$(demo_folder)/$1/seed-%)
+# What sets seed $1 where it is not that of the scene.
+demo_set = $(addprefix throat_radius.seed=,$(filter-out $(demo_own),$1))
+define demo_limit
+$(call crack_history,$(demo_folder)/$1,$(demo_scene),$(demo_folder)/network.h5,liquid=$1 $(call demo_set,$(demo_first)))
+$(foreach seed,$(demo_others),$(call \
+	crack_history,$(demo_folder)/$1/seed-$(seed),$(demo_scene),$(demo_folder)/network.h5,liquid=$1 $(call demo_set,$(seed))))
+$(call crackstats,$(demo_folder)/$1/seeds.json,$(demo_scene),,$(foreach \
+	folder,$(call demo_run_folders,$1),$(folder)/response.h5 $(folder)/drying.h5))
+endef
 $(call crack_network,$(demo_folder),$(demo_scene))
-$(foreach limit,$(demo_limits),$(call \
-	crack_history,$(demo_folder)/$(limit),$(demo_scene),$(demo_folder)/network.h5,liquid=$(limit)))
+$(foreach limit,$(demo_limits),$(call demo_limit,$(limit)))
 
 demo_counts := $(demo_limits:%=$(demo_folder)/%/crackstats.json)
+demo_means := $(if $(demo_others),$(demo_limits:%=$(demo_folder)/%/seeds.json),$(demo_counts))
 demo_drawn := $(foreach limit,$(demo_limits),$(addprefix \
 	$(demo_folder)/$(limit)/,drying.h5 forces.h5 response.h5 crackstats.json))
 ifneq ($(demo_picture),)
@@ -101,10 +127,9 @@ demo_moments := $(foreach limit,$(demo_limits),$(foreach s,0.9 0.6 0.3 \
 	0,'$(limit), saturation $s=$(demo_folder)/$(limit)/response.h5@$s'))
 $(call report,$(demo_patterns),crack-patterns,$(demo_limits:%=$(demo_folder)/%/response.h5),$(demo_moments))
 
-demo: $(demo_counts) $(demo_picture) $(demo_patterns)
+demo: $(demo_counts) $(demo_means) $(demo_picture) $(demo_patterns)
 ifdef really
-	@for limit in $(demo_limits); do \
-		jq -r --arg limit $$limit '"\($$limit): " + $(crack_words)' $(demo_folder)/$$limit/crackstats.json; done
+	@$(foreach limit,$(demo_limits),$(call headline,$(filter $(demo_folder)/$(limit)/%,$(demo_means)),$(limit): );)
 	@echo 'artifacts: $(demo_folder)'
 	@echo 'pictures:  $(demo_picture) $(demo_patterns)'
 endif

@@ -61,7 +61,7 @@ cat >mycrackstats <<'END'
 echo '{"cracks": {"total": 7, "normal": 4, "shear": 3}, "bonds": 8}' >"${!#}"
 END
 chmod +x mycrackstats
-is 'a stage of one'\''s own' '7 of 8 bonds broke, 4 in tension, 3 in shear' \
+is 'a stage of one'\''s own' 'one run: 7 of 8 bonds broke, 4 in tension, 3 in shear' \
     "$(env -i PATH=/usr/bin:/bin CRACKSTATS=./mycrackstats "$prefix/bin/craquelure" run \
         'scenes/small scene.json' 2>/dev/null | tail -2 | head -1)"
 
@@ -89,9 +89,21 @@ refused 'the status is that of the stage that failed' 65 'words.txt: line 1: mus
 
 # --- demo --------------------------------------------------------------------------------
 
-craquelure demo 'scenes/small scene.json' >"$scratch/demo" 2>/dev/null
+craquelure demo 'scenes/small scene.json' --seeds=1,4,2 >"$scratch/demo" 2>/dev/null
 is 'demo says what broke in both limits' 'immobile: inviscid:' \
     "$(grep -o '^[a-z]*:.* bonds broke' "$scratch/demo" | cut -d' ' -f1 | sort | xargs)"
+# Three draws: Student's t of two degrees of freedom is 0.95 sqrt(2 / (1 - 0.95^2)) at 95 %.
+for limit in inviscid immobile; do
+    mean=$(for run in . seed-4 seed-2; do
+        craquelure inspect runs/small_scene/$limit/$run/response.h5 | jq .summary.cracks; done |
+        jq -rs --arg limit $limit 'def few: if . < 10 then . * 10 | round / 10 else round end;
+            (add / 3) as $mean | (map(. - $mean | . * .) | add / 2 | sqrt) as $sd
+            | (0.95 * (2 / (1 - 0.95 * 0.95) | sqrt) * $sd / (3 | sqrt)) as $half
+            | "\($limit): \($mean | few) of 20 bonds broke (95 % interval of the mean \([0, $mean - $half]
+                | max | few) to \($mean + $half | few), 3 draws of the throat radii: \(min) to \(max))"')
+    is "$limit: the mean of three draws, its interval and their range" "$mean" \
+        "$(grep -o "^$limit: .*draws of the throat radii: [0-9]* to [0-9]*)" "$scratch/demo")"
+done
 for picture in picture patterns; do
     yes "and draws $picture.svg" grep -q '</svg>' "runs/small_scene/$picture.svg"
 done

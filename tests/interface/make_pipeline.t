@@ -279,4 +279,54 @@ is 'make demo: one network, one picture of its cracks' 'crack-patterns merge-nod
 is 'make demo: two limits' 'immobile inviscid' \
     "$(grep -o -- '--set .liquid=[a-z]*' <<<"$plan" | cut -d= -f2 | sort | xargs)"
 
+# Draws of the throat radii, where the scene draws some.
+seeds() { sed -n "s/.* stage=dry .*set=.liquid=$1. \(set=.throat_radius.seed=\([0-9]*\)\)\?.*/s\2/p" | sort | xargs; }
+is 'a scene that draws no radii dries once' 's s' "$(seeds inviscid <<<"$plan") $(seeds immobile <<<"$plan")"
+is 'so it takes no seeds' 2 "$(make -n demo DEMO_SEEDS='1 2' >said 2>&1; echo $?)"
+jq '.dry.throat_radius = {"distribution": "normal", "seed": 5}' $scene >samples/stiff-5x5x10.json
+plan=$(make -n demo)
+is 'one that does: eight draws, the first its own' 's s10 s11 s12 s6 s7 s8 s9' "$(seeds inviscid <<<"$plan")"
+is 'in both limits' "$(seeds inviscid <<<"$plan")" "$(seeds immobile <<<"$plan")"
+is 'or those that are asked for, each once' 's s3 s7' "$(make -n demo DEMO_SEEDS='7 5 3 7' | seeds inviscid)"
+is 'whole numbers only' 'must be whole numbers' \
+    "$(make -n demo DEMO_SEEDS='1;touch PWN' 2>&1 | grep -o 'must be whole numbers')"
+cat >pipelines/crack-patterns <<'END'
+#!/bin/bash
+touch "${!#}"
+END
+: >ran
+make demo DEMO_SEEDS='5 3' >said 2>&1
+is 'they pass through the same pipeline: a network, and per draw and limit the rest' \
+    '4 crackstats 4 dem-replay 4 dry 4 force-protocol 1 merge-nodes 1 pack 1 tessellate' \
+    "$(sort ran | uniq -c | xargs)"
+: >ran
+make demo DEMO_SEEDS='5 3 8' >said 2>&1
+is 'one more: nothing else again' '2 crackstats 2 dem-replay 2 dry 2 force-protocol' \
+    "$(sort ran | uniq -c | xargs)"
+: >ran
+make run SCENE=samples/stiff-5x5x10.json >said 2>&1
+is 'nor the network, for a run of the scene' '1 crackstats 1 dem-replay 1 dry 1 force-protocol' "$(sort ran | uniq -c | xargs)"
+
+# --- what a run comes down to, in a line ---------------------------------------------------
+
+told() { jq -rf pipelines/headline.jq --arg draws 'draws of the throat radii' <<<"$1"; }
+cracks() { echo "{\"total\": $1, \"normal\": $2, \"shear\": $3}"; }
+is 'one run' 'one run: 75 of 625 bonds broke, 24 in tension, 51 in shear; every load came to rest' \
+    "$(told "{\"runs\": 1, \"bonds\": 625, \"cracks\": $(cracks 75 24 51), \"confidence_interval\": null,
+        \"mean\": {\"cracks\": $(cracks 75 24 51), \"unsettled\": {\"loads\": 0, \"cracks\": 0}}}")"
+is 'one that did not settle' \
+    'one run: 5 of 9 bonds broke, 2 in tension, 3 in shear; 1 load did not come to rest, 2 bonds broke under it' \
+    "$(told "{\"runs\": 1, \"bonds\": 9, \"cracks\": $(cracks 5 2 3), \"confidence_interval\": null,
+        \"mean\": {\"cracks\": $(cracks 5 2 3), \"unsettled\": {\"loads\": 1, \"cracks\": 2}}}")"
+many="{\"runs\": 2, \"bonds\": 625, \"confidence_interval\": {\"cracks\": {\"total\": [67.6, 82.4]}},
+    \"each\": [{\"cracks\": $(cracks 57 1 56)}, {\"cracks\": $(cracks 100 3 97)}],
+    \"parameters\": {\"confidence\": 0.95},
+    \"mean\": {\"cracks\": $(cracks 78.5 2 76.5), \"unsettled\": {\"loads\": 1.25, \"cracks\": 10.2}}}"
+is 'many' "79 of 625 bonds broke (95 % interval of the mean 68 to 82, 2 draws of the throat radii: 57 to 100), 2 in tension,\
+ 77 in shear; 1.3 loads a run did not come to rest, 10 bonds broke under them" "$(told "$many")"
+is 'no count is below 0' '0 to 82' \
+    "$(told "$(jq '.confidence_interval.cracks.total[0] = -3' <<<"$many")" | grep -o '[-0-9]* to 82')"
+is 'counts and no more, of a program in place of crackstats' 'one run: 7 of 8 bonds broke, 4 in tension, 3 in shear' \
+    "$(told "{\"bonds\": 8, \"cracks\": $(cracks 7 4 3)}")"
+
 finish

@@ -18,7 +18,8 @@
 #define CRAQUELURE_EQUILIBRIUM_H
 
 #include "checkpoint/keeper.h"
-#include "geometry/net_load.h"
+#include "dem/dem.h"
+include "geometry/net_load.h"
 
 struct equilibrium_setup {
     const struct packing *packing; // with its bonds
