@@ -19,7 +19,7 @@
 
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
-include "geometry/net_load.h"
+#include "geometry/net_load.h"
 
 struct equilibrium_setup {
     const struct packing *packing; // with its bonds
