@@ -5,7 +5,7 @@
 #include "basics/memory.h"
 #include "dem/keep.h"
 #include "loose.h"
-#include "reaction.h"
+#include "support_reaction.h"
 
 #include <math.h>
 #include <stdio.h>

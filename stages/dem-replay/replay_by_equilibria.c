@@ -3,8 +3,8 @@
 #include "replay_engine.h"
 
 #include "basics/memory.h"
-#include "quasi_static/equilibrium.h"
-#include "reaction.h"
+#include "quasi_static/quasi_static.h"
+#include "support_reaction.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #define CRAQUELURE_REPLAY_ENGINE_H
 
 #include "replay.h"
-#include "resume.h"
+#include "replay_checkpoint.h"
 
 struct run {
     const struct packing *packing;

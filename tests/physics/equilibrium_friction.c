@@ -3,7 +3,7 @@
 // sheared to and fro, a row drawn through what holds it by friction, a block on a
 // slope.
 #include "dem_scene.h"
-#include "quasi_static/joint.h"
+#include "quasi_static/contact_pair.h"
 #include "support_equilibrium.h"
 
 static const double stiffness = 3e4; // N/m, of a grain: half of it at a contact

@@ -3,7 +3,7 @@
 // for large displacements too: balance of the whole, energy, bonds that stay broken,
 // and scenes that are turned or numbered anew.
 #include "dem-replay/bonds.h"
-#include "dem-replay/reaction.h"
+#include "dem-replay/support_reaction.h"
 #include "dem_scene.h"
 #include "support_equilibrium.h"
 #include "support_irregular.h"

@@ -3,7 +3,7 @@
 // quasi_static.large_displacements) against chains integrated here, the Euler load of a
 // chain in closed form, turned scenes, energy, and discrete elements brought to rest.
 #include "bent_row.h"
-#include "quasi_static/equilibrium_state.h"
+#include "quasi_static/quasi_static_internal.h"
 
 // Without contacts, so that rows resist alike pushed and pulled.
 static struct equilibrium_setup row_setup(const struct packing *packing,

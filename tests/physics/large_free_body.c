@@ -4,7 +4,7 @@
 // Euler load of half a row, scenes turned and elsewhere, and cycles.
 #include "bent_row.h"
 #include "geometry/net_load.h"
-#include "quasi_static/equilibrium_state.h"
+#include "quasi_static/quasi_static_internal.h"
 #include "support_irregular.h"
 
 #include "basics/memory.h"

@@ -3,7 +3,7 @@
 // systems take long without being solved, and where nothing else would end it.
 #include "equilibrium_scene.h"
 
-#include "quasi_static/equilibrium_state.h"
+#include "quasi_static/quasi_static_internal.h"
 
 // ---- all contacts at once -----------------------------------------------------------
 

@@ -3,7 +3,7 @@
 // its equilibria, by the law that Newton's method goes by, whatever surrounds it.
 #include "../random.h"
 #include "../test.h"
-#include "quasi_static/settle_joint.h"
+#include "quasi_static/return_mapping.h"
 
 #include <math.h>
 

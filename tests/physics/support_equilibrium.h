@@ -4,7 +4,7 @@
 #define CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
 
 #include "dem-replay/replay.h"
-#include "quasi_static/equilibrium.h"
+#include "quasi_static/quasi_static.h"
 
 struct equilibrium *make_equilibrium(const struct equilibrium_setup *setup);
 void next_equilibrium(struct equilibrium *equilibrium, const struct vector *force);

@@ -2,9 +2,9 @@
 // Three bonded grains of different sizes on a wall, pressed on it and pushed along it:
 // cycles brought to rest beside equilibria for small and for large displacements, and
 // what the wall gives back.
-#include "dem-replay/reaction.h"
+#include "dem-replay/support_reaction.h"
 #include "dem_scene.h"
-#include "quasi_static/equilibrium.h"
+#include "quasi_static/quasi_static.h"
 #include "support_equilibrium.h"
 
 enum { N = 3 };

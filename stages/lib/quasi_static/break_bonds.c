@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equilibrium_state.h"
+#include "quasi_static_internal.h"
 
 #include "basics/memory.h"
 

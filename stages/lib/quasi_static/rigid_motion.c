@@ -8,7 +8,7 @@
 //     sum m u = 0,  sum m X x u + I turn = 0,
 // X where they began, about their centre, and I of a grain: the rotation that fits them
 // best is none.
-#include "equilibrium_state.h"
+#include "quasi_static_internal.h"
 
 #include "basics/memory.h"
 

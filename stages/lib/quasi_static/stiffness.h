@@ -4,8 +4,8 @@
 #ifndef CRAQUELURE_STIFFNESS_H
 #define CRAQUELURE_STIFFNESS_H
 
-#include "joint.h"
-#include "quasi_static/large/large_joint.h"
+#include "contact_pair.h"
+#include "quasi_static/large/pair_frame.h"
 #include "sparse/supernodal.h"
 
 struct stiffness;

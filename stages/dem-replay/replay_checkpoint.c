@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "replay_checkpoint.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double largest = 1e150, most_cycles = 0x1p53;
+static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge";
+
+// ---- out ----------------------------------------------------------------------------
+
+static void save_snapshots(struct array_list *list, const struct response *response,
+                           const struct packing *packing)
+{
+    const size_t count = (size_t)response->n_snapshot;
+    const size_t n = (size_t)packing->n_particle, n_bond = (size_t)packing->n_bond;
+    int32_t *step = NEW_ARRAY(int32_t, count);
+    struct vector *displacement = NEW_ARRAY(struct vector, count * n);
+    struct vector *force = NEW_ARRAY(struct vector, count * n);
+    uint8_t *intact = NEW_ARRAY(uint8_t, count * n_bond);
+    for (size_t s = 0; s < count; s++) {
+        const struct snapshot *snapshot = &response->snapshot[s];
+        step[s] = snapshot->step;
+        memcpy(displacement + s * n, snapshot->displacement, n * sizeof *displacement);
+        memcpy(force + s * n, snapshot->force, n * sizeof *force);
+        memcpy(intact + s * n_bond, snapshot->intact, n_bond);
+    }
+    const int64_t numbers = (int64_t)(3 * count * n);
+    add_array(list, "snapshot_step", DEM_INT32, (int64_t)count, step);
+    add_array(list, "snapshot_displacement", DEM_FLOAT64, numbers, displacement);
+    add_array(list, "snapshot_force", DEM_FLOAT64, numbers, force);
+    add_array(list, "snapshot_intact", DEM_UINT8, (int64_t)(count * n_bond), intact);
+    free(step);
+    free(displacement);
+    free(force);
+    free(intact);
+}
+
+// Of all snapshots, one after the other.
+static struct dem_contact *join_contacts(const struct response *response,
+                                         int32_t *of_each, int *count)
+{
+    *count = 0;
+    for (int s = 0; s < response->n_snapshot; s++)
+        *count += of_each[s] = response->snapshot[s].n_contact;
+    struct dem_contact *all = NEW_ARRAY(struct dem_contact, *count), *end = all;
+    for (int s = 0; s < response->n_snapshot; s++) {
+        const struct snapshot *snapshot = &response->snapshot[s];
+        memcpy(end, snapshot->contact, (size_t)snapshot->n_contact * sizeof *all);
+        end += snapshot->n_contact;
+    }
+    return all;
+}
+
+// Volume and force of the bridge of each contact; only where there are any.
+static void save_bridges(struct array_list *list, const struct dem_contact *contact,
+                         int n)
+{
+    double(*bridge)[2] = allocate((size_t)n, sizeof *bridge);
+    bool any = false;
+    for (int k = 0; k < n; k++) {
+        bridge[k][0] = contact[k].bridge_volume;
+        bridge[k][1] = contact[k].bridge_force;
+        any = any || bridge[k][0] > 0;
+    }
+    if (any) add_array(list, bridges_name, DEM_FLOAT64, 2 * (int64_t)n, bridge);
+    free(bridge);
+}
+
+static void save_contacts(struct array_list *list, const struct response *response)
+{
+    int n;
+    int32_t *of_each = NEW_ARRAY(int32_t, response->n_snapshot);
+    struct dem_contact *contact = join_contacts(response, of_each, &n);
+    int32_t(*particle)[2] = allocate((size_t)n, sizeof *particle);
+    int32_t *bond = NEW_ARRAY(int32_t, n);
+    double *overlap = NEW_ARRAY(double, n);
+    struct vector *force = NEW_ARRAY(struct vector, n);
+    struct vector *position = NEW_ARRAY(struct vector, n);
+    for (int k = 0; k < n; k++) {
+        memcpy(particle[k], contact[k].particle, sizeof *particle);
+        bond[k] = contact[k].bond;
+        overlap[k] = contact[k].overlap;
+        force[k] = contact[k].force;
+        position[k] = contact[k].position;
+    }
+    add_array(list, "snapshot_contacts", DEM_INT32, response->n_snapshot, of_each);
+    add_array(list, "contact_particle", DEM_INT32, 2 * (int64_t)n, particle);
+    add_array(list, "contact_bond", DEM_INT32, n, bond);
+    add_array(list, "contact_overlap", DEM_FLOAT64, n, overlap);
+    add_array(list, "contact_force", DEM_FLOAT64, 3 * (int64_t)n, force);
+    add_array(list, "contact_position", DEM_FLOAT64, 3 * (int64_t)n, position);
+    save_bridges(list, contact, n);
+    free(of_each);
+    free(contact);
+    free(particle);
+    free(bond);
+    free(overlap);
+    free(force);
+    free(position);
+}
+
+struct array_list save_response(const struct response *response,
+                                const struct packing *packing, int n_time,
+                                struct replay_place place)
+{
+    struct array_list list = {NULL, 0};
+    add_array(&list, "step", DEM_INT64, 1, &(int64_t){place.step});
+    add_array(&list, "step_began", DEM_INT64, 1, &place.began);
+    add_array(&list, "unbalanced_ratio", DEM_FLOAT64, n_time,
+              response->unbalanced_ratio);
+    add_array(&list, "cycles", DEM_INT64, n_time, response->cycles);
+    add_array(&list, "cracks", DEM_INT32, n_time, response->cracks);
+    add_array(&list, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, response->reaction);
+    add_array(&list, "crack_step", DEM_INT32, response->n_crack, response->crack_step);
+    add_array(&list, "weight_cracks", DEM_INT32, 1,
+              &(int32_t){response->n_weight_crack});
+    add_array(&list, "weight_unbalanced_ratio", DEM_FLOAT64,
+              !isnan(response->weight_unbalanced_ratio),
+              &response->weight_unbalanced_ratio);
+    save_snapshots(&list, response, packing);
+    save_contacts(&list, response);
+    return list;
+}
+
+struct array_list save_loads(const struct array_list *earlier,
+                             const struct vector *weight, const struct load *load,
+                             const struct packing *packing)
+{
+    const int64_t before = earlier  ? array_count(earlier, loads_name)
+                           : weight ? 3 * (int64_t)packing->n_particle
+                                    : 0;
+    const int64_t now = 3 * (int64_t)load->n_time * packing->n_particle;
+    double *all = NEW_ARRAY(double, before + now);
+    const void *data = weight;
+    if (earlier && before)
+        data = dem_find_array(earlier->array, earlier->count, loads_name)->data;
+    if (before) memcpy(all, data, (size_t)before * sizeof *all);
+    memcpy(all + before, load->force, (size_t)now * sizeof *all);
+    struct array_list list = {NULL, 0};
+    add_array(&list, loads_name, DEM_FLOAT64, before + now, all);
+    free(all);
+    return list;
+}
+
+// ---- in -----------------------------------------------------------------------------
+
+bool saved_by_equilibria(const struct array_list *list)
+{
+    return dem_find_array(list->array, list->count, loads_name) != NULL;
+}
+
+enum status refuse_other_engine(struct reason *reason, const char *name)
+{
+    return refuse(reason, STATUS_BAD_DATA,
+                  "was kept by engine=%s, which alone can go on from it", name);
+}
+
+const struct vector *saved_loads(const struct array_list *list,
+                                 const struct packing *packing, int *n_load,
+                                 struct reason *reason)
+{
+    struct array_reader reader = {.list = list, .reason = reason};
+    const int64_t each = 3 * (int64_t)packing->n_particle;
+    const int64_t most = each > 0 ? array_count(list, loads_name) / each : 0;
+    *n_load = (int)(most > 1 ? most : 1);
+    return read_array(&reader, loads_name, DEM_FLOAT64, *n_load * each, -largest,
+                      largest);
+}
+
+static enum status restore_history(struct response *response, int first_step,
+                                   int n_time, int64_t cycle,
+                                   struct array_reader *reader,
+                                   struct replay_place *place)
+{
+    const int64_t *step =
+        read_array(reader, "step", DEM_INT64, 1, first_step, n_time - 1);
+    const int64_t *began =
+        read_array(reader, "step_began", DEM_INT64, 1, 0, (double)cycle);
+    const double *ratio =
+        read_array(reader, "unbalanced_ratio", DEM_FLOAT64, n_time, 0, largest);
+    const int64_t *cycles =
+        read_array(reader, "cycles", DEM_INT64, n_time, 0, most_cycles);
+    const int32_t *cracks =
+        read_array(reader, "cracks", DEM_INT32, n_time, 0, INT32_MAX);
+    const struct net_load *reaction = read_array(
+        reader, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, -largest, largest);
+    if (reader->failed) return STATUS_BAD_DATA;
+    const size_t n = (size_t)n_time;
+    *place = (struct replay_place){(int)*step, *began};
+    memcpy(response->unbalanced_ratio, ratio, n * sizeof *ratio);
+    memcpy(response->cycles, cycles, n * sizeof *cycles);
+    memcpy(response->cracks, cracks, n * sizeof *cracks);
+    memcpy(response->reaction, reaction, n * sizeof *reaction);
+    return STATUS_OK;
+}
+
+enum status restore_weight(struct response *response, int n_crack,
+                           const struct array_list *list, struct reason *reason)
+{
+    struct array_reader reader = {.list = list, .reason = reason};
+    const int64_t n_ratio = array_count(list, "weight_unbalanced_ratio");
+    const int32_t *n = read_array(&reader, "weight_cracks", DEM_INT32, 1, 0, n_crack);
+    const double *ratio = read_array(&reader, "weight_unbalanced_ratio", DEM_FLOAT64,
+                                     n_ratio > 0, 0, largest);
+    if (reader.failed) return STATUS_BAD_DATA;
+    response->n_weight_crack = *n;
+    if (n_ratio > 0) response->weight_unbalanced_ratio = *ratio;
+    return STATUS_OK;
+}
+
+static bool rises(const int32_t *step, int64_t n)
+{
+    for (int64_t k = 1; k < n; k++)
+        if (step[k] < step[k - 1]) return false;
+    return true;
+}
+
+// The engine knows the cracks; of those of whole steps the step is known too.
+static enum status restore_cracks(struct response *response, int n_time,
+                                  const struct engine_past *past,
+                                  struct array_reader *reader)
+{
+    const int64_t n = array_count(reader->list, "crack_step");
+    const int32_t *step = read_array(reader, "crack_step", DEM_INT32, n, 0, n_time - 1);
+    if (reader->failed) return STATUS_BAD_DATA;
+    if (n > past->n_crack)
+        return refuse(reader->reason, STATUS_BAD_DATA,
+                      "crack_step: is longer than the cracks");
+    if (!rises(step, n))
+        return refuse(reader->reason, STATUS_BAD_DATA, "crack_step: must not fall");
+    response->n_crack = (int)n;
+    response->crack = duplicate(past->crack, (size_t)n, sizeof *past->crack);
+    response->crack_step = duplicate(step, (size_t)n, sizeof *step);
+    return STATUS_OK;
+}
+
+static enum status restore_snapshots(struct response *response,
+                                     const struct packing *packing,
+                                     const struct load *load, int most,
+                                     struct array_reader *reader)
+{
+    const int64_t count = array_count(reader->list, "snapshot_step");
+    const size_t n = (size_t)packing->n_particle, n_bond = (size_t)packing->n_bond;
+    if (count > most)
+        return refuse(reader->reason, STATUS_BAD_DATA,
+                      "snapshot_step: is longer than asked for");
+    const int64_t numbers = 3 * count * packing->n_particle;
+    const int32_t *step =
+        read_array(reader, "snapshot_step", DEM_INT32, count, 0, load->n_time - 1);
+    const struct vector *displacement = read_array(
+        reader, "snapshot_displacement", DEM_FLOAT64, numbers, -largest, largest);
+    const struct vector *force =
+        read_array(reader, "snapshot_force", DEM_FLOAT64, numbers, -largest, largest);
+    const uint8_t *intact =
+        read_array(reader, "snapshot_intact", DEM_UINT8, count * packing->n_bond, 0, 1);
+    if (reader->failed) return STATUS_BAD_DATA;
+    if (!rises(step, count))
+        return refuse(reader->reason, STATUS_BAD_DATA, "snapshot_step: must not fall");
+    for (size_t s = 0; s < (size_t)count; s++)
+        response->snapshot[response->n_snapshot++] = (struct snapshot){
+            .step = step[s],
+            .time = load->time[step[s]],
+            .saturation = load->saturation[step[s]],
+            .displacement = duplicate(displacement + s * n, n, sizeof *displacement),
+            .force = duplicate(force + s * n, n, sizeof *force),
+            .intact = duplicate(intact + s * n_bond, n_bond, 1)};
+    return STATUS_OK;
+}
+
+// Two grains, the lower first, or a grain and a wall; the first row that is not, or N.
+static int64_t first_unordered(const int32_t (*particle)[2], int64_t n)
+{
+    int64_t k = 0;
+    while (k < n && particle[k][0] >= 0 &&
+           (particle[k][1] < 0 || particle[k][0] < particle[k][1]))
+        k++;
+    return k;
+}
+
+// The contacts of all snapshots, N of them; NULL with the reason.
+static struct dem_contact *read_contacts(const struct packing *packing, int64_t n,
+                                         struct array_reader *reader)
+{
+    const int walls = 1; // at most
+    const int32_t(*particle)[2] = read_array(reader, "contact_particle", DEM_INT32,
+                                             2 * n, -walls, packing->n_particle - 1);
+    const int32_t *bond =
+        read_array(reader, "contact_bond", DEM_INT32, n, -1, packing->n_bond - 1);
+    const double *overlap =
+        read_array(reader, "contact_overlap", DEM_FLOAT64, n, -largest, largest);
+    const struct vector *force =
+        read_array(reader, "contact_force", DEM_FLOAT64, 3 * n, -largest, largest);
+    const struct vector *position =
+        read_array(reader, "contact_position", DEM_FLOAT64, 3 * n, -largest, largest);
+    const bool wet = array_count(reader->list, bridges_name) > 0;
+    const double(*bridge)[2] =
+        wet ? read_array(reader, bridges_name, DEM_FLOAT64, 2 * n, -largest, largest)
+            : NULL;
+    if (reader->failed) return NULL;
+    const int64_t odd = first_unordered(particle, n);
+    if (odd < n) {
+        refuse(
+            reader->reason, STATUS_BAD_DATA,
+            "contact_particle: row %lld: the lower index must come first, got %d, %d",
+            (long long)odd, particle[odd][0], particle[odd][1]);
+        return NULL;
+    }
+    struct dem_contact *contact = NEW_ARRAY(struct dem_contact, n);
+    for (int64_t k = 0; k < n; k++)
+        contact[k] = (struct dem_contact){.particle = {particle[k][0], particle[k][1]},
+                                          .bond = bond[k],
+                                          .overlap = overlap[k],
+                                          .force = force[k],
+                                          .position = position[k],
+                                          .bridge_volume = wet ? bridge[k][0] : 0,
+                                          .bridge_force = wet ? bridge[k][1] : 0};
+    return contact;
+}
+
+static enum status restore_contacts(struct response *response,
+                                    const struct packing *packing,
+                                    struct array_reader *reader)
+{
+    const int64_t n = array_count(reader->list, "contact_bond");
+    const int32_t *of_each = read_array(reader, "snapshot_contacts", DEM_INT32,
+                                        response->n_snapshot, 0, (double)n);
+    struct dem_contact *contact = read_contacts(packing, n, reader);
+    if (!contact) return STATUS_BAD_DATA;
+    int64_t sum = 0;
+    for (int s = 0; s < response->n_snapshot && sum + of_each[s] <= n; s++) {
+        struct snapshot *snapshot = &response->snapshot[s];
+        snapshot->n_contact = of_each[s];
+        snapshot->contact =
+            duplicate(contact + sum, (size_t)of_each[s], sizeof *contact);
+        sum += of_each[s];
+    }
+    free(contact);
+    if (sum == n) return STATUS_OK;
+    return refuse(reader->reason, STATUS_BAD_DATA,
+                  "snapshot_contacts: must come to %lld, come to %lld", (long long)n,
+                  (long long)sum);
+}
+
+enum status restore_response(struct response *response, const struct packing *packing,
+                             const struct load *load, int first_step,
+                             int most_snapshots, const struct engine_past *past,
+                             const struct array_list *list, struct replay_place *place,
+                             struct reason *reason)
+{
+    struct array_reader reader = {.list = list, .reason = reason};
+    enum status status = restore_history(response, first_step, load->n_time,
+                                         past->cycle, &reader, place);
+    if (status == STATUS_OK)
+        status = restore_cracks(response, load->n_time, past, &reader);
+    if (status == STATUS_OK)
+        status = restore_snapshots(response, packing, load, most_snapshots, &reader);
+    if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);
+    return status;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "support_reaction.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+static void add_load(const struct packing *packing, int grain, double sign,
+                     struct vector force, struct vector moment, struct net_load *sum)
+{
+    const struct vector from = subtract(packing->position[grain], packing->lower);
+    sum->force = add(sum->force, scale(sign, force));
+    sum->moment = add(sum->moment, scale(sign, add(cross(from, force), moment)));
+}
+
+// Held grains stay where they are: what comes to them goes on to what holds them.
+struct net_load reaction_of_dem(const struct packing *packing, const struct dem *dem,
+                                const uint8_t *held, bool has_wall)
+{
+    struct vector *force = NEW_ARRAY(struct vector, packing->n_particle);
+    struct vector *moment = NEW_ARRAY(struct vector, packing->n_particle);
+    struct net_load sum = {0};
+    dem_loads(dem, force, moment);
+    for (int i = 0; i < packing->n_particle; i++)
+        if (held[i]) add_load(packing, i, -1, force[i], moment[i], &sum);
+    if (has_wall) { // at the lower corner, as all moments here are about
+        const struct dem_wall_state wall = dem_wall_state(dem, 0);
+        sum.force = subtract(sum.force, wall.force);
+        sum.moment = subtract(sum.moment, wall.moment);
+    }
+    free(force);
+    free(moment);
+    return sum;
+}
+
+struct net_load reaction_of_equilibrium(const struct packing *packing,
+                                        const struct equilibrium *equilibrium,
+                                        const uint8_t *held, const struct vector *force)
+{
+    struct net_load sum = {0};
+    equilibrium_reaction(equilibrium, packing->lower, &sum.force, &sum.moment);
+    for (int i = 0; i < packing->n_particle; i++)
+        if (held[i]) add_load(packing, i, -1, force[i], (struct vector){0, 0, 0}, &sum);
+    return sum;
+}

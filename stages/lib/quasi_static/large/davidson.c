@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The softest mode of a body that nothing holds, among those without momentum, and
+// whether it is resisted: by Davidson's method, as the factor holds the body, which is
+// turned over else, and so is not that of the stiffness itself.
+#include "quasi_static/quasi_static_internal.h"
+
+#include "basics/memory.h"
+
+#include <gsl/gsl_eigen.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 40 }; // vectors
+
+// Orthonormal vectors (6 n) without momentum, and the stiffness times each.
+struct basis {
+    int count;
+    double *vector[MOST], *image[MOST];
+    double product[MOST][MOST]; // of vectors and images
+    double part[MOST];          // of the softest mode
+};
+
+static double product(const double *a, const double *b, int n)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+// What joints, as they are in the factor, and their loads resist MODE with.
+static void resist_mode(const struct equilibrium *e, const struct displacement *mode,
+                        struct displacement *load)
+{
+    memset(load, 0, (size_t)e->n * sizeof *load);
+    for (int j = 0; j < e->n_joint; j++) {
+        const int32_t *grain = e->joint[j].grain;
+        double strain[STRAINS];
+        joint_strains(&e->joint[j], &mode[grain[0]],
+                      grain[1] < 0 ? NULL : &mode[grain[1]], strain);
+        for (int k = 0; k < STRAINS; k++)
+            strain[k] *= -e->tangent[j][k];
+        joint_take_off(&e->joint[j], strain, load);
+    }
+    struct displacement *turning = NEW_ARRAY(struct displacement, e->n);
+    take_off_turning(e, mode, turning);
+    for (int i = 0; i < e->n; i++)
+        pull(&load[i], turning[i]);
+    free(turning);
+}
+
+// One more, from STEP as the factor answers it. Whether it is not of the others.
+static bool widen(struct equilibrium *e, struct basis *basis)
+{
+    const int n = 6 * e->n, k = basis->count;
+    stiffness_begin(e->matrix, e->step);
+    stiffness_finish(e->matrix, e->step);
+    keep_momentum(e, e->step);
+    double *vector = duplicate(e->step, (size_t)e->n, sizeof *e->step);
+    const double before = sqrt(product(vector, vector, n));
+    for (int pass = 0; pass < 2; pass++)
+        for (int l = 0; l < k; l++) {
+            const double part = product(vector, basis->vector[l], n);
+            for (int i = 0; i < n; i++)
+                vector[i] -= part * basis->vector[l][i];
+        }
+    const double size = sqrt(product(vector, vector, n));
+    const bool is_new = size > 1e-10 * before;
+    for (int i = 0; i < n && is_new; i++)
+        vector[i] /= size;
+    basis->vector[k] = vector;
+    basis->image[k] = NEW_ARRAY(double, n);
+    basis->count++;
+    if (!is_new) return false;
+    resist_mode(e, (struct displacement *)vector,
+                (struct displacement *)basis->image[k]);
+    for (int l = 0; l <= k; l++)
+        basis->product[l][k] = basis->product[k][l] =
+            product(basis->vector[l], basis->image[k], n);
+    return true;
+}
+
+// The least that the basis knows.
+static double soften(struct basis *basis)
+{
+    const size_t count = (size_t)basis->count;
+    gsl_matrix *matrix = gsl_matrix_alloc(count, count);
+    gsl_matrix *vectors = gsl_matrix_alloc(count, count);
+    gsl_vector *values = gsl_vector_alloc(count);
+    gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(count);
+    for (size_t k = 0; k < count; k++)
+        for (size_t l = 0; l < count; l++)
+            gsl_matrix_set(matrix, k, l, basis->product[k][l]);
+    gsl_eigen_symmv(matrix, values, vectors, space);
+    const size_t least = gsl_vector_min_index(values);
+    const double stiffness = gsl_vector_get(values, least);
+    for (size_t k = 0; k < count; k++)
+        basis->part[k] = gsl_matrix_get(vectors, k, least);
+    gsl_eigen_symmv_free(space);
+    gsl_vector_free(values);
+    gsl_matrix_free(vectors);
+    gsl_matrix_free(matrix);
+    return stiffness;
+}
+
+// Into STEP the softest mode as OF_VECTORS, and what resists it as OF_IMAGES.
+static void combine(const struct equilibrium *e, const struct basis *basis,
+                    double of_images, double of_vectors)
+{
+    double *sum = &e->step[0].shift.x;
+    memset(e->step, 0, (size_t)e->n * sizeof *e->step);
+    for (int k = 0; k < basis->count; k++)
+        for (int i = 0; i < 6 * e->n; i++)
+            sum[i] += basis->part[k] * (of_images * basis->image[k][i] +
+                                        of_vectors * basis->vector[k][i]);
+}
+
+// Without the symmetry of what grains may do together.
+static void begin_mode(struct equilibrium *e)
+{
+    for (int i = 0; i < e->n; i++) {
+        const double part = fmod(0.6180339887 * i * (double)i, 1);
+        e->step[i] = (struct displacement){{part, 0.7 - part, 0.2 * (i % 3)},
+                                           {0.3, 0.6 * part, 1}};
+        if (e->is_gone[i]) e->step[i] = (struct displacement){{0, 0, 0}, {0, 0, 0}};
+    }
+}
+
+static double find_mode(struct equilibrium *e)
+{
+    struct basis basis = {.count = 0};
+    const double close = 1e-9 * e->large->hold;
+    double stiffness = INFINITY, fell = INFINITY;
+    begin_mode(e);
+    while (basis.count < MOST && widen(e, &basis)) {
+        const double before = stiffness;
+        stiffness = soften(&basis);
+        const double falls = before - stiffness;
+        if (fmax(falls, fell) < 1e-3 * fabs(stiffness) + close) break;
+        fell = falls;
+        combine(e, &basis, 1, -stiffness);
+    }
+    combine(e, &basis, 0, 1);
+    for (int k = 0; k < basis.count; k++) {
+        free(basis.vector[k]);
+        free(basis.image[k]);
+    }
+    return stiffness;
+}
+
+int free_softest(struct equilibrium *e, double *stiffness)
+{
+    const double found = find_mode(e);
+    int softest = 0;
+    for (int i = 0; i < e->n; i++)
+        if (size_of(e->step[i]) > size_of(e->step[softest])) softest = i;
+    const double size = size_of(e->step[softest]);
+    for (int i = 0; i < e->n && size > 0; i++)
+        e->step[i] = scaled(1 / size, e->step[i]);
+    if (stiffness) *stiffness = found;
+    return softest;
+}
+
+// To what rounding leaves of it.
+bool free_is_stable(struct equilibrium *e)
+{
+    double stiffness;
+    free_softest(e, &stiffness);
+    return !(stiffness < -1e-7 * e->large->hold);
+}

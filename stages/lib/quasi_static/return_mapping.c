@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "return_mapping.h"
+
+#include <math.h>
+#include <string.h>
+
+static void swap(double *a, double *b)
+{
+    const double other = *a;
+    *a = *b;
+    *b = other;
+}
+
+bool solve_three(double m[3][3], double right[3])
+{
+    for (int k = 0; k < 3; k++) {
+        int best = k;
+        for (int r = k + 1; r < 3; r++)
+            if (fabs(m[r][k]) > fabs(m[best][k])) best = r;
+        for (int l = 0; l < 3; l++)
+            swap(&m[k][l], &m[best][l]);
+        swap(&right[k], &right[best]);
+        if (!(fabs(m[k][k]) > 0)) return false;
+        for (int r = k + 1; r < 3; r++) {
+            const double share = m[r][k] / m[k][k];
+            for (int l = k; l < 3; l++)
+                m[r][l] -= share * m[k][l];
+            right[r] -= share * right[k];
+        }
+    }
+    for (int k = 2; k >= 0; k--) {
+        for (int l = k + 1; l < 3; l++)
+            right[k] -= m[k][l] * right[l];
+        right[k] /= m[k][k];
+    }
+    return true;
+}
+
+// While a joint is in one state its load is linear: slope (from + x) + constant.
+struct state {
+    double slope[3][3], constant[3];
+};
+
+static struct state open_state(const struct joint *joint)
+{
+    struct state state = {.constant = {0}};
+    for (int k = 0; k < 3 && joint->is_bonded; k++)
+        state.slope[k][k] = joint->bond_stiffness[k];
+    return state;
+}
+
+static struct state closed_state(const struct joint *joint)
+{
+    struct state state = open_state(joint);
+    state.slope[0][0] += joint->contact_along;
+    state.constant[0] = -joint->contact_along * joint->overlap;
+    return state;
+}
+
+static struct state stuck_state(const struct joint *joint)
+{
+    struct state state = closed_state(joint);
+    for (int k = 0; k < 2 && joint->contact.touch != TOUCH_NONE; k++) {
+        state.slope[1 + k][1 + k] += joint->contact_across;
+        state.constant[1 + k] = -joint->contact_across * joint->contact.anchor[k];
+    }
+    return state;
+}
+
+static bool solve_state(const struct surroundings *s, const struct state *state,
+                        double x[3])
+{
+    double m[3][3], more[3];
+    for (int k = 0; k < 3; k++) {
+        more[k] = state->constant[k] - s->load[k];
+        for (int l = 0; l < 3; l++)
+            more[k] += state->slope[k][l] * s->from[l];
+    }
+    for (int k = 0; k < 3; k++) {
+        x[k] = s->given[k];
+        for (int l = 0; l < 3; l++) {
+            x[k] -= s->compliance[k][l] * more[l];
+            m[k][l] = (k == l) - s->compliance[k][l] * s->tangent[l];
+            for (int i = 0; i < 3; i++)
+                m[k][l] += s->compliance[k][i] * state->slope[i][l];
+        }
+    }
+    return solve_three(m, x);
+}
+
+static double overlap_of(const struct joint *joint, const struct surroundings *s,
+                         const double x[3])
+{
+    return joint->overlap - s->from[0] - x[0];
+}
+
+static double stretch_of(const struct joint *joint, const struct surroundings *s,
+                         const double x[3], int k)
+{
+    return s->from[1 + k] + x[1 + k] - joint->contact.anchor[k];
+}
+
+// Closed and slipping, x = smooth - force (way[0] give[0] + way[1] give[1]).
+struct sliding {
+    double smooth[3], give[2][3];
+    double overlap, limit; // without friction; force over overlap
+    double anchor[2];      // x at which the spring is free
+    double stiffness;
+};
+
+static bool begin_sliding(const struct joint *joint, const struct surroundings *s,
+                          struct sliding *sliding)
+{
+    const struct state closed = closed_state(joint);
+    if (!solve_state(s, &closed, sliding->smooth)) return false;
+    for (int k = 0; k < 2; k++) {
+        struct surroundings pushed = *s;
+        for (int l = 0; l < 3; l++)
+            pushed.given[l] += s->compliance[l][1 + k];
+        if (!solve_state(&pushed, &closed, sliding->give[k])) return false;
+        for (int l = 0; l < 3; l++)
+            sliding->give[k][l] -= sliding->smooth[l];
+        sliding->anchor[k] = joint->contact.anchor[k] - s->from[1 + k];
+    }
+    sliding->overlap = joint->overlap - s->from[0] - sliding->smooth[0];
+    sliding->limit = joint->friction * joint->contact_along;
+    sliding->stiffness = joint->contact_across;
+    return true;
+}
+
+// What comes of a slip along WAY, a unit vector: where the spring lies then, how far it
+// is turned from that way (then it cannot be), and stretched along it beyond where it
+// would stick (or else it cannot be).
+struct slip {
+    double x[3], stretch[2], turned, along, beyond;
+};
+
+static struct slip slip_along(const struct sliding *sliding, const double way[2])
+{
+    const double give = way[0] * sliding->give[0][0] + way[1] * sliding->give[1][0];
+    const double force =
+        sliding->limit * sliding->overlap / (1 - sliding->limit * give);
+    struct slip slip;
+    for (int k = 0; k < 3; k++)
+        slip.x[k] = sliding->smooth[k] - force * (way[0] * sliding->give[0][k] +
+                                                  way[1] * sliding->give[1][k]);
+    for (int k = 0; k < 2; k++)
+        slip.stretch[k] = slip.x[1 + k] - sliding->anchor[k];
+    slip.turned = way[0] * slip.stretch[1] - way[1] * slip.stretch[0];
+    slip.along = way[0] * slip.stretch[0] + way[1] * slip.stretch[1];
+    slip.beyond = force >= 0 ? sliding->stiffness * slip.along - force : -1;
+    return slip;
+}
+
+static struct slip slip_at(const struct sliding *sliding, double angle)
+{
+    return slip_along(sliding, (double[]){cos(angle), sin(angle)});
+}
+
+static bool is_along(const struct slip *slip)
+{
+    return fabs(slip->turned) <= 1e-6 * slip->along;
+}
+
+// From the way the spring lies to where the slip turns it, again and again.
+static bool follow_slip(const struct sliding *sliding, double x[3])
+{
+    enum { TURNS = 8 };
+    double way[2] = {x[1] - sliding->anchor[0], x[2] - sliding->anchor[1]};
+    for (int k = 0; k < TURNS; k++) {
+        const double size = sqrt(way[0] * way[0] + way[1] * way[1]);
+        if (!(size > 0)) return false;
+        const double unit[2] = {way[0] / size, way[1] / size};
+        const struct slip slip = slip_along(sliding, unit);
+        if (!(slip.along > 0)) return false;
+        memcpy(way, slip.stretch, sizeof way);
+        if (!is_along(&slip)) continue;
+        if (!(slip.beyond >= 0)) return false;
+        memcpy(x, slip.x, sizeof slip.x);
+        return true;
+    }
+    return false;
+}
+
+static struct slip halve(const struct sliding *sliding, double low, double at_low,
+                         double high)
+{
+    for (int k = 0; k < 30; k++) {
+        const double middle = 0.5 * (low + high);
+        if ((slip_at(sliding, middle).turned > 0) == (at_low > 0))
+            low = middle;
+        else
+            high = middle;
+    }
+    return slip_at(sliding, low);
+}
+
+// The same where that leads nowhere: all ways, the nearest to FIRST first.
+static bool seek_slip(const struct sliding *sliding, double first, double x[3])
+{
+    enum { PARTS = 32 };
+    const double part = 2 * M_PI / PARTS;
+    for (int k = 0; k < PARTS; k++) { // to both sides in turn
+        const double low = first + part * ((k % 2 ? -(k + 1) / 2 : k / 2) - 0.5);
+        const double at_low = slip_at(sliding, low).turned;
+        const double at_high = slip_at(sliding, low + part).turned;
+        if ((at_low > 0) == (at_high > 0)) continue;
+        const struct slip slip = halve(sliding, low, at_low, low + part);
+        if (!is_along(&slip) || !(slip.beyond >= 0)) continue; // no root, but a pole
+        memcpy(x, slip.x, sizeof slip.x);
+        return true;
+    }
+    return false;
+}
+
+static bool slip(const struct joint *joint, const struct surroundings *s, double x[3])
+{
+    struct sliding sliding;
+    if (joint->contact.touch == TOUCH_NONE || !begin_sliding(joint, s, &sliding))
+        return false;
+    const double angle = atan2(x[2] - sliding.anchor[1], x[1] - sliding.anchor[0]);
+    return follow_slip(&sliding, x) || seek_slip(&sliding, angle, x);
+}
+
+bool settle_joint(const struct joint *joint, const struct surroundings *s, double x[3])
+{
+    const struct state stuck = stuck_state(joint), open = open_state(joint);
+    double found[3];
+    bool is_found = false;
+    if (solve_state(s, &stuck, found)) {
+        const double overlap = overlap_of(joint, s, found);
+        const double size =
+            joint->contact_across *
+            hypot(stretch_of(joint, s, found, 0), stretch_of(joint, s, found, 1));
+        is_found =
+            overlap >= 0 && (joint->contact.touch == TOUCH_NONE ||
+                             size <= joint->friction * joint->contact_along * overlap);
+    }
+    if (!is_found && solve_state(s, &open, found))
+        is_found = overlap_of(joint, s, found) < 0;
+    if (!is_found) return slip(joint, s, x);
+    memcpy(x, found, sizeof found);
+    return true;
+}
