@@ -11,12 +11,12 @@
 #include <string.h>
 
 struct equilibria {
-    struct equilibrium *last;
+    struct quasi_static *last;
     int restless_before, snaps_before; // of an earlier replay
     struct kept_state kept;            // the last
 };
 
-static struct equilibrium *last(const struct run *run)
+static struct quasi_static *last(const struct run *run)
 {
     return ((const struct equilibria *)run->state)->last;
 }
@@ -54,7 +54,7 @@ static void tell(void *context, double balanced)
 static enum status create(struct run *run, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;
-    const struct equilibrium_setup setup = {
+    const struct quasi_static_setup setup = {
         .packing = run->packing,
         .fixed = settings->held,
         .has_wall = settings->support == SUPPORT_WALL,
@@ -71,14 +71,14 @@ static enum status create(struct run *run, struct reason *reason)
         .report = tell,
         .context = run};
     struct equilibria *state = run->state = NEW_ARRAY(struct equilibria, 1);
-    return equilibrium_new(&state->last, &setup, reason);
+    return quasi_static_create(&state->last, &setup, reason);
 }
 
 static enum status find(struct run *run, struct reason *reason)
 {
-    const enum status status = equilibrium_find(last(run), run->force, reason);
+    const enum status status = quasi_static_solve(last(run), run->force, reason);
     if (run->settings->support == SUPPORT_FREE)
-        run->taken_off = equilibrium_load(last(run), run->force);
+        run->taken_off = quasi_static_load(last(run), run->force);
     return status;
 }
 
@@ -95,11 +95,11 @@ static enum status repeat(struct run *run, struct reason *reason)
         memcpy(run->force, force + (size_t)k * n, n * sizeof *run->force);
         const enum status status = find(run, reason);
         if (status) return status;
-        if (equilibrium_may_forget(state->last))
-            equilibrium_forget(state->last); // as in one piece
+        if (quasi_static_cache_is_old(state->last))
+            quasi_static_drop_cache(state->last); // as in one piece
     }
-    state->restless_before = equilibrium_restless(state->last, &grain);
-    state->snaps_before = equilibrium_snaps(state->last, &grain);
+    state->restless_before = quasi_static_unconverged(state->last, &grain);
+    state->snaps_before = quasi_static_instabilities(state->last, &grain);
     return STATUS_OK;
 }
 
@@ -115,7 +115,7 @@ static enum status begin(struct run *run, struct reason *reason)
 static enum status restore(struct run *run, const struct array_list *list,
                            struct reason *reason)
 {
-    return equilibrium_restore(last(run), list, reason);
+    return quasi_static_restore(last(run), list, reason);
 }
 
 // ---- advance ------------------------------------------------------------------------
@@ -125,12 +125,12 @@ static enum status restore(struct run *run, const struct array_list *list,
 static void keep(struct run *run)
 {
     struct equilibria *state = run->state;
-    if (equilibrium_may_forget(state->last)) {
-        equilibrium_forget(state->last);
+    if (quasi_static_cache_is_old(state->last)) {
+        quasi_static_drop_cache(state->last);
         if (!run->keeper || !run->keeper->due) return;
         free_kept_state(&state->kept);
         state->kept = (struct kept_state){
-            equilibrium_save(state->last),
+            quasi_static_save(state->last),
             save_response(run->response, run->packing, run->load->n_time, run->place)};
     }
     if (state->kept.engine.count > 0 && is_due(run->keeper))
@@ -147,12 +147,12 @@ static enum status advance(struct run *run, struct reason *reason)
 
 static int64_t cycles(const struct run *run)
 {
-    return equilibrium_iterations(last(run));
+    return quasi_static_iterations(last(run));
 }
 
 static double unbalanced_ratio(const struct run *run)
 {
-    return equilibrium_unbalanced_ratio(last(run));
+    return quasi_static_unbalanced_ratio(last(run));
 }
 
 static struct net_load reaction(const struct run *run)
@@ -163,14 +163,14 @@ static struct net_load reaction(const struct run *run)
 
 static const struct dem_crack *cracks(const struct run *run, int *count)
 {
-    return equilibrium_cracks(last(run), count);
+    return quasi_static_cracks(last(run), count);
 }
 
 static void observe(const struct run *run, struct snapshot *snapshot)
 {
-    equilibrium_displacements(last(run), snapshot->displacement);
-    equilibrium_bonds_intact(last(run), snapshot->intact);
-    snapshot->contact = equilibrium_contacts(last(run), &snapshot->n_contact);
+    quasi_static_displacements(last(run), snapshot->displacement);
+    quasi_static_bonds_intact(last(run), snapshot->intact);
+    snapshot->contact = quasi_static_contacts(last(run), &snapshot->n_contact);
 }
 
 static struct array_list save(const struct run *run)
@@ -184,14 +184,15 @@ static void end(struct run *run)
     struct equilibria *state = run->state;
     struct response *response = run->response;
     if (state->last) {
-        response->n_gone = equilibrium_gone(state->last, &response->first_gone);
-        response->n_restless = equilibrium_restless(state->last, &response->restless) -
-                               state->restless_before;
+        response->n_gone = quasi_static_detached(state->last, &response->first_gone);
+        response->n_restless =
+            quasi_static_unconverged(state->last, &response->restless) -
+            state->restless_before;
         response->n_unsettled = response->n_restless;
-        response->n_snap =
-            equilibrium_snaps(state->last, &response->snapped) - state->snaps_before;
+        response->n_snap = quasi_static_instabilities(state->last, &response->snapped) -
+                           state->snaps_before;
     }
-    equilibrium_free(state->last);
+    quasi_static_free(state->last);
     free_kept_state(&state->kept);
     free(state);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a replay has to remember besides the engine, as named arrays.
-#ifndef CRAQUELURE_RESUME_H
-#define CRAQUELURE_RESUME_H
+#ifndef CRAQUELURE_REPLAY_CHECKPOINT_H
+#define CRAQUELURE_REPLAY_CHECKPOINT_H
 
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"

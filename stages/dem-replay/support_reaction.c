@@ -34,11 +34,11 @@ struct net_load reaction_of_dem(const struct packing *packing, const struct dem 
 }
 
 struct net_load reaction_of_equilibrium(const struct packing *packing,
-                                        const struct equilibrium *equilibrium,
+                                        const struct quasi_static *equilibrium,
                                         const uint8_t *held, const struct vector *force)
 {
     struct net_load sum = {0};
-    equilibrium_reaction(equilibrium, packing->lower, &sum.force, &sum.moment);
+    quasi_static_reaction(equilibrium, packing->lower, &sum.force, &sum.moment);
     for (int i = 0; i < packing->n_particle; i++)
         if (held[i]) add_load(packing, i, -1, force[i], (struct vector){0, 0, 0}, &sum);
     return sum;

@@ -12,22 +12,22 @@ static void a_row_as_its_hinges_say(void **state)
     enum { N = 8 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     const uint8_t fixed[N] = {1};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct quasi_static_setup setup = setup_of(&packing, fixed);
     struct vector force[N] = {{0, 0, 0}}, moved[N];
     const double f = 1e-10, glue = bond_stiffness * bond_area();
 
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     force[N - 1] = (struct vector){f, 0, 0};
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     assert_true(fabs(moved[N - 1].x / ((N - 1) * f / glue) - 1) < 1e-9);
     force[N - 1] = (struct vector){-f, 0, 0};
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     const double together = glue + contact_stiffness / 2;
     assert_true(fabs(moved[N - 1].x / (-(N - 1) * f / together) - 1) < 1e-9);
     int count;
-    struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+    struct dem_contact *contact = quasi_static_contacts(equilibrium, &count);
     assert_int_equal(count, N - 1);
     for (int c = 0; c < count; c++) {
         assert_true(contact[c].particle[0] == c && contact[c].particle[1] == c + 1);
@@ -37,20 +37,20 @@ static void a_row_as_its_hinges_say(void **state)
     }
     free(contact);
     struct vector pulls[N], held, turning;
-    equilibrium_load(equilibrium, pulls);
+    quasi_static_load(equilibrium, pulls);
     for (int i = 0; i < N; i++)
         assert_true(distance(pulls[i], force[i]) <= 1e-15 * f);
     const struct vector about = {0, -RADIUS, 0};
-    equilibrium_reaction(equilibrium, about, &held, &turning);
+    quasi_static_reaction(equilibrium, about, &held, &turning);
     assert_close(held.x, f, 1e-9);
     assert_close(turning.z, -2 * RADIUS * f, 1e-9);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
 
     setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
     equilibrium = make_equilibrium(&setup);
     force[N - 1] = (struct vector){0, f, 0};
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     const double bending = bond_stiffness * M_PI / 4 * pow(radius_fraction * RADIUS, 4);
     double expected = 0;
     for (int b = 0; b < N - 1; b++) {
@@ -58,7 +58,7 @@ static void a_row_as_its_hinges_say(void **state)
         expected += f * lever * lever / bending + f / glue;
     }
     assert_true(fabs(moved[N - 1].y / expected - 1) < 1e-9);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -67,11 +67,11 @@ static void a_block_as_the_discrete_elements(void **state)
 {
     (void)state;
     struct block *block = new_block();
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
     load_block(force, 1e-13);
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
 
     const struct dem_setup slow = cycles_of(&block->setup, 0.04);
     struct dem *dem;
@@ -82,7 +82,7 @@ static void a_block_as_the_discrete_elements(void **state)
     dem_displacements(dem, still);
     assert_true(apart(still, moved) < 1e-6);
     dem_free(dem);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -93,14 +93,14 @@ static void forces_balance(void **state)
     (void)state;
     struct block *block = new_block();
     block->setup.material.friction = 0.5;
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK], sum[BLOCK];
     for (int step = 1; step <= 3; step++) {
         load_block(force, step * 1e-9);
         next_equilibrium(equilibrium, force);
         memcpy(sum, force, sizeof sum);
         int count;
-        struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+        struct dem_contact *contact = quasi_static_contacts(equilibrium, &count);
         for (int c = 0; c < count; c++) {
             const int32_t *pair = contact[c].particle;
             sum[pair[0]] = subtract(sum[pair[0]], contact[c].force);
@@ -110,7 +110,7 @@ static void forces_balance(void **state)
         for (int i = 0; i < BLOCK; i++)
             if (!block->fixed[i]) assert_true(norm(sum[i]) <= 2e-10 * step * 1e-9);
     }
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -120,12 +120,12 @@ static void the_unbalanced_ratio(void **state)
     (void)state;
     struct block *block = new_block();
     block->setup.tolerance = 0.3;
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     load_block(force, 1e-9);
     next_equilibrium(equilibrium, force);
     int count;
-    struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+    struct dem_contact *contact = quasi_static_contacts(equilibrium, &count);
     double carried = 0, left = 0;
     for (int c = 0; c < count; c++) {
         const int32_t *pair = contact[c].particle;
@@ -136,9 +136,9 @@ static void the_unbalanced_ratio(void **state)
     for (int i = 0; i < BLOCK; i++)
         if (!block->fixed[i]) left += norm(force[i]);
     const double wanted = left / (BLOCK - SIDE * SIDE) / (carried / count);
-    assert_close(equilibrium_unbalanced_ratio(equilibrium), wanted, 1e-6);
+    assert_close(quasi_static_unbalanced_ratio(equilibrium), wanted, 1e-6);
     free(contact);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -148,16 +148,16 @@ static void nothing_is_settled(void **state)
 {
     (void)state;
     struct block *block = new_block();
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     load_block(force, 1e-9);
     next_equilibrium(equilibrium, force);
-    const double loaded = equilibrium_unbalanced_ratio(equilibrium);
+    const double loaded = quasi_static_unbalanced_ratio(equilibrium);
     assert_true(loaded > 0 && loaded < 1e-8);
     load_block(force, 0);
     next_equilibrium(equilibrium, force);
-    assert_true(equilibrium_unbalanced_ratio(equilibrium) == 0);
-    equilibrium_free(equilibrium);
+    assert_true(quasi_static_unbalanced_ratio(equilibrium) == 0);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -168,27 +168,27 @@ static void one_bond_breaks(void **state)
     enum { N = 5 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     const uint8_t fixed[N] = {1};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct quasi_static_setup setup = setup_of(&packing, fixed);
     const double f = 1e-9;
     setup.bond.normal_strength = f / bond_area();
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[N] = {{0, 0, 0}};
     force[N - 1] = (struct vector){(1 - 1e-6) * f, 0, 0};
     int cracks, first;
     next_equilibrium(equilibrium, force);
-    equilibrium_cracks(equilibrium, &cracks);
+    quasi_static_cracks(equilibrium, &cracks);
     assert_int_equal(cracks, 0);
     force[N - 1].x = f; // exactly
     next_equilibrium(equilibrium, force);
-    const struct dem_crack *crack = equilibrium_cracks(equilibrium, &cracks);
+    const struct dem_crack *crack = quasi_static_cracks(equilibrium, &cracks);
     assert_int_equal(cracks, 1);
     assert_int_equal(crack[0].mode, DEM_CRACK_NORMAL);
-    assert_int_equal(equilibrium_gone(equilibrium, &first), N - 1 - crack[0].bond);
+    assert_int_equal(quasi_static_detached(equilibrium, &first), N - 1 - crack[0].bond);
     force[N - 1].x = 100 * f; // on what has left
     next_equilibrium(equilibrium, force);
-    equilibrium_cracks(equilibrium, &cracks);
+    quasi_static_cracks(equilibrium, &cracks);
     assert_int_equal(cracks, 1);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -200,29 +200,29 @@ static void a_wall_is_rigid(void **state)
     packing.position[0] = (struct vector){RADIUS, RADIUS, RADIUS};
     packing.upper = (struct vector){2 * RADIUS, 2 * RADIUS, 2 * RADIUS};
     const uint8_t fixed[1] = {0};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct quasi_static_setup setup = setup_of(&packing, fixed);
     setup.has_wall = true;
     setup.material.friction = 0.5;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     const struct vector press = {0, 0, -1e-8};
     struct vector moved;
     next_equilibrium(equilibrium, &press);
-    equilibrium_displacements(equilibrium, &moved);
+    quasi_static_displacements(equilibrium, &moved);
     assert_true(fabs(moved.z * contact_stiffness / -1e-8 - 1) < 1e-9);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
 // Of FORCE on the first COUNT grains, and what held ones give them.
 static struct vector net_force(const struct block *block,
-                               const struct equilibrium *equilibrium,
+                               const struct quasi_static *equilibrium,
                                const struct vector *force, int count)
 {
     struct vector sum = {0, 0, 0};
     for (int i = 0; i < count; i++)
         if (!block->fixed[i]) sum = add(sum, force[i]);
     int n;
-    struct dem_contact *contact = equilibrium_contacts(equilibrium, &n);
+    struct dem_contact *contact = quasi_static_contacts(equilibrium, &n);
     for (int c = 0; c < n; c++) {
         const int32_t *pair = contact[c].particle;
         if (block->fixed[pair[0]] == block->fixed[pair[1]]) continue;
@@ -242,7 +242,7 @@ static void the_whole_balances(void **state)
     block->setup.material.friction = 0.5;
     block->setup.tolerance = 1e-8;
     block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1e5;
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     int first, gone = 0;
     for (int step = 1; step <= 12; step++) {
@@ -250,13 +250,13 @@ static void the_whole_balances(void **state)
         for (int i = 0; i < BLOCK; i++)
             force[i].z = i == BLOCK - 1 ? step * 1e-9 : 0;
         next_equilibrium(equilibrium, force);
-        gone = equilibrium_gone(equilibrium, &first);
+        gone = quasi_static_detached(equilibrium, &first);
         const struct vector net = net_force(block, equilibrium, force, BLOCK - gone);
         assert_true(norm(net) <= 1e-10 * step * 1e-9);
     }
     assert_int_equal(gone, 1);
     assert_int_equal(first, BLOCK - 1); // the corner that was pulled out
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -267,8 +267,8 @@ static void a_turned_block_answers_turned(void **state)
     (void)state;
     struct block *block = new_block();
     block->setup.material.friction = 0.1;
-    struct equilibrium *straight = make_equilibrium(&block->setup),
-                       *turned = make_equilibrium(&block->setup);
+    struct quasi_static *straight = make_equilibrium(&block->setup),
+                        *turned = make_equilibrium(&block->setup);
     struct vector force[BLOCK], other[BLOCK], moved[BLOCK], answer[BLOCK], back[BLOCK];
     int target[BLOCK];
     for (int i = 0; i < BLOCK; i++) {
@@ -282,15 +282,15 @@ static void a_turned_block_answers_turned(void **state)
         next_equilibrium(straight, force);
         next_equilibrium(turned, other);
     }
-    equilibrium_displacements(straight, moved);
-    equilibrium_displacements(turned, answer);
+    quasi_static_displacements(straight, moved);
+    quasi_static_displacements(turned, answer);
     for (int i = 0; i < BLOCK; i++) {
         const struct vector there = answer[target[i]];
         back[i] = (struct vector){there.y, -there.x, there.z};
     }
     assert_true(apart(back, moved) < 1e-9);
-    equilibrium_free(straight);
-    equilibrium_free(turned);
+    quasi_static_free(straight);
+    quasi_static_free(turned);
     free_block(block);
 }
 
@@ -302,16 +302,16 @@ static void every_bond_breaks(void **state)
     struct block *block = new_block();
     block->setup.material.friction = 0.5;
     block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1e-3;
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     for (int i = 0; i < BLOCK; i++) // apart, all ways
         force[i] =
             scale(1e-4, subtract(block->packing.position[i], block->packing.lower));
     next_equilibrium(equilibrium, force);
     int cracks, first;
-    equilibrium_cracks(equilibrium, &cracks);
+    quasi_static_cracks(equilibrium, &cracks);
     uint8_t *intact = NEW_ARRAY(uint8_t, block->packing.n_bond);
-    equilibrium_bonds_intact(equilibrium, intact);
+    quasi_static_bonds_intact(equilibrium, intact);
     int broken = 0;
     for (int b = 0; b < block->packing.n_bond; b++) {
         const bool hold = block->fixed[block->packing.bond[b][0]] !=
@@ -320,10 +320,10 @@ static void every_bond_breaks(void **state)
         broken += !intact[b];
     }
     assert_int_equal(cracks, broken);
-    assert_int_equal(equilibrium_gone(equilibrium, &first), BLOCK - SIDE * SIDE);
+    assert_int_equal(quasi_static_detached(equilibrium, &first), BLOCK - SIDE * SIDE);
     next_equilibrium(equilibrium, force); // nothing is left to move
     free(intact);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -336,22 +336,22 @@ static void stiffnesses_over_twelve_decades(void **state)
     struct packing packing = cubic_lattice(N, 1, 1, false);
     const uint8_t fixed[N] = {1};
     for (int decade = -6; decade <= 6; decade++) {
-        struct equilibrium_setup setup = setup_of(&packing, fixed);
+        struct quasi_static_setup setup = setup_of(&packing, fixed);
         setup.tolerance = 1e-8;
         setup.material.friction = 0.5;
         const double glue = contact_stiffness / 2 * pow(10, decade);
         setup.bond.normal_stiffness = setup.bond.shear_stiffness = glue / bond_area();
-        struct equilibrium *equilibrium = make_equilibrium(&setup);
+        struct quasi_static *equilibrium = make_equilibrium(&setup);
         struct vector force[N] = {{0, 0, 0}}, moved[N];
         const double f = 1e-9 * fmin(1, pow(10, decade));
         force[N - 1] = (struct vector){-f, 0.01 * f, 0};
         next_equilibrium(equilibrium, force);
-        equilibrium_displacements(equilibrium, moved);
+        quasi_static_displacements(equilibrium, moved);
         const double together = glue + contact_stiffness / 2;
         assert_true(fabs(moved[N - 1].x / (-(N - 1) * f / together) - 1) < 1e-6);
         force[N - 1] = (struct vector){0, 0, 0};
         next_equilibrium(equilibrium, force);
-        equilibrium_free(equilibrium);
+        quasi_static_free(equilibrium);
     }
     packing_free(&packing);
 }
@@ -366,7 +366,7 @@ static void a_block_over_twelve_decades(void **state)
         block->setup.bond.normal_stiffness = block->setup.bond.shear_stiffness = glue;
         block->setup.material.friction = 0.5;
         block->setup.tolerance = 1e-8;
-        struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+        struct quasi_static *equilibrium = make_equilibrium(&block->setup);
         struct vector force[BLOCK];
         for (int step = 1; step <= 4; step++) {
             load_block(force, step * 1e-9 * fmin(1, pow(10, decade)));
@@ -376,10 +376,10 @@ static void a_block_over_twelve_decades(void **state)
             for (int i = 0; i < BLOCK; i++)
                 load += norm(force[i]);
             int grain;
-            if (equilibrium_restless(equilibrium, &grain) || !(left < 1e-10 * load))
+            if (quasi_static_unconverged(equilibrium, &grain) || !(left < 1e-10 * load))
                 fail_msg("1e%d, step %d: %g of the load", decade, step, left / load);
         }
-        equilibrium_free(equilibrium);
+        quasi_static_free(equilibrium);
         free_block(block);
     }
 }
@@ -393,19 +393,19 @@ static void a_mechanism_leaves(void **state)
     struct packing packing = cubic_lattice(N, 1, 1, false);
     packing.n_bond = 0;
     const uint8_t fixed[N] = {1};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct quasi_static_setup setup = setup_of(&packing, fixed);
     setup.material.friction = 0.5;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[N] = {{0, 0, 0}};
     int first;
     next_equilibrium(equilibrium, force);
-    assert_int_equal(equilibrium_gone(equilibrium, &first), 0);
+    assert_int_equal(quasi_static_detached(equilibrium, &first), 0);
     for (int i = 1; i < N; i++)
         force[i] = (struct vector){0, 1e-9, 0};
     next_equilibrium(equilibrium, force);
-    assert_int_equal(equilibrium_gone(equilibrium, &first), N - 1);
+    assert_int_equal(quasi_static_detached(equilibrium, &first), N - 1);
     assert_int_equal(first, 1);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -428,23 +428,23 @@ static void twist_and_bending_break(void **state)
     const uint8_t fixed[4] = {1};
     const double f = 1e-12, r = radius_fraction * RADIUS;
     for (int mode = 0; mode < 2; mode++) {
-        struct equilibrium_setup setup = setup_of(&packing, fixed);
+        struct quasi_static_setup setup = setup_of(&packing, fixed);
         setup.bond.normal_strength = setup.bond.shear_strength = INFINITY;
         if (mode == DEM_CRACK_SHEAR)
             setup.bond.shear_strength = 4 * f * RADIUS * r / (M_PI_2 * pow(r, 4));
         else
             setup.bond.normal_strength = f * RADIUS * r / (M_PI_4 * pow(r, 4));
         for (int over = 0; over < 2; over++) {
-            struct equilibrium *equilibrium = make_equilibrium(&setup);
+            struct quasi_static *equilibrium = make_equilibrium(&setup);
             const double load = f * (1 + (over ? 1e-6 : -1e-6));
             const struct vector force[4] = {[2] = {0, 0, load}, [3] = {0, 0, -load}};
             next_equilibrium(equilibrium, force);
             int n_crack;
-            const struct dem_crack *crack = equilibrium_cracks(equilibrium, &n_crack);
+            const struct dem_crack *crack = quasi_static_cracks(equilibrium, &n_crack);
             assert_int_equal(n_crack > 0, over);
             if (over) assert_int_equal(crack[0].mode, mode);
             if (over) assert_int_equal(crack[0].bond > 0, mode == DEM_CRACK_NORMAL);
-            equilibrium_free(equilibrium);
+            quasi_static_free(equilibrium);
         }
     }
     packing_free(&packing);

@@ -12,11 +12,11 @@ static const double friction = 0.5;
 static const double glue = 40; // N/m of a bond, along and across
 static const double radius_fraction = 0.5858;
 
-static struct equilibrium *make(const struct packing *packing, const uint8_t *fixed,
-                                bool has_wall, double strength)
+static struct quasi_static *make(const struct packing *packing, const uint8_t *fixed,
+                                 bool has_wall, double strength)
 {
     const double per_area = glue / (M_PI * pow(radius_fraction * RADIUS, 2));
-    const struct equilibrium_setup setup = {
+    const struct quasi_static_setup setup = {
         .packing = packing,
         .fixed = fixed,
         .has_wall = has_wall,
@@ -33,11 +33,11 @@ static struct equilibrium *make(const struct packing *packing, const uint8_t *fi
     return make_equilibrium(&setup);
 }
 
-static void find(struct equilibrium *equilibrium, const struct vector *force,
+static void find(struct quasi_static *equilibrium, const struct vector *force,
                  struct vector *moved)
 {
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
 }
 
 // Rows of three along x, the outer ones held and pressed on the middle one; LENGTH of
@@ -81,7 +81,7 @@ static void a_loop_of_hysteresis(void **state)
     (void)state;
     uint8_t fixed[3];
     struct packing packing = pressed_rows(1, fixed, across);
-    struct equilibrium *equilibrium = make(&packing, fixed, false, INFINITY);
+    struct quasi_static *equilibrium = make(&packing, fixed, false, INFINITY);
     const double course[] = {0.5, 0.9, 1.7, 3, 2.2, 1, -0.3, -1.1, -3, -1, 0, 2, 3};
     const struct vector way = {0, 0.6, -0.8};
     const double stuck = stiffness, bonds = 2 * glue; // both contacts, both bonds
@@ -100,7 +100,7 @@ static void a_loop_of_hysteresis(void **state)
         assert_true(norm(subtract(moved[1], scale(expected, way))) <
                     1e-9 * 2 * grip() / bonds);
     }
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -122,7 +122,7 @@ static void a_contact_that_closes(void **state)
     packing.bond[1][1] = 2;
     packing.lower = (struct vector){-aside, -aside, -aside};
     packing.upper = (struct vector){aside, aside, aside};
-    struct equilibrium *equilibrium = make(&packing, fixed, false, INFINITY);
+    struct quasi_static *equilibrium = make(&packing, fixed, false, INFINITY);
     const double pushed = 4 * glue * gap, load = 1e-3 * pushed, course[] = {1, 1, 1.1};
     const double lever = contact / (glue * pow(radius_fraction, 2));
     double first = 0;
@@ -136,7 +136,7 @@ static void a_contact_that_closes(void **state)
         assert_close(first, load / (2 * glue), 0.01); // 0.85 of it if it stuck
         assert_within(moved[1].y - first, more, 1e-9 * first + 0.005 * more);
     }
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -171,7 +171,7 @@ static void a_front_of_slip(void **state)
     (void)state;
     uint8_t fixed[3 * ROW];
     struct packing packing = pressed_rows(ROW, fixed, along);
-    struct equilibrium *equilibrium = make(&packing, fixed, false, INFINITY);
+    struct quasi_static *equilibrium = make(&packing, fixed, false, INFINITY);
     int slid = 0;
     for (double pull = 0.7; pull < ROW - 1; pull += 0.7) {
         double expected[ROW];
@@ -186,7 +186,7 @@ static void a_front_of_slip(void **state)
                         1e-8 * expected[ROW - 1]);
     }
     assert_true(slid > ROW / 2);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -201,7 +201,7 @@ static void a_block_on_a_slope(void **state)
     const double weight = 1e-8;
     for (int steep = 0; steep < 2; steep++) {
         const double slope = (steep ? 1.02 : 0.98) * friction;
-        struct equilibrium *equilibrium = make(&packing, fixed, true, INFINITY);
+        struct quasi_static *equilibrium = make(&packing, fixed, true, INFINITY);
         struct vector force[N], moved[N];
         int last;
         for (int part = 1; part <= 4; part++) {
@@ -209,8 +209,8 @@ static void a_block_on_a_slope(void **state)
                 force[i] = (struct vector){0.25 * part * slope * weight, 0, -weight};
             find(equilibrium, force, moved);
         }
-        assert_int_equal(equilibrium_restless(equilibrium, &last), steep);
-        equilibrium_free(equilibrium);
+        assert_int_equal(quasi_static_unconverged(equilibrium, &last), steep);
+        quasi_static_free(equilibrium);
     }
     packing_free(&packing);
 }
@@ -222,18 +222,18 @@ static void a_load_is_without_rest_once(void **state)
     enum { N = 18, LOADS = 3 };
     struct packing packing = cubic_lattice(3, 3, 2, false);
     const uint8_t fixed[N] = {0};
-    struct equilibrium *equilibrium = make(&packing, fixed, true, 1e-3);
+    struct quasi_static *equilibrium = make(&packing, fixed, true, 1e-3);
     struct vector force[N], moved[N];
     int last, cracks;
     for (int i = 0; i < N; i++)
         force[i] = (struct vector){1.5 * friction * 1e-8, 0, -1e-8};
     for (int load = 1; load <= LOADS; load++) {
         find(equilibrium, force, moved);
-        assert_true(equilibrium_restless(equilibrium, &last) <= load);
+        assert_true(quasi_static_unconverged(equilibrium, &last) <= load);
     }
-    equilibrium_cracks(equilibrium, &cracks);
-    assert_true(equilibrium_restless(equilibrium, &last) > 0 && cracks > 1);
-    equilibrium_free(equilibrium);
+    quasi_static_cracks(equilibrium, &cracks);
+    assert_true(quasi_static_unconverged(equilibrium, &last) > 0 && cracks > 1);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -255,8 +255,8 @@ static void any_order_of_joints(void **state)
         for (int end = 0; end < 2; end++)
             reversed.bond[straight.n_bond - 1 - b][end] =
                 BLOCK - 1 - straight.bond[b][1 - end];
-    struct equilibrium *one = make(&straight, fixed[0], false, INFINITY);
-    struct equilibrium *other = make(&reversed, fixed[1], false, INFINITY);
+    struct quasi_static *one = make(&straight, fixed[0], false, INFINITY);
+    struct quasi_static *other = make(&reversed, fixed[1], false, INFINITY);
     for (int step = 1; step <= 8; step++) {
         struct vector force[2][BLOCK], moved[2][BLOCK];
         double apart = 0, size = 0;
@@ -274,8 +274,8 @@ static void any_order_of_joints(void **state)
         }
         assert_true(apart < 1e-8 * size);
     }
-    equilibrium_free(one);
-    equilibrium_free(other);
+    quasi_static_free(one);
+    quasi_static_free(other);
     packing_free(&straight);
     packing_free(&reversed);
 }
@@ -286,29 +286,33 @@ static void any_order_of_joints(void **state)
 static void slip_that_is_judged_softly(void **state)
 {
     (void)state;
-    struct joint joint = {.contact_along = 1,
-                          .contact_across = 0.8,
-                          .friction = friction,
-                          .contact = {.touch = TOUCH_STICKS, .anchor = {0.1, -0.2}}};
-    enum touch seen[4] = {0};
+    struct contact_pair pair = {
+        .normal_stiffness = 1,
+        .shear_stiffness = 0.8,
+        .friction = friction,
+        .contact = {.state = CONTACT_STICKING, .anchor = {0.1, -0.2}}};
+    enum contact_state seen[4] = {0};
     for (int k = 0; k < 12; k++) {
-        const double strain[STRAINS] = {0.1 - 0.2 * (k % 4), 0.04 * k, -0.05 * (k / 2)};
-        const struct resistance whole = joint_resistance(&joint, strain);
-        struct judgement judgement = {.share = 1e-3,
-                                      .pull = {whole.load[1], whole.load[2]},
-                                      .overlap = fmax(0, -strain[STRAIN_ALONG])};
-        const struct resistance soft = joint_softened(&joint, strain, &judgement);
-        assert_int_equal(soft.contact.touch, whole.contact.touch);
+        const double deformation[COMPONENTS] = {0.1 - 0.2 * (k % 4), 0.04 * k,
+                                                -0.05 * (k / 2)};
+        const struct pair_response whole = pair_respond(&pair, deformation);
+        struct augmented_state augmented = {
+            .stiffness_ratio = 1e-3,
+            .shear_force = {whole.load[1], whole.load[2]},
+            .overlap = fmax(0, -deformation[NORMAL])};
+        const struct pair_response soft =
+            pair_respond_augmented(&pair, deformation, &augmented);
+        assert_int_equal(soft.contact.state, whole.contact.state);
         for (int l = 0; l < 3; l++)
             assert_true(fabs(soft.load[l] - whole.load[l]) <= 1e-12);
-        seen[whole.contact.touch]++;
+        seen[whole.contact.state]++;
     }
-    assert_true(seen[TOUCH_NONE] && seen[TOUCH_STICKS] && seen[TOUCH_SLIPS]);
-    const double pressed[STRAINS] = {-1, 0.1 + 0.6, -0.2 + 0.8};
-    assert_int_equal(joint_resistance(&joint, pressed).contact.touch, TOUCH_SLIPS);
-    const struct judgement opened = {.share = 0.01};
-    const struct resistance soft = joint_softened(&joint, pressed, &opened);
-    assert_int_equal(soft.contact.touch, TOUCH_SLIPS);
+    assert_true(seen[CONTACT_OPEN] && seen[CONTACT_STICKING] && seen[CONTACT_SLIPPING]);
+    const double pressed[COMPONENTS] = {-1, 0.1 + 0.6, -0.2 + 0.8};
+    assert_int_equal(pair_respond(&pair, pressed).contact.state, CONTACT_SLIPPING);
+    const struct augmented_state opened = {.stiffness_ratio = 0.01};
+    const struct pair_response soft = pair_respond_augmented(&pair, pressed, &opened);
+    assert_int_equal(soft.contact.state, CONTACT_SLIPPING);
     assert_true(fabs(soft.load[1] - 0.6 * friction) <= 1e-12);
     assert_true(fabs(soft.load[2] - 0.8 * friction) <= 1e-12);
 }

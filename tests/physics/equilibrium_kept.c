@@ -28,12 +28,12 @@ static void load_scene(const struct scene *scene, int load, struct vector force[
     }
 }
 
-static struct equilibrium *begin(const struct scene *scene, const struct block *block)
+static struct quasi_static *begin(const struct scene *scene, const struct block *block)
 {
     static double strength[3 * BLOCK]; // of bonds, relative
     for (int b = 0; b < block->packing.n_bond; b++)
         strength[b] = 1 + 0.9 * sin(b * b);
-    struct equilibrium_setup setup = block->setup;
+    struct quasi_static_setup setup = block->setup;
     setup.relative_strength = strength;
     setup.material.friction = scene->friction;
     setup.is_free = scene->is_free;
@@ -60,21 +60,21 @@ static void assert_finite(const struct scene *scene, const struct array_list *li
 }
 
 static void go_on(const struct scene *scene, const struct block *block,
-                  struct equilibrium **equilibrium)
+                  struct quasi_static **equilibrium)
 {
     struct reason reason = {""};
-    struct array_list list = equilibrium_save(*equilibrium);
+    struct array_list list = quasi_static_save(*equilibrium);
     assert_finite(scene, &list);
-    equilibrium_free(*equilibrium);
+    quasi_static_free(*equilibrium);
     *equilibrium = begin(scene, block);
-    if (equilibrium_restore(*equilibrium, &list, &reason)) fail_msg("%s", reason.text);
+    if (quasi_static_restore(*equilibrium, &list, &reason)) fail_msg("%s", reason.text);
     dem_free_arrays(list.array, list.count);
 }
 
-static void assert_same(const struct scene *scene, int load, struct equilibrium *one,
-                        struct equilibrium *other)
+static void assert_same(const struct scene *scene, int load, struct quasi_static *one,
+                        struct quasi_static *other)
 {
-    struct array_list a = equilibrium_save(one), b = equilibrium_save(other);
+    struct array_list a = quasi_static_save(one), b = quasi_static_save(other);
     assert_int_equal(a.count, b.count);
     for (int k = 0; k < a.count; k++) {
         const size_t bytes =
@@ -92,7 +92,7 @@ static void in_pieces(const struct scene *scene, int between)
 {
     struct block *block = new_block();
     if (scene->is_free) memset(block->fixed, 0, sizeof block->fixed);
-    struct equilibrium *whole = begin(scene, block), *cut = begin(scene, block);
+    struct quasi_static *whole = begin(scene, block), *cut = begin(scene, block);
     for (int load = 0; load < LOADS; load++) {
         struct vector force[BLOCK];
         load_scene(scene, load, force);
@@ -100,19 +100,19 @@ static void in_pieces(const struct scene *scene, int between)
         next_equilibrium(cut, force);
         assert_same(scene, load, whole, cut);
         if (load % between) continue;
-        equilibrium_forget(whole);
-        equilibrium_forget(cut);
+        quasi_static_drop_cache(whole);
+        quasi_static_drop_cache(cut);
         go_on(scene, block, &cut);
     }
     int cracks, last;
-    equilibrium_cracks(whole, &cracks);
+    quasi_static_cracks(whole, &cracks);
     print_message(
         "# %s: %d iterations, %d cracks, %d left, %d snaps, %d without rest\n",
-        scene->name, equilibrium_iterations(whole), cracks,
-        equilibrium_gone(whole, &last), equilibrium_snaps(whole, &last),
-        equilibrium_restless(whole, &last));
-    equilibrium_free(whole);
-    equilibrium_free(cut);
+        scene->name, quasi_static_iterations(whole), cracks,
+        quasi_static_detached(whole, &last), quasi_static_instabilities(whole, &last),
+        quasi_static_unconverged(whole, &last));
+    quasi_static_free(whole);
+    quasi_static_free(cut);
     free_block(block);
 }
 

@@ -11,10 +11,10 @@ static const double bond_stiffness = 8e14; // N/m3
 static const double contact_stiffness = 3e4;
 static const double radius_fraction = 0.5858;
 
-static inline struct equilibrium_setup setup_of(const struct packing *packing,
+static inline struct quasi_static_setup setup_of(const struct packing *packing,
                                                 const uint8_t *fixed)
 {
-    return (struct equilibrium_setup){
+    return (struct quasi_static_setup){
         .packing = packing,
         .fixed = fixed,
         .material = {.normal_stiffness = contact_stiffness,
@@ -39,7 +39,7 @@ enum { SIDE = 3, HIGH = 4, BLOCK = SIDE * SIDE * HIGH };
 struct block {
     struct packing packing;
     uint8_t fixed[BLOCK];
-    struct equilibrium_setup setup; // of these
+    struct quasi_static_setup setup; // of these
 };
 
 static inline struct block *new_block(void)

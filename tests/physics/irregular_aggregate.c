@@ -144,20 +144,20 @@ static void the_whole_balances_in_motion(void **state)
     packing_free(&packing);
 }
 
-static struct equilibrium *new_equilibrium(const struct packing *packing,
-                                           const uint8_t *held, enum way way,
-                                           double friction, const double *relative)
+static struct quasi_static *new_equilibrium(const struct packing *packing,
+                                            const uint8_t *held, enum way way,
+                                            double friction, const double *relative)
 {
     const struct replay_settings settings = settings_of(way, NULL);
-    struct equilibrium_setup setup = {.packing = packing,
-                                      .fixed = held,
-                                      .material = settings.material,
-                                      .bond = settings.bond,
-                                      .relative_strength = relative,
-                                      .tolerance = 1e-12,
-                                      .most_iterations = 40,
-                                      .large_displacements = way == LARGE,
-                                      .increment = settings.increment};
+    struct quasi_static_setup setup = {.packing = packing,
+                                       .fixed = held,
+                                       .material = settings.material,
+                                       .bond = settings.bond,
+                                       .relative_strength = relative,
+                                       .tolerance = 1e-12,
+                                       .most_iterations = 40,
+                                       .large_displacements = way == LARGE,
+                                       .increment = settings.increment};
     setup.material.friction = friction;
     return make_equilibrium(&setup);
 }
@@ -165,12 +165,12 @@ static struct equilibrium *new_equilibrium(const struct packing *packing,
 // Nothing is left, of forces and of moments about any point, which small displacements
 // have where grains began.
 static void check_rest(const struct packing *packing,
-                       const struct equilibrium *equilibrium, const uint8_t *held,
+                       const struct quasi_static *equilibrium, const uint8_t *held,
                        const struct vector *force, enum way way)
 {
     struct vector position[N], net = {0, 0, 0};
     double total = 0, lever;
-    equilibrium_displacements(equilibrium, position);
+    quasi_static_displacements(equilibrium, position);
     for (int i = 0; i < N; i++) {
         position[i] = add(packing->position[i], scale(way == LARGE, position[i]));
         net = add(net, force[i]);
@@ -189,10 +189,10 @@ static void check_balance_at_rest(const struct packing *packing, enum way way)
 {
     uint8_t *held = lowest_grains(packing, SIDE);
     double *relative = weak_and_strong(packing);
-    struct equilibrium *equilibrium =
+    struct quasi_static *equilibrium =
         new_equilibrium(packing, held, way, 0.5, relative);
     struct vector *whole = shrinking_load(packing, size), force[N];
-    const bool *is_gone = equilibrium_is_gone(equilibrium);
+    const bool *is_gone = quasi_static_is_detached(equilibrium);
     int cracks = 0;
     for (int step = 1; step <= 20; step++) {
         for (int i = 0; i < N; i++)
@@ -202,9 +202,9 @@ static void check_balance_at_rest(const struct packing *packing, enum way way)
             if (is_gone[i]) force[i] = (struct vector){0, 0, 0};
         check_rest(packing, equilibrium, held, force, way);
     }
-    equilibrium_cracks(equilibrium, &cracks);
+    quasi_static_cracks(equilibrium, &cracks);
     assert_in_range(cracks, 5, packing->n_bond - 1);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free(relative);
     free(whole);
     free(held);
@@ -279,7 +279,7 @@ static double work_of_a_loop(double friction, const double *relative)
 {
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     uint8_t *held = lowest_grains(&packing, SIDE);
-    struct equilibrium *equilibrium =
+    struct quasi_static *equilibrium =
         new_equilibrium(&packing, held, SMALL, friction, relative);
     struct vector *whole = shrinking_load(&packing, size);
     struct load load = there_and_back(whole, N, 20);
@@ -287,9 +287,9 @@ static double work_of_a_loop(double friction, const double *relative)
     double work = 0, most = 0;
     for (int step = 0; step < load.n_time; step++) {
         next_equilibrium(equilibrium, load.force + step * N);
-        equilibrium_displacements(equilibrium, is);
+        quasi_static_displacements(equilibrium, is);
         for (int i = 0; i < N; i++) {
-            if (equilibrium_is_gone(equilibrium)[i]) continue;
+            if (quasi_static_is_detached(equilibrium)[i]) continue;
             const struct vector before =
                 step ? load.force[(step - 1) * N + i] : (struct vector){0, 0, 0};
             const struct vector mean =
@@ -300,7 +300,7 @@ static double work_of_a_loop(double friction, const double *relative)
         memcpy(was, is, sizeof was);
     }
     load_free(&load);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free(whole);
     free(held);
     packing_free(&packing);
@@ -536,11 +536,12 @@ static void cycles_come_to_equilibrium(void **state)
         struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
         uint8_t *held = lowest_grains(&packing, SIDE);
         struct vector *force = shrinking_load(&packing, 1e-6 * size), moved[N];
-        struct equilibrium *equilibrium =
+        struct quasi_static *equilibrium =
             new_equilibrium(&packing, held, SMALL, 0, NULL);
         struct reason reason = {""};
-        if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
-        equilibrium_displacements(equilibrium, moved);
+        if (quasi_static_solve(equilibrium, force, &reason))
+            fail_msg("%s", reason.text);
+        quasi_static_displacements(equilibrium, moved);
         double largest = 0, before = INFINITY;
         for (int i = 0; i < N; i++)
             largest = fmax(largest, norm(moved[i]));
@@ -564,7 +565,7 @@ static void cycles_come_to_equilibrium(void **state)
         }
         if (!(before < 1e-7)) fail_msg("off by %g in the end", before);
         load_free(&load);
-        equilibrium_free(equilibrium);
+        quasi_static_free(equilibrium);
         free(force);
         free(held);
         packing_free(&packing);

@@ -3,13 +3,13 @@
 // quasi_static.large_displacements) against chains integrated here, the Euler load of a
 // chain in closed form, turned scenes, energy, and discrete elements brought to rest.
 #include "bent_row.h"
-#include "quasi_static/quasi_static_internal.h"
+#include "quasi_static/large/large_state.h"
 
 // Without contacts, so that rows resist alike pushed and pulled.
-static struct equilibrium_setup row_setup(const struct packing *packing,
-                                          const uint8_t *fixed)
+static struct quasi_static_setup row_setup(const struct packing *packing,
+                                           const uint8_t *fixed)
 {
-    struct equilibrium_setup setup = setup_of(packing, fixed);
+    struct quasi_static_setup setup = setup_of(packing, fixed);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
     setup.large_displacements = true;
     setup.increment = 0.02;
@@ -24,19 +24,20 @@ static double row_error(double force, double angle, double increment)
     const struct row row = bend_row((struct row){.angle = angle}, force, angle, 400);
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
-    struct equilibrium_setup setup = row_setup(&packing, fixed);
+    struct quasi_static_setup setup = row_setup(&packing, fixed);
     setup.increment = increment;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector pull[ROW] = {{0, 0, 0}}, moved[ROW];
     pull[ROW - 1] = (struct vector){force * cos(angle), force * sin(angle), 0};
     next_equilibrium(equilibrium, pull);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     const double error = distance(moved[ROW - 1], end_of(&row)) / RADIUS;
     print_message(
         "# row: end at (%g, %g) radii, turned %g rad; error %g, %d iterations\n",
         moved[ROW - 1].x / RADIUS, moved[ROW - 1].y / RADIUS,
-        equilibrium->trial[ROW - 1].turn.z, error, equilibrium_iterations(equilibrium));
-    equilibrium_free(equilibrium);
+        equilibrium->displacement[ROW - 1].rotation.z, error,
+        quasi_static_iterations(equilibrium));
+    quasi_static_free(equilibrium);
     packing_free(&packing);
     return error;
 }
@@ -61,18 +62,19 @@ static void a_row_buckles(void **state)
     (void)state;
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
-    const struct equilibrium_setup setup = row_setup(&packing, fixed);
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    const struct quasi_static_setup setup = row_setup(&packing, fixed);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     const double load = buckling_load();
     struct vector push[ROW] = {{0, 0, 0}}, moved[ROW];
     push[ROW - 1].x = -2 * load;
     next_equilibrium(equilibrium, push);
     int last;
-    assert_int_equal(equilibrium_snaps(equilibrium, &last), 1);
+    assert_int_equal(quasi_static_instabilities(equilibrium, &last), 1);
     assert_int_equal(last, ROW - 1);
-    print_message("# %.9f of the Euler load\n", 2 * equilibrium->large->ended);
-    assert_true(fabs(2 * equilibrium->large->ended - 1) < 1e-5);
-    equilibrium_displacements(equilibrium, moved);
+    print_message("# %.9f of the Euler load\n",
+                  2 * equilibrium->large->fraction_at_instability);
+    assert_true(fabs(2 * equilibrium->large->fraction_at_instability - 1) < 1e-5);
+    quasi_static_displacements(equilibrium, moved);
     const struct vector at = moved[ROW - 1];
     const struct row row = buckled_row(2 * load);
     const struct vector end = end_of(&row);
@@ -80,9 +82,9 @@ static void a_row_buckles(void **state)
     const double error = hypot(at.x - end.x, across - end.y) / RADIUS;
     print_message("# buckled: end at (%g, %g) radii, error %g, %d iterations\n",
                   at.x / RADIUS, across / RADIUS, error,
-                  equilibrium_iterations(equilibrium));
+                  quasi_static_iterations(equilibrium));
     assert_true(error < 5e-5);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -98,25 +100,25 @@ static void twist_block(struct vector force[BLOCK], double size)
     }
 }
 
-static double largest_turn(const struct equilibrium *equilibrium)
+static double largest_turn(const struct quasi_static *equilibrium)
 {
     double most = 0;
     for (int i = 0; i < equilibrium->n; i++)
-        most = fmax(most, norm(equilibrium->trial[i].turn));
+        most = fmax(most, norm(equilibrium->displacement[i].rotation));
     return most;
 }
 
-static struct equilibrium_setup block_setup(const struct packing *packing,
-                                            const uint8_t *fixed)
+static struct quasi_static_setup block_setup(const struct packing *packing,
+                                             const uint8_t *fixed)
 {
-    struct equilibrium_setup setup = row_setup(packing, fixed);
+    struct quasi_static_setup setup = row_setup(packing, fixed);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
     return setup;
 }
 
 // Where cycles come to rest under a load that grows to FULL (n_particle) so slowly that
 // they follow the way of equilibria: shear depends on the way.
-static void grow_to_rest(const struct equilibrium_setup *setup,
+static void grow_to_rest(const struct quasi_static_setup *setup,
                          const struct vector *full, int steps, struct vector *still)
 {
     const bool is_point = setup->bond.kind == DEM_CONTACT_BOND;
@@ -142,7 +144,7 @@ static void grow_to_rest(const struct equilibrium_setup *setup,
     free(force);
 }
 
-static void cycles_to_rest(const struct equilibrium_setup *setup, double size,
+static void cycles_to_rest(const struct quasi_static_setup *setup, double size,
                            int steps, struct vector still[BLOCK])
 {
     struct vector full[BLOCK];
@@ -159,21 +161,21 @@ static void a_block_as_the_discrete_elements(void **state)
         int steps;
     } run[] = {{5e-8, 0.0089, 1000}, {2.5e-7, 0.047, 1000}, {1.25e-6, 0.33, 8000}};
     struct block *block = new_block();
-    struct equilibrium_setup setup = block_setup(&block->packing, block->fixed);
+    struct quasi_static_setup setup = block_setup(&block->packing, block->fixed);
     setup.increment = 0.002;
     for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
         struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
-        struct equilibrium *equilibrium = make_equilibrium(&setup);
+        struct quasi_static *equilibrium = make_equilibrium(&setup);
         twist_block(force, run[k].size);
         next_equilibrium(equilibrium, force);
-        equilibrium_displacements(equilibrium, moved);
+        quasi_static_displacements(equilibrium, moved);
         assert_true(fabs(largest_turn(equilibrium) / run[k].turn - 1) < 0.01);
         cycles_to_rest(&setup, run[k].size, run[k].steps, still);
         const double error = apart(still, moved);
         print_message("# block turned by %g rad: engines %g apart\n",
                       largest_turn(equilibrium), error);
         assert_true(error < 1e-6);
-        equilibrium_free(equilibrium);
+        quasi_static_free(equilibrium);
     }
     free_block(block);
 }
@@ -185,7 +187,7 @@ static void contact_bonds_as_the_discrete_elements(void **state)
 {
     (void)state;
     struct block *block = new_block();
-    struct equilibrium_setup setup = block_setup(&block->packing, block->fixed);
+    struct quasi_static_setup setup = block_setup(&block->packing, block->fixed);
     setup.bond.kind = DEM_CONTACT_BOND;
     struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
     cycles_to_rest(&setup, 2e-9, 4000, still);
@@ -193,14 +195,14 @@ static void contact_bonds_as_the_discrete_elements(void **state)
     for (int k = 0; k < 4; k++) {
         setup.rolling = k % 2 ? 1e-5 : 1e-3;
         setup.large_displacements = k < 2;
-        struct equilibrium *equilibrium = make_equilibrium(&setup);
+        struct quasi_static *equilibrium = make_equilibrium(&setup);
         next_equilibrium(equilibrium, force);
-        equilibrium_displacements(equilibrium, moved);
+        quasi_static_displacements(equilibrium, moved);
         const double error = apart(still, moved);
         print_message("# contact bonds, rolling %g: engines %g apart\n", setup.rolling,
                       error);
         if (setup.large_displacements) assert_true(error < 5 * setup.rolling);
-        equilibrium_free(equilibrium);
+        quasi_static_free(equilibrium);
     }
     free_block(block);
 }
@@ -220,16 +222,16 @@ static void grains_that_come_to_touch(void **state)
         add(packing.position[LONG - 1], (struct vector){0.3 * RADIUS, 2.5 * RADIUS, 0});
     packing.upper.y += 3 * RADIUS;
     const uint8_t fixed[N] = {[0] = 1, [LONG] = 1};
-    struct equilibrium_setup setup = row_setup(&packing, fixed);
+    struct quasi_static_setup setup = row_setup(&packing, fixed);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
     setup.increment = 0.005;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[N] = {{0, 0, 0}}, moved[N], still[N];
     force[LONG - 1].y = 1e-8;
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     int count;
-    struct dem_contact *contact = equilibrium_contacts(equilibrium, &count);
+    struct dem_contact *contact = quasi_static_contacts(equilibrium, &count);
     assert_int_equal(contact[count - 1].particle[1], LONG);
     assert_true(contact[count - 1].overlap > 1e-5 * RADIUS);
     free(contact);
@@ -239,7 +241,7 @@ static void grains_that_come_to_touch(void **state)
     print_message("# an end that moved %g radii: engines %g apart\n",
                   norm(moved[LONG - 1]) / RADIUS, error);
     assert_true(error < 1e-6);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -302,10 +304,10 @@ static struct packing truss(void)
     return packing;
 }
 
-static struct equilibrium_setup truss_setup(const struct packing *packing,
-                                            const uint8_t *fixed)
+static struct quasi_static_setup truss_setup(const struct packing *packing,
+                                             const uint8_t *fixed)
 {
-    struct equilibrium_setup setup = row_setup(packing, fixed);
+    struct quasi_static_setup setup = row_setup(packing, fixed);
     setup.bond.shear_stiffness *= softer;
     return setup;
 }
@@ -316,19 +318,21 @@ static double apex_error(double load, double increment, double height, double *e
 {
     struct packing packing = truss();
     const uint8_t fixed[BARS + 1] = {1, 1, 1, 1, 0};
-    struct equilibrium_setup setup = truss_setup(&packing, fixed);
+    struct quasi_static_setup setup = truss_setup(&packing, fixed);
     setup.increment = increment;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[BARS + 1] = {{0, 0, 0}}, moved[BARS + 1];
     force[APEX].z = -load;
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     int last;
-    *ended = equilibrium_snaps(equilibrium, &last) ? equilibrium->large->ended : 1;
+    *ended = quasi_static_instabilities(equilibrium, &last)
+                 ? equilibrium->large->fraction_at_instability
+                 : 1;
     const double error = fabs(rise + moved[APEX].z - height) / RADIUS;
     print_message("# apex at %g radii, error %g; up to %.9g of the load\n",
                   (rise + moved[APEX].z) / RADIUS, error, *ended);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
     return error;
 }
@@ -357,7 +361,7 @@ static void cycles_snap_through_too(void **state)
     const double load = 1.5 * truss_force(root(truss_slope, 0, rise, 0));
     struct packing packing = truss();
     const uint8_t fixed[BARS + 1] = {1, 1, 1, 1, 0};
-    const struct equilibrium_setup setup = truss_setup(&packing, fixed);
+    const struct quasi_static_setup setup = truss_setup(&packing, fixed);
     struct vector force[BARS + 1] = {{0, 0, 0}}, still[BARS + 1];
     force[APEX].z = -load;
     grow_to_rest(&setup, force, 1000, still);
@@ -381,9 +385,9 @@ static struct vector turned(struct vector a)
 static void find_block(const struct block *block, bool is_turned, double friction,
                        struct vector moved[BLOCK])
 {
-    struct equilibrium_setup setup = block_setup(&block->packing, block->fixed);
+    struct quasi_static_setup setup = block_setup(&block->packing, block->fixed);
     setup.material.friction = friction;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[BLOCK];
     for (int step = 1; step <= 4; step++) {
         twist_block(force, step * 3e-7);
@@ -393,10 +397,10 @@ static void find_block(const struct block *block, bool is_turned, double frictio
     }
     assert_true(largest_turn(equilibrium) > 0.2);
     int count, last;
-    assert_int_equal(equilibrium_restless(equilibrium, &last), 0);
-    free(equilibrium_contacts(equilibrium, &count));
-    equilibrium_displacements(equilibrium, moved);
-    equilibrium_free(equilibrium);
+    assert_int_equal(quasi_static_unconverged(equilibrium, &last), 0);
+    free(quasi_static_contacts(equilibrium, &count));
+    quasi_static_displacements(equilibrium, moved);
+    quasi_static_free(equilibrium);
 }
 
 static void a_turned_scene_gives_the_same(void **state)
@@ -419,13 +423,13 @@ static void a_turned_scene_gives_the_same(void **state)
     }
 }
 
-static double stored(const struct equilibrium *equilibrium)
+static double stored(const struct quasi_static *equilibrium)
 {
     double energy = 0;
-    for (int j = 0; j < equilibrium->n_joint; j++)
-        for (int k = 0; k < STRAINS; k++)
+    for (int j = 0; j < equilibrium->n_pair; j++)
+        for (int k = 0; k < COMPONENTS; k++)
             energy +=
-                0.5 * equilibrium->resistance[j].load[k] * equilibrium->strain[j][k];
+                0.5 * equilibrium->response[j].load[k] * equilibrium->deformation[j][k];
     return energy * equilibrium->stiffness * pow(equilibrium->length, 2);
 }
 
@@ -434,10 +438,10 @@ static double stored(const struct equilibrium *equilibrium)
 static double work_not_stored(int steps, double *energy)
 {
     struct block *block = new_block();
-    struct equilibrium_setup setup =
+    struct quasi_static_setup setup =
         row_setup(&block->packing, block->fixed); // bonds alone are smooth
     setup.increment = 0.1;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector full[BLOCK], force[BLOCK], moved[BLOCK];
     twist_block(full, 1.2e-6);
     double work = 0;
@@ -445,7 +449,7 @@ static double work_not_stored(int steps, double *energy)
         for (int i = 0; i < BLOCK; i++)
             force[i] = scale((double)step / steps, full[i]);
         next_equilibrium(equilibrium, force);
-        equilibrium_displacements(equilibrium, moved);
+        quasi_static_displacements(equilibrium, moved);
         const double weight = step == steps ? 1 - 1. / 3 / steps
                               : step % 2    ? -4. / 3 / steps
                                             : -2. / 3 / steps;
@@ -455,7 +459,7 @@ static double work_not_stored(int steps, double *energy)
     *energy = stored(equilibrium);
     print_message("# %d steps, turned by %g: stored %.9g J, work %g of it more\n",
                   steps, largest_turn(equilibrium), *energy, work / *energy - 1);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     free_block(block);
     return work - *energy;
 }

@@ -4,16 +4,16 @@
 // Euler load of half a row, scenes turned and elsewhere, and cycles.
 #include "bent_row.h"
 #include "geometry/net_load.h"
-#include "quasi_static/quasi_static_internal.h"
+#include "quasi_static/large/large_state.h"
 #include "support_irregular.h"
 
 #include "basics/memory.h"
 
 static const uint8_t nothing_held[BLOCK];
 
-static struct equilibrium_setup free_setup(const struct packing *packing)
+static struct quasi_static_setup free_setup(const struct packing *packing)
 {
-    struct equilibrium_setup setup = setup_of(packing, nothing_held);
+    struct quasi_static_setup setup = setup_of(packing, nothing_held);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 300;
     setup.large_displacements = setup.is_free = true;
     setup.increment = 0.02;
@@ -38,14 +38,14 @@ static void load_free(const struct packing *packing, double size, struct vector 
     }
 }
 
-static struct vector *solve(const struct equilibrium_setup *setup,
+static struct vector *solve(const struct quasi_static_setup *setup,
                             const struct vector *force)
 {
-    struct equilibrium *equilibrium = make_equilibrium(setup);
+    struct quasi_static *equilibrium = make_equilibrium(setup);
     struct vector *moved = NEW_ARRAY(struct vector, setup->packing->n_particle);
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
-    equilibrium_free(equilibrium);
+    quasi_static_displacements(equilibrium, moved);
+    quasi_static_free(equilibrium);
     return moved;
 }
 
@@ -94,7 +94,7 @@ static void held_or_not(void **state)
     struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
     const uint8_t middle[CUBE] = {[CENTRE] = 1};
     for (int is_large = 0; is_large < 2; is_large++) {
-        struct equilibrium_setup setup = free_setup(&packing), held = setup;
+        struct quasi_static_setup setup = free_setup(&packing), held = setup;
         held.is_free = false;
         held.fixed = middle;
         setup.large_displacements = held.large_displacements = is_large;
@@ -124,7 +124,7 @@ static void a_little_as_small_displacements(void **state)
 {
     (void)state;
     struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    struct equilibrium_setup setup = free_setup(&packing);
+    struct quasi_static_setup setup = free_setup(&packing);
     struct vector force[BLOCK];
     load_free(&packing, 1e-12, force);
     struct vector *large = solve(&setup, force);
@@ -146,19 +146,19 @@ static void a_row_buckles_as_its_half(void **state)
     (void)state;
     enum { WHOLE = 2 * HINGES + 1 };
     struct packing packing = cubic_lattice(WHOLE, 1, 1, false);
-    struct equilibrium_setup setup = free_setup(&packing);
+    struct quasi_static_setup setup = free_setup(&packing);
     setup.material.normal_stiffness = setup.material.shear_stiffness = 0;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector push[WHOLE] = {{0, 0, 0}}, moved[WHOLE];
     push[0].x = 2 * buckling_load();
     push[WHOLE - 1].x = -push[0].x;
     next_equilibrium(equilibrium, push);
     int last;
-    assert_int_equal(equilibrium_snaps(equilibrium, &last), 1);
-    equilibrium_displacements(equilibrium, moved);
+    assert_int_equal(quasi_static_instabilities(equilibrium, &last), 1);
+    quasi_static_displacements(equilibrium, moved);
     const struct row half = buckled_row(push[0].x);
     const struct vector end = end_of(&half);
-    const double load = 2 * equilibrium->large->ended;
+    const double load = 2 * equilibrium->large->fraction_at_instability;
     double most = 0;
     for (int at = 0; at <= WHOLE - 1; at += WHOLE - 1) {
         const struct vector way = subtract(moved[at], moved[HINGES]);
@@ -169,7 +169,7 @@ static void a_row_buckles_as_its_half(void **state)
                   load, most / RADIUS);
     assert_true(fabs(load - 1) < 1e-5);
     assert_true(most < 5e-5 * RADIUS);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -179,17 +179,17 @@ static void a_row_buckles_as_its_half(void **state)
 static struct vector *come_and_go(const struct packing *packing, double friction,
                                   const struct vector *force, struct vector *back)
 {
-    struct equilibrium_setup setup = free_setup(packing);
+    struct quasi_static_setup setup = free_setup(packing);
     setup.material.friction = friction;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector *moved = NEW_ARRAY(struct vector, BLOCK), part[BLOCK];
     for (int step = 1; step <= 2; step++) {
         for (int i = 0; i < BLOCK; i++)
             part[i] = scale(0.5 * step, force[i]);
         next_equilibrium(equilibrium, part);
     }
-    equilibrium_displacements(equilibrium, moved);
-    const struct net_load off = equilibrium_load(equilibrium, part);
+    quasi_static_displacements(equilibrium, moved);
+    const struct net_load off = quasi_static_load(equilibrium, part);
     struct vector net = {0, 0, 0}, moment = {0, 0, 0};
     double total = 0;
     for (int i = 0; i < BLOCK; i++) {
@@ -202,8 +202,8 @@ static struct vector *come_and_go(const struct packing *packing, double friction
     for (int i = 0; i < BLOCK; i++)
         part[i] = (struct vector){0, 0, 0};
     next_equilibrium(equilibrium, part);
-    equilibrium_displacements(equilibrium, back);
-    equilibrium_free(equilibrium);
+    quasi_static_displacements(equilibrium, back);
+    quasi_static_free(equilibrium);
     return moved;
 }
 
@@ -251,7 +251,7 @@ static void a_scene_turned_and_elsewhere(void **state)
 enum { EVERY = 16 };
 
 // FORCE less what would move the grains as one, where they are and as they go.
-static void take_off(const struct equilibrium_setup *setup, struct dem *dem,
+static void take_off(const struct quasi_static_setup *setup, struct dem *dem,
                      const struct vector *full, double share)
 {
     struct vector moved[BLOCK], velocity[BLOCK], spin[BLOCK], force[BLOCK];
@@ -266,7 +266,7 @@ static void take_off(const struct equilibrium_setup *setup, struct dem *dem,
     dem_set_force(dem, force);
 }
 
-static void cycles_to_rest(const struct equilibrium_setup *setup,
+static void cycles_to_rest(const struct quasi_static_setup *setup,
                            const struct vector *full, struct vector still[BLOCK])
 {
     const struct dem_setup slow = cycles_of(setup, 0.045);
@@ -300,7 +300,7 @@ static void cycles_shrink_it_as_far(void **state)
 {
     (void)state;
     struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
-    struct equilibrium_setup setup = free_setup(&packing);
+    struct quasi_static_setup setup = free_setup(&packing);
     setup.increment = 0.005;
     struct vector force[BLOCK], still[BLOCK];
     load_free(&packing, 1e-6, force);

@@ -3,7 +3,7 @@
 // systems take long without being solved, and where nothing else would end it.
 #include "equilibrium_scene.h"
 
-#include "quasi_static/quasi_static_internal.h"
+#include "quasi_static/large/large_state.h"
 
 // ---- all contacts at once -----------------------------------------------------------
 
@@ -32,7 +32,7 @@ static void a_block_that_is_let_go(void **state)
     struct packing packing = cubic_lattice(WIDE, WIDE, TALL, false);
     uint8_t fixed[MANY] = {0};
     memset(fixed, 1, WIDE * WIDE);
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct quasi_static_setup setup = setup_of(&packing, fixed);
     setup.material.friction = 0.5;
     setup.large_displacements = true;
     setup.increment = 0.02;
@@ -40,7 +40,7 @@ static void a_block_that_is_let_go(void **state)
     struct told told = {0, 0};
     setup.report = note;
     setup.context = &told;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[MANY] = {{0, 0, 0}};
     for (int i = 0; i < MANY; i++) {
         const int x = i % WIDE, y = i / WIDE % WIDE;
@@ -53,13 +53,13 @@ static void a_block_that_is_let_go(void **state)
     memset(force, 0, sizeof force);
     told = (struct told){0, 0};
     next_equilibrium(equilibrium, force);
-    assert_in_range(told.times, 10, equilibrium->large->tried);
+    assert_in_range(told.times, 10, equilibrium->large->work_spent);
     int last;
-    print_message("# let go: %.0f tries\n", equilibrium->large->tried);
-    assert_int_equal(equilibrium_restless(equilibrium, &last), 0);
-    assert_true(largest_left(equilibrium) <= 1e-8 * equilibrium->largest_load);
-    assert_true(equilibrium->large->tried < 1500);
-    equilibrium_free(equilibrium);
+    print_message("# let go: %.0f tries\n", equilibrium->large->work_spent);
+    assert_int_equal(quasi_static_unconverged(equilibrium, &last), 0);
+    assert_true(largest_residual(equilibrium) <= 1e-8 * equilibrium->largest_load);
+    assert_true(equilibrium->large->work_spent < 1500);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 
@@ -84,16 +84,17 @@ static void forces_beyond_all_joints(void **state)
     const double sizes[] = {10, 1e10, 1e40};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         struct block *block = new_breaking_block();
-        struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+        struct quasi_static *equilibrium = make_equilibrium(&block->setup);
         struct vector force[BLOCK];
         int grain;
         load_block(force, sizes[k]);
         next_equilibrium(equilibrium, force);
-        print_message("# %g N: %.0f tries\n", sizes[k], equilibrium->large->tried);
-        assert_int_equal(equilibrium_gone(equilibrium, &grain), BLOCK - SIDE * SIDE);
-        assert_int_equal(equilibrium_restless(equilibrium, &grain), 0);
-        assert_true(equilibrium->large->tried < 500);
-        equilibrium_free(equilibrium);
+        print_message("# %g N: %.0f tries\n", sizes[k], equilibrium->large->work_spent);
+        assert_int_equal(quasi_static_detached(equilibrium, &grain),
+                         BLOCK - SIDE * SIDE);
+        assert_int_equal(quasi_static_unconverged(equilibrium, &grain), 0);
+        assert_true(equilibrium->large->work_spent < 500);
+        quasi_static_free(equilibrium);
         free_block(block);
     }
 }
@@ -104,15 +105,15 @@ static void a_load_without_rest_counts_once(void **state)
     (void)state;
     struct block *block = new_breaking_block();
     block->setup.most_iterations = 1;
-    struct equilibrium *equilibrium = make_equilibrium(&block->setup);
+    struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
     int grain, cracks;
     load_block(force, -1e-4);
     next_equilibrium(equilibrium, force);
-    equilibrium_cracks(equilibrium, &cracks);
+    quasi_static_cracks(equilibrium, &cracks);
     print_message("# %d bonds broke\n", cracks);
-    assert_int_equal(equilibrium_restless(equilibrium, &grain), 1);
-    equilibrium_free(equilibrium);
+    assert_int_equal(quasi_static_unconverged(equilibrium, &grain), 1);
+    quasi_static_free(equilibrium);
     free_block(block);
 }
 
@@ -125,15 +126,15 @@ static void a_way_that_is_too_long(void **state)
     enum { ROW = 10 };
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
-    struct equilibrium_setup setup = setup_of(&packing, fixed);
+    struct quasi_static_setup setup = setup_of(&packing, fixed);
     setup.large_displacements = true;
     setup.increment = 0.001;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[ROW] = {{0, 0, 0}};
     struct reason reason = {""};
     force[ROW - 1].z = 1e-8;
-    equilibrium->large->most_tried = 5;
-    assert_int_equal(equilibrium_find(equilibrium, force, &reason),
+    equilibrium->large->work_limit = 5;
+    assert_int_equal(quasi_static_solve(equilibrium, force, &reason),
                      STATUS_NOT_CONVERGED);
     print_message("# %s\n", reason.text);
     double share = 0;
@@ -141,7 +142,7 @@ static void a_way_that_is_too_long(void **state)
     assert_int_equal(sscanf(strchr(reason.text, ':'), ": %lf", &share), 1);
     assert_true(share > 0 && share < 1);
     assert_non_null(strstr(reason.text, "grain 9 "));
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 

@@ -13,9 +13,9 @@ static double chance(uint64_t *state)
 }
 
 // Softer and stiffer than the contact, and skew: shear opens it or presses it together.
-static struct surroundings any_surroundings(uint64_t *state)
+static struct local_problem any_surroundings(uint64_t *state)
 {
-    struct surroundings s = {.load = {0}};
+    struct local_problem s = {.load = {0}};
     const double soft = pow(10, 3 * chance(state));
     double root[3][3];
     for (int k = 0; k < 3; k++) {
@@ -31,13 +31,13 @@ static struct surroundings any_surroundings(uint64_t *state)
 }
 
 // How far X is from where its own load leads, of what that is a difference of.
-static double off(const struct joint *joint, const struct surroundings *s,
+static double off(const struct contact_pair *pair, const struct local_problem *s,
                   const double x[3])
 {
-    double strain[STRAINS] = {0}, most = 0, size = 0;
+    double deformation[COMPONENTS] = {0}, most = 0, size = 0;
     for (int k = 0; k < 3; k++)
-        strain[k] = s->from[k] + x[k];
-    const struct resistance now = joint_resistance(joint, strain);
+        deformation[k] = s->from[k] + x[k];
+    const struct pair_response now = pair_respond(pair, deformation);
     for (int k = 0; k < 3; k++) {
         double there = s->given[k];
         size = fmax(size, fmax(fabs(there), fabs(x[k])));
@@ -57,18 +57,19 @@ static void what_is_found_is_an_equilibrium(void **state)
     uint64_t seed = 7;
     int found = 0, slips = 0;
     for (int k = 0; k < 100000; k++) {
-        const struct joint joint = {
-            .contact_along = 1,
-            .contact_across = 0.8,
+        const struct contact_pair pair = {
+            .normal_stiffness = 1,
+            .shear_stiffness = 0.8,
             .friction = pow(10, chance(&seed)),
             .overlap = 0.1 * next_random(&seed),
-            .contact = {.touch = TOUCH_STICKS,
+            .contact = {.state = CONTACT_STICKING,
                         .anchor = {chance(&seed), chance(&seed)}}};
-        const struct surroundings s = any_surroundings(&seed);
+        const struct local_problem s = any_surroundings(&seed);
         double x[3] = {chance(&seed), chance(&seed), chance(&seed)};
-        if (!settle_joint(&joint, &s, x)) continue;
-        const double strain[STRAINS] = {x[0], x[1], x[2]}, error = off(&joint, &s, x);
-        slips += joint_resistance(&joint, strain).contact.touch == TOUCH_SLIPS;
+        if (!return_map(&pair, &s, x)) continue;
+        const double deformation[COMPONENTS] = {x[0], x[1], x[2]},
+                     error = off(&pair, &s, x);
+        slips += pair_respond(&pair, deformation).contact.state == CONTACT_SLIPPING;
         found++;
         if (!(error < 1e-5)) fail_msg("contact %d: off by %g", k, error);
     }

@@ -3,18 +3,18 @@
 
 #include "../test.h"
 
-struct equilibrium *make_equilibrium(const struct equilibrium_setup *setup)
+struct quasi_static *make_equilibrium(const struct quasi_static_setup *setup)
 {
-    struct equilibrium *equilibrium;
+    struct quasi_static *equilibrium;
     struct reason reason = {""};
-    if (equilibrium_new(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
+    if (quasi_static_create(&equilibrium, setup, &reason)) fail_msg("%s", reason.text);
     return equilibrium;
 }
 
-void next_equilibrium(struct equilibrium *equilibrium, const struct vector *force)
+void next_equilibrium(struct quasi_static *equilibrium, const struct vector *force)
 {
     struct reason reason = {""};
-    if (equilibrium_find(equilibrium, force, &reason)) fail_msg("%s", reason.text);
+    if (quasi_static_solve(equilibrium, force, &reason)) fail_msg("%s", reason.text);
 }
 
 struct response replay_or_fail(const struct packing *packing, const struct load *load,
@@ -27,7 +27,7 @@ struct response replay_or_fail(const struct packing *packing, const struct load 
     return response;
 }
 
-struct dem_setup cycles_of(const struct equilibrium_setup *setup, double safety)
+struct dem_setup cycles_of(const struct quasi_static_setup *setup, double safety)
 {
     struct dem_setup cycles = {.packing = setup->packing,
                                .material = setup->material,

@@ -41,9 +41,9 @@ static struct packing tripod(void)
 
 static const uint8_t free_all[N] = {0};
 
-static struct equilibrium_setup setup_of(const struct packing *packing)
+static struct quasi_static_setup setup_of(const struct packing *packing)
 {
-    return (struct equilibrium_setup){
+    return (struct quasi_static_setup){
         .packing = packing,
         .fixed = free_all,
         .has_wall = true,
@@ -89,7 +89,7 @@ static void assert_balanced(const struct packing *packing, const struct vector *
 static void cycles_to_rest(const struct packing *packing, double size, int steps,
                            struct vector moved[N])
 {
-    const struct equilibrium_setup as = setup_of(packing);
+    const struct quasi_static_setup as = setup_of(packing);
     const struct dem_wall wall = {.point = packing->lower, .normal = {0, 0, 1}};
     struct dem_setup setup = {.packing = packing,
                               .material = as.material,
@@ -123,13 +123,13 @@ static void cycles_to_rest(const struct packing *packing, double size, int steps
 static double error_of(double size, int steps, bool large, double *depth)
 {
     struct packing packing = tripod();
-    struct equilibrium_setup setup = setup_of(&packing);
+    struct quasi_static_setup setup = setup_of(&packing);
     setup.large_displacements = large;
-    struct equilibrium *equilibrium = make_equilibrium(&setup);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
     struct vector force[N], still[N], moved[N];
     load(force, size);
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     cycles_to_rest(&packing, size, steps, still);
     if (!large) {
         const struct net_load reaction =
@@ -142,7 +142,7 @@ static double error_of(double size, int steps, bool large, double *depth)
         error = fmax(error, distance(still[i], moved[i]));
     }
     *depth = most / RADIUS;
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
     return error / most;
 }

@@ -6,52 +6,52 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void record_crack(struct equilibrium *e, struct joint *joint, int mode)
+static void record_crack(struct quasi_static *qs, struct contact_pair *pair, int mode)
 {
-    const int i = joint->grain[0];
+    const int i = pair->grain[0];
     const struct vector from =
-        add(e->trial[i].shift, scale(joint->arm[0], joint->axis[0]));
-    GROW_ARRAY(e->crack, e->n_crack, e->crack_capacity);
-    e->crack[e->n_crack++] = (struct dem_crack){
-        .bond = joint->bond,
+        add(qs->displacement[i].translation, scale(pair->arm[0], pair->axis[0]));
+    GROW_ARRAY(qs->crack, qs->n_crack, qs->crack_capacity);
+    qs->crack[qs->n_crack++] = (struct dem_crack){
+        .bond = pair->bond,
         .mode = (uint8_t)mode,
-        .cycle = e->iterations,
-        .position = add(e->packing->position[i], scale(e->length, from))};
-    joint_break(joint, e->strain[joint - e->joint]);
+        .cycle = qs->iterations,
+        .position = add(qs->packing->position[i], scale(qs->length, from))};
+    pair_break_bond(pair, qs->deformation[pair - qs->pair]);
 }
 
-static struct overload overload_of(const struct equilibrium *e, int j)
+static struct overload overload_of(const struct quasi_static *qs, int j)
 {
-    const struct joint *joint = &e->joint[j];
-    const double unit = e->setup.bond.kind == DEM_CONTACT_BOND // of strengths
-                            ? e->stiffness * e->length
-                            : e->stiffness / e->length;
-    const double share =
-        e->setup.relative_strength ? e->setup.relative_strength[joint->bond] : 1;
-    return joint_overload(joint, e->strain[j],
-                          share * e->setup.bond.normal_strength / unit,
-                          share * e->setup.bond.shear_strength / unit);
+    const struct contact_pair *pair = &qs->pair[j];
+    const double unit = qs->setup.bond.kind == DEM_CONTACT_BOND // of strengths
+                            ? qs->stiffness * qs->length
+                            : qs->stiffness / qs->length;
+    const double relative_strength =
+        qs->setup.relative_strength ? qs->setup.relative_strength[pair->bond] : 1;
+    return pair_overload(pair, qs->deformation[j],
+                         relative_strength * qs->setup.bond.normal_strength / unit,
+                         relative_strength * qs->setup.bond.shear_strength / unit);
 }
 
 // The first of those that are as much overloaded as any, as far as rounding leaves
 // open.
-bool break_one(struct equilibrium *e)
+bool break_most_overloaded(struct quasi_static *qs)
 {
     const double equal = 1 - 1e-8;
-    double *larger = NEW_ARRAY(double, e->n_joint), most = 0;
-    for (int j = 0; j < e->n_joint; j++) {
-        if (!e->joint[j].is_bonded || e->joint[j].is_gone) continue;
-        const struct overload overload = overload_of(e, j);
+    double *larger = NEW_ARRAY(double, qs->n_pair), most = 0;
+    for (int j = 0; j < qs->n_pair; j++) {
+        if (!qs->pair[j].is_bonded || qs->pair[j].is_detached) continue;
+        const struct overload overload = overload_of(qs, j);
         larger[j] = fmax(overload.normal, overload.shear);
         most = fmax(most, larger[j]);
     }
     int worst = 0;
-    while (most >= strong && larger[worst] < equal * most)
+    while (most >= failure_threshold && larger[worst] < equal * most)
         worst++;
     free(larger);
-    if (!(most >= strong)) return false;
-    const struct overload overload = overload_of(e, worst);
-    record_crack(e, &e->joint[worst],
+    if (!(most >= failure_threshold)) return false;
+    const struct overload overload = overload_of(qs, worst);
+    record_crack(qs, &qs->pair[worst],
                  overload.normal >= overload.shear ? DEM_CRACK_NORMAL
                                                    : DEM_CRACK_SHEAR);
     return true;

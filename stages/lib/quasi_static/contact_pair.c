@@ -3,198 +3,201 @@
 
 #include <string.h>
 
-// The surfaces' shear strain is that of the centres less (a_i turn_i + a_j turn_j) x n.
-struct displacement joint_arm(const struct joint *joint, int end, int strain)
+// The surfaces' shear deformation is that of the centres less (a_i turn_i + a_j turn_j)
+// x n.
+struct displacement pair_kinematic_row(const struct contact_pair *pair, int end,
+                                       int component)
 {
-    const struct vector *axis = joint->axis;
+    const struct vector *axis = pair->axis;
     const double sign = end ? 1 : -1;
     struct displacement arm = no_displacement;
-    switch (strain) {
-    case STRAIN_ALONG:
-        arm.shift = scale(sign, axis[0]);
+    switch (component) {
+    case NORMAL:
+        arm.translation = scale(sign, axis[0]);
         break;
-    case STRAIN_ACROSS:
-        arm.shift = scale(sign, axis[1]);
-        arm.turn = scale(-joint->arm[end], axis[2]);
+    case SHEAR:
+        arm.translation = scale(sign, axis[1]);
+        arm.rotation = scale(-pair->arm[end], axis[2]);
         break;
-    case STRAIN_ACROSS + 1:
-        arm.shift = scale(sign, axis[2]);
-        arm.turn = scale(joint->arm[end], axis[1]);
+    case SHEAR + 1:
+        arm.translation = scale(sign, axis[2]);
+        arm.rotation = scale(pair->arm[end], axis[1]);
         break;
     default:
-        arm.turn = scale(sign, axis[strain - STRAIN_TWIST]);
+        arm.rotation = scale(sign, axis[component - TORSION]);
     }
     return arm;
 }
 
-void joint_strains(const struct joint *joint, const struct displacement *first,
-                   const struct displacement *second, double strain[STRAINS])
+void pair_deformation(const struct contact_pair *pair, const struct displacement *first,
+                      const struct displacement *second, double deformation[COMPONENTS])
 {
-    const struct vector *axis = joint->axis;
+    const struct vector *axis = pair->axis;
     const struct displacement i = first ? *first : no_displacement;
     const struct displacement j = second ? *second : no_displacement;
-    const struct vector shift = subtract(j.shift, i.shift);
-    const struct vector turn = subtract(j.turn, i.turn);
+    const struct vector shift = subtract(j.translation, i.translation);
+    const struct vector turn = subtract(j.rotation, i.rotation);
     const struct vector rolling =
-        add(scale(joint->arm[0], i.turn), scale(joint->arm[1], j.turn));
-    strain[STRAIN_ALONG] = dot(axis[0], shift);
-    strain[STRAIN_ACROSS] = dot(axis[1], shift) - dot(axis[2], rolling);
-    strain[STRAIN_ACROSS + 1] = dot(axis[2], shift) + dot(axis[1], rolling);
+        add(scale(pair->arm[0], i.rotation), scale(pair->arm[1], j.rotation));
+    deformation[NORMAL] = dot(axis[0], shift);
+    deformation[SHEAR] = dot(axis[1], shift) - dot(axis[2], rolling);
+    deformation[SHEAR + 1] = dot(axis[2], shift) + dot(axis[1], rolling);
     for (int k = 0; k < 3; k++)
-        strain[STRAIN_TWIST + k] = dot(axis[k], turn);
+        deformation[TORSION + k] = dot(axis[k], turn);
 }
 
-struct displacement joint_loads(const struct joint *joint, int end,
-                                const double load[STRAINS])
+struct displacement pair_load_on_grain(const struct contact_pair *pair, int end,
+                                       const double load[COMPONENTS])
 {
-    const struct vector *axis = joint->axis;
-    const double sign = end ? 1 : -1, arm = joint->arm[end];
-    const struct vector across = add(scale(load[STRAIN_ACROSS], axis[1]),
-                                     scale(load[STRAIN_ACROSS + 1], axis[2]));
-    const struct vector turning = add(scale(load[STRAIN_ACROSS + 1], axis[1]),
-                                      scale(-load[STRAIN_ACROSS], axis[2]));
+    const struct vector *axis = pair->axis;
+    const double sign = end ? 1 : -1, arm = pair->arm[end];
+    const struct vector across =
+        add(scale(load[SHEAR], axis[1]), scale(load[SHEAR + 1], axis[2]));
+    const struct vector turning =
+        add(scale(load[SHEAR + 1], axis[1]), scale(-load[SHEAR], axis[2]));
     struct vector moment = {0, 0, 0};
     for (int k = 0; k < 3; k++)
-        moment = add(moment, scale(load[STRAIN_TWIST + k], axis[k]));
-    return (struct displacement){
-        scale(sign, add(scale(load[STRAIN_ALONG], axis[0]), across)),
-        add(scale(arm, turning), scale(sign, moment))};
+        moment = add(moment, scale(load[TORSION + k], axis[k]));
+    return (struct displacement){scale(sign, add(scale(load[NORMAL], axis[0]), across)),
+                                 add(scale(arm, turning), scale(sign, moment))};
 }
 
-void joint_take_off(const struct joint *joint, const double load[STRAINS],
-                    struct displacement *left)
+void pair_subtract_load(const struct contact_pair *pair, const double load[COMPONENTS],
+                        struct displacement *residual)
 {
-    for (int end = 0; end < 2; end++) {
-        if (joint->grain[end] < 0) continue;
-        const struct displacement part = joint_loads(joint, end, load);
-        struct displacement *of = &left[joint->grain[end]];
-        of->shift = subtract(of->shift, part.shift);
-        of->turn = subtract(of->turn, part.turn);
-    }
+    for (int end = 0; end < 2; end++)
+        if (pair->grain[end] >= 0)
+            displacement_subtract(&residual[pair->grain[end]],
+                                  pair_load_on_grain(pair, end, load));
 }
 
-static void add_bond(const struct joint *joint, const double strain[STRAINS],
-                     struct resistance *resistance)
+static void add_bond(const struct contact_pair *pair,
+                     const double deformation[COMPONENTS],
+                     struct pair_response *response)
 {
-    for (int k = 0; k < STRAINS; k++)
-        resistance->load[k] = joint->bond_stiffness[k] * strain[k];
-    resistance->load[STRAIN_ALONG] -=
-        joint->bond_stiffness[STRAIN_ALONG] * joint->point_overlap;
+    for (int k = 0; k < COMPONENTS; k++)
+        response->load[k] = pair->bond_stiffness[k] * deformation[k];
+    response->load[NORMAL] -= pair->bond_stiffness[NORMAL] * pair->point_overlap;
     for (int k = 0; k < 3; k++) {
-        resistance->slope[k][k] = joint->bond_stiffness[k];
-        resistance->stiffness[k] = joint->bond_stiffness[3 + k];
+        response->slope[k][k] = pair->bond_stiffness[k];
+        response->stiffness[k] = pair->bond_stiffness[3 + k];
     }
 }
 
 // The shear spring of a contact: what it would pull if nothing slipped, and as is
 // judged; what it can hold, and as is judged.
 struct spring {
-    double free[2], trial[2], limit, judged_limit;
+    double free[2], trial[2], limit, augmented_limit;
 };
 
 // Coulomb slip [K 4.25-4.26]: the limit falls as the grains part. One that slides still
 // resists what turns its direction.
-static void slide(const struct joint *joint, const struct judgement *judgement,
-                  const struct spring *spring, struct resistance *resistance)
+static void slide(const struct contact_pair *pair,
+                  const struct augmented_state *augmented, const struct spring *spring,
+                  struct pair_response *response)
 {
     const double *trial = spring->trial, limit = spring->limit;
     const double size = sqrt(trial[0] * trial[0] + trial[1] * trial[1]);
     const double along[2] = {trial[0] / size, trial[1] / size};
-    const double held = spring->judged_limit / size;
-    const double turned = 1 - (1 - judgement->share) * held;
-    const double kept = judgement->share * held * joint->contact_across / turned;
-    const double pull = along[0] * judgement->pull[0] + along[1] * judgement->pull[1];
+    const double held = spring->augmented_limit / size;
+    const double turned = 1 - (1 - augmented->stiffness_ratio) * held;
+    const double kept =
+        augmented->stiffness_ratio * held * pair->shear_stiffness / turned;
+    const double along_force =
+        along[0] * augmented->shear_force[0] + along[1] * augmented->shear_force[1];
     for (int k = 0; k < 2; k++) {
-        double *slope = resistance->slope[STRAIN_ACROSS + k];
-        slope[STRAIN_ALONG] -= joint->friction * joint->contact_along * along[k];
+        double *slope = response->slope[SHEAR + k];
+        slope[NORMAL] -= pair->friction * pair->normal_stiffness * along[k];
         for (int l = 0; l < 2; l++)
-            slope[STRAIN_ACROSS + l] += kept * ((k == l) - along[k] * along[l]);
-        resistance->load[STRAIN_ACROSS + k] +=
+            slope[SHEAR + l] += kept * ((k == l) - along[k] * along[l]);
+        response->load[SHEAR + k] +=
             limit * along[k] +
-            (1 - 1 / turned) * (judgement->pull[k] - pull * along[k]);
-        resistance->contact.anchor[k] +=
-            (1 - limit / size) * trial[k] / joint->contact_across;
+            (1 - 1 / turned) * (augmented->shear_force[k] - along_force * along[k]);
+        response->contact.anchor[k] +=
+            (1 - limit / size) * trial[k] / pair->shear_stiffness;
     }
-    resistance->contact.touch = TOUCH_SLIPS;
+    response->contact.state = CONTACT_SLIPPING;
 }
 
-static void stick(const struct joint *joint, const struct spring *spring,
-                  struct resistance *resistance)
+static void stick(const struct contact_pair *pair, const struct spring *spring,
+                  struct pair_response *response)
 {
-    resistance->contact.touch = TOUCH_STICKS;
+    response->contact.state = CONTACT_STICKING;
     for (int k = 0; k < 2; k++) {
-        resistance->load[STRAIN_ACROSS + k] += spring->free[k];
-        resistance->slope[STRAIN_ACROSS + k][STRAIN_ACROSS + k] +=
-            joint->contact_across;
+        response->load[SHEAR + k] += spring->free[k];
+        response->slope[SHEAR + k][SHEAR + k] += pair->shear_stiffness;
     }
 }
 
 // Grains that come to touch do so without shear: their spring is free where they are
 // when all is balanced.
-static void add_shear(const struct joint *joint, const double strain[STRAINS],
-                      double overlap, const struct judgement *judgement,
-                      struct resistance *resistance)
+static void add_shear(const struct contact_pair *pair,
+                      const double deformation[COMPONENTS], double overlap,
+                      const struct augmented_state *augmented,
+                      struct pair_response *response)
 {
-    const double share = judgement->share;
-    struct spring spring = {.limit = joint->friction * joint->contact_along * overlap};
-    spring.judged_limit = joint->friction * joint->contact_along *
-                          (share * overlap + (1 - share) * judgement->overlap);
-    double *anchor = resistance->contact.anchor, *trial = spring.trial;
-    if (joint->contact.touch == TOUCH_NONE) {
-        resistance->contact.touch = TOUCH_BEGINS;
-        memcpy(anchor, strain + STRAIN_ACROSS, 2 * sizeof *anchor);
+    const double ratio = augmented->stiffness_ratio;
+    struct spring spring = {.limit = pair->friction * pair->normal_stiffness * overlap};
+    spring.augmented_limit = pair->friction * pair->normal_stiffness *
+                             (ratio * overlap + (1 - ratio) * augmented->overlap);
+    double *anchor = response->contact.anchor, *trial = spring.trial;
+    if (pair->contact.state == CONTACT_OPEN) {
+        response->contact.state = CONTACT_NEW;
+        memcpy(anchor, deformation + SHEAR, 2 * sizeof *anchor);
         return;
     }
     for (int k = 0; k < 2; k++) {
-        anchor[k] = joint->contact.anchor[k];
-        spring.free[k] =
-            joint->contact_across * (strain[STRAIN_ACROSS + k] - anchor[k]);
-        trial[k] = share * spring.free[k] + (1 - share) * judgement->pull[k];
+        anchor[k] = pair->contact.anchor[k];
+        spring.free[k] = pair->shear_stiffness * (deformation[SHEAR + k] - anchor[k]);
+        trial[k] = ratio * spring.free[k] + (1 - ratio) * augmented->shear_force[k];
     }
     // One that slid lies where it begins to: it goes on, until it is seen to stick.
-    const double edge = joint->contact.touch == TOUCH_SLIPS ? 1 - 1e-11 : 1;
-    if (sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > edge * spring.judged_limit)
-        slide(joint, judgement, &spring, resistance);
+    const double edge = pair->contact.state == CONTACT_SLIPPING ? 1 - 1e-11 : 1;
+    if (sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > edge * spring.augmented_limit)
+        slide(pair, augmented, &spring, response);
     else
-        stick(joint, &spring, resistance);
+        stick(pair, &spring, response);
 }
 
 // [K 4.11-4.16]
-static void add_contact(const struct joint *joint, const double strain[STRAINS],
-                        const struct judgement *judgement,
-                        struct resistance *resistance)
+static void add_contact(const struct contact_pair *pair,
+                        const double deformation[COMPONENTS],
+                        const struct augmented_state *augmented,
+                        struct pair_response *response)
 {
-    const double overlap = joint->overlap - strain[STRAIN_ALONG];
+    const double overlap = pair->overlap - deformation[NORMAL];
     if (overlap < 0) return;
-    resistance->load[STRAIN_ALONG] -= joint->contact_along * overlap;
-    resistance->slope[STRAIN_ALONG][STRAIN_ALONG] += joint->contact_along;
-    add_shear(joint, strain, overlap, judgement, resistance);
+    response->load[NORMAL] -= pair->normal_stiffness * overlap;
+    response->slope[NORMAL][NORMAL] += pair->normal_stiffness;
+    add_shear(pair, deformation, overlap, augmented, response);
 }
 
-struct resistance joint_softened(const struct joint *joint,
-                                 const double strain[STRAINS],
-                                 const struct judgement *judgement)
+struct pair_response pair_respond_augmented(const struct contact_pair *pair,
+                                            const double deformation[COMPONENTS],
+                                            const struct augmented_state *augmented)
 {
-    struct resistance resistance = {.contact.touch = TOUCH_NONE};
-    if (joint->is_gone) return resistance;
-    if (joint->is_bonded) add_bond(joint, strain, &resistance);
-    add_contact(joint, strain, judgement, &resistance);
-    return resistance;
+    struct pair_response response = {.contact.state = CONTACT_OPEN};
+    if (pair->is_detached) return response;
+    if (pair->is_bonded) add_bond(pair, deformation, &response);
+    add_contact(pair, deformation, augmented, &response);
+    return response;
 }
 
-struct resistance joint_resistance(const struct joint *joint,
-                                   const double strain[STRAINS])
+struct pair_response pair_respond(const struct contact_pair *pair,
+                                  const double deformation[COMPONENTS])
 {
-    return joint_softened(joint, strain, &(struct judgement){.share = 1});
+    return pair_respond_augmented(pair, deformation,
+                                  &(struct augmented_state){.stiffness_ratio = 1});
 }
 
-void joint_break(struct joint *joint, const double strain[STRAINS])
+void pair_break_bond(struct contact_pair *pair, const double deformation[COMPONENTS])
 {
-    joint->is_bonded = false;
-    if (!joint->is_point) return;
-    joint->overlap = joint->point_overlap;
-    joint->contact = (struct contact){TOUCH_NONE, {0, 0}};
-    if (joint->overlap - strain[STRAIN_ALONG] >= 0) joint->contact.touch = TOUCH_STICKS;
+    pair->is_bonded = false;
+    if (!pair->is_point) return;
+    pair->overlap = pair->point_overlap;
+    pair->contact = (struct contact){CONTACT_OPEN, {0, 0}};
+    if (pair->overlap - deformation[NORMAL] >= 0)
+        pair->contact.state = CONTACT_STICKING;
 }
 
 // In units in which numbers are far from their ends: no need of hypot.
@@ -203,30 +206,31 @@ static double size_of_two(const double a[2])
     return sqrt(a[0] * a[0] + a[1] * a[1]);
 }
 
-static struct overload point_overload(const struct joint *joint,
-                                      const double strain[STRAINS],
+static struct overload point_overload(const struct contact_pair *pair,
+                                      const double deformation[COMPONENTS],
                                       double normal_strength, double shear_strength)
 {
-    const double *stiffness = joint->bond_stiffness;
+    const double *stiffness = pair->bond_stiffness;
     const double tension =
-        stiffness[STRAIN_ALONG] * (strain[STRAIN_ALONG] - joint->point_overlap);
-    const double shear = stiffness[STRAIN_ACROSS] * size_of_two(strain + STRAIN_ACROSS);
+        stiffness[NORMAL] * (deformation[NORMAL] - pair->point_overlap);
+    const double shear = stiffness[SHEAR] * size_of_two(deformation + SHEAR);
     return (struct overload){tension / normal_strength, shear / shear_strength};
 }
 
 // With k^n A and k^s A known, A R^2 = 4 I = 2 J gives the stresses without A.
-struct overload joint_overload(const struct joint *joint, const double strain[STRAINS],
-                               double normal_strength, double shear_strength)
+struct overload pair_overload(const struct contact_pair *pair,
+                              const double deformation[COMPONENTS],
+                              double normal_strength, double shear_strength)
 {
-    if (joint->is_point)
-        return point_overload(joint, strain, normal_strength, shear_strength);
-    const double *stiffness = joint->bond_stiffness;
-    const double beta = 1 - joint->moments_left_out;
-    const double radius = joint->bond_radius, area = M_PI * radius * radius;
-    const double bending = stiffness[STRAIN_BEND] * size_of_two(strain + STRAIN_BEND);
-    const double shear = stiffness[STRAIN_ACROSS] * size_of_two(strain + STRAIN_ACROSS);
-    const double twisting = stiffness[STRAIN_TWIST] * fabs(strain[STRAIN_TWIST]);
-    const double tension = stiffness[STRAIN_ALONG] * strain[STRAIN_ALONG];
+    if (pair->is_point)
+        return point_overload(pair, deformation, normal_strength, shear_strength);
+    const double *stiffness = pair->bond_stiffness;
+    const double beta = 1 - pair->moments_left_out;
+    const double radius = pair->bond_radius, area = M_PI * radius * radius;
+    const double bending = stiffness[BENDING] * size_of_two(deformation + BENDING);
+    const double shear = stiffness[SHEAR] * size_of_two(deformation + SHEAR);
+    const double twisting = stiffness[TORSION] * fabs(deformation[TORSION]);
+    const double tension = stiffness[NORMAL] * deformation[NORMAL];
     return (struct overload){
         (tension + beta * 4 * bending / radius) / area / normal_strength,
         (shear + beta * 2 * twisting / radius) / area / shear_strength};

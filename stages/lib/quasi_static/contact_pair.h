@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two grains that are bonded or may touch, or a grain and the wall beneath, for small
-// displacements about where they began. A joint answers six strains with six loads,
-// each of its own but for slip, which ties both shears to the normal force.
+// A contact pair: two grains that are bonded or may touch, or a grain and the wall
+// beneath, for small displacements about where they began.
+//
+// Its deformation is the displacement and rotation of the second grain relative to the
+// first at the contact: six components, in axes of the pair. Each is answered by a load
+// of its own (normal force, two shear forces, torsion, two bending moments), but for
+// slip, which ties both shear forces to the normal force.
 #ifndef CRAQUELURE_CONTACT_PAIR_H
 #define CRAQUELURE_CONTACT_PAIR_H
 
@@ -10,91 +14,98 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum strain { STRAIN_ALONG, STRAIN_ACROSS, STRAIN_TWIST = 3, STRAIN_BEND, STRAINS = 6 };
+// Of shear and bending there are two, one after the other.
+enum component { NORMAL, SHEAR, TORSION = 3, BENDING, COMPONENTS = 6 };
 
-enum touch {
-    TOUCH_NONE,
-    TOUCH_STICKS,
-    TOUCH_SLIPS,
-    TOUCH_BEGINS // since the last equilibrium: no shear yet
+enum contact_state {
+    CONTACT_OPEN,
+    CONTACT_STICKING,
+    CONTACT_SLIPPING,
+    CONTACT_NEW // closed since the last equilibrium: no shear force yet
 };
 
 struct contact {
-    enum touch touch;
-    double anchor[2]; // shear strains at which the shear spring is free
+    enum contact_state state;
+    double anchor[2]; // shear deformation at which the shear spring is free
 };
 
-struct joint {
+struct contact_pair {
     int32_t grain[2];      // the second is -1 for the wall
     int32_t bond;          // as numbered in the packing, or -1
-    bool is_bonded;        // and has not broken
-    bool is_gone;          // one of the grains has left the aggregate
-    struct vector axis[3]; // from the first to the second, and two across it
+    bool is_bonded;        // and the bond has not broken
+    bool is_detached;      // one of the grains has left the aggregate
+    struct vector axis[3]; // normal, from the first to the second, and two tangents
     double arm[2];         // from the centres to the contact point
     double overlap;        // at the start
     double bond_radius;
     double moments_left_out; // of its stresses: 1 - beta (dem_bond_material)
-    // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice. Point of
-    // glue, a contact bond [K 4.2]: the contact's springs, also in tension; what is in
-    // contact when it breaks is OVERLAP from then on.
-    double bond_stiffness[STRAINS];
+    // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice. Contact bond
+    // (IS POINT) [K 4.2]: the springs of the contact, also in tension; when it breaks,
+    // POINT OVERLAP becomes the OVERLAP of the contact.
+    double bond_stiffness[COMPONENTS];
     bool is_point;
-    double point_overlap;                 // at the start; parallel bonds: 0
-    double contact_along, contact_across; // [K 4.22]; no shear without friction
+    double point_overlap;                     // at the start; parallel bonds: 0
+    double normal_stiffness, shear_stiffness; // of the contact [K 4.22]; no shear
+                                              // without friction
     double friction;
-    // Of the last equilibrium, from which history goes on.
-    double strain[STRAINS];
+    // At the last equilibrium, from which history goes on.
+    double deformation[COMPONENTS];
     struct contact contact;
 };
 
-// What a joint resists with, and how that changes with the strains.
-struct resistance {
-    double load[STRAINS];
-    double slope[3][3]; // of the first three loads with the first three strains
-    double stiffness[STRAINS - 3]; // of the others, each with its own
-    struct contact contact;        // as it would be
+// The loads with which a pair resists, and their derivatives.
+struct pair_response {
+    double load[COMPONENTS];
+    double slope[3][3]; // of the three forces with the first three components
+    double stiffness[COMPONENTS - 3]; // of each moment with its own component
+    struct contact contact;           // as it would be
 };
 
-// Strains of [K 4.7, 4.15, 4.17], all linear, when the grains move so; NULL: one that
-// does not, as the wall.
-void joint_strains(const struct joint *joint, const struct displacement *first,
-                   const struct displacement *second, double strain[STRAINS]);
-struct resistance joint_resistance(const struct joint *joint,
-                                   const double strain[STRAINS]);
+// The deformation [K 4.7, 4.15, 4.17], linear in the displacements of the FIRST and the
+// SECOND grain; NULL: one that does not move, as the wall.
+void pair_deformation(const struct contact_pair *pair, const struct displacement *first,
+                      const struct displacement *second,
+                      double deformation[COMPONENTS]);
 
-// The same while Newton's method looks for a solution: whether a contact slips, and
-// which way, is judged as if its springs had SHARE of their stiffness (at most 1, as
-// they are), the one across had pulled with PULL before and the grains had overlapped
-// by OVERLAP. A solution is the same [Alart and Curnier 1991]; on the way strains much
-// larger than the springs' own tell less.
-struct judgement {
-    double share, pull[2], overlap;
+// The law of contact and bond at DEFORMATION [K 4.11-4.26, 4.31-4.39].
+struct pair_response pair_respond(const struct contact_pair *pair,
+                                  const double deformation[COMPONENTS]);
+
+// The same as the augmented Lagrangian of Alart and Curnier (1991) has it while
+// Newton's method iterates: whether and which way a contact slips is judged by springs
+// of STIFFNESS RATIO (0 to 1) of their stiffness, which carried SHEAR FORCE and had the
+// OVERLAP before. A solution is the same; on the way there, increments that are far too
+// large for the contact's own springs do less harm.
+struct augmented_state {
+    double stiffness_ratio, shear_force[2], overlap;
 };
-struct resistance joint_softened(const struct joint *joint,
-                                 const double strain[STRAINS],
-                                 const struct judgement *judgement);
+struct pair_response pair_respond_augmented(const struct contact_pair *pair,
+                                            const double deformation[COMPONENTS],
+                                            const struct augmented_state *augmented);
 
-// What of STRAIN a displacement of the grain at END makes: the transpose is what the
-// load does to that grain.
-struct displacement joint_arm(const struct joint *joint, int end, int strain);
+// The six numbers of B by which the displacement of the grain at END makes COMPONENT of
+// the deformation; and so, transposed, what a load of that component does to the grain.
+struct displacement pair_kinematic_row(const struct contact_pair *pair, int end,
+                                       int component);
 
-// The force and moment on grain END that LOADS, from strains as they are, resist with:
-// what is to be added to the load when the grain is pushed the way of its displacement.
-struct displacement joint_loads(const struct joint *joint, int end,
-                                const double load[STRAINS]);
+// B^T LOAD on the grain at END: force and moment with which the pair resists.
+struct displacement pair_load_on_grain(const struct contact_pair *pair, int end,
+                                       const double load[COMPONENTS]);
 
-// Takes those off LEFT (n) of both grains.
-void joint_take_off(const struct joint *joint, const double load[STRAINS],
-                    struct displacement *left);
+// Subtracts those of both grains from RESIDUAL (n).
+void pair_subtract_load(const struct contact_pair *pair, const double load[COMPONENTS],
+                        struct displacement *residual);
 
-// Stress over strength [K 4.41, 4.42] of an intact bond at STRAIN, of a point force.
+// Stress over strength of an intact bond at DEFORMATION [K 4.41, 4.42]; of a contact
+// bond, force over strength.
 struct overload {
     double normal, shear;
 };
-struct overload joint_overload(const struct joint *joint, const double strain[STRAINS],
-                               double normal_strength, double shear_strength);
+struct overload pair_overload(const struct contact_pair *pair,
+                              const double deformation[COMPONENTS],
+                              double normal_strength, double shear_strength);
 
-// What is left is a contact, if grains touch at STRAIN with the shear there is.
-void joint_break(struct joint *joint, const double strain[STRAINS]);
+// A contact stays, where grains touch at DEFORMATION, with the shear that there is.
+void pair_break_bond(struct contact_pair *pair, const double deformation[COMPONENTS]);
 
 #endif

@@ -5,38 +5,39 @@
 
 #include <stdlib.h>
 
-struct joint_setup joints_of(const struct equilibrium *e)
+struct contact_pair_setup pair_setup_of(const struct quasi_static *qs)
 {
-    return (struct joint_setup){.packing = e->packing,
-                                .material = &e->setup.material,
-                                .bond = &e->setup.bond,
-                                .has_wall = e->setup.has_wall,
-                                .unstressed = e->setup.unstressed,
-                                .rolling = e->setup.rolling,
-                                .length = e->length,
-                                .stiffness = e->stiffness};
+    return (struct contact_pair_setup){.packing = qs->packing,
+                                       .material = &qs->setup.material,
+                                       .bond = &qs->setup.bond,
+                                       .has_wall = qs->setup.has_wall,
+                                       .unstressed = qs->setup.unstressed,
+                                       .rolling = qs->setup.rolling,
+                                       .length = qs->length,
+                                       .stiffness = qs->stiffness};
 }
 
-void free_room_for_joints(struct equilibrium *e)
+void free_pair_arrays(struct quasi_static *qs)
 {
-    void *const of_joints[] = {e->strain,   e->more,       e->grown, e->tangent,
-                               e->factored, e->resistance, e->unlike};
-    for (size_t k = 0; k < sizeof of_joints / sizeof *of_joints; k++)
-        free(of_joints[k]);
-    corrections_free(e->corrections);
-    stiffness_free(e->matrix);
+    void *const of_pairs[] = {qs->deformation, qs->increment, qs->last_increment,
+                              qs->tangent,     qs->factored,  qs->response,
+                              qs->changed};
+    for (size_t k = 0; k < sizeof of_pairs / sizeof *of_pairs; k++)
+        free(of_pairs[k]);
+    contact_solver_free(qs->contacts);
+    stiffness_free(qs->matrix);
 }
 
-void make_room_for_joints(struct equilibrium *e)
+void allocate_pair_arrays(struct quasi_static *qs)
 {
-    free_room_for_joints(e);
-    e->strain = allocate((size_t)e->n_joint, sizeof *e->strain);
-    e->more = allocate((size_t)e->n_joint, sizeof *e->more);
-    e->grown = allocate((size_t)e->n_joint, sizeof *e->grown);
-    e->tangent = allocate((size_t)e->n_joint, sizeof *e->tangent);
-    e->factored = NEW_ARRAY(struct factored, e->n_joint);
-    e->resistance = NEW_ARRAY(struct resistance, e->n_joint);
-    e->unlike = NEW_ARRAY(struct correction, e->n_joint);
-    e->matrix = stiffness_new(e->n, e->setup.fixed, e->n_joint, e->joint);
-    e->corrections = corrections_new(e->matrix, e->n_joint, e->joint, e->tangent);
+    free_pair_arrays(qs);
+    qs->deformation = allocate((size_t)qs->n_pair, sizeof *qs->deformation);
+    qs->increment = allocate((size_t)qs->n_pair, sizeof *qs->increment);
+    qs->last_increment = allocate((size_t)qs->n_pair, sizeof *qs->last_increment);
+    qs->tangent = allocate((size_t)qs->n_pair, sizeof *qs->tangent);
+    qs->factored = NEW_ARRAY(struct factored, qs->n_pair);
+    qs->response = NEW_ARRAY(struct pair_response, qs->n_pair);
+    qs->changed = NEW_ARRAY(struct pair_rows, qs->n_pair);
+    qs->matrix = stiffness_create(qs->n, qs->setup.fixed, qs->n_pair, qs->pair);
+    qs->contacts = contact_solver_create(qs->matrix, qs->n_pair, qs->pair, qs->tangent);
 }

@@ -10,55 +10,69 @@
 
 enum { MOST = 4000 }; // rows: beyond, the dense system is too large
 
-struct corrections *corrections_new(struct stiffness *stiffness, int n_joint,
-                                    const struct joint *joint,
-                                    const double (*tangent)[STRAINS])
+struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_pair,
+                                             const struct contact_pair *pair,
+                                             const double (*tangent)[COMPONENTS])
 {
-    struct corrections *c = NEW_ARRAY(struct corrections, 1);
+    struct contact_solver *c = NEW_ARRAY(struct contact_solver, 1);
     c->stiffness = stiffness;
-    c->n_joint = n_joint;
-    c->joint = joint;
+    c->n_pair = n_pair;
+    c->pair = pair;
     c->tangent = tangent;
-    c->of = NEW_ARRAY(int, n_joint);
-    corrections_clear(c);
+    c->active_of = NEW_ARRAY(int, n_pair);
+    contact_solver_clear(c);
     return c;
 }
 
-void corrections_clear(struct corrections *c)
+void contact_solver_clear(struct contact_solver *c)
 {
-    for (int k = 0; k < c->n_addition; k++)
-        halves_free(&c->addition[k].halves);
-    c->n_addition = c->n_entry = c->count = c->n_acting = c->n_factored = 0;
+    for (int k = 0; k < c->n_group; k++)
+        halves_free(&c->group[k].halves);
+    c->n_group = c->n_active = c->count = c->n_acting = c->n_factored = 0;
     c->work = 0;
-    for (int j = 0; j < c->n_joint; j++)
-        c->of[j] = -1;
+    for (int j = 0; j < c->n_pair; j++)
+        c->active_of[j] = -1;
 }
 
-void corrections_free(struct corrections *c)
+void contact_solver_free(struct contact_solver *c)
 {
     if (!c) return;
-    corrections_clear(c);
-    void *const owned[] = {c->entry,      c->of,         c->addition,      c->entry_of,
-                           c->strain_of,  c->matrix,     c->order,         c->acting,
-                           c->factored,   c->strain,     c->linear,        c->more,
-                           c->left,       c->step,       c->right,         c->answer,
-                           c->work_space, c->compliance, c->factored_slope};
+    contact_solver_clear(c);
+    void *const owned[] = {c->active,
+                           c->active_of,
+                           c->group,
+                           c->active_of_row,
+                           c->component_of_row,
+                           c->matrix,
+                           c->order,
+                           c->acting,
+                           c->factored,
+                           c->deformation,
+                           c->free_deformation,
+                           c->excess,
+                           c->residual,
+                           c->step,
+                           c->rhs,
+                           c->solution,
+                           c->work_space,
+                           c->compliance,
+                           c->factored_slope};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(c);
 }
 
-int corrections_count(const struct corrections *c)
+int contact_solver_count(const struct contact_solver *c)
 {
     return c->count;
 }
 
-double corrections_work(const struct corrections *c)
+double contact_solver_work(const struct contact_solver *c)
 {
     return c->work;
 }
 
-bool corrections_are_costly(const struct corrections *c)
+bool contact_solver_is_costly(const struct contact_solver *c)
 {
     const double most = 1e10, most_factors = 100;
     return c->work > fmax(most, most_factors * stiffness_work(c->stiffness));
@@ -66,7 +80,7 @@ bool corrections_are_costly(const struct corrections *c)
 
 // ---- rows ---------------------------------------------------------------------------
 
-static void make_room(struct corrections *c)
+static void grow(struct contact_solver *c)
 {
     const size_t before = (size_t)c->capacity, after = before ? 2 * before : 128;
     double *compliance = NEW_ARRAY(double, after *after);
@@ -77,20 +91,21 @@ static void make_room(struct corrections *c)
     c->compliance = compliance;
     c->matrix = reallocate(c->matrix, after * (after + 16), sizeof *c->matrix);
     c->work_space = reallocate(c->work_space, after * DENSE_PANEL, sizeof(double));
-    int **const whole[] = {&c->entry_of, &c->strain_of, &c->order, &c->acting,
-                           &c->factored};
+    int **const whole[] = {&c->active_of_row, &c->component_of_row, &c->order,
+                           &c->acting, &c->factored};
     for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
         *whole[k] = reallocate(*whole[k], after, sizeof **whole);
-    double **const real[] = {&c->strain, &c->linear, &c->more,  &c->left,
-                             &c->step,   &c->right,  &c->answer};
+    double **const real[] = {
+        &c->deformation, &c->free_deformation, &c->excess, &c->residual, &c->step,
+        &c->rhs,         &c->solution};
     for (size_t k = 0; k < sizeof real / sizeof *real; k++)
         *real[k] = reallocate(*real[k], after, sizeof **real);
     c->factored_slope = reallocate(c->factored_slope, after, sizeof *c->factored_slope);
     c->capacity = (int)after;
 }
 
-static void fill_between(struct corrections *c, const struct addition *a,
-                         const struct addition *b)
+static void fill_between(struct contact_solver *c, const struct row_group *a,
+                         const struct row_group *b)
 {
     double product[LANES * LANES];
     stiffness_product(c->stiffness, &a->halves, &b->halves, product);
@@ -103,27 +118,27 @@ static void fill_between(struct corrections *c, const struct addition *a,
 }
 
 // Of the additions from FIRST on: each of all is read once for these.
-static void fill_compliance(struct corrections *c, int first)
+static void fill_compliance(struct contact_solver *c, int first)
 {
-    for (int k = first; k < c->n_addition; k++) {
-        const struct addition *new = &c->addition[k];
+    for (int k = first; k < c->n_group; k++) {
+        const struct row_group *new = &c->group[k];
         const double columns = new->halves.columns;
         c->work += new->halves.work +
                    columns *new->halves.size *(new->first + new->halves.columns);
     }
-    for (int k = 0; k < c->n_addition; k++)
-        for (int l = k > first ? k : first; l < c->n_addition; l++)
-            fill_between(c, &c->addition[k], &c->addition[l]);
+    for (int k = 0; k < c->n_group; k++)
+        for (int l = k > first ? k : first; l < c->n_group; l++)
+            fill_between(c, &c->group[k], &c->group[l]);
 }
 
-static struct entry *entry_for(struct corrections *c, int joint)
+static struct active_pair *activate(struct contact_solver *c, int pair)
 {
-    if (c->of[joint] < 0) {
-        GROW_ARRAY(c->entry, c->n_entry, c->entry_capacity);
-        c->entry[c->n_entry] = (struct entry){.joint = joint, .is_new = true};
-        c->of[joint] = c->n_entry++;
+    if (c->active_of[pair] < 0) {
+        GROW_ARRAY(c->active, c->n_active, c->active_capacity);
+        c->active[c->n_active] = (struct active_pair){.pair = pair, .is_new = true};
+        c->active_of[pair] = c->n_active++;
     }
-    return &c->entry[c->of[joint]];
+    return &c->active[c->active_of[pair]];
 }
 
 // Groups of rows that go through the factor together, the first GROUPS of them full.
@@ -132,42 +147,44 @@ struct batch {
     struct unit_load load[HALVES][LANES];
 };
 
-static void add_batch(struct corrections *c, struct batch *batch)
+static void add_batch(struct contact_solver *c, struct batch *batch)
 {
-    const int before = c->n_addition;
+    const int before = c->n_group;
     struct halves halves[HALVES];
     stiffness_halves(c->stiffness, batch->groups, batch->count, batch->load, halves);
     for (int g = 0; g < batch->groups; g++) {
-        GROW_ARRAY(c->addition, c->n_addition, c->addition_capacity);
-        c->addition[c->n_addition++] = (struct addition){batch->first[g], halves[g]};
+        GROW_ARRAY(c->group, c->n_group, c->group_capacity);
+        c->group[c->n_group++] = (struct row_group){batch->first[g], halves[g]};
     }
     fill_compliance(c, before);
     *batch = (struct batch){0};
 }
 
-// For the next strain of a joint.
-static void add_row(struct corrections *c, struct batch *batch, struct entry *entry)
+// For the next deformation of a pair.
+static void add_row(struct contact_solver *c, struct batch *batch,
+                    struct active_pair *active)
 {
     const int group = batch->groups;
-    if (c->count == c->capacity) make_room(c);
+    if (c->count == c->capacity) grow(c);
     if (batch->count[group] == 0) batch->first[group] = c->count;
     batch->load[group][batch->count[group]++] =
-        (struct unit_load){entry->joint, entry->count};
-    c->entry_of[c->count] = c->of[entry->joint];
-    c->strain_of[c->count] = entry->count;
-    entry->row[entry->count++] = c->count++;
+        (struct unit_load){active->pair, active->count};
+    c->active_of_row[c->count] = c->active_of[active->pair];
+    c->component_of_row[c->count] = active->count;
+    active->row[active->count++] = c->count++;
     if (batch->count[group] == LANES) batch->groups++;
 }
 
 // As many in a group as there are lanes.
-bool corrections_add(struct corrections *c, int count, const struct correction *new)
+bool contact_solver_add(struct contact_solver *c, int count,
+                        const struct pair_rows *new)
 {
     struct batch batch = {0};
     bool fits = true;
     for (int k = 0; k < count && fits; k++) {
-        struct entry *entry = entry_for(c, new[k].joint);
-        while (entry->count < new[k].strains && (fits = c->count < MOST)) {
-            add_row(c, &batch, entry);
+        struct active_pair *active = activate(c, new[k].pair);
+        while (active->count < new[k].count && (fits = c->count < MOST)) {
+            add_row(c, &batch, active);
             if (batch.groups == HALVES) add_batch(c, &batch);
         }
     }
@@ -179,73 +196,80 @@ bool corrections_add(struct corrections *c, int count, const struct correction *
 // ---- the way ------------------------------------------------------------------------
 
 // Springs pull as they did where an earlier GUESS has led, else as they do.
-static void begin(struct corrections *c, bool is_guessed)
+static void begin(struct contact_solver *c, bool is_guessed)
 {
-    memset(c->strain, 0, (size_t)c->count * sizeof *c->strain);
-    memset(c->more, 0, (size_t)c->count * sizeof *c->more);
-    for (int e = 0; e < c->n_entry; e++) {
-        struct entry *entry = &c->entry[e];
-        const struct resistance resistance =
-            joint_resistance(&c->joint[entry->joint], c->from[entry->joint]);
-        memcpy(entry->load, resistance.load, sizeof entry->load);
-        if (entry->is_new || !is_guessed) note_pull(c, entry);
-        entry->is_new = false;
+    memset(c->deformation, 0, (size_t)c->count * sizeof *c->deformation);
+    memset(c->excess, 0, (size_t)c->count * sizeof *c->excess);
+    for (int e = 0; e < c->n_active; e++) {
+        struct active_pair *active = &c->active[e];
+        const struct pair_response response =
+            pair_respond(&c->pair[active->pair], c->from[active->pair]);
+        memcpy(active->load, response.load, sizeof active->load);
+        if (active->is_new || !is_guessed) update_augmentation(c, active);
+        active->is_new = false;
     }
-    for (int k = 0; k < c->n_addition; k++)
-        stiffness_strain(c->stiffness, &c->addition[k].halves,
-                         c->linear + c->addition[k].first);
+    for (int k = 0; k < c->n_group; k++)
+        stiffness_deformation(c->stiffness, &c->group[k].halves,
+                              c->free_deformation + c->group[k].first);
 }
 
-static void guess_strains(struct corrections *c, const double (*guess)[STRAINS])
+static void guess_deformation(struct contact_solver *c,
+                              const double (*guess)[COMPONENTS])
 {
     for (int row = 0; row < c->count; row++)
-        c->strain[row] =
-            guess ? guess[c->entry[c->entry_of[row]].joint][c->strain_of[row]] : 0;
+        c->deformation[row] =
+            guess
+                ? guess[c->active[c->active_of_row[row]].pair][c->component_of_row[row]]
+                : 0;
 }
 
-// Softened, else as it is; where that fails too joints in turn come before each.
-bool corrections_find(struct corrections *c, const double (*strain)[STRAINS],
-                      const double (*guess)[STRAINS], double share, double enough)
+// Softened, else as it is; where that fails too pairs in turn come before each.
+bool contact_solver_solve(struct contact_solver *c,
+                          const double (*deformation)[COMPONENTS],
+                          const double (*guess)[COMPONENTS], double compliance_factor,
+                          double enough)
 {
     enum { ROUNDS = 5 };
-    if (c->share != share) c->n_factored = 0;
-    c->share = share;
-    c->from = strain;
+    if (c->compliance_factor != compliance_factor) c->n_factored = 0;
+    c->compliance_factor = compliance_factor;
+    c->from = deformation;
     begin(c, guess);
     for (int row = 0; row < c->count; row++)
-        enough = fmax(enough, 1e-14 * fabs(c->linear[row]));
-    guess_strains(c, guess);
-    if (resist_entries(c, false) <= enough) return true;
+        enough = fmax(enough, 1e-14 * fabs(c->free_deformation[row]));
+    guess_deformation(c, guess);
+    if (update_contacts(c, false) <= enough) return true;
     for (int round = 0; round < ROUNDS; round++) {
-        if (round > 0 && corrections_are_costly(c)) return false;
-        if (round > 1) settle_in_turn(c, enough);
-        if (settle_together(c, round % 2 == 0, enough)) return true;
+        if (round > 0 && contact_solver_is_costly(c)) return false;
+        if (round > 1) gauss_seidel(c, enough);
+        if (semismooth_newton(c, round % 2 == 0, enough)) return true;
     }
     return false;
 }
 
-void corrections_take_off(const struct corrections *c, double share,
-                          struct displacement *left)
+void contact_solver_subtract(const struct contact_solver *c, double compliance_factor,
+                             struct displacement *residual)
 {
-    for (int k = 0; k < c->n_addition; k++) {
-        const struct addition *addition = &c->addition[k];
+    for (int k = 0; k < c->n_group; k++) {
+        const struct row_group *group = &c->group[k];
         double load[LANES];
-        for (int l = 0; l < addition->halves.columns; l++)
-            load[l] = share * c->more[addition->first + l];
-        stiffness_take_off(c->stiffness, &addition->halves, load);
+        for (int l = 0; l < group->halves.columns; l++)
+            load[l] = compliance_factor * c->excess[group->first + l];
+        stiffness_subtract(c->stiffness, &group->halves, load);
     }
-    for (int e = 0; e < c->n_entry; e++) {
-        const struct entry *entry = &c->entry[e];
-        const struct joint *joint = &c->joint[entry->joint];
-        double load[STRAINS] = {0};
-        for (int k = 0; k < entry->count; k++)
-            load[k] = c->more[entry->row[k]];
+    for (int e = 0; e < c->n_active; e++) {
+        const struct active_pair *active = &c->active[e];
+        const struct contact_pair *pair = &c->pair[active->pair];
+        double load[COMPONENTS] = {0};
+        for (int k = 0; k < active->count; k++)
+            load[k] = c->excess[active->row[k]];
         for (int end = 0; end < 2; end++) {
-            if (joint->grain[end] < 0) continue;
-            const struct displacement part = joint_loads(joint, end, load);
-            struct displacement *of = &left[joint->grain[end]];
-            of->shift = subtract(of->shift, scale(share, part.shift));
-            of->turn = subtract(of->turn, scale(share, part.turn));
+            if (pair->grain[end] < 0) continue;
+            const struct displacement part = pair_load_on_grain(pair, end, load);
+            struct displacement *of = &residual[pair->grain[end]];
+            of->translation =
+                subtract(of->translation, scale(compliance_factor, part.translation));
+            of->rotation =
+                subtract(of->rotation, scale(compliance_factor, part.rotation));
         }
     }
 }

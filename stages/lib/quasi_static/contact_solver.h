@@ -1,51 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joints that do not resist as the factored stiffness says: bonds that broke since,
+// Pairs that do not resist as the factored stiffness says: bonds that broke since,
 // contacts that opened, closed or slip.
 //
 // Under what is left to balance, r, grains move by K^-1 (r - B^T q), where K is what is
-// factored and q by how much such joints resist more than K says. Of q and their
-// strains, e = B K^-1 r - W q(e) with W = B K^-1 B^T, only these joints know: a small
-// dense system, solved by Newton's method, where that fails joint by joint in turn.
+// factored and q by how much such pairs resist more than K says. Of q and their
+// deformations, e = B K^-1 r - W q(e) with W = B K^-1 B^T, only these pairs know: a
+// small dense system, solved by Newton's method, where that fails pair by pair in turn.
 #ifndef CRAQUELURE_CONTACT_SOLVER_H
 #define CRAQUELURE_CONTACT_SOLVER_H
 
 #include "stiffness.h"
 
-struct corrections;
+struct contact_solver;
 
-// For N_JOINT joints, of which TANGENT (n_joint) is in the factor of
+// For N_PAIR pairs, of which TANGENT (n_pair) is in the factor of
 // STIFFNESS; all are kept, not copied. The caller frees it with corrections_free.
-struct corrections *corrections_new(struct stiffness *stiffness, int n_joint,
-                                    const struct joint *joint,
-                                    const double (*tangent)[STRAINS]);
-void corrections_free(struct corrections *corrections);
+struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_pair,
+                                             const struct contact_pair *pair,
+                                             const double (*tangent)[COMPONENTS]);
+void contact_solver_free(struct contact_solver *solver);
 
 // None, after a new factor.
-void corrections_clear(struct corrections *corrections);
+void contact_solver_clear(struct contact_solver *solver);
 
-// Of COUNT joints the first STRAINS, unless they are in already. False: there are too
+// Of COUNT pairs the first COMPONENTS, unless they are in already. False: there are too
 // many, and a new factor is due.
-struct correction {
-    int32_t joint, strains;
+struct pair_rows {
+    int32_t pair, count;
 };
-bool corrections_add(struct corrections *corrections, int count,
-                     const struct correction *new);
-int corrections_count(const struct corrections *corrections); // of strains
+bool contact_solver_add(struct contact_solver *solver, int count,
+                        const struct pair_rows *new);
+int contact_solver_count(const struct contact_solver *solver); // of deformations
 
 // Multiplications spent on dense systems since there were no corrections.
-double corrections_work(const struct corrections *corrections);
+double contact_solver_work(const struct contact_solver *solver);
 // Whether that is more than 100 factors take, and more than 1e10 (a second or two):
 // then what is not found is not looked for in other ways.
-bool corrections_are_costly(const struct corrections *corrections);
+bool contact_solver_is_costly(const struct contact_solver *solver);
 
-// Finds q for grains that move on from STRAIN (n_joint) under the load that the
-// stiffness has begun with, where SHARE of their answers counts; strains to ENOUGH,
-// beginning with GUESS (n_joint), or NULL: none. False: not found.
-bool corrections_find(struct corrections *corrections, const double (*strain)[STRAINS],
-                      const double (*guess)[STRAINS], double share, double enough);
+// Finds q for grains that move on from DEFORMATION (n_pair) under the load that the
+// stiffness has begun with, where SHARE of their answers counts; deformations to
+// ENOUGH, beginning with GUESS (n_pair), or NULL: none. False: not found.
+bool contact_solver_solve(struct contact_solver *solver,
+                          const double (*deformation)[COMPONENTS],
+                          const double (*guess)[COMPONENTS], double compliance_factor,
+                          double enough);
 
 // Takes B^T q off LEFT (n) and off what the stiffness has begun.
-void corrections_take_off(const struct corrections *corrections, double share,
-                          struct displacement *left);
+void contact_solver_subtract(const struct contact_solver *solver,
+                             double compliance_factor, struct displacement *residual);
 
 #endif

@@ -5,42 +5,43 @@
 
 #include <stdlib.h>
 
-void find_fragments(struct equilibrium *e)
+void update_fragments(struct quasi_static *qs)
 {
-    fragments_begin(&e->fragments);
-    for (int j = 0; j < e->n_joint; j++)
-        if (e->joint[j].is_bonded && !e->joint[j].is_gone)
-            fragments_join(&e->fragments, e->joint[j].grain[0], e->joint[j].grain[1]);
-    fragments_end(&e->fragments, e->setup.fixed, e->is_gone);
+    fragments_begin(&qs->fragments);
+    for (int j = 0; j < qs->n_pair; j++)
+        if (qs->pair[j].is_bonded && !qs->pair[j].is_detached)
+            fragments_join(&qs->fragments, qs->pair[j].grain[0], qs->pair[j].grain[1]);
+    fragments_end(&qs->fragments, qs->setup.fixed, qs->is_detached);
 }
 
 // What is marked leaves: its load counts no more, and nothing touches it.
-void let_go(struct equilibrium *e, const bool *leaves)
+void detach_fragments(struct quasi_static *qs, const bool *leaves)
 {
-    for (int i = 0; i < e->n; i++) {
-        if (!leaves[e->fragments.of[i]] || e->is_gone[i]) continue;
-        e->is_gone[i] = true;
-        if (e->n_gone++ == 0) e->first_gone = i;
+    for (int i = 0; i < qs->n; i++) {
+        if (!leaves[qs->fragments.of[i]] || qs->is_detached[i]) continue;
+        qs->is_detached[i] = true;
+        if (qs->n_detached++ == 0) qs->first_detached = i;
     }
-    load_grains(e);
-    for (int j = 0; j < e->n_joint; j++)
+    apply_external_load(qs);
+    for (int j = 0; j < qs->n_pair; j++)
         for (int end = 0; end < 2; end++) {
-            const int32_t grain = e->joint[j].grain[end];
-            if (grain >= 0 && e->is_gone[grain]) e->joint[j].is_gone = true;
+            const int32_t grain = qs->pair[j].grain[end];
+            if (grain >= 0 && qs->is_detached[grain]) qs->pair[j].is_detached = true;
         }
-    resist(e);
+    update_residual(qs);
 }
 
-bool let_go_beyond(struct equilibrium *e, const struct displacement *moves, double most)
+bool detach_beyond(struct quasi_static *qs, const struct displacement *moves,
+                   double most)
 {
-    bool *leaves = NEW_ARRAY(bool, e->n);
+    bool *leaves = NEW_ARRAY(bool, qs->n);
     bool any = false;
-    for (int i = 0; i < e->n; i++) {
-        const int fragment = e->fragments.of[i];
-        if (e->is_gone[i] || e->fragments.is_held[fragment]) continue;
-        if (!(size_of(moves[i]) <= most)) any = leaves[fragment] = true;
+    for (int i = 0; i < qs->n; i++) {
+        const int fragment = qs->fragments.of[i];
+        if (qs->is_detached[i] || qs->fragments.is_held[fragment]) continue;
+        if (!(displacement_size(moves[i]) <= most)) any = leaves[fragment] = true;
     }
-    if (any) let_go(e, leaves);
+    if (any) detach_fragments(qs, leaves);
     free(leaves);
     return any;
 }

@@ -7,34 +7,37 @@
 
 #include <math.h>
 
-// Lengths in mean radii, stiffnesses in the largest of a joint.
+// Lengths in mean radii, stiffnesses in the largest of a pair.
 struct displacement {
-    struct vector shift, turn; // m over the unit of length; rad
+    struct vector translation, rotation; // m over the unit of length; rad
 };
 
 static const struct displacement no_displacement = {{0, 0, 0}, {0, 0, 0}};
 
-static inline struct displacement scaled(double share, struct displacement a)
+static inline struct displacement displacement_scaled(double factor,
+                                                      struct displacement a)
 {
-    return (struct displacement){scale(share, a.shift), scale(share, a.turn)};
+    return (struct displacement){scale(factor, a.translation),
+                                 scale(factor, a.rotation)};
 }
 
-static inline struct displacement moved_from(const struct displacement *from,
-                                             const struct displacement *to)
+static inline struct displacement displacement_between(const struct displacement *from,
+                                                       const struct displacement *to)
 {
-    return (struct displacement){subtract(to->shift, from->shift),
-                                 subtract(to->turn, from->turn)};
+    return (struct displacement){subtract(to->translation, from->translation),
+                                 subtract(to->rotation, from->rotation)};
 }
 
 // LOAD is taken off SUM.
-static inline void pull(struct displacement *sum, struct displacement load)
+static inline void displacement_subtract(struct displacement *sum,
+                                         struct displacement load)
 {
-    *sum = moved_from(&load, sum);
+    *sum = displacement_between(&load, sum);
 }
 
-static inline double size_of(struct displacement a)
+static inline double displacement_size(struct displacement a)
 {
-    return fmax(norm(a.shift), norm(a.turn));
+    return fmax(norm(a.translation), norm(a.rotation));
 }
 
 #endif

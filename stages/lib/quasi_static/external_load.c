@@ -9,47 +9,48 @@
 
 // What is gone has no load; where nothing holds the others, theirs is then balanced
 // among themselves: if they may move far, where they are [rigid_motion.c].
-void load_grains(struct equilibrium *e)
+void apply_external_load(struct quasi_static *qs)
 {
-    const double unit = e->stiffness * e->length;
+    const double unit = qs->stiffness * qs->length;
     const struct vector none = {0, 0, 0};
-    struct vector *load = duplicate(e->force, (size_t)e->n, sizeof *load);
-    for (int i = 0; i < e->n; i++)
-        if (e->is_gone[i] || e->setup.fixed[i]) load[i] = none;
-    e->taken_off = (struct net_load){none, none};
-    if (e->setup.is_free && !e->large)
-        e->taken_off = take_off_net_load(e->packing, e->is_gone, NULL, load);
-    for (int i = 0; i < e->n; i++)
-        e->load[i].shift = scale(1 / unit, load[i]);
+    struct vector *load = duplicate(qs->force, (size_t)qs->n, sizeof *load);
+    for (int i = 0; i < qs->n; i++)
+        if (qs->is_detached[i] || qs->setup.fixed[i]) load[i] = none;
+    qs->taken_off = (struct net_load){none, none};
+    if (qs->setup.is_free && !qs->large)
+        qs->taken_off = take_off_net_load(qs->packing, qs->is_detached, NULL, load);
+    for (int i = 0; i < qs->n; i++)
+        qs->load[i].translation = scale(1 / unit, load[i]);
     free(load);
 }
 
 // Of FORCE (n), of any unit, what would move as one grains that nothing holds and that
 // have gone far.
-static struct net_load take_off_there(const struct equilibrium *e, struct vector *force)
+static struct net_load take_off_there(const struct quasi_static *qs,
+                                      struct vector *force)
 {
-    struct vector *moved = displaced(e);
+    struct vector *moved = displacements_in_metres(qs);
     const struct moving_grains there = {.displacement = moved};
     const struct net_load net =
-        take_off_net_load(e->packing, e->is_gone, &there, force);
+        take_off_net_load(qs->packing, qs->is_detached, &there, force);
     free(moved);
     return net;
 }
 
-void measure_load(struct equilibrium *e)
+void update_load_scale(struct quasi_static *qs)
 {
-    struct vector *load = NEW_ARRAY(struct vector, e->n);
-    for (int i = 0; i < e->n; i++)
-        load[i] = e->load[i].shift;
-    if (e->setup.is_free && e->large) take_off_there(e, load);
-    for (int i = 0; i < e->n; i++)
-        e->largest_load = fmax(e->largest_load, norm(load[i]));
+    struct vector *load = NEW_ARRAY(struct vector, qs->n);
+    for (int i = 0; i < qs->n; i++)
+        load[i] = qs->load[i].translation;
+    if (qs->setup.is_free && qs->large) take_off_there(qs, load);
+    for (int i = 0; i < qs->n; i++)
+        qs->largest_load = fmax(qs->largest_load, norm(load[i]));
     free(load);
 }
 
-struct net_load equilibrium_load(const struct equilibrium *e, struct vector *force)
+struct net_load quasi_static_load(const struct quasi_static *qs, struct vector *force)
 {
-    for (int i = 0; i < e->n; i++)
-        force[i] = scale(e->stiffness * e->length, e->load[i].shift);
-    return e->setup.is_free && e->large ? take_off_there(e, force) : e->taken_off;
+    for (int i = 0; i < qs->n; i++)
+        force[i] = scale(qs->stiffness * qs->length, qs->load[i].translation);
+    return qs->setup.is_free && qs->large ? take_off_there(qs, force) : qs->taken_off;
 }

@@ -7,83 +7,86 @@
 #include <string.h>
 
 // Twist and bending are linear.
-static void settle_moments(const struct entry *entry, const struct surroundings *s,
-                           double x[3])
+static void solve_moments(const struct active_pair *active,
+                          const struct local_problem *s, double x[3])
 {
     double m[3][3], right[3];
     for (int k = 0; k < 3; k++) {
         right[k] = s->given[k];
         for (int l = 0; l < 3; l++)
-            m[k][l] = (k == l) + s->compliance[k][l] * entry->slope[3 + l][0];
+            m[k][l] = (k == l) + s->compliance[k][l] * active->slope[3 + l][0];
     }
     if (solve_three(m, right)) memcpy(x, right, sizeof right);
 }
 
-// Of strains FIRST to END - 1.
-static struct surroundings around(const struct corrections *c,
-                                  const struct entry *entry, int first, int end,
-                                  const double from[STRAINS])
+// Of deformations FIRST to END - 1.
+static struct local_problem local_problem_of(const struct contact_solver *c,
+                                             const struct active_pair *active,
+                                             int first, int end,
+                                             const double from[COMPONENTS])
 {
-    struct surroundings s = {.given = {0}};
+    struct local_problem s = {.given = {0}};
     memcpy(s.from, from + first, sizeof s.from);
-    memcpy(s.load, entry->load + first, sizeof s.load);
-    memcpy(s.tangent, c->tangent[entry->joint] + first, sizeof s.tangent);
+    memcpy(s.load, active->load + first, sizeof s.load);
+    memcpy(s.tangent, c->tangent[active->pair] + first, sizeof s.tangent);
     for (int k = 0; k < end - first; k++) {
-        const int row = entry->row[first + k];
-        s.given[k] = c->strain[row] - c->left[row];
+        const int row = active->row[first + k];
+        s.given[k] = c->deformation[row] - c->residual[row];
         for (int l = 0; l < end - first; l++) {
-            const int other = entry->row[first + l];
-            s.compliance[k][l] = c->share * compliance_of(c, row)[other];
-            s.given[k] += s.compliance[k][l] * c->more[other];
+            const int other = active->row[first + l];
+            s.compliance[k][l] = c->compliance_factor * compliance_of(c, row)[other];
+            s.given[k] += s.compliance[k][l] * c->excess[other];
         }
     }
     return s;
 }
 
-// The strains of one from FIRST on, three at most, while the others push as they do.
-static void settle(struct corrections *c, struct entry *entry, int first, double enough)
+// The deformations of one from FIRST on, three at most, while the others push as they
+// do.
+static void return_pair(struct contact_solver *c, struct active_pair *active, int first,
+                        double enough)
 {
-    const int count = entry->count - first < 3 ? entry->count - first : 3;
-    const int *row = entry->row + first;
-    double most = 0, before[3] = {0}, more[3], strain[3] = {0};
+    const int count = active->count - first < 3 ? active->count - first : 3;
+    const int *row = active->row + first;
+    double most = 0, before[3] = {0}, more[3], deformation[3] = {0};
     for (int k = 0; k < count; k++) {
-        most = fmax(most, fabs(c->left[row[k]]));
-        before[k] = strain[k] = c->strain[row[k]];
-        more[k] = c->more[row[k]];
+        most = fmax(most, fabs(c->residual[row[k]]));
+        before[k] = deformation[k] = c->deformation[row[k]];
+        more[k] = c->excess[row[k]];
     }
     if (most <= enough) return;
-    const struct surroundings s =
-        around(c, entry, first, first + count, c->from[entry->joint]);
+    const struct local_problem s =
+        local_problem_of(c, active, first, first + count, c->from[active->pair]);
     if (first == 0)
-        settle_joint(&c->joint[entry->joint], &s, strain);
+        return_map(&c->pair[active->pair], &s, deformation);
     else
-        settle_moments(entry, &s, strain);
+        solve_moments(active, &s, deformation);
     for (int k = 0; k < count; k++)
-        c->strain[row[k]] = strain[k];
-    resist_entry(c, entry, false);
+        c->deformation[row[k]] = deformation[k];
+    update_pair_excess(c, active, false);
     for (int k = 0; k < count; k++) {
-        c->left[row[k]] += strain[k] - before[k];
-        add_answer(c, row[k], c->more[row[k]] - more[k], c->left);
+        c->residual[row[k]] += deformation[k] - before[k];
+        add_compliance(c, row[k], c->excess[row[k]] - more[k], c->residual);
     }
 }
 
-// Until no joint changes its touch any more.
-void settle_in_turn(struct corrections *c, double enough)
+// Until no pair changes its touch any more.
+void gauss_seidel(struct contact_solver *c, double enough)
 {
     enum { SWEEPS = 10 };
     bool changed = true;
-    resist_entries(c, false);
+    update_contacts(c, false);
     for (int sweep = 0; sweep < SWEEPS && changed; sweep++) {
         changed = sweep == 0;
-        for (int e = 0; e < c->n_entry; e++) {
-            struct entry *entry = &c->entry[e];
-            const enum touch before = entry->touch;
-            for (int first = 0; first < entry->count; first += 3)
-                settle(c, entry, first, 0.5 * enough);
-            changed |= entry->touch != before;
+        for (int e = 0; e < c->n_active; e++) {
+            struct active_pair *active = &c->active[e];
+            const enum contact_state before = active->state;
+            for (int first = 0; first < active->count; first += 3)
+                return_pair(c, active, first, 0.5 * enough);
+            changed |= active->state != before;
         }
-        find_left(c); // without the rounding of sums
+        find_contact_residual(c); // without the rounding of sums
     }
-    for (int e = 0; e < c->n_entry; e++)
-        note_pull(c, &c->entry[e]);
+    for (int e = 0; e < c->n_active; e++)
+        update_augmentation(c, &c->active[e]);
 }

@@ -6,9 +6,9 @@
 
 #include <stdlib.h>
 
-static void find_axes(struct joint *joint, struct vector separation)
+static void find_axes(struct contact_pair *pair, struct vector separation)
 {
-    struct vector *axis = joint->axis;
+    struct vector *axis = pair->axis;
     axis[0] = scale(1 / norm(separation), separation);
     const double x = fabs(axis[0].x), y = fabs(axis[0].y), z = fabs(axis[0].z);
     const struct vector least = x <= y && x <= z ? (struct vector){1, 0, 0}
@@ -20,123 +20,125 @@ static void find_axes(struct joint *joint, struct vector separation)
 }
 
 // Overlaps within the rounding of coordinates are none, as in the engine [K 4.8].
-static double overlap_of(const struct joint_setup *setup, double overlap)
+static double overlap_of(const struct contact_pair_setup *setup, double overlap)
 {
     const struct packing *packing = setup->packing;
-    double furthest = 0;
+    double largest = 0;
     for (int axis = 0; axis < 3; axis++)
-        furthest = fmax(furthest, fmax(fabs(component(packing->lower, axis)),
-                                       fabs(component(packing->upper, axis))));
-    return fabs(overlap) <= 16 * 0x1p-53 * furthest / setup->length ? 0 : overlap;
+        largest = fmax(largest, fmax(fabs(component(packing->lower, axis)),
+                                     fabs(component(packing->upper, axis))));
+    return fabs(overlap) <= 16 * 0x1p-53 * largest / setup->length ? 0 : overlap;
 }
 
-// [K 4.22], SHARE of the stiffness of a grain.
-static struct joint in_contact(const struct joint_setup *setup, struct joint joint,
-                               double share)
+// [K 4.22], FRACTION of the stiffness of a grain.
+static struct contact_pair in_contact(const struct contact_pair_setup *setup,
+                                      struct contact_pair pair, double fraction)
 {
     const struct dem_material *material = setup->material;
-    joint.friction = material->friction;
-    joint.contact_along = share * material->normal_stiffness / setup->stiffness;
-    if (joint.friction > 0)
-        joint.contact_across = share * material->shear_stiffness / setup->stiffness;
-    joint.contact.touch = joint.overlap >= 0 ? TOUCH_STICKS : TOUCH_NONE;
-    return joint;
+    pair.friction = material->friction;
+    pair.normal_stiffness = fraction * material->normal_stiffness / setup->stiffness;
+    if (pair.friction > 0)
+        pair.shear_stiffness = fraction * material->shear_stiffness / setup->stiffness;
+    pair.contact.state = pair.overlap >= 0 ? CONTACT_STICKING : CONTACT_OPEN;
+    return pair;
 }
 
-struct joint contact_joint(const struct joint_setup *setup, int i, int j,
-                           struct vector separation)
+struct contact_pair grain_pair(const struct contact_pair_setup *setup, int i, int j,
+                               struct vector separation)
 {
     const struct packing *packing = setup->packing;
     const double r[2] = {packing->radius[i] / setup->length,
                          packing->radius[j] / setup->length};
-    struct joint joint = {.grain = {i, j}, .bond = -1};
-    find_axes(&joint, separation);
-    joint.overlap = overlap_of(setup, r[0] + r[1] - norm(separation) / setup->length);
+    struct contact_pair pair = {.grain = {i, j}, .bond = -1};
+    find_axes(&pair, separation);
+    pair.overlap = overlap_of(setup, r[0] + r[1] - norm(separation) / setup->length);
     for (int end = 0; end < 2; end++)
-        joint.arm[end] = r[end] - 0.5 * joint.overlap;
-    if (setup->unstressed) joint.overlap = fmin(joint.overlap, 0);
-    return in_contact(setup, joint, 0.5); // two grains in series
+        pair.arm[end] = r[end] - 0.5 * pair.overlap;
+    if (setup->unstressed) pair.overlap = fmin(pair.overlap, 0);
+    return in_contact(setup, pair, 0.5); // two grains in series
 }
 
-struct joint wall_joint(const struct joint_setup *setup, int i)
+struct contact_pair wall_pair(const struct contact_pair_setup *setup, int i)
 {
     const struct packing *packing = setup->packing;
     const double radius = packing->radius[i] / setup->length;
     const double height = (packing->position[i].z - packing->lower.z) / setup->length;
-    struct joint joint = {.grain = {i, -1}, .bond = -1};
-    find_axes(&joint, (struct vector){0, 0, -1});
-    joint.overlap = overlap_of(setup, radius - height);
-    joint.arm[0] = radius - 0.5 * joint.overlap; // as in the engine
-    if (setup->unstressed) joint.overlap = fmin(joint.overlap, 0);
-    return in_contact(setup, joint, 1);
+    struct contact_pair pair = {.grain = {i, -1}, .bond = -1};
+    find_axes(&pair, (struct vector){0, 0, -1});
+    pair.overlap = overlap_of(setup, radius - height);
+    pair.arm[0] = radius - 0.5 * pair.overlap; // as in the engine
+    if (setup->unstressed) pair.overlap = fmin(pair.overlap, 0);
+    return in_contact(setup, pair, 1);
 }
 
 // The contact's own springs [K 4.2], which as long as it holds nothing else joins.
 // Grains that only such points join turn about each other as gears do, and nothing says
 // how far: something must resist that.
-static void point_joint(const struct joint_setup *setup, struct joint *joint, int bond)
+static void bond_at_point(const struct contact_pair_setup *setup,
+                          struct contact_pair *pair, int bond)
 {
-    joint->bond = bond;
-    joint->is_bonded = joint->is_point = true;
-    joint->bond_stiffness[STRAIN_ALONG] = joint->contact_along;
+    pair->bond = bond;
+    pair->is_bonded = pair->is_point = true;
+    pair->bond_stiffness[NORMAL] = pair->normal_stiffness;
     for (int k = 0; k < 2; k++)
-        joint->bond_stiffness[STRAIN_ACROSS + k] =
+        pair->bond_stiffness[SHEAR + k] =
             0.5 * setup->material->shear_stiffness / setup->stiffness;
-    for (int k = STRAIN_TWIST; k < STRAINS; k++)
-        joint->bond_stiffness[k] = setup->rolling *
-                                   joint->bond_stiffness[STRAIN_ACROSS] *
-                                   joint->arm[0] * joint->arm[1];
-    joint->point_overlap = joint->overlap;
-    joint->overlap = -INFINITY;
-    joint->contact.touch = TOUCH_NONE;
+    for (int k = TORSION; k < COMPONENTS; k++)
+        pair->bond_stiffness[k] =
+            setup->rolling * pair->bond_stiffness[SHEAR] * pair->arm[0] * pair->arm[1];
+    pair->point_overlap = pair->overlap;
+    pair->overlap = -INFINITY;
+    pair->contact.state = CONTACT_OPEN;
 }
 
-static void bond_joint(const struct joint_setup *setup, struct joint *joint, int bond)
+static void bond_in_parallel(const struct contact_pair_setup *setup,
+                             struct contact_pair *pair, int bond)
 {
     const double *radius = setup->packing->radius;
-    const double smaller = fmin(radius[joint->grain[0]], radius[joint->grain[1]]);
+    const double smaller = fmin(radius[pair->grain[0]], radius[pair->grain[1]]);
     const double r = setup->bond->radius_fraction * smaller / setup->length;
     const double per_area = setup->length * setup->length / setup->stiffness;
     const double along = setup->bond->normal_stiffness * per_area;
     const double across = setup->bond->shear_stiffness * per_area;
     const double area = M_PI * r * r;
-    joint->bond = bond;
-    joint->is_bonded = true;
-    joint->bond_radius = r;
-    joint->moments_left_out = setup->bond->moments_left_out;
+    pair->bond = bond;
+    pair->is_bonded = true;
+    pair->bond_radius = r;
+    pair->moments_left_out = setup->bond->moments_left_out;
     const double twist = r * r / 2, bend = r * r / 4; // J / A, I / A
-    const double stiffness[STRAINS] = {along,          across,       across,
-                                       across * twist, along * bend, along * bend};
-    for (int k = 0; k < STRAINS; k++)
-        joint->bond_stiffness[k] = stiffness[k] * area;
+    const double stiffness[COMPONENTS] = {along,          across,       across,
+                                          across * twist, along * bend, along * bend};
+    for (int k = 0; k < COMPONENTS; k++)
+        pair->bond_stiffness[k] = stiffness[k] * area;
 }
 
-struct joint_list {
-    struct joint *joint;
+struct pair_list {
+    struct contact_pair *pair;
     int count, capacity;
 };
 
-static void append(struct joint_list *list, struct joint joint)
+static void append(struct pair_list *list, struct contact_pair pair)
 {
-    GROW_ARRAY(list->joint, list->count, list->capacity);
-    list->joint[list->count++] = joint;
+    GROW_ARRAY(list->pair, list->count, list->capacity);
+    list->pair[list->count++] = pair;
 }
 
-static void add_bonds(const struct joint_setup *setup, struct joint_list *list)
+static void add_bonds(const struct contact_pair_setup *setup, struct pair_list *list)
 {
     const struct packing *packing = setup->packing;
     for (int b = 0; b < packing->n_bond; b++) {
         const int i = packing->bond[b][0], j = packing->bond[b][1];
-        struct joint joint = contact_joint(setup, i, j, nearest_image(packing, i, j));
+        struct contact_pair pair =
+            grain_pair(setup, i, j, nearest_image(packing, i, j));
         if (setup->bond->kind == DEM_CONTACT_BOND)
-            point_joint(setup, &joint, b);
+            bond_at_point(setup, &pair, b);
         else
-            bond_joint(setup, &joint, b);
-        append(list, joint);
+            bond_in_parallel(setup, &pair, b);
+        append(list, pair);
     }
 }
 
-static void add_near(const struct joint_setup *setup, struct joint_list *list)
+static void add_near(const struct contact_pair_setup *setup, struct pair_list *list)
 {
     const struct packing *packing = setup->packing;
     int32_t(*bonded)[2] =
@@ -144,34 +146,35 @@ static void add_near(const struct joint_setup *setup, struct joint_list *list)
     if (packing->n_bond > 0)
         qsort(bonded, (size_t)packing->n_bond, sizeof *bonded, compare_pairs);
     int n_near;
-    int32_t(*near)[2] = neighbour_pairs(packing, joint_reach, &n_near);
+    int32_t(*near)[2] = neighbour_pairs(packing, search_range, &n_near);
     for (int k = 0; k < n_near; k++) {
         if (packing->n_bond > 0 && bsearch(near[k], bonded, (size_t)packing->n_bond,
                                            sizeof *bonded, compare_pairs))
             continue;
-        append(list, contact_joint(setup, near[k][0], near[k][1],
-                                   nearest_image(packing, near[k][0], near[k][1])));
+        append(list, grain_pair(setup, near[k][0], near[k][1],
+                                nearest_image(packing, near[k][0], near[k][1])));
     }
     free(near);
     free(bonded);
 }
 
-static void add_wall(const struct joint_setup *setup, struct joint_list *list)
+static void add_wall(const struct contact_pair_setup *setup, struct pair_list *list)
 {
     const struct packing *packing = setup->packing;
     for (int i = 0; i < packing->n_particle; i++) {
         const double height = packing->position[i].z - packing->lower.z;
-        if (height <= (1 + joint_reach) * packing->radius[i])
-            append(list, wall_joint(setup, i));
+        if (height <= (1 + search_range) * packing->radius[i])
+            append(list, wall_pair(setup, i));
     }
 }
 
-struct joint *make_joints(const struct joint_setup *setup, int *count)
+struct contact_pair *make_contact_pairs(const struct contact_pair_setup *setup,
+                                        int *count)
 {
-    struct joint_list list = {0};
+    struct pair_list list = {0};
     add_bonds(setup, &list);
     add_near(setup, &list);
     if (setup->has_wall) add_wall(setup, &list);
     *count = list.count;
-    return list.joint;
+    return list.pair;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quasi_static_internal.h"
 
+#include "large/large_state.h"
+
 #include "basics/memory.h"
 
 #include <math.h>
@@ -8,80 +10,82 @@
 
 // ---- begin and end ------------------------------------------------------------------
 
-static void find_units(struct equilibrium *e)
+static void find_units(struct quasi_static *qs)
 {
-    const struct packing *packing = e->packing;
+    const struct packing *packing = qs->packing;
     for (int i = 0; i < packing->n_particle; i++)
-        e->length += packing->radius[i] / packing->n_particle;
+        qs->length += packing->radius[i] / packing->n_particle;
     double radius = 0; // of the thickest bond
     for (int b = 0; b < packing->n_bond; b++)
         radius = fmax(radius, fmin(packing->radius[packing->bond[b][0]],
                                    packing->radius[packing->bond[b][1]]));
-    radius *= e->setup.bond.radius_fraction;
-    const double glue = e->setup.bond.kind == DEM_CONTACT_BOND
+    radius *= qs->setup.bond.radius_fraction;
+    const double glue = qs->setup.bond.kind == DEM_CONTACT_BOND
                             ? 0
-                            : e->setup.bond.normal_stiffness * M_PI * radius * radius;
-    e->stiffness = fmax(glue, e->setup.material.normal_stiffness);
+                            : qs->setup.bond.normal_stiffness * M_PI * radius * radius;
+    qs->stiffness = fmax(glue, qs->setup.material.normal_stiffness);
 }
 
 // Much softer than anything that resists: it moves what nothing holds, and nothing
 // else.
-static double softness(const struct equilibrium *e)
+static double regularisation_of(const struct quasi_static *qs)
 {
     double least = 1;
-    for (int j = 0; j < e->n_joint; j++) {
-        const double each[] = {e->joint[j].bond_stiffness[STRAIN_ALONG],
-                               e->joint[j].contact_along};
+    for (int j = 0; j < qs->n_pair; j++) {
+        const double each[] = {qs->pair[j].bond_stiffness[NORMAL],
+                               qs->pair[j].normal_stiffness};
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
     return 1e-9 * least;
 }
 
-enum status equilibrium_new(struct equilibrium **result,
-                            const struct equilibrium_setup *setup,
-                            struct reason *reason)
+enum status quasi_static_create(struct quasi_static **result,
+                                const struct quasi_static_setup *setup,
+                                struct reason *reason)
 {
-    struct equilibrium *e = NEW_ARRAY(struct equilibrium, 1);
+    struct quasi_static *qs = NEW_ARRAY(struct quasi_static, 1);
     const int n = setup->packing->n_particle;
     *result = NULL;
-    e->packing = setup->packing;
-    e->setup = *setup;
-    e->n = n;
-    find_units(e);
-    if (n > 0 && !(e->stiffness > 0)) {
-        free(e);
+    qs->packing = setup->packing;
+    qs->setup = *setup;
+    qs->n = n;
+    find_units(qs);
+    if (n > 0 && !(qs->stiffness > 0)) {
+        free(qs);
         return refuse(reason, STATUS_BAD_DATA,
                       "neither contacts nor bonds resist: there is no equilibrium");
     }
-    const struct joint_setup joints = joints_of(e);
-    e->joint = make_joints(&joints, &e->n_joint);
+    const struct contact_pair_setup pairs = pair_setup_of(qs);
+    qs->pair = make_contact_pairs(&pairs, &qs->n_pair);
     struct displacement **const of_grains[] = {
-        &e->trial, &e->load, &e->dashpots, &e->left, &e->step, &e->before, &e->rest};
+        &qs->displacement, &qs->load, &qs->dashpot_force, &qs->residual, &qs->step,
+        &qs->previous,     &qs->rhs};
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
-    e->is_gone = NEW_ARRAY(bool, n);
-    e->fragments = fragments_new(n);
-    e->soft[0] = e->soft[1] = softness(e);
-    make_room_for_joints(e);
-    e->may_leave = !setup->large_displacements;
-    e->kind = e->may_leave ? &small_displacements : &large_displacements;
-    if (setup->large_displacements) e->large = large_new(e);
-    *result = e;
+    qs->is_detached = NEW_ARRAY(bool, n);
+    qs->fragments = fragments_new(n);
+    qs->regularisation[0] = qs->regularisation[1] = regularisation_of(qs);
+    allocate_pair_arrays(qs);
+    qs->may_detach = !setup->large_displacements;
+    qs->kinematics = qs->may_detach ? &small_displacements : &large_displacements;
+    if (setup->large_displacements) qs->large = large_state_create(qs);
+    *result = qs;
     return STATUS_OK;
 }
 
-void equilibrium_free(struct equilibrium *e)
+void quasi_static_free(struct quasi_static *qs)
 {
-    if (!e) return;
-    fragments_free(&e->fragments);
-    free_room_for_joints(e);
-    large_free(e->large);
-    void *const owned[] = {e->joint, e->trial,  e->load, e->dashpots, e->left,
-                           e->step,  e->before, e->rest, e->is_gone,  e->crack};
+    if (!qs) return;
+    fragments_free(&qs->fragments);
+    free_pair_arrays(qs);
+    large_state_free(qs->large);
+    void *const owned[] = {
+        qs->pair, qs->displacement, qs->load, qs->dashpot_force, qs->residual,
+        qs->step, qs->previous,     qs->rhs,  qs->is_detached,   qs->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
-    free(e);
+    free(qs);
 }
 
 // ---- one load -----------------------------------------------------------------------
@@ -94,39 +98,42 @@ static enum status refuse_numbers(int grain, struct reason *reason)
                   grain);
 }
 
-static enum status check_small(const struct equilibrium *e, struct reason *reason)
+static enum status check_displacements(const struct quasi_static *qs,
+                                       struct reason *reason)
 {
-    for (int i = 0; i < e->n; i++) {
-        if (e->is_gone[i] || size_of(e->trial[i]) <= furthest) continue;
-        if (isnan(size_of(e->trial[i]))) return refuse_numbers(i, reason);
-        if (e->large) continue;
+    for (int i = 0; i < qs->n; i++) {
+        if (qs->is_detached[i] || displacement_size(qs->displacement[i]) <= small_limit)
+            continue;
+        if (isnan(displacement_size(qs->displacement[i])))
+            return refuse_numbers(i, reason);
+        if (qs->large) continue;
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "grain %d moves %.3g mean radii: displacements are not small, "
                       "and equilibrium is a matter of dynamics "
                       "(quasi_static.large_displacements=true, "
                       "engine=explicit, or stiffer bonds)",
-                      i, size_of(e->trial[i]));
+                      i, displacement_size(qs->displacement[i]));
     }
-    for (int j = 0; j < e->n_joint; j++) {
-        const double *load = e->resistance[j].load;
-        if (!e->joint[j].is_gone && isnan(load[0] + load[1] + load[2]))
-            return refuse_numbers(e->joint[j].grain[0], reason);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const double *load = qs->response[j].load;
+        if (!qs->pair[j].is_detached && isnan(load[0] + load[1] + load[2]))
+            return refuse_numbers(qs->pair[j].grain[0], reason);
     }
     return STATUS_OK;
 }
 
-enum status equilibrium_find(struct equilibrium *e, const struct vector *force,
-                             struct reason *reason)
+enum status quasi_static_solve(struct quasi_static *qs, const struct vector *force,
+                               struct reason *reason)
 {
-    e->force = force;
-    e->n_load++;
-    load_grains(e);
-    measure_load(e);
-    if (e->large) e->large->tried = 0;
-    e->is_restless = false;
+    qs->force = force;
+    qs->n_load++;
+    apply_external_load(qs);
+    update_load_scale(qs);
+    if (qs->large) qs->large->work_spent = 0;
+    qs->is_unconverged = false;
     do {
-        const enum status status = e->kind->balance(e, reason);
+        const enum status status = qs->kinematics->balance(qs, reason);
         if (status) return status;
-    } while (break_one(e));
-    return check_small(e, reason);
+    } while (break_most_overloaded(qs));
+    return check_displacements(qs, reason);
 }

@@ -1,144 +1,173 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is inside struct equilibrium, for the files that make it up only. All in its
-// units: lengths in mean radii, stiffnesses in the largest of a joint.
+// Inside struct quasi_static, for the files of this library only. All in its units:
+// lengths in mean radii, stiffnesses in the largest of a pair.
 #ifndef CRAQUELURE_QUASI_STATIC_INTERNAL_H
 #define CRAQUELURE_QUASI_STATIC_INTERNAL_H
 
 #include "contact_solver.h"
-#include "quasi_static.h"
 #include "geometry/fragments.h"
 #include "geometry/net_load.h"
 #include "make_contact_pairs.h"
-#include "quasi_static/large/large_state.h"
+#include "quasi_static.h"
 #include "stiffness.h"
 
 #include <math.h>
 
-// How a joint was when the stiffness was factored.
+// How a pair was when the stiffness was factored.
 struct factored {
-    enum touch touch;
+    enum contact_state state;
     bool is_bonded;
 };
 
-// Mean radii, and as much of a turn: further is not small.
-static const double furthest = 0.1;
+// Mean radii, and radians: displacements beyond are not small.
+static const double small_limit = 0.1;
 
-// A bond is at its strength from here on: what rounding and the tolerance leave open.
-static const double strong = 1 - 1e-9;
+// A bond breaks from this share of its strength on: rounding and the tolerance leave as
+// much open.
+static const double failure_threshold = 1 - 1e-9;
 
-// Forces on many grains add up: where it comes easily, less is left than may be.
-static const double well_below = 1e-3;
+// Residuals of many grains add up: where iterations still gain much, they go on to this
+// fraction of the tolerance.
+static const double target_fraction = 1e-3;
 
-struct equilibrium;
+struct quasi_static;
+struct large_state;
 
-// What depends on how far grains may move.
-struct equilibrium_kind {
-    // Joints at the trial: strains, and resistance, which is taken off what is left.
-    void (*resist)(struct equilibrium *);
-    bool (*factor)(struct equilibrium *); // the tangents, if there is such a factor
-    void (*take)(struct equilibrium *);   // a step that is found; NULL: as it is
-    void (*keep_history)(struct equilibrium *); // besides; or NULL
-    bool (*approach)(struct equilibrium *); // the next one, or step in time towards it
-    enum status (*balance)(struct equilibrium *, struct reason *); // all of the load
+// What depends on whether displacements are small.
+struct kinematics {
+    // Deformation and response of the pairs; subtracts their loads from the residual.
+    void (*subtract_internal_loads)(struct quasi_static *);
+    bool (*factor)(struct quasi_static *); // false: the tangent has no factor
+    // Changes a step that was found, before it is taken; or NULL.
+    void (*adjust_step)(struct quasi_static *);
+    void (*commit)(struct quasi_static *); // commits what else there is; or NULL
+    // Newton's method under the present load and damping. False: not found.
+    bool (*solve)(struct quasi_static *);
+    // Balances the whole load.
+    enum status (*balance)(struct quasi_static *, struct reason *);
 };
-extern const struct equilibrium_kind small_displacements, large_displacements;
+extern const struct kinematics small_displacements, large_displacements;
 
-struct equilibrium {
-    const struct equilibrium_kind *kind;
+// (n): of each grain; (n_pair): of each contact pair.
+struct quasi_static {
+    const struct kinematics *kinematics;
     const struct packing *packing;
-    struct equilibrium_setup setup;
+    struct quasi_static_setup setup;
     double length, stiffness; // units
-    int n, n_joint;
-    struct joint *joint;
-    double (*strain)[STRAINS];     // (n_joint) of the trial
-    double (*more)[STRAINS];       // (n_joint) that a step would add
-    double (*grown)[STRAINS];      // (n_joint) by the last load or step in time
-    struct resistance *resistance; // (n_joint) of the trial
-    struct displacement *trial;    // (n) and once found, the equilibrium
-    const struct vector *force;    // (n) N, from outside, while one is looked for
-    struct displacement *load;     // (n) of it what counts
-    struct net_load taken_off;     // of the load, where nothing holds the grains
-    double damping;                // of dashpots, over the stiffness and a time step
-    struct displacement *dashpots; // (n) what they pull at that damping of 1
-    struct displacement *left;     // (n) what is not balanced at the trial
-    struct displacement *rest;     // (n) of that, what the factor has to balance
-    struct displacement *step;     // (n)
-    struct displacement *before;   // (n) the last equilibrium
-    struct fragments fragments;
-    bool *is_gone;  // (n) grains
-    bool may_leave; // grains that nothing holds, where a step would take them far
-    int n_gone, first_gone;
+    int n, n_pair;
+    struct contact_pair *pair;
+    // The iterate u, and what belongs to it.
+    struct displacement *displacement; // (n) u
+    double (*deformation)[COMPONENTS]; // (n_pair) B u
+    struct pair_response *response;    // (n_pair)
+    struct displacement *residual;     // (n) load - dashpots - B^T response
+    struct displacement *previous;     // (n) u of the last equilibrium or step in time
+    double (*last_increment)[COMPONENTS]; // (n_pair) of the deformation, up to there
+    // Loads.
+    const struct vector *force;         // (n) N, from outside
+    struct displacement *load;          // (n) of it what counts
+    struct net_load taken_off;          // of the load, where nothing holds the grains
+    double largest_load;                // so far: scale of the residual
+    double damping;                     // of dashpots, over stiffness times time step
+    struct displacement *dashpot_force; // (n) at a damping of 1
+    // A step of Newton's method.
+    struct displacement *step;       // (n)
+    double (*increment)[COMPONENTS]; // (n_pair) of the deformation, by the step
+    struct displacement *rhs; // (n) residual less what changed contacts carry: K step
+    double tolerance_now;     // on the residual
+    // The factored stiffness K, and pairs that have changed since.
     struct stiffness *matrix;
-    double (*tangent)[STRAINS]; // (n_joint) in the factor
-    struct factored *factored;  // (n_joint)
-    struct corrections *corrections;
-    struct correction *unlike; // (n_joint) that have to be
-    double soft[2];            // against shifts and turns
-    double largest_load;       // so far: what is left is measured by it
-    double enough;             // what may be left
+    double (*tangent)[COMPONENTS]; // (n_pair) in K
+    struct factored *factored;     // (n_pair)
+    struct contact_solver *contacts;
+    struct pair_rows *changed; // (n_pair) room for a list
+    double regularisation[2];  // on the diagonal of K: of translations, of rotations
+    // Fragments, and grains that have left.
+    struct fragments fragments;
+    bool *is_detached; // (n)
+    bool may_detach;   // in a step that would take what nothing holds far
+    int n_detached, first_detached;
     int iterations;
-    int factors, n_load; // since all that speeds things up was forgotten
-    bool is_restless;    // no walk in time came to rest under this load: there is none
-                         // again as its bonds break
-    int n_restless;      // loads under which not all came to rest
-    int restless;        // grain that had most left to balance under the last of them
-    int n_snap, snapped; // ends of equilibrium gone through in time; the grain that
-                         // moved most at the last
+    int factors, n_load;  // since the cache was dropped
+    bool is_unconverged;  // viscous relaxation found no rest under this load: it is not
+                          // tried again as bonds break
+    int n_unconverged;    // loads under which not all came to rest
+    int last_unconverged; // grain with the largest residual under the last of them
+    int n_instability;    // how often dynamics led from a limit point to rest
+    int last_unstable;    // grain that moved most at the last
     int n_crack, crack_capacity;
     struct dem_crack *crack;
-    struct large *large; // NULL: displacements are small
+    struct large_state *large; // NULL: displacements are small
 };
 
-struct joint_setup joints_of(const struct equilibrium *equilibrium);
+// ---- contact pairs ------------------------------------------------------------------
 
-// What there is for each joint, and the matrix, for as many joints as there are now.
-void make_room_for_joints(struct equilibrium *equilibrium);
-void free_room_for_joints(struct equilibrium *equilibrium);
+struct contact_pair_setup pair_setup_of(const struct quasi_static *qs);
 
-// The force from outside becomes the load, as far as grains are there and free.
-void load_grains(struct equilibrium *equilibrium);
-// The largest of it so far, where the grains are at the trial.
-void measure_load(struct equilibrium *equilibrium);
+// All arrays (n_pair), the matrix and the contact solver, anew and empty.
+void allocate_pair_arrays(struct quasi_static *qs);
+void free_pair_arrays(struct quasi_static *qs);
 
-// Which grains intact bonds join, and which of these are held.
-void find_fragments(struct equilibrium *equilibrium);
+// ---- loads --------------------------------------------------------------------------
 
-// The most overloaded bond breaks, if one is at its strength. Whether one was.
-bool break_one(struct equilibrium *equilibrium);
+// The load becomes the force from outside, on grains that are neither fixed nor
+// detached.
+void apply_external_load(struct quasi_static *qs);
+// The largest of it so far, where the grains are now.
+void update_load_scale(struct quasi_static *qs);
 
-// The strains of joints, as they lie, when grains have MOVED (n).
-void strain_joints(const struct equilibrium *equilibrium,
-                   const struct displacement *moved, double (*strain)[STRAINS]);
+// ---- the iterate --------------------------------------------------------------------
 
-// Steps on the way [balance.c]: strains at the trial, and what is left there; a factor
-// as all is there, if there is one; a better trial; the trial becomes the last
-// equilibrium, and the reverse.
-void strain_trial(struct equilibrium *equilibrium);
-void resist(struct equilibrium *equilibrium);
-double largest_left(const struct equilibrium *equilibrium);
-bool factor(struct equilibrium *equilibrium);
-bool improve(struct equilibrium *equilibrium, bool *is_fresh);
-// Fragments that are marked leave: their load counts no more, and nothing touches them.
-// Those that no support holds do where a grain of theirs moves by more than MOST, of
-// MOVES (n), displacements or what is left. Whether any did.
-void let_go(struct equilibrium *equilibrium, const bool *leaves);
-bool let_go_beyond(struct equilibrium *equilibrium, const struct displacement *moves,
-                   double most);
-void keep_history(struct equilibrium *equilibrium);
-void go_back(struct equilibrium *equilibrium);
-// The next equilibrium, from the trial at once or else in steps of time, as the last
-// one. Whether there was rest.
-bool come_to_rest(struct equilibrium *equilibrium);
-int least_balanced(const struct equilibrium *equilibrium); // the first grain of those
+// DEFORMATION (n_pair) when grains have MOVED (n), in the axes the pairs have now.
+void deform_pairs(const struct quasi_static *qs, const struct displacement *moved,
+                  double (*deformation)[COMPONENTS]);
+void update_deformation(struct quasi_static *qs); // of the iterate
+void update_residual(struct quasi_static *qs);    // and the deformation
+double largest_residual(const struct quasi_static *qs);
+int grain_of_largest_residual(const struct quasi_static *qs); // the first such
 
-// A body that nothing holds [rigid_motion.c]. Displacements at the trial, (n) m, a new
-// array; what would move it as one is taken off what is left; and what does is taken
-// off STEP (n).
-struct vector *displaced(const struct equilibrium *equilibrium);
-void take_off_as_one(struct equilibrium *equilibrium);
-void stand_still(const struct equilibrium *equilibrium, struct displacement *step);
-// The same of small displacements MOVED (n), all of them.
-void stand_at_start(const struct equilibrium *equilibrium, struct displacement *moved);
-// A MODE (n) without momentum, as what grows by itself is.
-void keep_momentum(const struct equilibrium *equilibrium, struct displacement *mode);
+// The tangent as all pairs are now. False: it has no factor.
+bool factor_tangent(struct quasi_static *qs);
+
+// A step of Newton's method, or, where none is found, a new factor, unless IS FRESH
+// says that it is new. False: neither helps.
+bool newton_step(struct quasi_static *qs, bool *is_fresh);
+
+// The iterate becomes the last equilibrium, with the history of its contacts; and back.
+void commit_state(struct quasi_static *qs);
+void roll_back_state(struct quasi_static *qs);
+
+// The next equilibrium: by Newton's method, else by viscous relaxation from the last
+// one. False: it did not come to rest.
+bool relax_to_equilibrium(struct quasi_static *qs);
+
+// ---- bonds and fragments ------------------------------------------------------------
+
+// Breaks the most overloaded bond, the first of equals. False: none is at its strength.
+bool break_most_overloaded(struct quasi_static *qs);
+
+// Which grains intact bonds join, and which of these fragments are held.
+void update_fragments(struct quasi_static *qs);
+
+// Fragments that LEAVE (n, by their first grain) have no load any more, and nothing
+// touches them.
+void detach_fragments(struct quasi_static *qs, const bool *leave);
+// Those that nothing holds, where one of their MOVES (n), displacements or residuals,
+// is larger than LIMIT. False: there is none.
+bool detach_beyond(struct quasi_static *qs, const struct displacement *moves,
+                   double limit);
+
+// ---- a body that nothing holds [rigid_motion.c] -------------------------------------
+
+// Displacements of the iterate, (n) m, a new array.
+struct vector *displacements_in_metres(const struct quasi_static *qs);
+// Takes net force and moment off the residual.
+void project_rigid_load(struct quasi_static *qs);
+// Takes rigid motion off STEP (n) from the iterate on; off small displacements MOVED
+// (n) from the start on; and what momentum a MODE (n) has off that.
+void remove_rigid_motion(const struct quasi_static *qs, struct displacement *step);
+void remove_small_rigid_motion(const struct quasi_static *qs,
+                               struct displacement *moved);
+void remove_momentum(const struct quasi_static *qs, struct displacement *mode);
+
 #endif

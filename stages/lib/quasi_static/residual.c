@@ -3,46 +3,48 @@
 
 #include <math.h>
 
-// The strains that joints, as they lie, have when grains have MOVED (n).
-void strain_joints(const struct equilibrium *e, const struct displacement *moved,
-                   double (*strain)[STRAINS])
+// The deformations that pairs, as they lie, have when grains have MOVED (n).
+void deform_pairs(const struct quasi_static *qs, const struct displacement *moved,
+                  double (*deformation)[COMPONENTS])
 {
-    for (int j = 0; j < e->n_joint; j++) {
-        const int32_t *grain = e->joint[j].grain;
-        joint_strains(&e->joint[j], &moved[grain[0]],
-                      grain[1] < 0 ? NULL : &moved[grain[1]], strain[j]);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const int32_t *grain = qs->pair[j].grain;
+        pair_deformation(&qs->pair[j], &moved[grain[0]],
+                         grain[1] < 0 ? NULL : &moved[grain[1]], deformation[j]);
     }
 }
 
-void strain_trial(struct equilibrium *e)
+void update_deformation(struct quasi_static *qs)
 {
-    strain_joints(e, e->trial, e->strain);
+    deform_pairs(qs, qs->displacement, qs->deformation);
 }
 
 // What is left of the load at the trial.
-void resist(struct equilibrium *e)
+void update_residual(struct quasi_static *qs)
 {
-    for (int i = 0; i < e->n; i++) {
-        e->left[i] = e->load[i];
-        pull(&e->left[i], scaled(e->damping, e->dashpots[i]));
+    for (int i = 0; i < qs->n; i++) {
+        qs->residual[i] = qs->load[i];
+        displacement_subtract(&qs->residual[i],
+                              displacement_scaled(qs->damping, qs->dashpot_force[i]));
     }
-    e->kind->resist(e);
-    for (int i = 0; i < e->n; i++)
-        if (e->setup.fixed[i] || e->is_gone[i]) e->left[i] = no_displacement;
+    qs->kinematics->subtract_internal_loads(qs);
+    for (int i = 0; i < qs->n; i++)
+        if (qs->setup.fixed[i] || qs->is_detached[i]) qs->residual[i] = no_displacement;
 }
 
-double largest_left(const struct equilibrium *e)
+double largest_residual(const struct quasi_static *qs)
 {
     double most = 0;
-    for (int i = 0; i < e->n; i++)
-        most = fmax(most, size_of(e->left[i]));
+    for (int i = 0; i < qs->n; i++)
+        most = fmax(most, displacement_size(qs->residual[i]));
     return most;
 }
 
-int least_balanced(const struct equilibrium *e)
+int grain_of_largest_residual(const struct quasi_static *qs)
 {
     int worst = 0;
-    for (int i = 1; i < e->n; i++)
-        if (size_of(e->left[i]) > size_of(e->left[worst])) worst = i;
+    for (int i = 1; i < qs->n; i++)
+        if (displacement_size(qs->residual[i]) > displacement_size(qs->residual[worst]))
+            worst = i;
     return worst;
 }

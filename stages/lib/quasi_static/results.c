@@ -6,55 +6,57 @@
 
 #include <stdlib.h>
 
-const struct dem_crack *equilibrium_cracks(const struct equilibrium *e, int *count)
+const struct dem_crack *quasi_static_cracks(const struct quasi_static *qs, int *count)
 {
-    *count = e->n_crack;
-    return e->crack;
+    *count = qs->n_crack;
+    return qs->crack;
 }
 
-int equilibrium_iterations(const struct equilibrium *e)
+int quasi_static_iterations(const struct quasi_static *qs)
 {
-    return e->iterations;
+    return qs->iterations;
 }
 
-const bool *equilibrium_is_gone(const struct equilibrium *e)
+const bool *quasi_static_is_detached(const struct quasi_static *qs)
 {
-    return e->is_gone;
+    return qs->is_detached;
 }
 
-int equilibrium_gone(const struct equilibrium *e, int *first)
+int quasi_static_detached(const struct quasi_static *qs, int *first)
 {
-    *first = e->first_gone;
-    return e->n_gone;
+    *first = qs->first_detached;
+    return qs->n_detached;
 }
 
-int equilibrium_restless(const struct equilibrium *e, int *last)
+int quasi_static_unconverged(const struct quasi_static *qs, int *last)
 {
-    *last = e->restless;
-    return e->n_restless;
+    *last = qs->last_unconverged;
+    return qs->n_unconverged;
 }
 
-int equilibrium_snaps(const struct equilibrium *e, int *last)
+int quasi_static_instabilities(const struct quasi_static *qs, int *last)
 {
-    *last = e->snapped;
-    return e->n_snap;
+    *last = qs->last_unstable;
+    return qs->n_instability;
 }
 
 // Where nothing holds the grains, nor says where they are as one, rounding does: small
 // displacements are told without that, large ones are found without [rigid_motion.c].
-void equilibrium_displacements(const struct equilibrium *e, struct vector *displacement)
+void quasi_static_displacements(const struct quasi_static *qs,
+                                struct vector *displacement)
 {
-    struct displacement *moved = duplicate(e->trial, (size_t)e->n, sizeof *moved);
-    if (e->setup.is_free && !e->large) stand_at_start(e, moved);
-    for (int i = 0; i < e->n; i++)
-        displacement[i] = scale(e->length, moved[i].shift);
+    struct displacement *moved =
+        duplicate(qs->displacement, (size_t)qs->n, sizeof *moved);
+    if (qs->setup.is_free && !qs->large) remove_small_rigid_motion(qs, moved);
+    for (int i = 0; i < qs->n; i++)
+        displacement[i] = scale(qs->length, moved[i].translation);
     free(moved);
 }
 
-void equilibrium_bonds_intact(const struct equilibrium *e, uint8_t *intact)
+void quasi_static_bonds_intact(const struct quasi_static *qs, uint8_t *intact)
 {
-    for (int j = 0; j < e->n_joint; j++)
-        if (e->joint[j].bond >= 0) intact[e->joint[j].bond] = e->joint[j].is_bonded;
+    for (int j = 0; j < qs->n_pair; j++)
+        if (qs->pair[j].bond >= 0) intact[qs->pair[j].bond] = qs->pair[j].is_bonded;
 }
 
 static int by_pair(const void *a, const void *b)
@@ -66,88 +68,91 @@ static int by_pair(const void *a, const void *b)
     return (second > other) - (second < other); // walls last
 }
 
-static struct dem_contact contact_of(const struct equilibrium *e, int j)
+static struct dem_contact contact_of(const struct quasi_static *qs, int j)
 {
-    const struct joint *joint = &e->joint[j];
-    const int i = joint->grain[0];
-    const struct displacement on_first = joint_loads(joint, 0, e->resistance[j].load);
+    const struct contact_pair *pair = &qs->pair[j];
+    const int i = pair->grain[0];
+    const struct displacement on_first =
+        pair_load_on_grain(pair, 0, qs->response[j].load);
     const struct vector from =
-        add(e->trial[i].shift, scale(joint->arm[0], joint->axis[0]));
-    const bool is_point = joint->is_bonded && joint->is_point;
-    const double overlap = is_point ? joint->point_overlap : joint->overlap;
+        add(qs->displacement[i].translation, scale(pair->arm[0], pair->axis[0]));
+    const bool is_point = pair->is_bonded && pair->is_point;
+    const double overlap = is_point ? pair->point_overlap : pair->overlap;
     return (struct dem_contact){
-        .particle = {i, joint->grain[1]},
-        .bond = joint->is_bonded ? joint->bond : -1,
-        .overlap = e->length * (overlap - joint->strain[STRAIN_ALONG]),
-        .force = scale(e->stiffness * e->length, on_first.shift),
-        .position = add(e->packing->position[i], scale(e->length, from))};
+        .particle = {i, pair->grain[1]},
+        .bond = pair->is_bonded ? pair->bond : -1,
+        .overlap = qs->length * (overlap - pair->deformation[NORMAL]),
+        .force = scale(qs->stiffness * qs->length, on_first.translation),
+        .position = add(qs->packing->position[i], scale(qs->length, from))};
 }
 
-struct dem_contact *equilibrium_contacts(const struct equilibrium *e, int *count)
+struct dem_contact *quasi_static_contacts(const struct quasi_static *qs, int *count)
 {
-    struct dem_contact *contact = NEW_ARRAY(struct dem_contact, e->n_joint);
+    struct dem_contact *contact = NEW_ARRAY(struct dem_contact, qs->n_pair);
     *count = 0;
-    for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        if (joint->is_gone || !(joint->is_bonded || joint->contact.touch)) continue;
-        contact[(*count)++] = contact_of(e, j);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct contact_pair *pair = &qs->pair[j];
+        if (pair->is_detached || !(pair->is_bonded || pair->contact.state)) continue;
+        contact[(*count)++] = contact_of(qs, j);
     }
     qsort(contact, (size_t)*count, sizeof *contact, by_pair);
     return contact;
 }
 
-// Where END of a joint is loaded: the centre of a grain, or the wall at the contact.
-static struct vector loaded_at(const struct equilibrium *e, const struct joint *joint,
-                               int end)
+// Where END of a pair is loaded: the centre of a grain, or the wall at the contact.
+static struct vector loaded_at(const struct quasi_static *qs,
+                               const struct contact_pair *pair, int end)
 {
-    if (joint->grain[end] >= 0) return e->packing->position[joint->grain[end]];
-    return add(e->packing->position[joint->grain[0]],
-               scale(e->length * joint->arm[0], joint->axis[0]));
+    if (pair->grain[end] >= 0) return qs->packing->position[pair->grain[end]];
+    return add(qs->packing->position[pair->grain[0]],
+               scale(qs->length * pair->arm[0], pair->axis[0]));
 }
 
 // Adds what is LOADED at PLACE, about ABOUT.
-static void add_reaction(const struct equilibrium *e, struct displacement load,
+static void add_reaction(const struct quasi_static *qs, struct displacement load,
                          struct vector place, struct vector about, struct vector *force,
                          struct vector *moment)
 {
-    const double unit = e->stiffness * e->length;
-    const struct vector pull = scale(unit, load.shift);
-    const struct vector turn = scale(unit * e->length, load.turn);
-    *force = add(*force, pull);
-    *moment = add(*moment, add(cross(subtract(place, about), pull), turn));
+    const double unit = qs->stiffness * qs->length;
+    const struct vector force_there = scale(unit, load.translation);
+    const struct vector moment_there = scale(unit * qs->length, load.rotation);
+    *force = add(*force, force_there);
+    *moment =
+        add(*moment, add(cross(subtract(place, about), force_there), moment_there));
 }
 
-void equilibrium_reaction(const struct equilibrium *e, struct vector about,
-                          struct vector *force, struct vector *moment)
+void quasi_static_reaction(const struct quasi_static *qs, struct vector about,
+                           struct vector *force, struct vector *moment)
 {
     *force = *moment = (struct vector){0, 0, 0};
-    for (int j = 0; j < e->n_joint; j++)
-        for (int end = 0; end < 2 && !e->joint[j].is_gone; end++) {
-            const int grain = e->joint[j].grain[end];
-            if (grain >= 0 && !e->setup.fixed[grain]) continue;
-            add_reaction(e, joint_loads(&e->joint[j], end, e->resistance[j].load),
-                         loaded_at(e, &e->joint[j], end), about, force, moment);
+    for (int j = 0; j < qs->n_pair; j++)
+        for (int end = 0; end < 2 && !qs->pair[j].is_detached; end++) {
+            const int grain = qs->pair[j].grain[end];
+            if (grain >= 0 && !qs->setup.fixed[grain]) continue;
+            add_reaction(qs,
+                         pair_load_on_grain(&qs->pair[j], end, qs->response[j].load),
+                         loaded_at(qs, &qs->pair[j], end), about, force, moment);
         }
 }
 
-double equilibrium_unbalanced_ratio(const struct equilibrium *e)
+double quasi_static_unbalanced_ratio(const struct quasi_static *qs)
 {
     double left = 0, carried = 0;
-    int moving = 0, carrying = 0; // grains, joints
-    for (int i = 0; i < e->n; i++) {
-        if (e->setup.fixed[i] || e->is_gone[i]) continue;
-        left += norm(e->left[i].shift);
+    int moving = 0, carrying = 0; // grains, pairs
+    for (int i = 0; i < qs->n; i++) {
+        if (qs->setup.fixed[i] || qs->is_detached[i]) continue;
+        left += norm(qs->residual[i].translation);
         moving++;
     }
-    for (int j = 0; j < e->n_joint; j++) {
-        const double *load = e->resistance[j].load; // along axes that are perpendicular
+    for (int j = 0; j < qs->n_pair; j++) {
+        const double *load = qs->response[j].load; // along axes that are perpendicular
         const double force = norm((struct vector){load[0], load[1], load[2]});
         carried += force;
-        carrying += force > 0 || (e->joint[j].is_bonded && !e->joint[j].is_gone);
+        carrying += force > 0 || (qs->pair[j].is_bonded && !qs->pair[j].is_detached);
     }
     if (!(left > 0)) return 0;
-    // Of loads that are gone there may be rounding left on grains and in joints alike.
-    const double nothing = e->setup.tolerance * e->largest_load;
-    if (largest_left(e) <= nothing && carried <= carrying * nothing) return 0;
+    // Of loads that are gone there may be rounding left on grains and in pairs alike.
+    const double nothing = qs->setup.tolerance * qs->largest_load;
+    if (largest_residual(qs) <= nothing && carried <= carrying * nothing) return 0;
     return carried > 0 ? left / moving / (carried / carrying) : 1; // all is unbalanced
 }

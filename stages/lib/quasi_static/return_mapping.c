@@ -22,10 +22,10 @@ bool solve_three(double m[3][3], double right[3])
         swap(&right[k], &right[best]);
         if (!(fabs(m[k][k]) > 0)) return false;
         for (int r = k + 1; r < 3; r++) {
-            const double share = m[r][k] / m[k][k];
+            const double multiplier = m[r][k] / m[k][k];
             for (int l = k; l < 3; l++)
-                m[r][l] -= share * m[k][l];
-            right[r] -= share * right[k];
+                m[r][l] -= multiplier * m[k][l];
+            right[r] -= multiplier * right[k];
         }
     }
     for (int k = 2; k >= 0; k--) {
@@ -36,45 +36,45 @@ bool solve_three(double m[3][3], double right[3])
     return true;
 }
 
-// While a joint is in one state its load is linear: slope (from + x) + constant.
-struct state {
+// While a pair is in one state its load is linear: slope (from + x) + constant.
+struct linear_law {
     double slope[3][3], constant[3];
 };
 
-static struct state open_state(const struct joint *joint)
+static struct linear_law open_law(const struct contact_pair *pair)
 {
-    struct state state = {.constant = {0}};
-    for (int k = 0; k < 3 && joint->is_bonded; k++)
-        state.slope[k][k] = joint->bond_stiffness[k];
-    return state;
+    struct linear_law law = {.constant = {0}};
+    for (int k = 0; k < 3 && pair->is_bonded; k++)
+        law.slope[k][k] = pair->bond_stiffness[k];
+    return law;
 }
 
-static struct state closed_state(const struct joint *joint)
+static struct linear_law closed_law(const struct contact_pair *pair)
 {
-    struct state state = open_state(joint);
-    state.slope[0][0] += joint->contact_along;
-    state.constant[0] = -joint->contact_along * joint->overlap;
-    return state;
+    struct linear_law law = open_law(pair);
+    law.slope[0][0] += pair->normal_stiffness;
+    law.constant[0] = -pair->normal_stiffness * pair->overlap;
+    return law;
 }
 
-static struct state stuck_state(const struct joint *joint)
+static struct linear_law stuck_law(const struct contact_pair *pair)
 {
-    struct state state = closed_state(joint);
-    for (int k = 0; k < 2 && joint->contact.touch != TOUCH_NONE; k++) {
-        state.slope[1 + k][1 + k] += joint->contact_across;
-        state.constant[1 + k] = -joint->contact_across * joint->contact.anchor[k];
+    struct linear_law law = closed_law(pair);
+    for (int k = 0; k < 2 && pair->contact.state != CONTACT_OPEN; k++) {
+        law.slope[1 + k][1 + k] += pair->shear_stiffness;
+        law.constant[1 + k] = -pair->shear_stiffness * pair->contact.anchor[k];
     }
-    return state;
+    return law;
 }
 
-static bool solve_state(const struct surroundings *s, const struct state *state,
-                        double x[3])
+static bool solve_law(const struct local_problem *s, const struct linear_law *law,
+                      double x[3])
 {
     double m[3][3], more[3];
     for (int k = 0; k < 3; k++) {
-        more[k] = state->constant[k] - s->load[k];
+        more[k] = law->constant[k] - s->load[k];
         for (int l = 0; l < 3; l++)
-            more[k] += state->slope[k][l] * s->from[l];
+            more[k] += law->slope[k][l] * s->from[l];
     }
     for (int k = 0; k < 3; k++) {
         x[k] = s->given[k];
@@ -82,22 +82,22 @@ static bool solve_state(const struct surroundings *s, const struct state *state,
             x[k] -= s->compliance[k][l] * more[l];
             m[k][l] = (k == l) - s->compliance[k][l] * s->tangent[l];
             for (int i = 0; i < 3; i++)
-                m[k][l] += s->compliance[k][i] * state->slope[i][l];
+                m[k][l] += s->compliance[k][i] * law->slope[i][l];
         }
     }
     return solve_three(m, x);
 }
 
-static double overlap_of(const struct joint *joint, const struct surroundings *s,
+static double overlap_of(const struct contact_pair *pair, const struct local_problem *s,
                          const double x[3])
 {
-    return joint->overlap - s->from[0] - x[0];
+    return pair->overlap - s->from[0] - x[0];
 }
 
-static double stretch_of(const struct joint *joint, const struct surroundings *s,
+static double stretch_of(const struct contact_pair *pair, const struct local_problem *s,
                          const double x[3], int k)
 {
-    return s->from[1 + k] + x[1 + k] - joint->contact.anchor[k];
+    return s->from[1 + k] + x[1 + k] - pair->contact.anchor[k];
 }
 
 // Closed and slipping, x = smooth - force (way[0] give[0] + way[1] give[1]).
@@ -108,23 +108,23 @@ struct sliding {
     double stiffness;
 };
 
-static bool begin_sliding(const struct joint *joint, const struct surroundings *s,
-                          struct sliding *sliding)
+static bool begin_sliding(const struct contact_pair *pair,
+                          const struct local_problem *s, struct sliding *sliding)
 {
-    const struct state closed = closed_state(joint);
-    if (!solve_state(s, &closed, sliding->smooth)) return false;
+    const struct linear_law closed = closed_law(pair);
+    if (!solve_law(s, &closed, sliding->smooth)) return false;
     for (int k = 0; k < 2; k++) {
-        struct surroundings pushed = *s;
+        struct local_problem pushed = *s;
         for (int l = 0; l < 3; l++)
             pushed.given[l] += s->compliance[l][1 + k];
-        if (!solve_state(&pushed, &closed, sliding->give[k])) return false;
+        if (!solve_law(&pushed, &closed, sliding->give[k])) return false;
         for (int l = 0; l < 3; l++)
             sliding->give[k][l] -= sliding->smooth[l];
-        sliding->anchor[k] = joint->contact.anchor[k] - s->from[1 + k];
+        sliding->anchor[k] = pair->contact.anchor[k] - s->from[1 + k];
     }
-    sliding->overlap = joint->overlap - s->from[0] - sliding->smooth[0];
-    sliding->limit = joint->friction * joint->contact_along;
-    sliding->stiffness = joint->contact_across;
+    sliding->overlap = pair->overlap - s->from[0] - sliding->smooth[0];
+    sliding->limit = pair->friction * pair->normal_stiffness;
+    sliding->stiffness = pair->shear_stiffness;
     return true;
 }
 
@@ -213,32 +213,34 @@ static bool seek_slip(const struct sliding *sliding, double first, double x[3])
     return false;
 }
 
-static bool slip(const struct joint *joint, const struct surroundings *s, double x[3])
+static bool slip(const struct contact_pair *pair, const struct local_problem *s,
+                 double x[3])
 {
     struct sliding sliding;
-    if (joint->contact.touch == TOUCH_NONE || !begin_sliding(joint, s, &sliding))
+    if (pair->contact.state == CONTACT_OPEN || !begin_sliding(pair, s, &sliding))
         return false;
     const double angle = atan2(x[2] - sliding.anchor[1], x[1] - sliding.anchor[0]);
     return follow_slip(&sliding, x) || seek_slip(&sliding, angle, x);
 }
 
-bool settle_joint(const struct joint *joint, const struct surroundings *s, double x[3])
+bool return_map(const struct contact_pair *pair, const struct local_problem *s,
+                double x[3])
 {
-    const struct state stuck = stuck_state(joint), open = open_state(joint);
+    const struct linear_law stuck = stuck_law(pair), open = open_law(pair);
     double found[3];
     bool is_found = false;
-    if (solve_state(s, &stuck, found)) {
-        const double overlap = overlap_of(joint, s, found);
+    if (solve_law(s, &stuck, found)) {
+        const double overlap = overlap_of(pair, s, found);
         const double size =
-            joint->contact_across *
-            hypot(stretch_of(joint, s, found, 0), stretch_of(joint, s, found, 1));
+            pair->shear_stiffness *
+            hypot(stretch_of(pair, s, found, 0), stretch_of(pair, s, found, 1));
         is_found =
-            overlap >= 0 && (joint->contact.touch == TOUCH_NONE ||
-                             size <= joint->friction * joint->contact_along * overlap);
+            overlap >= 0 && (pair->contact.state == CONTACT_OPEN ||
+                             size <= pair->friction * pair->normal_stiffness * overlap);
     }
-    if (!is_found && solve_state(s, &open, found))
-        is_found = overlap_of(joint, s, found) < 0;
-    if (!is_found) return slip(joint, s, x);
+    if (!is_found && solve_law(s, &open, found))
+        is_found = overlap_of(pair, s, found) < 0;
+    if (!is_found) return slip(pair, s, x);
     memcpy(x, found, sizeof found);
     return true;
 }

@@ -14,34 +14,34 @@
 
 #include <stdlib.h>
 
-struct vector *displaced(const struct equilibrium *e)
+struct vector *displacements_in_metres(const struct quasi_static *qs)
 {
-    struct vector *displacement = NEW_ARRAY(struct vector, e->n);
-    for (int i = 0; i < e->n; i++)
-        displacement[i] = scale(e->length, e->trial[i].shift);
+    struct vector *displacement = NEW_ARRAY(struct vector, qs->n);
+    for (int i = 0; i < qs->n; i++)
+        displacement[i] = scale(qs->length, qs->displacement[i].translation);
     return displacement;
 }
 
-void take_off_as_one(struct equilibrium *e)
+void project_rigid_load(struct quasi_static *qs)
 {
-    struct vector *moved = displaced(e);
-    const struct whole there = whole_of(e->packing, e->is_gone, moved);
-    const double unit = there.length / e->length;
+    struct vector *moved = displacements_in_metres(qs);
+    const struct whole there = whole_of(qs->packing, qs->is_detached, moved);
+    const double unit = there.length / qs->length;
     struct vector force = {0, 0, 0}, moment = {0, 0, 0};
-    for (int i = 0; i < e->n; i++) {
-        if (e->is_gone[i]) continue;
-        const struct displacement *left = &e->left[i];
+    for (int i = 0; i < qs->n; i++) {
+        if (qs->is_detached[i]) continue;
+        const struct displacement *left = &qs->residual[i];
         const struct vector arm = scale(unit, whole_place(&there, i));
-        force = add(force, left->shift);
-        moment = add(moment, add(cross(arm, left->shift), left->turn));
+        force = add(force, left->translation);
+        moment = add(moment, add(cross(arm, left->translation), left->rotation));
     }
     if (there.mass > 0) {
         const struct vector push = scale(1 / there.mass, force);
         const struct vector turn = whole_turn(&there, scale(1 / unit, moment));
-        for (int i = 0; i < e->n; i++) {
+        for (int i = 0; i < qs->n; i++) {
             const struct vector each = add(push, cross(turn, whole_place(&there, i)));
-            e->left[i].shift =
-                subtract(e->left[i].shift, scale(whole_mass(&there, i), each));
+            qs->residual[i].translation = subtract(qs->residual[i].translation,
+                                                   scale(whole_mass(&there, i), each));
         }
     }
     free(moved);
@@ -81,8 +81,8 @@ static struct displacement mean_motion(const struct whole *there,
     struct vector shift = {0, 0, 0}, moment = {0, 0, 0};
     for (int i = 0; i < there->packing->n_particle; i++) {
         const double mass = whole_mass(there, i);
-        const struct vector part = scale(mass, step[i].shift);
-        const struct vector own = scale(own_inertia(there, i, mass), step[i].turn);
+        const struct vector part = scale(mass, step[i].translation);
+        const struct vector own = scale(own_inertia(there, i, mass), step[i].rotation);
         shift = add(shift, part);
         moment = add(moment, scale(1 / unit, cross(whole_place(start, i), part)));
         moment = add(moment, own);
@@ -92,44 +92,45 @@ static struct displacement mean_motion(const struct whole *there,
 }
 
 // STEP without what changes the mean place, and the mean direction of START.
-static void stand(const struct equilibrium *e, const struct whole *start,
-                  struct whole *there, struct displacement *step)
+static void remove_mean_motion(const struct quasi_static *qs, const struct whole *start,
+                               struct whole *there, struct displacement *step)
 {
     enum { PASSES = 2 }; // for what is not symmetric
-    const double unit = there->length / e->length;
+    const double unit = there->length / qs->length;
     mix_inertia(there, start);
     for (int pass = 0; pass < PASSES && there->mass > 0; pass++) {
         const struct displacement mean = mean_motion(there, start, unit, step);
-        for (int i = 0; i < e->n; i++) {
-            if (e->is_gone[i]) continue;
+        for (int i = 0; i < qs->n; i++) {
+            if (qs->is_detached[i]) continue;
             const struct vector arm = scale(unit, whole_place(there, i));
-            const struct vector way = add(mean.shift, cross(mean.turn, arm));
-            pull(&step[i], (struct displacement){way, mean.turn});
+            const struct vector way = add(mean.translation, cross(mean.rotation, arm));
+            displacement_subtract(&step[i], (struct displacement){way, mean.rotation});
         }
     }
 }
 
-void stand_still(const struct equilibrium *e, struct displacement *step)
+void remove_rigid_motion(const struct quasi_static *qs, struct displacement *step)
 {
-    struct vector *moved = displaced(e);
-    const struct whole start = whole_of(e->packing, e->is_gone, NULL);
-    struct whole there = whole_of(e->packing, e->is_gone, moved);
-    stand(e, &start, &there, step);
+    struct vector *moved = displacements_in_metres(qs);
+    const struct whole start = whole_of(qs->packing, qs->is_detached, NULL);
+    struct whole there = whole_of(qs->packing, qs->is_detached, moved);
+    remove_mean_motion(qs, &start, &there, step);
     free(moved);
 }
 
-void stand_at_start(const struct equilibrium *e, struct displacement *moved)
+void remove_small_rigid_motion(const struct quasi_static *qs,
+                               struct displacement *moved)
 {
-    const struct whole start = whole_of(e->packing, e->is_gone, NULL);
+    const struct whole start = whole_of(qs->packing, qs->is_detached, NULL);
     struct whole there = start;
-    stand(e, &start, &there, moved);
+    remove_mean_motion(qs, &start, &there, moved);
 }
 
-void keep_momentum(const struct equilibrium *e, struct displacement *mode)
+void remove_momentum(const struct quasi_static *qs, struct displacement *mode)
 {
-    struct vector *moved = displaced(e);
-    const struct whole start = whole_of(e->packing, e->is_gone, moved);
+    struct vector *moved = displacements_in_metres(qs);
+    const struct whole start = whole_of(qs->packing, qs->is_detached, moved);
     struct whole there = start;
-    stand(e, &start, &there, mode);
+    remove_mean_motion(qs, &start, &there, mode);
     free(moved);
 }

@@ -8,91 +8,95 @@
 
 // ---- what is left of e - B K^-1 r + W q(e) ------------------------------------------
 
-static double bond_across(const struct joint *joint)
+static double bond_shear_stiffness(const struct contact_pair *pair)
 {
-    return joint->is_bonded && !joint->is_gone ? joint->bond_stiffness[STRAIN_ACROSS]
-                                               : 0;
+    return pair->is_bonded && !pair->is_detached ? pair->bond_stiffness[SHEAR] : 0;
 }
 
-// How stiff what holds the joint is against shear without its contact, of the contact,
+// How stiff what holds the pair is against shear without its contact, of the contact,
 // which can be stiffer by orders of magnitude. Half of it: others give way as well.
-static double softness(const struct corrections *c, const struct entry *entry)
+static double stiffness_ratio_of(const struct contact_solver *c,
+                                 const struct active_pair *active)
 {
-    const struct joint *joint = &c->joint[entry->joint];
+    const struct contact_pair *pair = &c->pair[active->pair];
     double compliance = 0;
-    for (int k = STRAIN_ACROSS; k < STRAINS / 2; k++)
-        compliance += 0.5 * c->share * compliance_of(c, entry->row[k])[entry->row[k]];
-    const double held = c->tangent[entry->joint][STRAIN_ACROSS] - bond_across(joint);
-    return fmin(1, fmax(1e-4, 0.5 * (1 / compliance - held) / joint->contact_across));
+    for (int k = SHEAR; k < COMPONENTS / 2; k++)
+        compliance += 0.5 * c->compliance_factor *
+                      compliance_of(c, active->row[k])[active->row[k]];
+    const double held = c->tangent[active->pair][SHEAR] - bond_shear_stiffness(pair);
+    return fmin(1, fmax(1e-4, 0.5 * (1 / compliance - held) / pair->shear_stiffness));
 }
 
-void note_pull(const struct corrections *c, struct entry *entry)
+void update_augmentation(const struct contact_solver *c, struct active_pair *active)
 {
-    const int j = entry->joint;
-    const double bond = bond_across(&c->joint[j]);
-    const double along = c->from[j][STRAIN_ALONG] + c->strain[entry->row[0]];
-    entry->overlap = fmax(0, c->joint[j].overlap - along);
-    for (int k = STRAIN_ACROSS; k < STRAINS / 2 && entry->count > k; k++) {
-        const double more = c->strain[entry->row[k]];
-        entry->pull[k - STRAIN_ACROSS] = c->more[entry->row[k]] + entry->load[k] +
+    const int j = active->pair;
+    const double bond = bond_shear_stiffness(&c->pair[j]);
+    const double along = c->from[j][NORMAL] + c->deformation[active->row[0]];
+    active->overlap = fmax(0, c->pair[j].overlap - along);
+    for (int k = SHEAR; k < COMPONENTS / 2 && active->count > k; k++) {
+        const double more = c->deformation[active->row[k]];
+        active->shear_force[k - SHEAR] = c->excess[active->row[k]] + active->load[k] +
                                          c->tangent[j][k] * more -
                                          bond * (c->from[j][k] + more);
     }
 }
 
-void resist_entry(struct corrections *c, struct entry *entry, bool softened)
+void update_pair_excess(struct contact_solver *c, struct active_pair *active,
+                        bool is_augmented)
 {
-    const int j = entry->joint;
+    const int j = active->pair;
     const double *tangent = c->tangent[j];
-    struct judgement judgement = {.share = 1};
-    if (softened && entry->count >= 3)
-        judgement = (struct judgement){.share = softness(c, entry),
-                                       .pull = {entry->pull[0], entry->pull[1]},
-                                       .overlap = entry->overlap};
-    double strain[STRAINS];
-    memcpy(strain, c->from[j], sizeof strain);
-    for (int k = 0; k < entry->count; k++)
-        strain[k] += c->strain[entry->row[k]];
-    const struct resistance resistance =
-        joint_softened(&c->joint[j], strain, &judgement);
-    entry->touch = resistance.contact.touch;
-    for (int k = 0; k < entry->count; k++) {
-        const double more = c->strain[entry->row[k]];
-        double *q = &c->more[entry->row[k]];
+    struct augmented_state augmented = {.stiffness_ratio = 1};
+    if (is_augmented && active->count >= 3)
+        augmented = (struct augmented_state){
+            .stiffness_ratio = stiffness_ratio_of(c, active),
+            .shear_force = {active->shear_force[0], active->shear_force[1]},
+            .overlap = active->overlap};
+    double deformation[COMPONENTS];
+    memcpy(deformation, c->from[j], sizeof deformation);
+    for (int k = 0; k < active->count; k++)
+        deformation[k] += c->deformation[active->row[k]];
+    const struct pair_response response =
+        pair_respond_augmented(&c->pair[j], deformation, &augmented);
+    active->state = response.contact.state;
+    for (int k = 0; k < active->count; k++) {
+        const double more = c->deformation[active->row[k]];
+        double *q = &c->excess[active->row[k]];
         if (k >= 3) {
-            entry->slope[k][0] = resistance.stiffness[k - 3] - tangent[k];
-            *q = entry->slope[k][0] * more;
+            active->slope[k][0] = response.stiffness[k - 3] - tangent[k];
+            *q = active->slope[k][0] * more;
             continue;
         }
         for (int l = 0; l < 3; l++)
-            entry->slope[k][l] = resistance.slope[k][l] - (k == l ? tangent[k] : 0);
-        *q = resistance.load[k] - entry->load[k] - tangent[k] * more;
+            active->slope[k][l] = response.slope[k][l] - (k == l ? tangent[k] : 0);
+        *q = response.load[k] - active->load[k] - tangent[k] * more;
     }
-    if (softened) note_pull(c, entry);
+    if (is_augmented) update_augmentation(c, active);
 }
 
 // Adds W MORE in ROW to SUM; by columns, which are rows too: no sum waits for itself.
-void add_answer(const struct corrections *c, int row, double more, double *restrict sum)
+void add_compliance(const struct contact_solver *c, int row, double more,
+                    double *restrict sum)
 {
     const double *restrict compliance = compliance_of(c, row);
     if (more == 0) return;
     for (int k = 0; k < c->count; k++)
-        sum[k] += c->share * more * compliance[k];
+        sum[k] += c->compliance_factor * more * compliance[k];
 }
 
 // The same of COUNT rows (all: NULL) at once.
-static void add_answers(const struct corrections *c, int count, const int *row,
-                        const double *more, double sign, double *restrict sum)
+static void add_compliances(const struct contact_solver *c, int count, const int *row,
+                            const double *more, double sign, double *restrict sum)
 {
     enum { TOGETHER = 4 };
     for (int first = 0; first < count;) {
         const double *w[TOGETHER];
-        double share[TOGETHER] = {0};
+        double weight[TOGETHER] = {0};
         int n = 0;
         for (; n < TOGETHER && first < count; first++) {
             if (more[first] == 0) continue;
             w[n] = compliance_of(c, row ? row[first] : first);
-            share[n++] = sign * c->share * more[first];
+            weight[n++] = sign * c->compliance_factor * more[first];
         }
         if (n == 0) break;
         while (n < TOGETHER)
@@ -100,45 +104,45 @@ static void add_answers(const struct corrections *c, int count, const int *row,
         const double *const restrict a = w[0], *const restrict b = w[1],
                                      *const restrict d = w[2], *const restrict e = w[3];
         for (int k = 0; k < c->count; k++)
-            sum[k] = fma(
-                share[3], e[k],
-                fma(share[2], d[k], fma(share[1], b[k], fma(share[0], a[k], sum[k]))));
+            sum[k] = fma(weight[3], e[k],
+                         fma(weight[2], d[k],
+                             fma(weight[1], b[k], fma(weight[0], a[k], sum[k]))));
     }
 }
 
-double find_left(struct corrections *c)
+double find_contact_residual(struct contact_solver *c)
 {
     double most = 0;
     for (int k = 0; k < c->count; k++)
-        c->left[k] = c->strain[k] - c->linear[k];
+        c->residual[k] = c->deformation[k] - c->free_deformation[k];
     c->work += (double)c->count * c->n_acting;
-    add_answers(c, c->count, NULL, c->more, 1, c->left);
+    add_compliances(c, c->count, NULL, c->excess, 1, c->residual);
     for (int k = 0; k < c->count; k++)
-        most = fmax(most, fabs(c->left[k]));
+        most = fmax(most, fabs(c->residual[k]));
     return most;
 }
 
-double resist_entries(struct corrections *c, bool softened)
+double update_contacts(struct contact_solver *c, bool is_augmented)
 {
-    for (int k = 0; k < c->n_entry; k++)
-        resist_entry(c, &c->entry[k], softened);
-    return find_left(c);
+    for (int k = 0; k < c->n_active; k++)
+        update_pair_excess(c, &c->active[k], is_augmented);
+    return find_contact_residual(c);
 }
 
 // ---- Newton's method ----------------------------------------------------------------
 
-static const double *slope_of(const struct corrections *c, int row)
+static const double *slope_of(const struct contact_solver *c, int row)
 {
-    return c->entry[c->entry_of[row]].slope[c->strain_of[row]];
+    return c->active[c->active_of_row[row]].slope[c->component_of_row[row]];
 }
 
-// Loads that change with the strains: rows of dq/de that are not 0.
-static void list_acting(struct corrections *c)
+// Loads that change with the deformations: rows of dq/de that are not 0.
+static void list_acting(struct contact_solver *c)
 {
     c->n_acting = 0;
     for (int row = 0; row < c->count; row++) {
         const double *slope = slope_of(c, row);
-        const bool is_moment = c->strain_of[row] >= 3;
+        const bool is_moment = c->component_of_row[row] >= 3;
         if (slope[0] != 0 || (!is_moment && (slope[1] != 0 || slope[2] != 0)))
             c->acting[c->n_acting++] = row;
     }
@@ -146,14 +150,14 @@ static void list_acting(struct corrections *c)
 
 // The matrix of another step does where little has changed: the same loads act, with
 // about the same slopes.
-static bool is_factored(const struct corrections *c)
+static bool is_factored(const struct contact_solver *c)
 {
     const double near = 1e-3;
     if (c->n_acting != c->n_factored) return false;
     for (int a = 0; a < c->n_acting; a++) {
         if (c->acting[a] != c->factored[a]) return false;
         const double *slope = slope_of(c, c->acting[a]), *old = c->factored_slope[a];
-        const int terms = c->strain_of[c->acting[a]] >= 3 ? 1 : 3;
+        const int terms = c->component_of_row[c->acting[a]] >= 3 ? 1 : 3;
         double size = 0, apart = 0;
         for (int k = 0; k < terms; k++) {
             size = fmax(size, fabs(old[k]));
@@ -165,24 +169,24 @@ static bool is_factored(const struct corrections *c)
 }
 
 // An odd number of cache lines: columns do not fall on the same few.
-static int stride_of(const struct corrections *c)
+static int stride_of(const struct contact_solver *c)
 {
     return ((c->n_acting + 7) / 8 | 1) * 8;
 }
 
 // 1 + dq/de W
-static void fill_matrix(struct corrections *c)
+static void fill_matrix(struct contact_solver *c)
 {
     for (int a = 0; a < c->n_acting; a++) {
         const int row = c->acting[a];
-        const struct entry *entry = &c->entry[c->entry_of[row]];
-        const bool is_moment = c->strain_of[row] >= 3;
-        const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
+        const struct active_pair *active = &c->active[c->active_of_row[row]];
+        const bool is_moment = c->component_of_row[row] >= 3;
+        const int terms = is_moment ? 1 : active->count < 3 ? active->count : 3;
         double slope[3] = {0};
         const double *of[3];
         for (int k = 0; k < 3; k++) {
-            of[k] = compliance_of(c, is_moment || k >= terms ? row : entry->row[k]);
-            if (k < terms) slope[k] = c->share * slope_of(c, row)[k];
+            of[k] = compliance_of(c, is_moment || k >= terms ? row : active->row[k]);
+            if (k < terms) slope[k] = c->compliance_factor * slope_of(c, row)[k];
         }
         double *to = c->matrix + (size_t)a * (size_t)stride_of(c);
         for (int b = 0; b < c->n_acting; b++) {
@@ -194,7 +198,7 @@ static void fill_matrix(struct corrections *c)
     }
 }
 
-static bool factor(struct corrections *c)
+static bool factor(struct contact_solver *c)
 {
     const double n = c->n_acting;
     if (is_factored(c)) return true;
@@ -211,66 +215,67 @@ static bool factor(struct corrections *c)
     return true;
 }
 
-// How q would change; the strains follow from it.
-static bool find_step(struct corrections *c)
+// How q would change; the deformations follow from it.
+static bool find_step(struct contact_solver *c)
 {
     list_acting(c);
     if (!factor(c)) return false;
     for (int a = 0; a < c->n_acting; a++) {
         const int row = c->acting[a];
-        const struct entry *entry = &c->entry[c->entry_of[row]];
-        const bool is_moment = c->strain_of[row] >= 3;
-        const int terms = is_moment ? 1 : entry->count < 3 ? entry->count : 3;
-        const int *of = is_moment ? &row : entry->row;
-        c->right[a] = 0;
+        const struct active_pair *active = &c->active[c->active_of_row[row]];
+        const bool is_moment = c->component_of_row[row] >= 3;
+        const int terms = is_moment ? 1 : active->count < 3 ? active->count : 3;
+        const int *of = is_moment ? &row : active->row;
+        c->rhs[a] = 0;
         for (int k = 0; k < terms; k++)
-            c->right[a] -= slope_of(c, row)[k] * c->left[of[k]];
+            c->rhs[a] -= slope_of(c, row)[k] * c->residual[of[k]];
     }
-    dense_substitute(c->n_acting, c->matrix, stride_of(c), c->order, c->right,
-                     c->answer);
+    dense_substitute(c->n_acting, c->matrix, stride_of(c), c->order, c->rhs,
+                     c->solution);
     for (int row = 0; row < c->count; row++)
-        c->step[row] = -c->left[row];
-    add_answers(c, c->n_acting, c->acting, c->answer, -1, c->step);
+        c->step[row] = -c->residual[row];
+    add_compliances(c, c->n_acting, c->acting, c->solution, -1, c->step);
     return true;
 }
 
 // Pulls of springs follow the loads that Newton's method says.
-static void go(struct corrections *c)
+static void advance(struct contact_solver *c)
 {
-    for (int e = 0; e < c->n_entry; e++) {
-        struct entry *entry = &c->entry[e];
-        const double *tangent = c->tangent[entry->joint];
-        const double bond = bond_across(&c->joint[entry->joint]);
-        for (int k = 1; k < 3 && entry->count >= 3; k++) {
-            entry->pull[k - 1] += tangent[k] * c->step[entry->row[k]];
+    for (int e = 0; e < c->n_active; e++) {
+        struct active_pair *active = &c->active[e];
+        const double *tangent = c->tangent[active->pair];
+        const double bond = bond_shear_stiffness(&c->pair[active->pair]);
+        for (int k = 1; k < 3 && active->count >= 3; k++) {
+            active->shear_force[k - 1] += tangent[k] * c->step[active->row[k]];
             for (int l = 0; l < 3; l++)
-                entry->pull[k - 1] += entry->slope[k][l] * c->step[entry->row[l]];
-            entry->pull[k - 1] -= bond * c->step[entry->row[k]];
+                active->shear_force[k - 1] +=
+                    active->slope[k][l] * c->step[active->row[l]];
+            active->shear_force[k - 1] -= bond * c->step[active->row[k]];
         }
-        if (entry->overlap > 0) entry->overlap -= c->step[entry->row[0]];
+        if (active->overlap > 0) active->overlap -= c->step[active->row[0]];
     }
     for (int row = 0; row < c->count; row++)
-        c->strain[row] += c->step[row];
+        c->deformation[row] += c->step[row];
 }
 
-// Given up where nothing gets better; nearly found is enough where joints hold hardly
+// Given up where nothing gets better; nearly found is enough where pairs hold hardly
 // anything and numbers end.
-bool settle_together(struct corrections *c, bool softened, double enough)
+bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enough)
 {
     enum { PATIENCE = 4, AT_THE_END = 3 };
     double best = INFINITY, nearly = enough;
     for (int row = 0; row < c->count; row++)
-        nearly = fmax(nearly, 1e-6 * fabs(c->linear[row]));
-    double left = resist_entries(c, softened);
+        nearly = fmax(nearly, 1e-6 * fabs(c->free_deformation[row]));
+    double left = update_contacts(c, is_augmented);
     for (int waited = 0; waited < (best > nearly ? PATIENCE : AT_THE_END); waited++) {
         if (!find_step(c)) return false;
-        go(c);
-        left = resist_entries(c, softened);
-        if (left <= enough && resist_entries(c, false) <= enough) return true;
+        advance(c);
+        left = update_contacts(c, is_augmented);
+        if (left <= enough && update_contacts(c, false) <= enough) return true;
         if (left < 0.5 * best) {
             best = left;
             waited = 0;
         }
     }
-    return resist_entries(c, false) <= nearly;
+    return update_contacts(c, false) <= nearly;
 }

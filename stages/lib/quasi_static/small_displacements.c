@@ -4,68 +4,71 @@
 
 #include <math.h>
 
-static void resist_small(struct equilibrium *e)
+static void subtract_small_loads(struct quasi_static *qs)
 {
-    strain_trial(e);
-    for (int j = 0; j < e->n_joint; j++) {
-        e->resistance[j] = joint_resistance(&e->joint[j], e->strain[j]);
-        joint_take_off(&e->joint[j], e->resistance[j].load, e->left);
+    update_deformation(qs);
+    for (int j = 0; j < qs->n_pair; j++) {
+        qs->response[j] = pair_respond(&qs->pair[j], qs->deformation[j]);
+        pair_subtract_load(&qs->pair[j], qs->response[j].load, qs->residual);
     }
 }
 
-static bool factor_small(struct equilibrium *e)
+static bool factor_small(struct quasi_static *qs)
 {
-    const double(*tangent)[STRAINS] = (const double(*)[STRAINS])e->tangent;
-    return stiffness_factor(e->matrix, tangent, NULL, e->soft);
+    const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
+    return stiffness_factor(qs->matrix, tangent, NULL, qs->regularisation);
 }
 
 // The next equilibrium, or step in time on the way there, from the last one: to well
 // below what may be left, as forces on many grains add up, where that comes easily.
-static bool approach_small(struct equilibrium *e)
+static bool solve_small(struct quasi_static *qs)
 {
     enum { ROUNDS = 20 };
-    resist(e);
-    e->enough = e->setup.tolerance * e->largest_load;
-    if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
-    const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
-    if (largest_left(e) <= well) return true; // the load is the same
-    bool is_fresh = e->factors == 0 ||
-                    corrections_work(e->corrections) > 16 * stiffness_work(e->matrix);
-    if (is_fresh && !factor(e)) return false;
+    update_residual(qs);
+    qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
+    if (qs->damping > 0)
+        qs->tolerance_now = fmax(qs->tolerance_now, 1e-3 * largest_residual(qs));
+    const double well = (qs->damping > 0 ? 1 : target_fraction) * qs->tolerance_now;
+    if (largest_residual(qs) <= well) return true; // the load is the same
+    bool is_fresh = qs->factors == 0 ||
+                    contact_solver_work(qs->contacts) > 16 * stiffness_work(qs->matrix);
+    if (is_fresh && !factor_tangent(qs)) return false;
     double before = INFINITY;
     for (int round = 0; round < ROUNDS; round++) {
-        const double left = largest_left(e);
-        if (left <= well || (left <= e->enough && left >= 0.1 * before)) return true;
+        const double left = largest_residual(qs);
+        if (left <= well || (left <= qs->tolerance_now && left >= 0.1 * before))
+            return true;
         before = left;
-        if (!improve(e, &is_fresh)) break;
+        if (!newton_step(qs, &is_fresh)) break;
     }
-    resist(e);
-    return largest_left(e) <= e->enough;
+    update_residual(qs);
+    return largest_residual(qs) <= qs->tolerance_now;
 }
 
 // At once or, where that is not found, in time. What does not even then come to rest
 // leaves if nothing supports it; else it goes on moving under the next load.
-static enum status balance_small(struct equilibrium *e, struct reason *reason)
+static enum status balance_small(struct quasi_static *qs, struct reason *reason)
 {
     (void)reason;
-    const double enough = e->setup.tolerance * e->largest_load;
-    find_fragments(e);
+    const double enough = qs->setup.tolerance * qs->largest_load;
+    update_fragments(qs);
     bool rests;
     do {
-        go_back(e);
-        rests = come_to_rest(e);
-    } while (let_go_beyond(e, e->trial, furthest) ||
-             (!rests && let_go_beyond(e, e->left, enough)));
+        roll_back_state(qs);
+        rests = relax_to_equilibrium(qs);
+    } while (detach_beyond(qs, qs->displacement, small_limit) ||
+             (!rests && detach_beyond(qs, qs->residual, enough)));
     if (!rests) {
-        if (!e->is_restless) e->n_restless++;
-        e->is_restless = true;
-        e->restless = least_balanced(e);
-        keep_history(e);
+        if (!qs->is_unconverged) qs->n_unconverged++;
+        qs->is_unconverged = true;
+        qs->last_unconverged = grain_of_largest_residual(qs);
+        commit_state(qs);
     }
     return STATUS_OK;
 }
 
-const struct equilibrium_kind small_displacements = {.resist = resist_small,
-                                                     .factor = factor_small,
-                                                     .approach = approach_small,
-                                                     .balance = balance_small};
+const struct kinematics small_displacements = {.subtract_internal_loads =
+                                                   subtract_small_loads,
+                                               .factor = factor_small,
+                                               .solve = solve_small,
+                                               .balance = balance_small};

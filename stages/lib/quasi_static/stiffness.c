@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEGREES = 6 }; // of freedom of a grain: three shifts, three turns
+enum { DEGREES = 6 }; // of freedom of a grain: three translations, three turns
 
 static_assert(sizeof(struct displacement) == DEGREES * sizeof(double), "six numbers");
 
@@ -16,13 +16,13 @@ struct block {
 };
 
 struct stiffness {
-    int n, n_joint;
-    const struct joint *joint;
+    int n, n_pair;
+    const struct contact_pair *pair;
     int32_t *number; // (n) among those that move, or -1
     int n_moving;
     struct block *block; // sorted; those on the diagonal too
     int n_block;
-    int *block_of;    // (n_joint) below the diagonal, or -1
+    int *block_of;    // (n_pair) below the diagonal, or -1
     int *diagonal;    // (n_moving) blocks
     int *start, *row; // lower triangle by columns, upper halves of diagonal blocks too
     double *value;
@@ -40,21 +40,22 @@ static int compare_blocks(const void *a, const void *b)
     return (p->row > q->row) - (p->row < q->row);
 }
 
-static struct block block_between(const struct stiffness *s, const struct joint *joint)
+static struct block block_between(const struct stiffness *s,
+                                  const struct contact_pair *pair)
 {
-    const int32_t a = s->number[joint->grain[0]];
-    const int32_t b = joint->grain[1] < 0 ? -1 : s->number[joint->grain[1]];
+    const int32_t a = s->number[pair->grain[0]];
+    const int32_t b = pair->grain[1] < 0 ? -1 : s->number[pair->grain[1]];
     return a < b ? (struct block){a, b} : (struct block){b, a};
 }
 
 static void list_blocks(struct stiffness *s)
 {
-    s->block = NEW_ARRAY(struct block, s->n_moving + s->n_joint);
+    s->block = NEW_ARRAY(struct block, s->n_moving + s->n_pair);
     int count = 0;
     for (int k = 0; k < s->n_moving; k++)
         s->block[count++] = (struct block){k, k};
-    for (int j = 0; j < s->n_joint; j++) {
-        const struct block block = block_between(s, &s->joint[j]);
+    for (int j = 0; j < s->n_pair; j++) {
+        const struct block block = block_between(s, &s->pair[j]);
         if (block.column >= 0) s->block[count++] = block;
     }
     qsort(s->block, (size_t)count, sizeof *s->block, compare_blocks);
@@ -92,21 +93,21 @@ static void lay_out(struct stiffness *s)
     s->start[s->n_moving * DEGREES] = at;
 }
 
-struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
-                                const struct joint *joint)
+struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
+                                   const struct contact_pair *pair)
 {
     struct stiffness *s = NEW_ARRAY(struct stiffness, 1);
     s->n = n;
-    s->n_joint = n_joint;
-    s->joint = joint;
+    s->n_pair = n_pair;
+    s->pair = pair;
     s->number = NEW_ARRAY(int32_t, n);
     for (int i = 0; i < n; i++)
         s->number[i] = fixed[i] ? -1 : s->n_moving++;
     s->diagonal = NEW_ARRAY(int, s->n_moving);
-    s->block_of = NEW_ARRAY(int, n_joint);
+    s->block_of = NEW_ARRAY(int, n_pair);
     list_blocks(s);
-    for (int j = 0; j < n_joint; j++)
-        s->block_of[j] = find_block(s, block_between(s, &joint[j]));
+    for (int j = 0; j < n_pair; j++)
+        s->block_of[j] = find_block(s, block_between(s, &pair[j]));
     lay_out(s);
     s->factor = supernodal_new(s->n_moving * DEGREES, s->start, s->row);
     double **const of_degrees[] = {&s->load, &s->begun, &s->left};
@@ -137,37 +138,38 @@ static double *numbers_of(const struct stiffness *s, int block, int *stride)
     return s->value + s->start[column] + (block - s->diagonal[b->column]) * DEGREES;
 }
 
-// What the loads of a joint do to the grain at END, six rows: B^T.
-static void arms_of(const struct joint *joint, int end, double arm[STRAINS][DEGREES])
+// What the loads of a pair do to the grain at END, six rows: B^T.
+static void kinematic_rows_of(const struct contact_pair *pair, int end,
+                              double arm[COMPONENTS][DEGREES])
 {
-    for (int k = 0; k < STRAINS; k++) {
-        const struct displacement row = joint_arm(joint, end, k);
+    for (int k = 0; k < COMPONENTS; k++) {
+        const struct displacement row = pair_kinematic_row(pair, end, k);
         memcpy(arm[k], &row, sizeof row);
     }
 }
 
 static void add_block(struct stiffness *s, int block,
-                      const double left[STRAINS][DEGREES],
-                      const double right[STRAINS][DEGREES],
-                      const double tangent[STRAINS])
+                      const double left[COMPONENTS][DEGREES],
+                      const double right[COMPONENTS][DEGREES],
+                      const double tangent[COMPONENTS])
 {
     int stride;
     double *numbers = numbers_of(s, block, &stride);
-    for (int k = 0; k < STRAINS; k++)
+    for (int k = 0; k < COMPONENTS; k++)
         for (int c = 0; c < DEGREES; c++)
             for (int r = 0; r < DEGREES; r++)
                 numbers[c * stride + r] += tangent[k] * left[k][r] * right[k][c];
 }
 
-static void add_joint(struct stiffness *s, int j, const double tangent[STRAINS])
+static void add_pair(struct stiffness *s, int j, const double tangent[COMPONENTS])
 {
-    const struct joint *joint = &s->joint[j];
-    double arm[2][STRAINS][DEGREES];
+    const struct contact_pair *pair = &s->pair[j];
+    double arm[2][COMPONENTS][DEGREES];
     int32_t number[2];
     for (int end = 0; end < 2; end++) {
-        number[end] = joint->grain[end] < 0 ? -1 : s->number[joint->grain[end]];
+        number[end] = pair->grain[end] < 0 ? -1 : s->number[pair->grain[end]];
         if (number[end] < 0) continue;
-        arms_of(joint, end, arm[end]);
+        kinematic_rows_of(pair, end, arm[end]);
         add_block(s, s->diagonal[number[end]], arm[end], arm[end], tangent);
     }
     if (s->block_of[j] < 0) return;
@@ -176,37 +178,39 @@ static void add_joint(struct stiffness *s, int j, const double tangent[STRAINS])
 }
 
 static void add_rows(struct stiffness *s, int block, int row, int column,
-                     const struct pair_stiffness *more)
+                     const struct pair_stiffness *geometric)
 {
     int stride;
     double *numbers = numbers_of(s, block, &stride);
     for (int c = 0; c < DEGREES; c++)
         for (int r = 0; r < DEGREES; r++)
             numbers[c * stride + r] +=
-                more->block[row * DEGREES + r][column * DEGREES + c];
+                geometric->block[row * DEGREES + r][column * DEGREES + c];
 }
 
-static void add_more(struct stiffness *s, int j, const struct pair_stiffness *more)
+static void add_geometric(struct stiffness *s, int j,
+                          const struct pair_stiffness *geometric)
 {
     int32_t number[2];
     for (int end = 0; end < 2; end++) {
-        const int32_t grain = s->joint[j].grain[end];
+        const int32_t grain = s->pair[j].grain[end];
         number[end] = grain < 0 ? -1 : s->number[grain];
-        if (number[end] >= 0) add_rows(s, s->diagonal[number[end]], end, end, more);
+        if (number[end] >= 0)
+            add_rows(s, s->diagonal[number[end]], end, end, geometric);
     }
     const int lower = number[0] < number[1] ? 0 : 1;
-    if (s->block_of[j] >= 0) add_rows(s, s->block_of[j], 1 - lower, lower, more);
+    if (s->block_of[j] >= 0) add_rows(s, s->block_of[j], 1 - lower, lower, geometric);
 }
 
-bool stiffness_factor(struct stiffness *s, const double (*tangent)[STRAINS],
-                      const struct pair_stiffness *more, const double soft[2])
+bool stiffness_factor(struct stiffness *s, const double (*tangent)[COMPONENTS],
+                      const struct pair_stiffness *geometric, const double soft[2])
 {
     if (s->n_moving == 0) return true;
     memset(s->value, 0, (size_t)s->start[s->n_moving * DEGREES] * sizeof *s->value);
-    for (int j = 0; j < s->n_joint; j++)
-        add_joint(s, j, tangent[j]);
-    for (int j = 0; j < s->n_joint && more; j++)
-        add_more(s, j, &more[j]);
+    for (int j = 0; j < s->n_pair; j++)
+        add_pair(s, j, tangent[j]);
+    for (int j = 0; j < s->n_pair && geometric; j++)
+        add_geometric(s, j, &geometric[j]);
     for (int k = 0; k < s->n_moving; k++) {
         int stride;
         double *numbers = numbers_of(s, s->diagonal[k], &stride);
@@ -254,13 +258,13 @@ void stiffness_finish(struct stiffness *s, struct displacement *answer)
             memcpy(&answer[i], s->load + s->number[i] * DEGREES, sizeof answer[i]);
 }
 
-void stiffness_strain(const struct stiffness *s, const struct halves *halves,
-                      double *strain)
+void stiffness_deformation(const struct stiffness *s, const struct halves *halves,
+                           double *deformation)
 {
-    halves_apply(s->factor, halves, s->begun, strain);
+    halves_apply(s->factor, halves, s->begun, deformation);
 }
 
-void stiffness_take_off(struct stiffness *s, const struct halves *halves,
+void stiffness_subtract(struct stiffness *s, const struct halves *halves,
                         const double *load)
 {
     halves_take_off(s->factor, halves, load, s->left);
@@ -275,11 +279,11 @@ void stiffness_halves(struct stiffness *s, int groups, const int *count,
     for (int g = 0; g < groups; g++)
         for (int k = 0; k < count[g]; k++)
             for (int end = 0; end < 2; end++) {
-                const struct joint *joint = &s->joint[load[g][k].joint];
-                const int32_t grain = joint->grain[end];
+                const struct contact_pair *pair = &s->pair[load[g][k].pair];
+                const int32_t grain = pair->grain[end];
                 const int number = grain < 0 ? -1 : s->number[grain];
                 const struct displacement arm =
-                    joint_arm(joint, end, load[g][k].strain);
+                    pair_kinematic_row(pair, end, load[g][k].component);
                 memcpy(value[g][k][end], &arm, sizeof arm);
                 for (int r = 0; r < DEGREES; r++)
                     index[g][k][end][r] = number < 0 ? -1 : number * DEGREES + r;

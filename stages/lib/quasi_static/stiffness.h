@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sparse stiffness of joints between grains, factored, and what displacements
+// The sparse stiffness of pairs between grains, factored, and what displacements
 // answer a load.
 #ifndef CRAQUELURE_STIFFNESS_H
 #define CRAQUELURE_STIFFNESS_H
@@ -10,17 +10,17 @@
 
 struct stiffness;
 
-// For N grains, of which those FIXED (n) do not move, and N_JOINT joints, whose grains
+// For N grains, of which those FIXED (n) do not move, and N_PAIR pairs, whose grains
 // must stay the same. The caller frees it with stiffness_free.
-struct stiffness *stiffness_new(int n, const uint8_t *fixed, int n_joint,
-                                const struct joint *joint);
+struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
+                                   const struct contact_pair *pair);
 void stiffness_free(struct stiffness *stiffness);
 
-// With TANGENT (n_joint) of each joint, >= 0 for each strain, MORE (n_joint) of it,
-// which may be NULL, and of every grain besides what is SOFT against shifts and turns.
-// False: it is singular.
-bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[STRAINS],
-                      const struct pair_stiffness *more, const double soft[2]);
+// With TANGENT (n_pair) of each pair, >= 0 for each deformation, GEOMETRIC (n_pair) of
+// it, which may be NULL, and of every grain besides what is SOFT against translations
+// and turns. False: it is singular.
+bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[COMPONENTS],
+                      const struct pair_stiffness *geometric, const double soft[2]);
 
 // Whether that is positive: whether any load grows with the displacement it makes.
 bool stiffness_is_positive(const struct stiffness *stiffness);
@@ -32,21 +32,21 @@ void stiffness_begin(struct stiffness *stiffness, const struct displacement *loa
 void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
 // Halves of the answers to as many GROUPS of unit loads as HALVES, COUNT (groups) in
-// each. The product of halves is how the strains of the ones answer loads of the
+// each. The product of halves is how the deformations of the ones answer loads of the
 // others. The caller frees each (groups) with halves_free.
 struct unit_load {
-    int32_t joint, strain;
+    int32_t pair, component;
 };
 void stiffness_halves(struct stiffness *stiffness, int groups, const int *count,
                       const struct unit_load (*load)[LANES], struct halves *halves);
 void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
                        const struct halves *b, double *product);
 
-// How the load that was begun with, whole, strains the joints of HALVES: STRAIN for
-// each of them. And takes those unit loads times LOAD off it.
-void stiffness_strain(const struct stiffness *stiffness, const struct halves *halves,
-                      double *strain);
-void stiffness_take_off(struct stiffness *stiffness, const struct halves *halves,
+// How the load that was begun with, whole, deformations the pairs of HALVES:
+// DEFORMATION for each of them. And takes those unit loads times LOAD off it.
+void stiffness_deformation(const struct stiffness *stiffness,
+                           const struct halves *halves, double *deformation);
+void stiffness_subtract(struct stiffness *stiffness, const struct halves *halves,
                         const double *load);
 
 // Multiplications that a factor takes.

@@ -4,61 +4,63 @@
 #include <math.h>
 #include <string.h>
 
-void keep_history(struct equilibrium *e)
+void commit_state(struct quasi_static *qs)
 {
-    memcpy(e->before, e->trial, (size_t)e->n * sizeof *e->before);
-    for (int j = 0; j < e->n_joint; j++) {
-        for (int k = 0; k < STRAINS; k++)
-            e->grown[j][k] = e->strain[j][k] - e->joint[j].strain[k];
-        memcpy(e->joint[j].strain, e->strain[j], sizeof e->joint[j].strain);
-        e->joint[j].contact = e->resistance[j].contact;
-        if (e->joint[j].contact.touch == TOUCH_BEGINS)
-            e->joint[j].contact.touch = TOUCH_STICKS;
+    memcpy(qs->previous, qs->displacement, (size_t)qs->n * sizeof *qs->previous);
+    for (int j = 0; j < qs->n_pair; j++) {
+        for (int k = 0; k < COMPONENTS; k++)
+            qs->last_increment[j][k] =
+                qs->deformation[j][k] - qs->pair[j].deformation[k];
+        memcpy(qs->pair[j].deformation, qs->deformation[j],
+               sizeof qs->pair[j].deformation);
+        qs->pair[j].contact = qs->response[j].contact;
+        if (qs->pair[j].contact.state == CONTACT_NEW)
+            qs->pair[j].contact.state = CONTACT_STICKING;
     }
-    if (e->kind->keep_history) e->kind->keep_history(e);
+    if (qs->kinematics->commit) qs->kinematics->commit(qs);
 }
 
-void go_back(struct equilibrium *e)
+void roll_back_state(struct quasi_static *qs)
 {
-    memcpy(e->trial, e->before, (size_t)e->n * sizeof *e->trial);
-    memset(e->dashpots, 0, (size_t)e->n * sizeof *e->dashpots);
+    memcpy(qs->displacement, qs->previous, (size_t)qs->n * sizeof *qs->displacement);
+    memset(qs->dashpot_force, 0, (size_t)qs->n * sizeof *qs->dashpot_force);
 }
 
-// The way to rest with dashpots at all joints, by steps in time that grow as things
+// The way to rest with dashpots at all pairs, by steps in time that grow as things
 // come to rest and shrink where one cannot be found. Whether it came to rest.
-static bool creep(struct equilibrium *e)
+static bool viscous_relaxation(struct quasi_static *qs)
 {
     const double stiffest = 1e4, softest = 1e-2;
     double growth = 16;
-    e->damping = 1;
-    go_back(e);
-    for (int64_t k = 0; k < e->setup.most_iterations && e->damping <= stiffest; k++) {
-        const bool found = e->kind->approach(e);
+    qs->damping = 1;
+    roll_back_state(qs);
+    for (int64_t k = 0; k < qs->setup.most_iterations && qs->damping <= stiffest; k++) {
+        const bool found = qs->kinematics->solve(qs);
         if (found) {
-            keep_history(e);
-            if (e->damping == 0) return true;
-            e->damping = e->damping > softest ? e->damping / growth : 0;
+            commit_state(qs);
+            if (qs->damping == 0) return true;
+            qs->damping = qs->damping > softest ? qs->damping / growth : 0;
             growth = 16;
         } else {
-            e->damping = fmax(8 * e->damping, softest);
+            qs->damping = fmax(8 * qs->damping, softest);
             growth = 2;
         }
-        go_back(e);
+        roll_back_state(qs);
     }
-    e->damping = 0;
-    resist(e);
+    qs->damping = 0;
+    update_residual(qs);
     return false;
 }
 
-bool come_to_rest(struct equilibrium *e)
+bool relax_to_equilibrium(struct quasi_static *qs)
 {
-    e->damping = 0;
-    if (e->kind->approach(e)) {
-        keep_history(e);
+    qs->damping = 0;
+    if (qs->kinematics->solve(qs)) {
+        commit_state(qs);
         return true;
     }
-    if (!e->is_restless) return creep(e);
-    go_back(e);
-    resist(e);
+    if (!qs->is_unconverged) return viscous_relaxation(qs);
+    roll_back_state(qs);
+    update_residual(qs);
     return false;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that come near each other on the way: sought anew when one has moved so far
 // that some may.
-#include "quasi_static/quasi_static_internal.h"
+#include "contact_detection.h"
 
 #include "basics/memory.h"
 #include "geometry/neighbours.h"
@@ -9,25 +9,26 @@
 #include <math.h>
 #include <stdlib.h>
 
-static bool may_meet(const struct equilibrium *e)
+static bool may_touch(const struct quasi_static *qs)
 {
     double smallest = INFINITY, furthest_way = 0;
-    for (int i = 0; i < e->n; i++) {
-        const double way = distance(e->trial[i].shift, e->large->searched[i]);
-        smallest = fmin(smallest, e->packing->radius[i] / e->length);
-        if (!e->is_gone[i]) furthest_way = fmax(furthest_way, way);
+    for (int i = 0; i < qs->n; i++) {
+        const double way =
+            distance(qs->displacement[i].translation, qs->large->searched_at[i]);
+        smallest = fmin(smallest, qs->packing->radius[i] / qs->length);
+        if (!qs->is_detached[i]) furthest_way = fmax(furthest_way, way);
     }
-    return furthest_way > joint_reach * smallest;
+    return furthest_way > search_range * smallest;
 }
 
 // Grains at the trial, within the box where it repeats.
-static struct packing moved_packing(const struct equilibrium *e)
+static struct packing moved_packing(const struct quasi_static *qs)
 {
-    struct packing now = *e->packing;
-    now.position = NEW_ARRAY(struct vector, e->n);
-    for (int i = 0; i < e->n; i++) {
-        struct vector x =
-            add(e->packing->position[i], scale(e->length, e->trial[i].shift));
+    struct packing now = *qs->packing;
+    now.position = NEW_ARRAY(struct vector, qs->n);
+    for (int i = 0; i < qs->n; i++) {
+        struct vector x = add(qs->packing->position[i],
+                              scale(qs->length, qs->displacement[i].translation));
         for (int axis = 0; axis < 3; axis++) {
             const double lower = component(now.lower, axis);
             const double period = component(now.upper, axis) - lower;
@@ -40,101 +41,105 @@ static struct packing moved_packing(const struct equilibrium *e)
     return now;
 }
 
-// The pairs that joints are of, sorted; with the wall, -1 comes first.
-static int32_t (*joint_pairs(const struct equilibrium *e))[2]
+// The pairs that pairs are of, sorted; with the wall, -1 comes first.
+static int32_t (*known_pairs(const struct quasi_static *qs))[2]
 {
-    int32_t(*pair)[2] = allocate((size_t)e->n_joint, sizeof *pair);
-    for (int j = 0; j < e->n_joint; j++) {
-        const int32_t *grain = e->joint[j].grain;
-        pair[j][0] = grain[0] < grain[1] ? grain[0] : grain[1];
-        pair[j][1] = grain[0] < grain[1] ? grain[1] : grain[0];
+    int32_t(*grains)[2] = allocate((size_t)qs->n_pair, sizeof *grains);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const int32_t *grain = qs->pair[j].grain;
+        grains[j][0] = grain[0] < grain[1] ? grain[0] : grain[1];
+        grains[j][1] = grain[0] < grain[1] ? grain[1] : grain[0];
     }
-    if (e->n_joint > 0) qsort(pair, (size_t)e->n_joint, sizeof *pair, compare_pairs);
+    if (qs->n_pair > 0)
+        qsort(grains, (size_t)qs->n_pair, sizeof *grains, compare_pairs);
+    return grains;
+}
+
+// A pair as it would have been all the time, but that nothing touched.
+static struct contact_pair new_pair(const struct quasi_static *qs,
+                                    struct contact_pair pair, struct pair_frame *before)
+{
+    const int32_t *grain = pair.grain;
+    const struct vector first = qs->previous[grain[0]].translation;
+    *before = frame_of(&pair);
+    if (grain[1] < 0) {
+        pair.deformation[NORMAL] = -dot(first, pair.axis[0]);
+        before->arm[0] += pair.deformation[NORMAL];
+    } else {
+        const struct contact_pair_setup setup = pair_setup_of(qs);
+        const double from = pair.arm[0] + pair.arm[1];
+        const struct vector now =
+            add(scale(from, pair.axis[0]),
+                subtract(qs->previous[grain[1]].translation, first));
+        const struct contact_pair then =
+            grain_pair(&setup, grain[0], grain[1], scale(qs->length, now));
+        *before = frame_of(&then);
+        pair.deformation[NORMAL] = norm(now) - from;
+    }
+    pair.contact.state = CONTACT_OPEN;
     return pair;
 }
 
-// A joint as it would have been all the time, but that nothing touched.
-static struct joint late_joint(const struct equilibrium *e, struct joint joint,
-                               struct lie *before)
+static void append_pair(struct quasi_static *qs, struct contact_pair pair)
 {
-    const int32_t *grain = joint.grain;
-    const struct vector first = e->before[grain[0]].shift;
-    *before = joint_lie(&joint);
-    if (grain[1] < 0) {
-        joint.strain[STRAIN_ALONG] = -dot(first, joint.axis[0]);
-        before->arm[0] += joint.strain[STRAIN_ALONG];
-    } else {
-        const struct joint_setup setup = joints_of(e);
-        const double from = joint.arm[0] + joint.arm[1];
-        const struct vector now =
-            add(scale(from, joint.axis[0]), subtract(e->before[grain[1]].shift, first));
-        const struct joint then =
-            contact_joint(&setup, grain[0], grain[1], scale(e->length, now));
-        *before = joint_lie(&then);
-        joint.strain[STRAIN_ALONG] = norm(now) - from;
-    }
-    joint.contact.touch = TOUCH_NONE;
-    return joint;
-}
-
-static void append(struct equilibrium *e, struct joint joint)
-{
-    struct large *large = e->large;
-    const size_t count = (size_t)e->n_joint + 1;
-    e->joint = reallocate(e->joint, count, sizeof *e->joint);
+    struct large_state *large = qs->large;
+    const size_t count = (size_t)qs->n_pair + 1;
+    qs->pair = reallocate(qs->pair, count, sizeof *qs->pair);
     large->start = reallocate(large->start, count, sizeof *large->start);
-    large->before = reallocate(large->before, count, sizeof *large->before);
-    large->start[e->n_joint] = joint_lie(&joint);
-    e->joint[e->n_joint] = late_joint(e, joint, &large->before[e->n_joint]);
-    e->n_joint++;
+    large->previous = reallocate(large->previous, count, sizeof *large->previous);
+    large->start[qs->n_pair] = frame_of(&pair);
+    qs->pair[qs->n_pair] = new_pair(qs, pair, &large->previous[qs->n_pair]);
+    qs->n_pair++;
 }
 
-static void append_near(struct equilibrium *e)
+static void append_near(struct quasi_static *qs)
 {
-    const struct joint_setup setup = joints_of(e);
-    struct packing now = moved_packing(e);
-    const int n_known = e->n_joint;
-    int32_t(*known)[2] = joint_pairs(e);
+    const struct contact_pair_setup setup = pair_setup_of(qs);
+    struct packing now = moved_packing(qs);
+    const int n_known = qs->n_pair;
+    int32_t(*known)[2] = known_pairs(qs);
     int n_near;
-    int32_t(*near)[2] = neighbour_pairs(&now, joint_reach, &n_near);
+    int32_t(*near)[2] = neighbour_pairs(&now, search_range, &n_near);
     for (int k = 0; k < n_near; k++) {
         const int i = near[k][0], j = near[k][1];
-        if (e->is_gone[i] || e->is_gone[j] ||
+        if (qs->is_detached[i] || qs->is_detached[j] ||
             (n_known > 0 &&
              bsearch(near[k], known, (size_t)n_known, sizeof *known, compare_pairs)))
             continue;
-        const struct vector way = subtract(e->trial[j].shift, e->trial[i].shift);
-        append(e, contact_joint(
-                      &setup, i, j,
-                      subtract(nearest_image(&now, i, j), scale(e->length, way))));
+        const struct vector way =
+            subtract(qs->displacement[j].translation, qs->displacement[i].translation);
+        append_pair(qs, grain_pair(&setup, i, j,
+                                   subtract(nearest_image(&now, i, j),
+                                            scale(qs->length, way))));
     }
-    for (int i = 0; i < e->n && e->setup.has_wall; i++) {
-        const double height =
-            e->packing->position[i].z + e->length * e->trial[i].shift.z - now.lower.z;
-        const int32_t pair[2] = {-1, i};
-        if (!e->is_gone[i] && height <= (1 + joint_reach) * now.radius[i] &&
+    for (int i = 0; i < qs->n && qs->setup.has_wall; i++) {
+        const double height = qs->packing->position[i].z +
+                              qs->length * qs->displacement[i].translation.z -
+                              now.lower.z;
+        const int32_t grains[2] = {-1, i};
+        if (!qs->is_detached[i] && height <= (1 + search_range) * now.radius[i] &&
             !(n_known > 0 &&
-              bsearch(pair, known, (size_t)n_known, sizeof *known, compare_pairs)))
-            append(e, wall_joint(&setup, i));
+              bsearch(grains, known, (size_t)n_known, sizeof *known, compare_pairs)))
+            append_pair(qs, wall_pair(&setup, i));
     }
     free(near);
     free(known);
     free(now.position);
 }
 
-bool large_meet(struct equilibrium *e)
+bool detect_contacts(struct quasi_static *qs)
 {
-    struct large *large = e->large;
-    if (!may_meet(e)) return false;
-    for (int i = 0; i < e->n; i++)
-        large->searched[i] = e->trial[i].shift;
-    const int before = e->n_joint;
-    append_near(e);
-    if (e->n_joint == before) return false;
-    large_make_room(e);
-    make_room_for_joints(e);
-    resist(e);
-    for (int j = before; j < e->n_joint; j++)
-        if (e->resistance[j].contact.touch) return true;
+    struct large_state *large = qs->large;
+    if (!may_touch(qs)) return false;
+    for (int i = 0; i < qs->n; i++)
+        large->searched_at[i] = qs->displacement[i].translation;
+    const int before = qs->n_pair;
+    append_near(qs);
+    if (qs->n_pair == before) return false;
+    large_state_allocate_pairs(qs);
+    allocate_pair_arrays(qs);
+    update_residual(qs);
+    for (int j = before; j < qs->n_pair; j++)
+        if (qs->response[j].contact.state) return true;
     return false;
 }

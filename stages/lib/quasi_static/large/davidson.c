@@ -2,7 +2,8 @@
 // The softest mode of a body that nothing holds, among those without momentum, and
 // whether it is resisted: by Davidson's method, as the factor holds the body, which is
 // turned over else, and so is not that of the stiffness itself.
-#include "quasi_static/quasi_static_internal.h"
+#include "softest_mode.h"
+#include "stabilisation.h"
 
 #include "basics/memory.h"
 
@@ -29,35 +30,35 @@ static double product(const double *a, const double *b, int n)
     return sum;
 }
 
-// What joints, as they are in the factor, and their loads resist MODE with.
-static void resist_mode(const struct equilibrium *e, const struct displacement *mode,
+// What pairs, as they are in the factor, and their loads resist MODE with.
+static void resist_mode(const struct quasi_static *qs, const struct displacement *mode,
                         struct displacement *load)
 {
-    memset(load, 0, (size_t)e->n * sizeof *load);
-    for (int j = 0; j < e->n_joint; j++) {
-        const int32_t *grain = e->joint[j].grain;
-        double strain[STRAINS];
-        joint_strains(&e->joint[j], &mode[grain[0]],
-                      grain[1] < 0 ? NULL : &mode[grain[1]], strain);
-        for (int k = 0; k < STRAINS; k++)
-            strain[k] *= -e->tangent[j][k];
-        joint_take_off(&e->joint[j], strain, load);
+    memset(load, 0, (size_t)qs->n * sizeof *load);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const int32_t *grain = qs->pair[j].grain;
+        double deformation[COMPONENTS];
+        pair_deformation(&qs->pair[j], &mode[grain[0]],
+                         grain[1] < 0 ? NULL : &mode[grain[1]], deformation);
+        for (int k = 0; k < COMPONENTS; k++)
+            deformation[k] *= -qs->tangent[j][k];
+        pair_subtract_load(&qs->pair[j], deformation, load);
     }
-    struct displacement *turning = NEW_ARRAY(struct displacement, e->n);
-    take_off_turning(e, mode, turning);
-    for (int i = 0; i < e->n; i++)
-        pull(&load[i], turning[i]);
+    struct displacement *turning = NEW_ARRAY(struct displacement, qs->n);
+    subtract_geometric_load(qs, mode, turning);
+    for (int i = 0; i < qs->n; i++)
+        displacement_subtract(&load[i], turning[i]);
     free(turning);
 }
 
 // One more, from STEP as the factor answers it. Whether it is not of the others.
-static bool widen(struct equilibrium *e, struct basis *basis)
+static bool widen(struct quasi_static *qs, struct basis *basis)
 {
-    const int n = 6 * e->n, k = basis->count;
-    stiffness_begin(e->matrix, e->step);
-    stiffness_finish(e->matrix, e->step);
-    keep_momentum(e, e->step);
-    double *vector = duplicate(e->step, (size_t)e->n, sizeof *e->step);
+    const int n = 6 * qs->n, k = basis->count;
+    stiffness_begin(qs->matrix, qs->step);
+    stiffness_finish(qs->matrix, qs->step);
+    remove_momentum(qs, qs->step);
+    double *vector = duplicate(qs->step, (size_t)qs->n, sizeof *qs->step);
     const double before = sqrt(product(vector, vector, n));
     for (int pass = 0; pass < 2; pass++)
         for (int l = 0; l < k; l++) {
@@ -73,7 +74,7 @@ static bool widen(struct equilibrium *e, struct basis *basis)
     basis->image[k] = NEW_ARRAY(double, n);
     basis->count++;
     if (!is_new) return false;
-    resist_mode(e, (struct displacement *)vector,
+    resist_mode(qs, (struct displacement *)vector,
                 (struct displacement *)basis->image[k]);
     for (int l = 0; l <= k; l++)
         basis->product[l][k] = basis->product[k][l] =
@@ -105,43 +106,44 @@ static double soften(struct basis *basis)
 }
 
 // Into STEP the softest mode as OF_VECTORS, and what resists it as OF_IMAGES.
-static void combine(const struct equilibrium *e, const struct basis *basis,
+static void combine(const struct quasi_static *qs, const struct basis *basis,
                     double of_images, double of_vectors)
 {
-    double *sum = &e->step[0].shift.x;
-    memset(e->step, 0, (size_t)e->n * sizeof *e->step);
+    double *sum = &qs->step[0].translation.x;
+    memset(qs->step, 0, (size_t)qs->n * sizeof *qs->step);
     for (int k = 0; k < basis->count; k++)
-        for (int i = 0; i < 6 * e->n; i++)
+        for (int i = 0; i < 6 * qs->n; i++)
             sum[i] += basis->part[k] * (of_images * basis->image[k][i] +
                                         of_vectors * basis->vector[k][i]);
 }
 
 // Without the symmetry of what grains may do together.
-static void begin_mode(struct equilibrium *e)
+static void begin_mode(struct quasi_static *qs)
 {
-    for (int i = 0; i < e->n; i++) {
+    for (int i = 0; i < qs->n; i++) {
         const double part = fmod(0.6180339887 * i * (double)i, 1);
-        e->step[i] = (struct displacement){{part, 0.7 - part, 0.2 * (i % 3)},
-                                           {0.3, 0.6 * part, 1}};
-        if (e->is_gone[i]) e->step[i] = (struct displacement){{0, 0, 0}, {0, 0, 0}};
+        qs->step[i] = (struct displacement){{part, 0.7 - part, 0.2 * (i % 3)},
+                                            {0.3, 0.6 * part, 1}};
+        if (qs->is_detached[i])
+            qs->step[i] = (struct displacement){{0, 0, 0}, {0, 0, 0}};
     }
 }
 
-static double find_mode(struct equilibrium *e)
+static double find_mode(struct quasi_static *qs)
 {
     struct basis basis = {.count = 0};
-    const double close = 1e-9 * e->large->hold;
+    const double close = 1e-9 * qs->large->stabilisation;
     double stiffness = INFINITY, fell = INFINITY;
-    begin_mode(e);
-    while (basis.count < MOST && widen(e, &basis)) {
+    begin_mode(qs);
+    while (basis.count < MOST && widen(qs, &basis)) {
         const double before = stiffness;
         stiffness = soften(&basis);
         const double falls = before - stiffness;
         if (fmax(falls, fell) < 1e-3 * fabs(stiffness) + close) break;
         fell = falls;
-        combine(e, &basis, 1, -stiffness);
+        combine(qs, &basis, 1, -stiffness);
     }
-    combine(e, &basis, 0, 1);
+    combine(qs, &basis, 0, 1);
     for (int k = 0; k < basis.count; k++) {
         free(basis.vector[k]);
         free(basis.image[k]);
@@ -149,23 +151,24 @@ static double find_mode(struct equilibrium *e)
     return stiffness;
 }
 
-int free_softest(struct equilibrium *e, double *stiffness)
+int davidson_softest_mode(struct quasi_static *qs, double *stiffness)
 {
-    const double found = find_mode(e);
+    const double found = find_mode(qs);
     int softest = 0;
-    for (int i = 0; i < e->n; i++)
-        if (size_of(e->step[i]) > size_of(e->step[softest])) softest = i;
-    const double size = size_of(e->step[softest]);
-    for (int i = 0; i < e->n && size > 0; i++)
-        e->step[i] = scaled(1 / size, e->step[i]);
+    for (int i = 0; i < qs->n; i++)
+        if (displacement_size(qs->step[i]) > displacement_size(qs->step[softest]))
+            softest = i;
+    const double size = displacement_size(qs->step[softest]);
+    for (int i = 0; i < qs->n && size > 0; i++)
+        qs->step[i] = displacement_scaled(1 / size, qs->step[i]);
     if (stiffness) *stiffness = found;
     return softest;
 }
 
 // To what rounding leaves of it.
-bool free_is_stable(struct equilibrium *e)
+bool davidson_is_stable(struct quasi_static *qs)
 {
     double stiffness;
-    free_softest(e, &stiffness);
-    return !(stiffness < -1e-7 * e->large->hold);
+    davidson_softest_mode(qs, &stiffness);
+    return !(stiffness < -1e-7 * qs->large->stabilisation);
 }

@@ -1,168 +1,140 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dynamics, where equilibrium ends: dashpots at all joints, in proportion to their
+// Dynamics, where equilibrium ends: dashpots at all pairs, in proportion to their
 // stiffness, slow the way down to the next equilibrium, which is walked in implicit
 // steps of time.
-#include "large_state.h"
-
-#include "quasi_static/quasi_static_internal.h"
+#include "implicit_dynamics.h"
+#include "increment.h"
+#include "softest_mode.h"
 
 #include <math.h>
 
 // ---- how it begins ------------------------------------------------------------------
 
-// The mode that is resisted least at the last equilibrium, or by joints alone if that
-// is not positive either, by inverse iteration.
-int large_softest(struct equilibrium *e)
-{
-    enum { ROUNDS = 8 };
-    const struct displacement none = {{0, 0, 0}, {0, 0, 0}};
-    int softest = 0;
-    const double(*tangent)[STRAINS] = (const double(*)[STRAINS])e->tangent;
-    if (!factor(e)) {
-        const double hold = e->large->hold;
-        const double soft[2] = {e->soft[0] + hold, e->soft[1] + hold};
-        stiffness_factor(e->matrix, tangent, NULL, soft);
-    }
-    if (e->setup.is_free) return free_softest(e, NULL);
-    for (int i = 0; i < e->n; i++)
-        e->step[i] = e->is_gone[i]
-                         ? none
-                         : (struct displacement){{1, 0.7, 0.4 + i % 3}, {0.3, 0.6, 1}};
-    for (int round = 0; round < ROUNDS; round++) {
-        stiffness_begin(e->matrix, e->step);
-        stiffness_finish(e->matrix, e->step);
-        for (int i = softest = 0; i < e->n; i++)
-            if (size_of(e->step[i]) > size_of(e->step[softest])) softest = i;
-        const double size = size_of(e->step[softest]);
-        for (int i = 0; i < e->n; i++)
-            e->step[i] = scaled(1 / size, e->step[i]);
-    }
-    return softest;
-}
-
 // The way that the rest of the load pushes; where it does not tell, as a row that is
 // pushed at its end, the way inverse iteration has come to.
-static double way_of_kick(const struct equilibrium *e)
+static double direction_of_load(const struct quasi_static *qs)
 {
     double work = 0, load = 0;
-    for (int i = 0; i < e->n; i++) {
-        const struct displacement *rest = &e->large->withheld[i];
-        work += dot(e->step[i].shift, rest->shift) + dot(e->step[i].turn, rest->turn);
-        load += norm(rest->shift) + norm(rest->turn);
+    for (int i = 0; i < qs->n; i++) {
+        const struct displacement *rest = &qs->large->residual_at_start[i];
+        work += dot(qs->step[i].translation, rest->translation) +
+                dot(qs->step[i].rotation, rest->rotation);
+        load += norm(rest->translation) + norm(rest->rotation);
     }
     return work < -1e-6 * load ? -1 : 1;
 }
 
-void large_kick(struct equilibrium *e)
+void perturb_along_mode(struct quasi_static *qs)
 {
-    const double size = 0.1 * e->setup.increment * way_of_kick(e);
-    go_back(e);
-    if (e->setup.is_free) stand_still(e, e->step);
-    for (int i = 0; i < e->n; i++)
-        pull(&e->trial[i], scaled(-size, e->step[i]));
-    resist(e);
-    keep_history(e);
+    const double size = 0.1 * qs->setup.increment * direction_of_load(qs);
+    roll_back_state(qs);
+    if (qs->setup.is_free) remove_rigid_motion(qs, qs->step);
+    for (int i = 0; i < qs->n; i++)
+        displacement_subtract(&qs->displacement[i],
+                              displacement_scaled(-size, qs->step[i]));
+    update_residual(qs);
+    commit_state(qs);
 }
 
 // ---- steps in time ------------------------------------------------------------------
 
 // Of dashpots, over the stiffness and a time step: no step is longer or shorter. Forces
-// that no joint bears take steps that are shorter by as much.
+// that no pair bears take steps that are shorter by as much.
 static const double softest = 1e-8, stiffest = 1e12;
 
 // How long steps are.
-struct pace {
+struct time_step {
     double damping;
     double found, missed; // the last of those with which a step was; 0: none
 };
 
 // Longer as things come to rest, as far as an increment allows; not at once beyond
 // where none was found.
-static void step_further(struct pace *pace, double moved)
+static void lengthen(struct time_step *step, double moved)
 {
-    const double before = pace->damping;
-    pace->found = before;
-    pace->damping *= fmax(1. / 16, moved / 0.8);
-    if (moved < 0.8 && pace->damping < 1.1 * pace->missed)
-        pace->damping = sqrt(before * fmin(before, pace->missed));
-    pace->missed *= 0.25;
-    if (pace->damping < softest) pace->damping = 0;
+    const double before = step->damping;
+    step->found = before;
+    step->damping *= fmax(1. / 16, moved / 0.8);
+    if (moved < 0.8 && step->damping < 1.1 * step->missed)
+        step->damping = sqrt(before * fmin(before, step->missed));
+    step->missed *= 0.25;
+    if (step->damping < softest) step->damping = 0;
 }
 
-static void step_less(struct pace *pace, enum advance outcome, double moved)
+static void shorten(struct time_step *step, enum advance outcome, double moved)
 {
-    const double before = pace->damping;
-    pace->missed = outcome == TOO_FAR ? 0 : before;
-    pace->damping = outcome == TOO_FAR     ? 1.5 * moved * before
-                    : pace->found > before ? pace->found
+    const double before = step->damping;
+    step->missed = outcome == TOO_FAR ? 0 : before;
+    step->damping = outcome == TOO_FAR     ? 1.5 * moved * before
+                    : step->found > before ? step->found
                                            : 8 * before;
-    pace->damping = fmax(pace->damping, softest);
-    pace->found = 0;
+    step->damping = fmax(step->damping, softest);
+    step->found = 0;
 }
 
-static double left_without_dashpots(struct equilibrium *e)
+static double static_residual(struct quasi_static *qs)
 {
-    e->damping = 0;
-    go_back(e);
-    resist(e);
-    return largest_left(e);
+    qs->damping = 0;
+    roll_back_state(qs);
+    update_residual(qs);
+    return largest_residual(qs);
 }
 
 // Fragments that nothing holds leave when they have moved so far that they would not
 // be found at rest by small displacements either.
-static bool let_go_of_loose(struct equilibrium *e, const struct displacement *start)
+static bool detach_loose(struct quasi_static *qs, const struct displacement *start)
 {
-    for (int i = 0; i < e->n; i++)
-        e->step[i] = moved_from(&start[i], &e->before[i]);
-    find_fragments(e);
-    return let_go_beyond(e, e->step, furthest);
+    for (int i = 0; i < qs->n; i++)
+        qs->step[i] = displacement_between(&start[i], &qs->previous[i]);
+    update_fragments(qs);
+    return detach_beyond(qs, qs->step, small_limit);
 }
 
 // Steps that get somewhere do not count: those in which something moves by half an
 // increment, or by which a tenth of what was left to balance is gone.
-static bool walk(struct equilibrium *e, const struct displacement *start)
+static bool integrate(struct quasi_static *qs, const struct displacement *start)
 {
-    const int most = (int)(20 / e->setup.increment);
-    double least = left_without_dashpots(e);
-    const double beyond = fmax(1, least); // of what the stiffest joint bears
-    struct pace pace = {.damping = beyond};
-    const double rest = e->setup.tolerance * e->largest_load;
+    const int most = (int)(20 / qs->setup.increment);
+    double least = static_residual(qs);
+    const double beyond = fmax(1, least); // of what the stiffest pair bears
+    struct time_step step = {.damping = beyond};
+    const double rest = qs->setup.tolerance * qs->largest_load;
     int64_t idle = 0;
-    e->may_leave = false;
-    for (int k = 0; k < most && idle < e->setup.most_iterations; k++) {
+    qs->may_detach = false;
+    for (int k = 0; k < most && idle < qs->setup.most_iterations; k++) {
         double moved;
-        e->large->is_stale = true;
-        const enum advance outcome = large_advance(e, pace.damping, &moved);
+        qs->large->factor_is_stale = true;
+        const enum advance outcome = advance_increment(qs, step.damping, &moved);
         idle++;
-        if (outcome == MEETS) continue;
+        if (outcome == NEW_CONTACTS) continue;
         if (outcome != ADVANCED) {
-            step_less(&pace, outcome, moved);
-            if (pace.damping > stiffest * beyond) break;
+            shorten(&step, outcome, moved);
+            if (step.damping > stiffest * beyond) break;
             continue;
         }
-        keep_history(e);
-        e->large->is_stale = false;
-        if (pace.damping == 0) return true;
-        const double left = left_without_dashpots(e);
-        const bool breaks = let_go_of_loose(e, start) || break_one(e);
+        commit_state(qs);
+        qs->large->factor_is_stale = false;
+        if (step.damping == 0) return true;
+        const double left = static_residual(qs);
+        const bool breaks = detach_loose(qs, start) || break_most_overloaded(qs);
         if (breaks || moved >= 0.5 || left < 0.9 * least) idle = 0;
         if (left < 0.9 * least) least = left;
-        if (!breaks) step_further(&pace, moved);
-        if (!breaks && left <= rest) pace.damping = 0;
+        if (!breaks) lengthen(&step, moved);
+        if (!breaks && left <= rest) step.damping = 0;
     }
-    left_without_dashpots(e);
+    static_residual(qs);
     return false;
 }
 
-// Dashpots at joints do not see loose grains roll. Where things do not come to rest so,
-// others hold each grain a little, in proportion to the softest joint.
-bool large_walk(struct equilibrium *e, const struct displacement *start)
+// Dashpots at pairs do not see loose grains roll. Where things do not come to rest so,
+// others hold each grain a little, in proportion to the softest pair.
+bool follow_dynamics(struct quasi_static *qs, const struct displacement *start)
 {
     bool rests = false;
     for (int k = 0; k < 2 && !rests; k++) {
-        e->large->drag = k * 1e6 * e->soft[1];
-        rests = walk(e, start);
+        qs->large->mass_damping = k * 1e6 * qs->regularisation[1];
+        rests = integrate(qs, start);
     }
-    e->large->drag = 0;
+    qs->large->mass_damping = 0;
     return rests;
 }

@@ -1,99 +1,105 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "large_state.h"
-
-#include "quasi_static/quasi_static_internal.h"
+#include "increment.h"
+#include "contact_detection.h"
+#include "softest_mode.h"
 
 #include <math.h>
 
 // Mean radii that a grain may move in an increment, so that others do not pass it.
 static const double stride = 0.5;
 
-// The furthest that a grain or a joint has turned, or grains came closer, since the
+// The furthest that a grain or a pair has turned, or grains came closer, since the
 // last equilibrium.
-static double furthest_since(const struct equilibrium *e)
+static double furthest_since(const struct quasi_static *qs)
 {
     double most = 0;
-    for (int i = 0; i < e->n; i++) {
-        const struct displacement since = since_before(e, i);
-        const double way = norm(since.shift) * e->setup.increment / stride;
-        const double size = fmax(norm(since.turn), way);
-        if (!e->is_gone[i] && !(size <= most)) most = size;
+    for (int i = 0; i < qs->n; i++) {
+        const struct displacement since = displacement_since_previous(qs, i);
+        const double way = norm(since.translation) * qs->setup.increment / stride;
+        const double size = fmax(norm(since.rotation), way);
+        if (!qs->is_detached[i] && !(size <= most)) most = size;
     }
-    for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        const struct vector *before = e->large->before[j].axis;
-        const double turned = distance(e->large->now[j].axis[0], before[0]);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct contact_pair *pair = &qs->pair[j];
+        const struct vector *before = qs->large->previous[j].axis;
+        const double turned = distance(qs->large->current[j].axis[0], before[0]);
         const double closer =
-            fabs(e->strain[j][STRAIN_ALONG] - joint->strain[STRAIN_ALONG]);
+            fabs(qs->deformation[j][NORMAL] - pair->deformation[NORMAL]);
         const double size = fmax(turned, closer);
-        if (!joint->is_gone && !(size <= most)) most = size;
+        if (!pair->is_detached && !(size <= most)) most = size;
     }
     return most;
 }
 
 // Newton's method goes astray before it goes so far, or where numbers end.
-static bool is_astray(const struct equilibrium *e)
+static bool is_astray(const struct quasi_static *qs)
 {
     double sum = 0;
-    for (int i = 0; i < e->n; i++)
-        sum += norm(e->left[i].shift) + norm(e->left[i].turn) +
-               norm(e->trial[i].shift) + norm(e->trial[i].turn);
-    return !isfinite(sum) || !(furthest_since(e) <= 4 * e->setup.increment);
+    for (int i = 0; i < qs->n; i++)
+        sum += norm(qs->residual[i].translation) + norm(qs->residual[i].rotation) +
+               norm(qs->displacement[i].translation) +
+               norm(qs->displacement[i].rotation);
+    return !isfinite(sum) || !(furthest_since(qs) <= 4 * qs->setup.increment);
 }
 
-bool large_approach(struct equilibrium *e)
+bool solve_increment(struct quasi_static *qs)
 {
     enum { ROUNDS = 60 };
     const double slow = 0.1;
-    resist(e);
-    e->enough = e->setup.tolerance * e->largest_load;
-    if (e->damping > 0) e->enough = fmax(e->enough, 1e-3 * largest_left(e));
-    const double well = (e->damping > 0 ? 1 : well_below) * e->enough;
-    bool is_fresh = e->large->is_stale || e->damping > 0;
-    if (is_astray(e)) return false;
-    if (is_fresh && !factor(e)) return false;
-    e->large->is_stale = false;
-    anderson_begin(&e->large->acceleration, 6 * e->n);
+    update_residual(qs);
+    qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
+    if (qs->damping > 0)
+        qs->tolerance_now = fmax(qs->tolerance_now, 1e-3 * largest_residual(qs));
+    const double well = (qs->damping > 0 ? 1 : target_fraction) * qs->tolerance_now;
+    bool is_fresh = qs->large->factor_is_stale || qs->damping > 0;
+    if (is_astray(qs)) return false;
+    if (is_fresh && !factor_tangent(qs)) return false;
+    qs->large->factor_is_stale = false;
+    anderson_begin(&qs->large->acceleration, 6 * qs->n);
     double before = INFINITY;
     int since = 0, patience = 1; // rounds with one factor
     for (int round = 0; round < ROUNDS; round++) {
-        const double left = largest_left(e);
-        if (left <= well || (left <= e->enough && left >= slow * before)) return true;
+        const double left = largest_residual(qs);
+        if (left <= well || (left <= qs->tolerance_now && left >= slow * before))
+            return true;
         if (left > slow * before && since >= patience) {
             is_fresh = true;
             since = 0;
             patience *= 4;
-            if (!factor(e)) return false;
+            if (!factor_tangent(qs)) return false;
         }
         before = left;
-        if (!improve(e, &is_fresh) || is_astray(e)) return false;
+        if (!newton_step(qs, &is_fresh) || is_astray(qs)) return false;
         is_fresh = false;
         since++;
     }
-    resist(e);
-    return largest_left(e) <= e->enough;
+    update_residual(qs);
+    return largest_residual(qs) <= qs->tolerance_now;
 }
 
 // One whose dense systems take as long as others altogether counts as so many more.
-static void note_try(struct equilibrium *e)
+static void count_work(struct quasi_static *qs)
 {
     const double usual = 4e7; // multiplications
-    e->large->tried += 1 + corrections_work(e->corrections) / usual;
-    if (e->setup.report) e->setup.report(e->setup.context, e->large->balanced);
+    qs->large->work_spent += 1 + contact_solver_work(qs->contacts) / usual;
+    if (qs->setup.report)
+        qs->setup.report(qs->setup.context, qs->large->balanced_fraction);
 }
 
-enum advance large_advance(struct equilibrium *e, double damping, double *moved)
+enum advance advance_increment(struct quasi_static *qs, double damping, double *moved)
 {
-    go_back(e);
-    e->damping = damping;
-    e->large->is_unstable = false;
+    roll_back_state(qs);
+    qs->damping = damping;
+    qs->large->is_unstable = false;
     *moved = 4; // if it is not known
-    const bool is_found = large_approach(e);
-    note_try(e);
-    if (!is_found) return e->large->is_unstable ? UNSTABLE : NOT_FOUND;
-    *moved = furthest_since(e) / e->setup.increment;
+    const bool is_found = solve_increment(qs);
+    count_work(qs);
+    if (!is_found) return qs->large->is_unstable ? UNSTABLE : NOT_FOUND;
+    *moved = furthest_since(qs) / qs->setup.increment;
     if (*moved > 1) return TOO_FAR;
-    if (large_meet(e)) return MEETS;
+    if (detect_contacts(qs)) return NEW_CONTACTS;
     if (damping > 0) return ADVANCED;
-    return factor(e) && (!e->setup.is_free || free_is_stable(e)) ? ADVANCED : UNSTABLE;
+    return factor_tangent(qs) && (!qs->setup.is_free || davidson_is_stable(qs))
+               ? ADVANCED
+               : UNSTABLE;
 }

@@ -1,86 +1,95 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "large_state.h"
-
-#include "quasi_static/quasi_static_internal.h"
+#include "increment.h"
+#include "load_stepping.h"
+#include "stabilisation.h"
 
 #include <string.h>
 
-static void strain_large(struct equilibrium *e)
+static void update_large_deformation(struct quasi_static *qs)
 {
-    struct large *large = e->large;
-    for (int j = 0; j < e->n_joint; j++) {
-        const int32_t *grain = e->joint[j].grain;
+    struct large_state *large = qs->large;
+    for (int j = 0; j < qs->n_pair; j++) {
+        const int32_t *grain = qs->pair[j].grain;
         const struct vector still = {0, 0, 0};
         struct displacement by[2];
         for (int end = 0; end < 2; end++)
-            if (grain[end] >= 0) by[end] = since_before(e, grain[end]);
-        const struct vector second = grain[1] < 0 ? still : e->trial[grain[1]].shift;
-        const struct passage passage = {.start = &large->start[j],
-                                        .before = &large->before[j],
-                                        .shift =
-                                            subtract(second, e->trial[grain[0]].shift),
-                                        .by = {&by[0], grain[1] < 0 ? NULL : &by[1]}};
-        large_strains(&e->joint[j], &passage, e->strain[j], &large->now[j]);
+            if (grain[end] >= 0) by[end] = displacement_since_previous(qs, grain[end]);
+        const struct vector second =
+            grain[1] < 0 ? still : qs->displacement[grain[1]].translation;
+        const struct pair_motion motion = {
+            .start = &large->start[j],
+            .previous = &large->previous[j],
+            .translation = subtract(second, qs->displacement[grain[0]].translation),
+            .by = {&by[0], grain[1] < 0 ? NULL : &by[1]}};
+        large_deformation(&qs->pair[j], &motion, qs->deformation[j],
+                          &large->current[j]);
     }
 }
 
-// The load of joint J on the grain at END, at the trial.
-static struct displacement load_of(const struct equilibrium *e, int j, int end)
+// The load of pair J on the grain at END, at the trial.
+static struct displacement grain_load_of(const struct quasi_static *qs, int j, int end)
 {
-    struct joint joint = e->joint[j];
-    lay_joint(&joint, &e->large->now[j]);
-    return joint_loads(&joint, end, e->resistance[j].load);
+    struct contact_pair pair = qs->pair[j];
+    set_frame(&pair, &qs->large->current[j]);
+    return pair_load_on_grain(&pair, end, qs->response[j].load);
 }
 
-static void resist_large(struct equilibrium *e)
+static void subtract_large_loads(struct quasi_static *qs)
 {
-    strain_large(e);
-    for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        e->resistance[j] = joint_resistance(joint, e->strain[j]);
+    update_large_deformation(qs);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct contact_pair *pair = &qs->pair[j];
+        qs->response[j] = pair_respond(pair, qs->deformation[j]);
         for (int end = 0; end < 2; end++)
-            if (joint->grain[end] >= 0)
-                pull(&e->left[joint->grain[end]], load_of(e, j, end));
+            if (pair->grain[end] >= 0)
+                displacement_subtract(&qs->residual[pair->grain[end]],
+                                      grain_load_of(qs, j, end));
     }
-    for (int i = 0; i < e->n; i++)
-        pull(&e->left[i], scaled(1 - e->large->share, e->large->withheld[i]));
-    if (e->setup.is_free) take_off_as_one(e);
+    for (int i = 0; i < qs->n; i++)
+        displacement_subtract(&qs->residual[i],
+                              displacement_scaled(1 - qs->large->load_factor,
+                                                  qs->large->residual_at_start[i]));
+    if (qs->setup.is_free) project_rigid_load(qs);
 }
 
-static bool factor_large(struct equilibrium *e)
+static bool factor_large(struct quasi_static *qs)
 {
-    const double(*tangent)[STRAINS] = (const double(*)[STRAINS])e->tangent;
-    struct large *large = e->large;
-    large_linearise(e);
-    if (e->setup.is_free) large->hold = hold_of(e);
-    const double more = large->hold + large->drag * e->damping / (1 + e->damping);
-    const double soft[2] = {e->soft[0] + more, e->soft[1] + more};
-    large->is_unstable = !stiffness_factor(e->matrix, tangent, large->more, soft) ||
-                         !stiffness_is_positive(e->matrix);
+    const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
+    struct large_state *large = qs->large;
+    large_linearise(qs);
+    if (qs->setup.is_free) large->stabilisation = find_stabilisation(qs);
+    const double more =
+        large->stabilisation + large->mass_damping * qs->damping / (1 + qs->damping);
+    const double soft[2] = {qs->regularisation[0] + more, qs->regularisation[1] + more};
+    large->is_unstable =
+        !stiffness_factor(qs->matrix, tangent, large->geometric, soft) ||
+        !stiffness_is_positive(qs->matrix);
     return !large->is_unstable;
 }
 
-// Dashpots resist as joints do, not as their loads turn: the part of a step that does
-// is none of theirs. Steps with joints unlike the factor are no linear iteration.
-static void take_large(struct equilibrium *e)
+// Dashpots resist as pairs do, not as their loads turn: the part of a step that does
+// is none of theirs. Steps with pairs unlike the factor are no linear iteration.
+static void adjust_large_step(struct quasi_static *qs)
 {
-    if (e->damping > 0) take_off_turning(e, e->step, e->rest);
-    if (e->setup.is_free) stand_still(e, e->step);
-    if (e->damping > 0 || (corrections_count(e->corrections) > 0 && !e->setup.is_free))
-        anderson_begin(&e->large->acceleration, 6 * e->n);
+    if (qs->damping > 0) subtract_geometric_load(qs, qs->step, qs->rhs);
+    if (qs->setup.is_free) remove_rigid_motion(qs, qs->step);
+    if (qs->damping > 0 ||
+        (contact_solver_count(qs->contacts) > 0 && !qs->setup.is_free))
+        anderson_begin(&qs->large->acceleration, 6 * qs->n);
     else
-        anderson_step(&e->large->acceleration, &e->step[0].shift.x);
+        anderson_step(&qs->large->acceleration, &qs->step[0].translation.x);
 }
 
-static void keep_lies(struct equilibrium *e)
+static void commit_frames(struct quasi_static *qs)
 {
-    memcpy(e->large->before, e->large->now,
-           (size_t)e->n_joint * sizeof *e->large->before);
+    memcpy(qs->large->previous, qs->large->current,
+           (size_t)qs->n_pair * sizeof *qs->large->previous);
 }
 
-const struct equilibrium_kind large_displacements = {.resist = resist_large,
-                                                     .factor = factor_large,
-                                                     .take = take_large,
-                                                     .keep_history = keep_lies,
-                                                     .approach = large_approach,
-                                                     .balance = large_balance};
+const struct kinematics large_displacements = {.subtract_internal_loads =
+                                                   subtract_large_loads,
+                                               .factor = factor_large,
+                                               .adjust_step = adjust_large_step,
+                                               .commit = commit_frames,
+                                               .solve = solve_increment,
+                                               .balance = step_load};

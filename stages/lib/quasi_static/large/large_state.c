@@ -1,76 +1,76 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "large_state.h"
 
-#include "quasi_static/quasi_static_internal.h"
-
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// Rows that buckle do so later by what is soft against shifts.
-struct large *large_new(struct equilibrium *e)
+// Rows that buckle do so later by what is soft against translations.
+struct large_state *large_state_create(struct quasi_static *qs)
 {
-    struct large *large = NEW_ARRAY(struct large, 1);
-    struct lie **const of_joints[] = {&large->start, &large->before, &large->now};
-    for (size_t k = 0; k < sizeof of_joints / sizeof *of_joints; k++) {
-        *of_joints[k] = NEW_ARRAY(struct lie, e->n_joint);
-        for (int j = 0; j < e->n_joint; j++)
-            (*of_joints[k])[j] = joint_lie(&e->joint[j]);
+    struct large_state *large = NEW_ARRAY(struct large_state, 1);
+    struct pair_frame **const of_pairs[] = {&large->start, &large->previous,
+                                            &large->current};
+    for (size_t k = 0; k < sizeof of_pairs / sizeof *of_pairs; k++) {
+        *of_pairs[k] = NEW_ARRAY(struct pair_frame, qs->n_pair);
+        for (int j = 0; j < qs->n_pair; j++)
+            (*of_pairs[k])[j] = frame_of(&qs->pair[j]);
     }
-    large->more = NEW_ARRAY(struct pair_stiffness, e->n_joint);
-    large->acceleration = anderson_make(6 * e->n);
-    anderson_begin(&large->acceleration, 6 * e->n);
-    large->searched = NEW_ARRAY(struct vector, e->n);
-    large->withheld = NEW_ARRAY(struct displacement, e->n);
-    e->soft[0] *= 1e-3;
-    large->share = 1;
-    large->most_tried = 20000 + 20. * e->n_joint;
-    large->is_stale = true;
+    large->geometric = NEW_ARRAY(struct pair_stiffness, qs->n_pair);
+    large->acceleration = anderson_make(6 * qs->n);
+    anderson_begin(&large->acceleration, 6 * qs->n);
+    large->searched_at = NEW_ARRAY(struct vector, qs->n);
+    large->residual_at_start = NEW_ARRAY(struct displacement, qs->n);
+    qs->regularisation[0] *= 1e-3;
+    large->load_factor = 1;
+    large->work_limit = 20000 + 20. * qs->n_pair;
+    large->factor_is_stale = true;
     return large;
 }
 
-void large_free(struct large *large)
+void large_state_free(struct large_state *large)
 {
     if (!large) return;
     free(large->start);
-    free(large->before);
-    free(large->now);
-    free(large->more);
+    free(large->previous);
+    free(large->current);
+    free(large->geometric);
     anderson_free(&large->acceleration);
-    free(large->searched);
-    free(large->withheld);
+    free(large->searched_at);
+    free(large->residual_at_start);
     free(large);
 }
 
-void large_make_room(struct equilibrium *e)
+void large_state_allocate_pairs(struct quasi_static *qs)
 {
-    struct large *large = e->large;
-    const size_t count = (size_t)e->n_joint;
+    struct large_state *large = qs->large;
+    const size_t count = (size_t)qs->n_pair;
     large->start = reallocate(large->start, count, sizeof *large->start);
-    large->before = reallocate(large->before, count, sizeof *large->before);
-    large->now = reallocate(large->now, count, sizeof *large->now);
-    large->more = reallocate(large->more, count, sizeof *large->more);
+    large->previous = reallocate(large->previous, count, sizeof *large->previous);
+    large->current = reallocate(large->current, count, sizeof *large->current);
+    large->geometric = reallocate(large->geometric, count, sizeof *large->geometric);
 }
 
-struct displacement since_before(const struct equilibrium *e, int i)
+struct displacement displacement_since_previous(const struct quasi_static *qs, int i)
 {
-    return moved_from(&e->before[i], &e->trial[i]);
+    return displacement_between(&qs->previous[i], &qs->displacement[i]);
 }
 
 // With dashpots, (1 + damping) times the stiffness resists, but for this part of it.
 // Where nothing resists twist, what turns with the shear force has no symmetric part to
 // speak of: half of it there would look like grains that give way about their contacts.
-void large_linearise(struct equilibrium *e)
+void large_linearise(struct quasi_static *qs)
 {
-    struct large *large = e->large;
-    anderson_begin(&large->acceleration, 6 * e->n);
-    for (int j = 0; j < e->n_joint; j++) {
-        const struct joint *joint = &e->joint[j];
-        const bool twists = joint->is_bonded && joint->bond_stiffness[STRAIN_TWIST] > 0;
-        double load[STRAINS] = {0};
-        for (int k = 0; k < (twists ? STRAINS : 1); k++)
-            load[k] = e->resistance[j].load[k] / (1 + e->damping);
-        lay_joint(&e->joint[j], &large->now[j]);
-        geometric_stiffness(&e->joint[j], &large->now[j], load, &large->more[j]);
+    struct large_state *large = qs->large;
+    anderson_begin(&large->acceleration, 6 * qs->n);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct contact_pair *pair = &qs->pair[j];
+        const bool twists = pair->is_bonded && pair->bond_stiffness[TORSION] > 0;
+        double load[COMPONENTS] = {0};
+        for (int k = 0; k < (twists ? COMPONENTS : 1); k++)
+            load[k] = qs->response[j].load[k] / (1 + qs->damping);
+        set_frame(&qs->pair[j], &large->current[j]);
+        geometric_stiffness(&qs->pair[j], &large->current[j], load,
+                            &large->geometric[j]);
     }
 }

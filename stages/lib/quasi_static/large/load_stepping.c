@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The load is let in by increments, as long as there is a stable equilibrium near the
 // last one.
-#include "large_state.h"
+#include "load_stepping.h"
+#include "contact_detection.h"
+#include "implicit_dynamics.h"
+#include "increment.h"
+#include "softest_mode.h"
 
 #include "basics/memory.h"
-#include "quasi_static/quasi_static_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,80 +25,81 @@ static const int most_costly = 3;
 
 // ---- the way ------------------------------------------------------------------------
 
-static void withhold(struct equilibrium *e)
+static void start_residual(struct quasi_static *qs)
 {
-    e->damping = 0;
-    e->large->share = 1;
-    go_back(e);
-    resist(e);
-    memcpy(e->large->withheld, e->left, (size_t)e->n * sizeof *e->left);
+    qs->damping = 0;
+    qs->large->load_factor = 1;
+    roll_back_state(qs);
+    update_residual(qs);
+    memcpy(qs->large->residual_at_start, qs->residual,
+           (size_t)qs->n * sizeof *qs->residual);
 }
 
 // How far the way is.
-struct way {
+struct load_path {
     double reached, increment;
     double widest; // increment so far, 0: none
     double before; // of the load, balanced when this began
     int costly;    // increments not found that took long
 };
 
-static struct way begin_way(struct equilibrium *e, double before)
+static struct load_path begin_load_path(struct quasi_static *qs, double before)
 {
-    find_fragments(e);
-    withhold(e);
-    return (struct way){.increment = 1, .before = before};
+    update_fragments(qs);
+    start_residual(qs);
+    return (struct load_path){.increment = 1, .before = before};
 }
 
-static double balanced(const struct way *way)
+static double balanced(const struct load_path *path)
 {
-    return way->before + (1 - way->before) * way->reached;
+    return path->before + (1 - path->before) * path->reached;
 }
 
-static enum advance try_increment(struct equilibrium *e, struct way *way)
+static enum advance try_increment(struct quasi_static *qs, struct load_path *path)
 {
-    struct large *large = e->large;
+    struct large_state *large = qs->large;
     double moved;
-    const bool is_least = way->increment <= least_increment;
-    e->may_leave = is_least;
-    large->share = fmin(1, way->reached + way->increment);
-    const enum advance outcome = large_advance(e, 0, &moved);
-    large->is_stale = outcome != ADVANCED;
-    if (outcome == NOT_FOUND && corrections_are_costly(e->corrections)) way->costly++;
+    const bool is_least = path->increment <= least_increment;
+    qs->may_detach = is_least;
+    large->load_factor = fmin(1, path->reached + path->increment);
+    const enum advance outcome = advance_increment(qs, 0, &moved);
+    large->factor_is_stale = outcome != ADVANCED;
+    if (outcome == NOT_FOUND && contact_solver_is_costly(qs->contacts)) path->costly++;
     if (outcome == ADVANCED) {
-        keep_history(e);
-        way->widest = fmax(way->widest, large->share - way->reached);
-        way->reached = large->share;
-        way->increment *= fmin(2, 0.8 / fmax(moved, 0.01));
-    } else if (outcome != MEETS && !is_least) {
-        way->increment =
-            fmin(way->increment, 1 - way->reached) * fmax(0.25, fmin(0.5, 0.8 / moved));
+        commit_state(qs);
+        path->widest = fmax(path->widest, large->load_factor - path->reached);
+        path->reached = large->load_factor;
+        path->increment *= fmin(2, 0.8 / fmax(moved, 0.01));
+    } else if (outcome != NEW_CONTACTS && !is_least) {
+        path->increment = fmin(path->increment, 1 - path->reached) *
+                          fmax(0.25, fmin(0.5, 0.8 / moved));
     }
     return outcome;
 }
 
 // ---- its end ------------------------------------------------------------------------
 
-static bool let_go_of(struct equilibrium *e, int fragment)
+static bool detach_fragment(struct quasi_static *qs, int fragment)
 {
-    if (e->fragments.is_held[fragment]) return false;
-    bool *leaves = NEW_ARRAY(bool, e->n);
+    if (qs->fragments.is_held[fragment]) return false;
+    bool *leaves = NEW_ARRAY(bool, qs->n);
     leaves[fragment] = true;
-    let_go(e, leaves);
+    detach_fragments(qs, leaves);
     free(leaves);
     return true;
 }
 
 // Where the stiffness is not positive, a fragment that nothing holds leaves if it is
 // what gives way, or else a bond that is at its strength there breaks. Whether there
-// was one: if not, SOFTEST gave way. In this order: a loose grain would else break one
+// was one: if not, SOFTEST gave path. In this order: a loose grain would else break one
 // bond after the other, none of which had been relieved by the last.
-static bool give_way(struct equilibrium *e, double reached, int *softest)
+static bool detach_or_break(struct quasi_static *qs, double reached, int *softest)
 {
-    e->large->share = reached;
-    go_back(e);
-    resist(e);
-    *softest = large_softest(e);
-    return let_go_of(e, e->fragments.of[*softest]) || break_one(e);
+    qs->large->load_factor = reached;
+    roll_back_state(qs);
+    update_residual(qs);
+    *softest = find_softest_mode(qs);
+    return detach_fragment(qs, qs->fragments.of[*softest]) || break_most_overloaded(qs);
 }
 
 static enum status refuse_end(double balanced, int softest, struct reason *reason)
@@ -108,123 +112,127 @@ static enum status refuse_end(double balanced, int softest, struct reason *reaso
                   balanced, softest);
 }
 
-static enum status refuse_long(struct equilibrium *e, const struct way *way,
+static enum status refuse_long(struct quasi_static *qs, const struct load_path *path,
                                struct reason *reason)
 {
-    e->damping = 0;
-    e->large->share = 1;
-    go_back(e);
-    resist(e);
+    qs->damping = 0;
+    qs->large->load_factor = 1;
+    roll_back_state(qs);
+    update_residual(qs);
     return refuse(
         reason, STATUS_NOT_CONVERGED,
         "no end of the way to equilibrium: %.6f of what this load changes is "
         "balanced after as many increments and steps in time as %.0f easy "
         "ones, grain %d is furthest from it (more steps of the load, a larger "
         "quasi_static.increment, or engine=explicit)",
-        balanced(way), e->large->most_tried, least_balanced(e));
+        balanced(path), qs->large->work_limit, grain_of_largest_residual(qs));
 }
 
 // Something went on moving, and does so under the next load. Bonds that break may leave
 // it so several times under one.
-static void leave_restless(struct equilibrium *e)
+static void accept_unconverged(struct quasi_static *qs)
 {
-    if (!e->large->is_restless) e->n_restless++;
-    e->large->is_restless = true;
-    e->large->share = 1;
-    resist(e);
-    e->restless = least_balanced(e);
-    large_linearise(e);
-    e->large->is_stale = true;
+    if (!qs->large->is_unconverged) qs->n_unconverged++;
+    qs->large->is_unconverged = true;
+    qs->large->load_factor = 1;
+    update_residual(qs);
+    qs->last_unconverged = grain_of_largest_residual(qs);
+    large_linearise(qs);
+    qs->large->factor_is_stale = true;
 }
 
 // Rest was found: it snapped through or buckled if anything moved further from START
 // than it may in an increment.
-static void note_snap(struct equilibrium *e, const struct displacement *start,
-                      double balanced)
+static void record_instability(struct quasi_static *qs,
+                               const struct displacement *start, double balanced)
 {
-    double most = e->setup.increment;
-    for (int i = 0; i < e->n; i++) {
-        const double way = size_of(moved_from(&start[i], &e->before[i]));
-        if (e->is_gone[i] || !(way > most)) continue;
+    double most = qs->setup.increment;
+    for (int i = 0; i < qs->n; i++) {
+        const double way =
+            displacement_size(displacement_between(&start[i], &qs->previous[i]));
+        if (qs->is_detached[i] || !(way > most)) continue;
         most = way;
-        e->snapped = i;
+        qs->last_unstable = i;
     }
-    if (!(most > e->setup.increment)) return;
-    e->n_snap++;
-    e->large->ended = balanced;
+    if (!(most > qs->setup.increment)) return;
+    qs->n_instability++;
+    qs->large->fraction_at_instability = balanced;
 }
 
 // Where slip and contacts that open leave none near the last: few steps mostly do.
-static bool slip(struct equilibrium *e)
+static bool relax_slip(struct quasi_static *qs)
 {
-    e->may_leave = true;
-    e->large->is_stale = true;
-    go_back(e);
-    const bool rests = come_to_rest(e);
-    large_meet(e);
-    resist(e);
-    large_linearise(e);
-    e->large->is_stale = true;
+    qs->may_detach = true;
+    qs->large->factor_is_stale = true;
+    roll_back_state(qs);
+    const bool rests = relax_to_equilibrium(qs);
+    detect_contacts(qs);
+    update_residual(qs);
+    large_linearise(qs);
+    qs->large->factor_is_stale = true;
     return rests;
 }
 
 // What is left of the load, or what nothing holds, leaves.
-static bool let_go_restless(struct equilibrium *e)
+static bool detach_unbalanced(struct quasi_static *qs)
 {
-    find_fragments(e);
-    return let_go_beyond(e, e->left, e->setup.tolerance * e->largest_load);
+    update_fragments(qs);
+    return detach_beyond(qs, qs->residual, qs->setup.tolerance * qs->largest_load);
 }
 
-enum end { RESTS, LEAVES, MOVES };
+enum end { AT_REST, DETACHED, MOVING };
 
 // From where equilibrium ends dynamics decides: under as much more of the load as was
 // the most to be let in at a time, or all of it where slip is the end.
-static enum end go_through(struct equilibrium *e, const struct way *way,
-                           bool is_unstable)
+static enum end follow_past(struct quasi_static *qs, const struct load_path *path,
+                            bool is_unstable)
 {
-    const double more = is_unstable && way->widest > 0 ? way->widest : 1;
-    struct displacement *start = duplicate(e->before, (size_t)e->n, sizeof *start);
-    if (is_unstable) large_kick(e);
-    e->large->share = fmin(1, way->reached + more);
-    enum end end = !is_unstable && slip(e) ? RESTS : MOVES;
-    if (end == MOVES && !is_unstable && let_go_restless(e)) end = LEAVES;
-    if (end == MOVES && large_walk(e, start)) end = RESTS;
-    if (end == MOVES && let_go_restless(e)) end = LEAVES;
-    if (end == RESTS) note_snap(e, start, balanced(way));
+    const double more = is_unstable && path->widest > 0 ? path->widest : 1;
+    struct displacement *start = duplicate(qs->previous, (size_t)qs->n, sizeof *start);
+    if (is_unstable) perturb_along_mode(qs);
+    qs->large->load_factor = fmin(1, path->reached + more);
+    enum end end = !is_unstable && relax_slip(qs) ? AT_REST : MOVING;
+    if (end == MOVING && !is_unstable && detach_unbalanced(qs)) end = DETACHED;
+    if (end == MOVING && follow_dynamics(qs, start)) end = AT_REST;
+    if (end == MOVING && detach_unbalanced(qs)) end = DETACHED;
+    if (end == AT_REST) record_instability(qs, start, balanced(path));
     free(start);
     return end;
 }
 
 // Where there is no stable equilibrium near the last one.
-static enum status go_beyond(struct equilibrium *e, struct way *way, bool is_unstable,
-                             struct reason *reason)
+static enum status pass_limit_point(struct quasi_static *qs, struct load_path *path,
+                                    bool is_unstable, struct reason *reason)
 {
     int softest = 0;
-    const bool gives_way = is_unstable && give_way(e, way->reached, &softest);
-    const enum end end = gives_way ? LEAVES : go_through(e, way, is_unstable);
-    if (end == MOVES && is_unstable) return refuse_end(balanced(way), softest, reason);
-    if (end == MOVES) leave_restless(e);
-    if (end != LEAVES) way->reached = e->large->share;
-    if (way->reached < 1) *way = begin_way(e, balanced(way));
+    const bool gives_way = is_unstable && detach_or_break(qs, path->reached, &softest);
+    const enum end end = gives_way ? DETACHED : follow_past(qs, path, is_unstable);
+    if (end == MOVING && is_unstable)
+        return refuse_end(balanced(path), softest, reason);
+    if (end == MOVING) accept_unconverged(qs);
+    if (end != DETACHED) path->reached = qs->large->load_factor;
+    if (path->reached < 1) *path = begin_load_path(qs, balanced(path));
     return STATUS_OK;
 }
 
-enum status large_balance(struct equilibrium *e, struct reason *reason)
+enum status step_load(struct quasi_static *qs, struct reason *reason)
 {
-    struct way way = begin_way(e, 0);
-    if (e->large->tried == 0) e->large->is_restless = false; // a new load
-    while (way.reached < 1) {
-        e->large->balanced = balanced(&way);
-        if (e->large->tried > e->large->most_tried) return refuse_long(e, &way, reason);
-        const double usual = way.widest > 0 ? way.widest : 1;
-        const bool is_least = way.increment <= least_increment;
-        const bool is_rough = way.increment <= rough_increment * usual;
-        const enum advance outcome = try_increment(e, &way);
-        const bool goes_on = outcome == ADVANCED || outcome == MEETS;
-        const bool is_enough = is_rough || way.costly >= most_costly;
+    struct load_path path = begin_load_path(qs, 0);
+    if (qs->large->work_spent == 0) qs->large->is_unconverged = false; // a new load
+    while (path.reached < 1) {
+        qs->large->balanced_fraction = balanced(&path);
+        if (qs->large->work_spent > qs->large->work_limit)
+            return refuse_long(qs, &path, reason);
+        const double usual = path.widest > 0 ? path.widest : 1;
+        const bool is_least = path.increment <= least_increment;
+        const bool is_rough = path.increment <= rough_increment * usual;
+        const enum advance outcome = try_increment(qs, &path);
+        const bool goes_on = outcome == ADVANCED || outcome == NEW_CONTACTS;
+        const bool is_enough = is_rough || path.costly >= most_costly;
         const bool ends = is_least ? !goes_on : outcome == NOT_FOUND && is_enough;
         if (!ends) continue;
-        const enum status status = go_beyond(e, &way, outcome == UNSTABLE, reason);
+        const enum status status =
+            pass_limit_point(qs, &path, outcome == UNSTABLE, reason);
         if (status) return status;
     }
     return STATUS_OK;

@@ -1,42 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strains and stiffness of a joint whose grains move and turn far: as the discrete
-// elements follow them [K 4.13-4.17], from one equilibrium to the next. The normal
-// turns with the centres, the axes across it besides with the mean of the two grains;
-// shear, twist and bending are added up in these axes, by the midpoint rule, whose
-// error falls with the square of the increment. What the grains come closer is exact.
+// Deformation and geometric stiffness of a pair whose grains move and turn far: a frame
+// that turns with the pair, as the discrete elements have it [K 4.13-4.17], followed
+// from one equilibrium to the next.
 #ifndef CRAQUELURE_PAIR_FRAME_H
 #define CRAQUELURE_PAIR_FRAME_H
 
 #include "quasi_static/contact_pair.h"
 
-// How a joint lies.
-struct lie {
-    struct vector axis[3]; // as of struct joint
+// As of struct contact_pair.
+struct pair_frame {
+    struct vector axis[3];
     double arm[2];
 };
 
-struct lie joint_lie(const struct joint *joint);
-void lay_joint(struct joint *joint, const struct lie *lie);
+struct pair_frame frame_of(const struct contact_pair *pair);
+void set_frame(struct contact_pair *pair, const struct pair_frame *frame);
 
-// Where a joint began, how it lay at the last equilibrium (its strains then are the
-// joint's), and how its grains have moved since the start (SHIFT) and since then (BY).
-// NULL in BY: one that does not move, as the wall.
-struct passage {
-    const struct lie *start, *before;
-    struct vector shift; // of the second grain less that of the first
+// Frames of the pair at the start and at the last equilibrium (its deformation then is
+// the pair's), the translation of the second grain less that of the first since the
+// start, and the displacements of both since the last equilibrium; NULL: one that does
+// not move, as the wall.
+struct pair_motion {
+    const struct pair_frame *start, *previous;
+    struct vector translation;
     const struct displacement *by[2];
 };
-void large_strains(const struct joint *joint, const struct passage *passage,
-                   double strain[STRAINS], struct lie *now);
 
-// How the forces and moments on both grains, six rows each, change with their shifts
-// and turns when LOAD turns with the joint as it lies: what comes to B^T k B. Its
+// Into DEFORMATION and the frame CURRENT. The error falls with the square of the
+// motion since the last equilibrium, but what the grains come closer is exact.
+void large_deformation(const struct contact_pair *pair,
+                       const struct pair_motion *motion, double deformation[COMPONENTS],
+                       struct pair_frame *current);
+
+// What LOAD, as it turns with the pair, adds to the tangent B^T k B: forces and moments
+// on both grains, six rows each, with the translations and rotations of both. Only its
 // symmetric part: shear over arms of changing length has another, of the size of the
 // shear force, which is left to the iteration.
 struct pair_stiffness {
     double block[12][12];
 };
-void geometric_stiffness(const struct joint *joint, const struct lie *lie,
-                         const double load[STRAINS], struct pair_stiffness *stiffness);
+void geometric_stiffness(const struct contact_pair *pair,
+                         const struct pair_frame *frame, const double load[COMPONENTS],
+                         struct pair_stiffness *stiffness);
 
 #endif

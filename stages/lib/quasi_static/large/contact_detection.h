@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains that have come near each other become contact pairs.
+#ifndef CRAQUELURE_CONTACT_DETECTION_H
+#define CRAQUELURE_CONTACT_DETECTION_H
+
+#include "large_state.h"
+
+// Whether any of the new pairs touch.
+bool detect_contacts(struct quasi_static *qs);
+
+#endif

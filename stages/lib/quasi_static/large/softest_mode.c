@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "softest_mode.h"
+
+// The mode that is resisted least at the last equilibrium, or by pairs alone if that
+// is not positive either, by inverse iteration.
+int find_softest_mode(struct quasi_static *qs)
+{
+    enum { ROUNDS = 8 };
+    const struct displacement none = {{0, 0, 0}, {0, 0, 0}};
+    int softest = 0;
+    const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
+    if (!factor_tangent(qs)) {
+        const double hold = qs->large->stabilisation;
+        const double soft[2] = {qs->regularisation[0] + hold,
+                                qs->regularisation[1] + hold};
+        stiffness_factor(qs->matrix, tangent, NULL, soft);
+    }
+    if (qs->setup.is_free) return davidson_softest_mode(qs, NULL);
+    for (int i = 0; i < qs->n; i++)
+        qs->step[i] = qs->is_detached[i]
+                          ? none
+                          : (struct displacement){{1, 0.7, 0.4 + i % 3}, {0.3, 0.6, 1}};
+    for (int round = 0; round < ROUNDS; round++) {
+        stiffness_begin(qs->matrix, qs->step);
+        stiffness_finish(qs->matrix, qs->step);
+        for (int i = softest = 0; i < qs->n; i++)
+            if (displacement_size(qs->step[i]) > displacement_size(qs->step[softest]))
+                softest = i;
+        const double size = displacement_size(qs->step[softest]);
+        for (int i = 0; i < qs->n; i++)
+            qs->step[i] = displacement_scaled(1 / size, qs->step[i]);
+    }
+    return softest;
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mode of the lowest stiffness, into `step`; the grain that moves or turns most in
+// it, by 1, is returned.
+#ifndef CRAQUELURE_SOFTEST_MODE_H
+#define CRAQUELURE_SOFTEST_MODE_H
+
+#include "large_state.h"
+
+// At the last equilibrium; of a body that nothing holds, without rigid motion.
+int find_softest_mode(struct quasi_static *qs);
+
+// Of a body that nothing holds, by Davidson's method [davidson.c] with the factor there
+// is; its STIFFNESS, which may be NULL, does not count the stabilisation.
+int davidson_softest_mode(struct quasi_static *qs, double *stiffness);
+// Whether that stiffness is positive.
+bool davidson_is_stable(struct quasi_static *qs);
+
+#endif

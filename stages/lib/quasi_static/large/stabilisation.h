@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the factor of a body that nothing holds needs to be positive where the body is
+// stable.
+#ifndef CRAQUELURE_STABILISATION_H
+#define CRAQUELURE_STABILISATION_H
+
+#include "large_state.h"
+
+// A stiffness on the diagonal.
+double find_stabilisation(const struct quasi_static *qs);
+
+// Subtracts from RESIDUAL (n) the geometric stiffness of all pairs times MOVED (n).
+void subtract_geometric_load(const struct quasi_static *qs,
+                             const struct displacement *moved,
+                             struct displacement *residual);
+
+#endif
