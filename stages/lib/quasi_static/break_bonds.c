@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bonds break one after another at their strength [K 4.41, 4.42]: the most overloaded
+// first, and of those equal but for rounding the first listed, so that the order does
+// not depend on the last digit. Equilibrium is found again before the next.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"
@@ -33,8 +36,6 @@ static struct overload overload_of(const struct quasi_static *qs, int j)
                          relative_strength * qs->setup.bond.shear_strength / unit);
 }
 
-// The first of those that are as much overloaded as any, as far as rounding leaves
-// open.
 bool break_most_overloaded(struct quasi_static *qs)
 {
     const double equal = 1 - 1e-8;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the next equilibrium follows from, as named arrays, and back: grains, pairs
-// with their history, and what was counted. The factor and its corrections would only
-// speed it up; but rounding depends on them, so they are forgotten when this is kept.
+// What the next equilibrium follows from, as named arrays, and back: grains, pairs with
+// their history, and counts. The factor and the contact solver only speed it up; but
+// rounding depends on them, so they are dropped when this is kept.
 #include "quasi_static_internal.h"
 
 #include "large/large_state.h"
@@ -15,7 +15,7 @@
 
 static const double largest = 1e150, most_counted = 0x1p31;
 
-// Factors and loads that make a state worth keeping: one factor more is little beside.
+// From so many factors or loads on a checkpoint costs little: one factor more.
 enum { MANY_FACTORS = 16, MANY_LOADS = 256 };
 
 bool quasi_static_cache_is_old(const struct quasi_static *qs)
@@ -160,7 +160,7 @@ static void save_cracks(const struct quasi_static *qs, struct array_list *list)
     free(position);
 }
 
-// Points of glue overlap by -infinity [make_contact_pairs.c], which files do not hold.
+// Contact bonds have an overlap of -infinity [make_contact_pairs.c]; no file holds it.
 static void bound_numbers(double *number, int64_t count)
 {
     for (int64_t k = 0; k < count; k++)

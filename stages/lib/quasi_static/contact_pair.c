@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Deformation d = B u of a pair, from translations x and rotations w of its grains i
+// and j, with n, t1, t2 its axes and a_i, a_j the arms [K 4.7, 4.15, 4.17]:
+//     d[NORMAL]    = n . (x_j - x_i)
+//     d[SHEAR]     = t1 . (x_j - x_i) - t2 . (a_i w_i + a_j w_j)
+//     d[SHEAR + 1] = t2 . (x_j - x_i) + t1 . (a_i w_i + a_j w_j)
+//     d[TORSION], d[BENDING], d[BENDING + 1] = n, t1, t2 . (w_j - w_i)
+// Load: of the bond, bond_stiffness d [K 4.32-4.39]; of the contact, where the overlap
+// o = overlap - d[NORMAL] is not negative, a normal force -normal_stiffness o and a
+// shear force shear_stiffness (d - anchor) of at most friction normal_stiffness o; slip
+// moves the anchor [K 4.11-4.26]. The grains feel B^T load.
 #include "contact_pair.h"
 
 #include <string.h>
 
-// The surfaces' shear deformation is that of the centres less (a_i turn_i + a_j turn_j)
-// x n.
 struct displacement pair_kinematic_row(const struct contact_pair *pair, int end,
                                        int component)
 {
@@ -84,14 +92,19 @@ static void add_bond(const struct contact_pair *pair,
     }
 }
 
-// The shear spring of a contact: what it would pull if nothing slipped, and as is
-// judged; what it can hold, and as is judged.
+// The shear spring of a contact: its force FREE of slip, and the TRIAL force by which
+// slip is judged; the LIMIT on the force, and on the trial.
 struct spring {
     double free[2], trial[2], limit, augmented_limit;
 };
 
-// Coulomb slip [K 4.25-4.26]: the limit falls as the grains part. One that slides still
-// resists what turns its direction.
+// Coulomb slip [K 4.25-4.26]. With s the stiffness ratio, m the shear force of the
+// augmented state, t = s k (d - anchor) + (1 - s) m the trial and a = t / |t|, the
+// force is limit a. Newton's method takes m along, as it is the force itself in the
+// end:
+//     force = limit a + held P (s k dd + (1 - s) (force - m)),
+// held = augmented_limit / |t|, P = 1 - a a^T. Solved for the force, that divides by
+// turned = 1 - (1 - s) held. The limit falls as the grains part.
 static void slide(const struct contact_pair *pair,
                   const struct augmented_state *augmented, const struct spring *spring,
                   struct pair_response *response)
@@ -129,8 +142,8 @@ static void stick(const struct contact_pair *pair, const struct spring *spring,
     }
 }
 
-// Grains that come to touch do so without shear: their spring is free where they are
-// when all is balanced.
+// Grains that come to touch do so without shear: their spring is free where they lie
+// once all is balanced.
 static void add_shear(const struct contact_pair *pair,
                       const double deformation[COMPONENTS], double overlap,
                       const struct augmented_state *augmented,
@@ -151,7 +164,7 @@ static void add_shear(const struct contact_pair *pair,
         spring.free[k] = pair->shear_stiffness * (deformation[SHEAR + k] - anchor[k]);
         trial[k] = ratio * spring.free[k] + (1 - ratio) * augmented->shear_force[k];
     }
-    // One that slid lies where it begins to: it goes on, until it is seen to stick.
+    // One that slid is at the limit: rounding must not make it stick.
     const double edge = pair->contact.state == CONTACT_SLIPPING ? 1 - 1e-11 : 1;
     if (sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > edge * spring.augmented_limit)
         slide(pair, augmented, &spring, response);
@@ -200,7 +213,7 @@ void pair_break_bond(struct contact_pair *pair, const double deformation[COMPONE
         pair->contact.state = CONTACT_STICKING;
 }
 
-// In units in which numbers are far from their ends: no need of hypot.
+// Scaled numbers neither overflow nor underflow: no need of hypot.
 static double size_of_two(const double a[2])
 {
     return sqrt(a[0] * a[0] + a[1] * a[1]);

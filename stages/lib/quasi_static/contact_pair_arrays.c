@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Arrays with an element for each contact pair, made anew when pairs are added.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Unknowns, one number a row, a row for each component of an active pair:
+//     deformation e, since `from`; excess load q(e), by which the pair resists more
+//     than its tangent in K says.
+// Grains move by u = K^-1 (r - B^T q), so with f the compliance factor
+//     e = free_deformation - f W q(e),  free_deformation = B K^-1 r,  W = B K^-1 B^T,
+// W being `compliance` (Woodbury's identity; Delassus' operator of contact mechanics).
+// With K = L L^T a group of rows keeps L^-1 B^T; W is products of these, and
+// free_deformation their products with L^-1 r, so no row costs a whole solve.
 #include "contact_solver_internal.h"
 
 #include "basics/memory.h"
@@ -117,7 +125,7 @@ static void fill_between(struct contact_solver *c, const struct row_group *a,
         }
 }
 
-// Of the additions from FIRST on: each of all is read once for these.
+// For the groups from FIRST on.
 static void fill_compliance(struct contact_solver *c, int first)
 {
     for (int k = first; k < c->n_group; k++) {
@@ -160,7 +168,7 @@ static void add_batch(struct contact_solver *c, struct batch *batch)
     *batch = (struct batch){0};
 }
 
-// For the next deformation of a pair.
+// For the next component of a pair.
 static void add_row(struct contact_solver *c, struct batch *batch,
                     struct active_pair *active)
 {
@@ -175,7 +183,6 @@ static void add_row(struct contact_solver *c, struct batch *batch,
     if (batch->count[group] == LANES) batch->groups++;
 }
 
-// As many in a group as there are lanes.
 bool contact_solver_add(struct contact_solver *c, int count,
                         const struct pair_rows *new)
 {
@@ -193,9 +200,9 @@ bool contact_solver_add(struct contact_solver *c, int count,
     return fits;
 }
 
-// ---- the way ------------------------------------------------------------------------
+// ---- solve --------------------------------------------------------------------------
 
-// Springs pull as they did where an earlier GUESS has led, else as they do.
+// The augmented states of an earlier solution go on where there is a GUESS from it.
 static void begin(struct contact_solver *c, bool is_guessed)
 {
     memset(c->deformation, 0, (size_t)c->count * sizeof *c->deformation);
@@ -223,7 +230,8 @@ static void guess_deformation(struct contact_solver *c,
                 : 0;
 }
 
-// Softened, else as it is; where that fails too pairs in turn come before each.
+// Newton's method with augmented and with the contacts' own springs, by turns; from the
+// third round on after some sweeps of Gauss-Seidel.
 bool contact_solver_solve(struct contact_solver *c,
                           const double (*deformation)[COMPONENTS],
                           const double (*guess)[COMPONENTS], double compliance_factor,

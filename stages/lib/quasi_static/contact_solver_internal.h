@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is inside struct contact_solver, for the files that make it up only.
+// Inside struct contact_solver, for its own files only. Symbols as in contact_solver.c.
 #ifndef CRAQUELURE_CONTACT_SOLVER_INTERNAL_H
 #define CRAQUELURE_CONTACT_SOLVER_INTERNAL_H
 
@@ -7,17 +7,17 @@
 
 #include <stddef.h>
 
-// A pair and those of its deformations, from the first on, that have a row.
+// A pair, and the rows of its components, from the first on.
 struct active_pair {
     int32_t pair;
     int count, row[COMPONENTS];
-    double load[COMPONENTS];     // that it begins with
-    double shear_force[2];       // of the shear spring, so far
-    double overlap;              // so far; 0: open
+    double load[COMPONENTS];     // at `from`
+    double shear_force[2];       // the augmented state, so far
+    double overlap;              // the same; 0: open
     enum contact_state state;    // so far
     bool is_new;                 // since the last time
-    double slope[COMPONENTS][3]; // of q with the first three deformations; of the
-                                 // others, each with its own
+    double slope[COMPONENTS][3]; // dq/de with the first three components; of the
+                                 // moments, each with its own
 };
 
 struct row_group {
@@ -31,24 +31,24 @@ struct contact_solver {
     int n_pair;
     const struct contact_pair *pair;
     const double (*tangent)[COMPONENTS];
-    const double (*from)[COMPONENTS]; // (n_pair) deformations that they go on from
-    double compliance_factor;         // of the compliance that counts
-    double work;                      // multiplications since there were none
+    const double (*from)[COMPONENTS]; // (n_pair) deformation, e = 0
+    double compliance_factor;         // f
+    double work;                      // multiplications since no pair was active
     int n_active, active_capacity;
     struct active_pair *active;
-    int *active_of; // (n_pair) the entry of each, or -1
+    int *active_of; // (n_pair) in ACTIVE, or -1
     int n_group, group_capacity;
     struct row_group *group;
     int count, capacity;                   // rows
     int *active_of_row, *component_of_row; // (count)
     double *compliance;                    // W
     double *work_space;                    // (CAPACITY * DENSE_PANEL)
-    double *matrix;                        // 1 + dq/de W of those that act, factored
-    int *order;                            // of the matrix's rows, as pivots chose
-    int n_acting, *acting;                 // rows
+    double *matrix;                        // 1 + dq/de f W of the acting rows, factored
+    int *order;                            // of its rows, by pivots
+    int n_acting, *acting;                 // rows where dq/de is not 0
     int n_factored, *factored;             // those in the matrix
     double (*factored_slope)[3];           // (n_factored)
-    double *deformation, *free_deformation, *excess; // e, B K^-1 r, q
+    double *deformation, *free_deformation, *excess; // e, B K^-1 r, q(e)
     double *residual, *step, *rhs, *solution;
 };
 
@@ -57,24 +57,24 @@ static inline double *compliance_of(const struct contact_solver *c, int row)
     return c->compliance + (size_t)row * (size_t)c->capacity;
 }
 
-// The loads at deformations as they are; those of springs that slip as Newton's method
-// wants them (AUGMENTED) or as they are. Then what is left of e - B K^-1 r + W q(e):
-// the largest of it.
+// The excess load and its slope at the present deformation, of one pair or of all; by
+// augmented springs or by the contacts' own. The residual e - free_deformation + f W q;
+// the largest of it is returned.
 void update_pair_excess(struct contact_solver *c, struct active_pair *active,
                         bool is_augmented);
-// Of the loads as they are: what the shear spring pulls with beside the bond.
+// The augmented state becomes the present force of the shear spring, and overlap.
 void update_augmentation(const struct contact_solver *c, struct active_pair *active);
 double find_contact_residual(struct contact_solver *c);
 double update_contacts(struct contact_solver *c, bool is_augmented);
 
-// Adds W MORE in ROW to SUM (count).
+// Adds f W times MORE in ROW to SUM (count).
 void add_compliance(const struct contact_solver *c, int row, double more, double *sum);
 
-// Newton's method from deformations as they are: whether it is found, to ENOUGH.
+// Newton's method from the present deformation on. False: no residual below ENOUGH.
 bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enough);
 
-// Pairs in turn, each exactly while the others push as they do: as long as that brings
-// something, and no further than to ENOUGH.
+// Sweeps over the pairs, each of which is solved exactly while the others keep their
+// loads, to half of ENOUGH; until no contact changes its state, ten at most.
 void gauss_seidel(struct contact_solver *c, double enough);
 
 #endif

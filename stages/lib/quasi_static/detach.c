@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Fragments, grains that intact bonds join, and how they leave the aggregate.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"
@@ -14,7 +15,6 @@ void update_fragments(struct quasi_static *qs)
     fragments_end(&qs->fragments, qs->setup.fixed, qs->is_detached);
 }
 
-// What is marked leaves: its load counts no more, and nothing touches it.
 void detach_fragments(struct quasi_static *qs, const bool *leaves)
 {
     for (int i = 0; i < qs->n; i++) {

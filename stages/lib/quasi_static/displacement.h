@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a grain moves: also, of the same shape, force and moment on one.
+// Displacement of a grain; of the same shape, force and moment on it.
 #ifndef CRAQUELURE_DISPLACEMENT_H
 #define CRAQUELURE_DISPLACEMENT_H
 
@@ -7,9 +7,8 @@
 
 #include <math.h>
 
-// Lengths in mean radii, stiffnesses in the largest of a pair.
 struct displacement {
-    struct vector translation, rotation; // m over the unit of length; rad
+    struct vector translation, rotation; // mean radii; rad
 };
 
 static const struct displacement no_displacement = {{0, 0, 0}, {0, 0, 0}};
@@ -28,7 +27,7 @@ static inline struct displacement displacement_between(const struct displacement
                                  subtract(to->rotation, from->rotation)};
 }
 
-// LOAD is taken off SUM.
+// Subtracts LOAD from SUM.
 static inline void displacement_subtract(struct displacement *sum,
                                          struct displacement load)
 {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What pulls the grains of an equilibrium from outside.
+// The load: forces from outside on grains that are neither fixed nor detached. Where
+// nothing holds the body, net force and moment are taken off: of small displacements
+// here, once; of large ones where the grains are [rigid_motion.c].
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"
@@ -7,8 +9,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-// What is gone has no load; where nothing holds the others, theirs is then balanced
-// among themselves: if they may move far, where they are [rigid_motion.c].
 void apply_external_load(struct quasi_static *qs)
 {
     const double unit = qs->stiffness * qs->length;
@@ -24,8 +24,7 @@ void apply_external_load(struct quasi_static *qs)
     free(load);
 }
 
-// Of FORCE (n), of any unit, what would move as one grains that nothing holds and that
-// have gone far.
+// Takes net force and moment off FORCE (n), of any unit, where the grains are now.
 static struct net_load take_off_there(const struct quasi_static *qs,
                                       struct vector *force)
 {

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Nonlinear Gauss-Seidel (Jean 1999): pair after pair solves its own rows p,
+//     e_p = given - f W_pp q_p(e_p),  given = e_p - residual_p + f W_pp q_p,
+// exactly while the others keep their q, and the residual follows: de_p at p, and f W
+// dq_p everywhere.
 #include "contact_solver_internal.h"
 
 #include "return_mapping.h"
@@ -6,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-// Twist and bending are linear.
+// Torsion and bending are linear.
 static void solve_moments(const struct active_pair *active,
                           const struct local_problem *s, double x[3])
 {
@@ -19,7 +23,7 @@ static void solve_moments(const struct active_pair *active,
     if (solve_three(m, right)) memcpy(x, right, sizeof right);
 }
 
-// Of deformations FIRST to END - 1.
+// Of components FIRST to END - 1.
 static struct local_problem local_problem_of(const struct contact_solver *c,
                                              const struct active_pair *active,
                                              int first, int end,
@@ -41,8 +45,7 @@ static struct local_problem local_problem_of(const struct contact_solver *c,
     return s;
 }
 
-// The deformations of one from FIRST on, three at most, while the others push as they
-// do.
+// Three components at most, from FIRST on.
 static void return_pair(struct contact_solver *c, struct active_pair *active, int first,
                         double enough)
 {
@@ -70,7 +73,6 @@ static void return_pair(struct contact_solver *c, struct active_pair *active, in
     }
 }
 
-// Until no pair changes its touch any more.
 void gauss_seidel(struct contact_solver *c, double enough)
 {
     enum { SWEEPS = 10 };

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Stiffness in units of `stiffness`, lengths in units of `length`:
+//     contact of two grains in series k/2, with the wall k [K 4.22];
+//     parallel bond of radius R = radius_fraction min(r_i, r_j), A = pi R^2, I = A
+//     R^2/4, J = A R^2/2: normal k^n A, shear k^s A, torsion k^s J, bending k^n I
+//     [K 4.32-4.39]; contact bond: the springs of the contact, and against torsion and
+//     bending `rolling` times the shear stiffness times both arms.
 #include "make_contact_pairs.h"
 
 #include "basics/memory.h"
@@ -71,9 +77,8 @@ struct contact_pair wall_pair(const struct contact_pair_setup *setup, int i)
     return in_contact(setup, pair, 1);
 }
 
-// The contact's own springs [K 4.2], which as long as it holds nothing else joins.
-// Grains that only such points join turn about each other as gears do, and nothing says
-// how far: something must resist that.
+// The contact itself is open as long as the bond holds. Grains that only such bonds
+// join could turn about each other as gears do: `rolling` resists that.
 static void bond_at_point(const struct contact_pair_setup *setup,
                           struct contact_pair *pair, int bond)
 {

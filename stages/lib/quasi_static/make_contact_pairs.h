@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pairs of a packing: its bonds, other grains near each other, and grains near the
-// wall beneath.
+// The contact pairs of a packing: its bonds, other grains near each other, and grains
+// near the wall beneath.
 #ifndef CRAQUELURE_MAKE_CONTACT_PAIRS_H
 #define CRAQUELURE_MAKE_CONTACT_PAIRS_H
 
@@ -18,8 +18,8 @@ struct contact_pair_setup {
     double length, stiffness; // units, m and N/m
 };
 
-// Grains this far apart, of the sum of their radii, may come to touch: what is left of
-// the aggregate moves less, or they are looked for again.
+// Grains this far apart, over the sum of their radii, are pairs: they may come to
+// touch. Displacements are smaller, or pairs are sought again.
 static const double search_range = 0.1;
 
 // Of grains I and J, which lie SEPARATION apart, m; of grain I and the wall beneath.

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One step of Newton's method for the displacements u,
+//     residual(u) = load - damping dashpot_force - B^T response(B u) = 0.
+// K is the tangent as it was last factored, B^T tangent B; dashpots have (1 + damping)
+// K. Pairs whose response has changed since carry an excess load q [contact_solver.h]:
+//     K step = rhs = (residual - B^T q(B step)) / (1 + damping)
+// and the dashpot force, which is K (u - previous), grows by rhs. A pair that the step
+// changes is active from then on, and the step is found again.
 #include "quasi_static_internal.h"
 
 #include <string.h>
 
-// As everything is now; what slips, and begins to touch, is left to corrections. Then
-// the bond alone is in the factor across the contact, or else the contact as if it
-// stuck: so that a grain that slips wherever it touches is not free there. Nor where
-// dashpots are to slow it that are like the factor, and its bond is soft by decades.
+// All pairs as they are now; slip is left to the contact solver. Across a contact that
+// slips K has the bond alone, or where there is none the contact as if it stuck: else a
+// grain that slips wherever it touches would be free. So too where the bond is softer
+// by decades and dashpots, which are like K, are to slow the slip.
 bool factor_tangent(struct quasi_static *qs)
 {
     const double soft = 1e-4; // of the contact
@@ -31,8 +38,8 @@ bool factor_tangent(struct quasi_static *qs)
     return qs->kinematics->factor(qs);
 }
 
-// How many of a pair's deformations do not resist as the factor says when it is, bonded
-// or not, in TOUCH.
+// How many components of pair J do not respond as K says when its contact is in
+// STATE.
 static int changed_components(const struct quasi_static *qs, int j,
                               enum contact_state state)
 {
@@ -46,9 +53,8 @@ static int changed_components(const struct quasi_static *qs, int j,
 
 enum step_outcome { STEP_FOUND, TOO_MANY_ROWS, CONTACTS_UNSOLVED };
 
-// Corrects pairs that are unlike the factor, here or where the deformations MORE lead,
-// or if that is NULL as much again as the last load did, and once more. Whether there
-// are new ones.
+// Activates pairs that have changed, here or after MORE of deformation; NULL: after
+// twice the last increment. IS NEW: whether there were any that were not active.
 static enum step_outcome add_changed_pairs(struct quasi_static *qs,
                                            const double (*more)[COMPONENTS],
                                            bool *is_new)
@@ -73,8 +79,7 @@ static enum step_outcome add_changed_pairs(struct quasi_static *qs,
     return STEP_FOUND;
 }
 
-// The step with those pairs corrected that are known to need it, beginning with GUESS
-// of their deformations. In REST is what the factor alone has to balance.
+// The step with the pairs that are active, beginning at GUESS of their deformation.
 static enum step_outcome solve_contacts(struct quasi_static *qs,
                                         const double (*guess)[COMPONENTS])
 {
@@ -91,8 +96,7 @@ static enum step_outcome solve_contacts(struct quasi_static *qs,
     return STEP_FOUND;
 }
 
-// The step that balances all: pairs that it would change are corrected too, until
-// there are no more.
+// The step, with all pairs active that it changes.
 static enum step_outcome find_step(struct quasi_static *qs)
 {
     enum { ROUNDS = 10 };
@@ -110,8 +114,6 @@ static enum step_outcome find_step(struct quasi_static *qs)
     return STEP_FOUND;
 }
 
-// One round: a step, or a new factor where the old one does not do. Whether it did
-// anything.
 bool newton_step(struct quasi_static *qs, bool *is_fresh)
 {
     const enum step_outcome outcome = find_step(qs);

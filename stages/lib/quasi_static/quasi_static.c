@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One load after another: equilibrium, then the most overloaded bond breaks, until none
+// is at its strength. Units: length is the mean radius, stiffness the largest of a bond
+// or a grain, so forces are in their product.
 #include "quasi_static_internal.h"
 
 #include "large/large_state.h"
@@ -26,8 +29,8 @@ static void find_units(struct quasi_static *qs)
     qs->stiffness = fmax(glue, qs->setup.material.normal_stiffness);
 }
 
-// Much softer than anything that resists: it moves what nothing holds, and nothing
-// else.
+// Much softer than any bond or contact: it makes K regular where nothing holds a grain,
+// and matters nowhere else.
 static double regularisation_of(const struct quasi_static *qs)
 {
     double least = 1;

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equilibrium of bonded grains itself, without cycles that lead there: for small
-// displacements about where they began, or for large ones as an option [large.h], with
-// bonds [K 4.31-4.44], contacts that open, close and slip [K 4.11-4.26].
+// The quasi-static engine: equilibria of bonded grains, found as such, without the
+// cycles of lib/dem; with bonds [K 4.31-4.44] and contacts that open, close and slip [K
+// 4.11-4.26], for small displacements or on the geometry as it is.
 //
-// The stiffness is factored once; what breaks, opens, closes or slips later is a small
-// dense correction to it (corrections.h), until there is so much of that that a new
-// factor is made. Bonds break one after another: the most overloaded first, of equals
-// the first listed, and the next is looked for when the load has found its way round.
+// Newton's method with a factored stiffness; pairs that have changed since it was
+// factored are a small dense system [contact_solver.h], until so many have that a new
+// factor costs less. Bonds break one after another, the most overloaded first, each in
+// the equilibrium that the last break has led to.
 //
-// With friction there may be no equilibrium near the last one. Then dynamics decides:
-// dashpots at all pairs slow the way to the next, and the way is walked in steps of
-// time. What does not come to rest so and depends on no support leaves the aggregate,
-// as does a fragment (grains joined by intact bonds) that would move by more than a
-// tenth of the mean radius: its load counts no more, and nothing touches it. Where it
-// flies and what it would hit is left to the other engine.
+// With friction there may be no equilibrium near the last one. Then dashpots slow the
+// grains down, which are followed in time until they rest [viscous_relaxation.c]. A
+// fragment (grains joined by intact bonds) that nothing holds leaves where it would
+// move by more than a tenth of the mean radius or finds no rest: it has no load any
+// more, and nothing touches it. Its flight, and what it would hit, is for lib/dem.
 #ifndef CRAQUELURE_QUASI_STATIC_H
 #define CRAQUELURE_QUASI_STATIC_H
 
@@ -23,21 +22,21 @@
 
 struct quasi_static_setup {
     const struct packing *packing; // with its bonds
-    const uint8_t *fixed;          // (n_particle)
+    const uint8_t *fixed;          // (n_particle) 1: neither moves nor turns
     bool has_wall;                 // beneath, at the lower z wall
     bool unstressed;               // overlaps of the packing do not push
-    struct dem_material material;  // density and damping have no part in it
+    struct dem_material material;  // density and damping do not matter
     struct dem_bond_material bond;
-    const double *relative_strength; // (n_bond) of that of the material; NULL: 1
+    const double *relative_strength; // (n_bond) of the bonds; NULL: 1
     bool is_free;     // nothing holds the grains: their net load is taken off
-    double rolling;   // contact bonds: stiffness against rolling and twist, of that
+    double rolling;   // contact bonds: stiffness against rolling and torsion, of that
                       // against shear times both arms
-    double tolerance; // largest force or moment left on a grain, of the largest load
+    double tolerance; // on the residual of a grain, of the largest load
     int64_t most_iterations;  // steps in time to one equilibrium
     bool large_displacements; // found on the geometry as it is
     double increment; // then: turn of a grain or pair at a time, rad, or grains come
                       // closer, mean radii
-    // Then: told on the way which share of a load is balanced; may be NULL.
+    // Then: called with the share of a load that is balanced; may be NULL.
     void (*report)(void *context, double balanced);
     void *context;
 };
@@ -50,19 +49,19 @@ enum status quasi_static_create(struct quasi_static **result,
                                 struct reason *reason);
 void quasi_static_free(struct quasi_static *qs);
 
-// The next one, under FORCE (n_particle) N, with the history of those before.
-// STATUS_NOT_CONVERGED: what is left has moved so far that displacements are not small;
-// or if they may be large, equilibrium ends on the way.
+// The next equilibrium, under FORCE (n_particle) N, with the history of those before.
+// STATUS_NOT_CONVERGED: displacements of what is held are not small; or if they may be
+// large, equilibrium ends at a limit point and dynamics finds no rest.
 enum status quasi_static_solve(struct quasi_static *qs, const struct vector *force,
                                struct reason *reason);
 
-// Forgets what only speeds up those that come. From there on all is as after
+// Drops what only speeds up the next equilibria. From there on all is as after
 // quasi_static_restore from what quasi_static_save gave then: the same bytes. It costs
-// a factor: whether there have been many since the last.
+// a factor: the cache is old when there have been many since the last time.
 bool quasi_static_cache_is_old(const struct quasi_static *qs);
 void quasi_static_drop_cache(struct quasi_static *qs);
-// A new list, to be freed with dem_free_arrays. STATUS_BAD_DATA: it is not one of such
-// an equilibrium.
+// A new list, to be freed with dem_free_arrays. STATUS_BAD_DATA: it is not of such
+// grains and bonds.
 struct array_list quasi_static_save(const struct quasi_static *qs);
 enum status quasi_static_restore(struct quasi_static *qs, const struct array_list *list,
                                  struct reason *reason);
@@ -74,11 +73,10 @@ void quasi_static_displacements(const struct quasi_static *qs,
                                 struct vector *displacement);
 void quasi_static_bonds_intact(const struct quasi_static *qs, uint8_t *intact);
 struct dem_contact *quasi_static_contacts(const struct quasi_static *qs, int *count);
-// What held grains and the wall carry: force, N, and moment about ABOUT, N m, that they
-// put on the other grains.
+// Force, N, and moment about ABOUT, N m, of fixed grains and the wall on all others.
 void quasi_static_reaction(const struct quasi_static *qs, struct vector about,
                            struct vector *force, struct vector *moment);
-// The forces from outside that count, (n_particle) N, and what was taken off them.
+// The forces from outside that count (n_particle) N; what was taken off is returned.
 struct net_load quasi_static_load(const struct quasi_static *qs, struct vector *force);
 double quasi_static_unbalanced_ratio(const struct quasi_static *qs);
 
@@ -87,11 +85,11 @@ int quasi_static_iterations(const struct quasi_static *qs); // so far
 const bool *quasi_static_is_detached(const struct quasi_static *qs);
 // Grains that have left, and the FIRST of them.
 int quasi_static_detached(const struct quasi_static *qs, int *first);
-// Loads under which something held did not come to rest, and the grain that had most
-// left to balance under the LAST of them.
+// Loads under which something held did not come to rest, and the grain with the largest
+// residual under the LAST of them.
 int quasi_static_unconverged(const struct quasi_static *qs, int *last);
-// How often it snapped through or buckled, and the grain that gave way most at the
-// LAST.
+// How often the body snapped through or buckled, and the grain that moved most at the
+// LAST time.
 int quasi_static_instabilities(const struct quasi_static *qs, int *last);
 
 #endif

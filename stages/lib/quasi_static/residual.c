@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// residual = load - damping dashpot_force - B^T response(B u), 0 for grains that are
+// held or detached.
 #include "quasi_static_internal.h"
 
 #include <math.h>
 
-// The deformations that pairs, as they lie, have when grains have MOVED (n).
 void deform_pairs(const struct quasi_static *qs, const struct displacement *moved,
                   double (*deformation)[COMPONENTS])
 {
@@ -19,7 +20,6 @@ void update_deformation(struct quasi_static *qs)
     deform_pairs(qs, qs->displacement, qs->deformation);
 }
 
-// What is left of the load at the trial.
 void update_residual(struct quasi_static *qs)
 {
     for (int i = 0; i < qs->n; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What came out of an equilibrium.
+// Results of the last equilibrium, in SI units.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"
@@ -40,8 +40,8 @@ int quasi_static_instabilities(const struct quasi_static *qs, int *last)
     return qs->n_instability;
 }
 
-// Where nothing holds the grains, nor says where they are as one, rounding does: small
-// displacements are told without that, large ones are found without [rigid_motion.c].
+// Of a body that nothing holds, rigid motion is rounding: taken off small displacements
+// here, off large ones as they are found [rigid_motion.c].
 void quasi_static_displacements(const struct quasi_static *qs,
                                 struct vector *displacement)
 {
@@ -108,7 +108,7 @@ static struct vector loaded_at(const struct quasi_static *qs,
                scale(qs->length * pair->arm[0], pair->axis[0]));
 }
 
-// Adds what is LOADED at PLACE, about ABOUT.
+// Adds LOAD at PLACE, about ABOUT.
 static void add_reaction(const struct quasi_static *qs, struct displacement load,
                          struct vector place, struct vector about, struct vector *force,
                          struct vector *moment)

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The unknown x is what three components (normal, two shears) add to `from`:
+//     x = given - compliance q,  q = load(from + x) - load - tangent x.
+// In each state of the contact the load is linear, slope (from + x) + constant, so open
+// and sticking are three linear equations each. Slipping with a force of size F = limit
+// overlap(x) along the unit vector `direction`,
+//     x = smooth - F (direction[0] give[0] + direction[1] give[1]),
+// where `direction` must be the direction of the spring, x - anchor: a fixed point, and
+// where that does not converge a root in the angle, by bisection.
 #include "return_mapping.h"
 
 #include <math.h>
@@ -36,7 +44,7 @@ bool solve_three(double m[3][3], double right[3])
     return true;
 }
 
-// While a pair is in one state its load is linear: slope (from + x) + constant.
+// Load: slope (from + x) + constant.
 struct linear_law {
     double slope[3][3], constant[3];
 };
@@ -100,7 +108,7 @@ static double stretch_of(const struct contact_pair *pair, const struct local_pro
     return s->from[1 + k] + x[1 + k] - pair->contact.anchor[k];
 }
 
-// Closed and slipping, x = smooth - force (way[0] give[0] + way[1] give[1]).
+// Of a closed contact: x without friction, and what a unit shear force takes off it.
 struct sliding {
     double smooth[3], give[2][3];
     double overlap, limit; // without friction; force over overlap
@@ -128,26 +136,27 @@ static bool begin_sliding(const struct contact_pair *pair,
     return true;
 }
 
-// What comes of a slip along WAY, a unit vector: where the spring lies then, how far it
-// is turned from that way (then it cannot be), and stretched along it beyond where it
-// would stick (or else it cannot be).
+// A trial slip along DIRECTION, a unit vector: the stretch of the spring, its component
+// across DIRECTION, which must be 0, and the force of the spring along DIRECTION beyond
+// the limit, which must not be negative.
 struct slip {
     double x[3], stretch[2], turned, along, beyond;
 };
 
-static struct slip slip_along(const struct sliding *sliding, const double way[2])
+static struct slip slip_along(const struct sliding *sliding, const double direction[2])
 {
-    const double give = way[0] * sliding->give[0][0] + way[1] * sliding->give[1][0];
+    const double give =
+        direction[0] * sliding->give[0][0] + direction[1] * sliding->give[1][0];
     const double force =
         sliding->limit * sliding->overlap / (1 - sliding->limit * give);
     struct slip slip;
     for (int k = 0; k < 3; k++)
-        slip.x[k] = sliding->smooth[k] - force * (way[0] * sliding->give[0][k] +
-                                                  way[1] * sliding->give[1][k]);
+        slip.x[k] = sliding->smooth[k] - force * (direction[0] * sliding->give[0][k] +
+                                                  direction[1] * sliding->give[1][k]);
     for (int k = 0; k < 2; k++)
         slip.stretch[k] = slip.x[1 + k] - sliding->anchor[k];
-    slip.turned = way[0] * slip.stretch[1] - way[1] * slip.stretch[0];
-    slip.along = way[0] * slip.stretch[0] + way[1] * slip.stretch[1];
+    slip.turned = direction[0] * slip.stretch[1] - direction[1] * slip.stretch[0];
+    slip.along = direction[0] * slip.stretch[0] + direction[1] * slip.stretch[1];
     slip.beyond = force >= 0 ? sliding->stiffness * slip.along - force : -1;
     return slip;
 }
@@ -162,18 +171,19 @@ static bool is_along(const struct slip *slip)
     return fabs(slip->turned) <= 1e-6 * slip->along;
 }
 
-// From the way the spring lies to where the slip turns it, again and again.
+// Fixed point: DIRECTION becomes the direction into which the slip turns the spring.
 static bool follow_slip(const struct sliding *sliding, double x[3])
 {
     enum { TURNS = 8 };
-    double way[2] = {x[1] - sliding->anchor[0], x[2] - sliding->anchor[1]};
+    double direction[2] = {x[1] - sliding->anchor[0], x[2] - sliding->anchor[1]};
     for (int k = 0; k < TURNS; k++) {
-        const double size = sqrt(way[0] * way[0] + way[1] * way[1]);
+        const double size =
+            sqrt(direction[0] * direction[0] + direction[1] * direction[1]);
         if (!(size > 0)) return false;
-        const double unit[2] = {way[0] / size, way[1] / size};
+        const double unit[2] = {direction[0] / size, direction[1] / size};
         const struct slip slip = slip_along(sliding, unit);
         if (!(slip.along > 0)) return false;
-        memcpy(way, slip.stretch, sizeof way);
+        memcpy(direction, slip.stretch, sizeof direction);
         if (!is_along(&slip)) continue;
         if (!(slip.beyond >= 0)) return false;
         memcpy(x, slip.x, sizeof slip.x);
@@ -195,7 +205,7 @@ static struct slip halve(const struct sliding *sliding, double low, double at_lo
     return slip_at(sliding, low);
 }
 
-// The same where that leads nowhere: all ways, the nearest to FIRST first.
+// All angles, those near FIRST first.
 static bool seek_slip(const struct sliding *sliding, double first, double x[3])
 {
     enum { PARTS = 32 };

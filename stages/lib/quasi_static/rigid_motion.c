@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body that nothing holds, under forces that keep their directions. Wherever it goes,
-// accelerations of the grains as one, times their masses, take the net force and moment
-// off, on the geometry as it is: so there is an equilibrium for each place and each
-// direction it may have as a whole. Of these the one is meant in which the grains that
-// are there, by their masses, have the mean place and the mean direction that they
-// began with,
-//     sum m u = 0,  sum m X x u + I turn = 0,
-// X where they began, about their centre, and I of a grain: the rotation that fits them
-// best is none.
+// A body that nothing holds, under forces that keep their directions. Its net force and
+// moment are balanced by one acceleration and one angular acceleration of all grains,
+// times their masses, on the geometry as it is. So there is an equilibrium for each
+// position and orientation; the one meant keeps the mean position and orientation of
+// the grains, by masses m:
+//     sum m u = 0,  sum m X x u + I w = 0,
+// X where they began, about their centre, u translation, w rotation and I the inertia
+// of a grain: the rotation that fits all displacements best is none.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"
@@ -47,16 +46,16 @@ void project_rigid_load(struct quasi_static *qs)
     free(moved);
 }
 
-// Of a grain of MASS about its own centre, a sphere: so a row has a direction about
-// itself.
+// Of a grain of MASS about its own centre, a sphere: with it, a straight row has an
+// orientation about its own axis.
 static double own_inertia(const struct whole *whole, int i, double mass)
 {
     const double radius = whole->packing->radius[i] / whole->length;
     return 0.4 * mass * radius * radius;
 }
 
-// Of the places where grains began and where they are: how the mean direction answers a
-// turn as one. Symmetric, as long as it is that of the beginning.
+// How the mean orientation changes with a rotation of the body where it is now:
+// sum m ((X . x) 1 - (X x^T + x X^T) / 2) + I. What is not symmetric is left out.
 static void mix_inertia(struct whole *there, const struct whole *start)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -73,7 +72,7 @@ static void mix_inertia(struct whole *there, const struct whole *start)
     }
 }
 
-// The mean of STEP, by masses: how far THERE is to shift and turn as one for it.
+// The translation and rotation of THERE that have the mean of STEP.
 static struct displacement mean_motion(const struct whole *there,
                                        const struct whole *start, double unit,
                                        const struct displacement *step)
@@ -91,7 +90,7 @@ static struct displacement mean_motion(const struct whole *there,
                                  whole_turn(there, moment)};
 }
 
-// STEP without what changes the mean place, and the mean direction of START.
+// Takes off STEP what changes the mean position and orientation of START.
 static void remove_mean_motion(const struct quasi_static *qs, const struct whole *start,
                                struct whole *there, struct displacement *step)
 {

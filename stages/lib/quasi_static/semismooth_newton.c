@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Solves residual = e - free_deformation + f W q(e) = 0 for e = `deformation`. With S =
+// dq/de (`slope`), which is one of its limits where a contact opens, sticks or slips,
+//     (1 + S f W) dq = -S residual      [matrix, rhs, solution: acting rows, S not 0]
+//     de = -residual - f W dq           [step]
+// Slip is judged by the augmented Lagrangian of Alart and Curnier (1991), whose
+// multiplier, the augmented state, follows the linearised loads [advance].
 #include "contact_solver_internal.h"
 
 #include "sparse/dense_system.h"
@@ -6,15 +12,16 @@
 #include <math.h>
 #include <string.h>
 
-// ---- what is left of e - B K^-1 r + W q(e) ------------------------------------------
+// ---- residual -----------------------------------------------------------------------
 
 static double bond_shear_stiffness(const struct contact_pair *pair)
 {
     return pair->is_bonded && !pair->is_detached ? pair->bond_stiffness[SHEAR] : 0;
 }
 
-// How stiff what holds the pair is against shear without its contact, of the contact,
-// which can be stiffer by orders of magnitude. Half of it: others give way as well.
+// Half of the shear stiffness with which the body holds the pair without its contact,
+// 1 / (f W) less the contact in K, over that of the contact, which can be larger by
+// orders of magnitude. Half, as other contacts give way too.
 static double stiffness_ratio_of(const struct contact_solver *c,
                                  const struct active_pair *active)
 {
@@ -74,7 +81,7 @@ void update_pair_excess(struct contact_solver *c, struct active_pair *active,
     if (is_augmented) update_augmentation(c, active);
 }
 
-// Adds W MORE in ROW to SUM; by columns, which are rows too: no sum waits for itself.
+// By columns, which are rows too: no sum waits for the one before.
 void add_compliance(const struct contact_solver *c, int row, double more,
                     double *restrict sum)
 {
@@ -136,7 +143,6 @@ static const double *slope_of(const struct contact_solver *c, int row)
     return c->active[c->active_of_row[row]].slope[c->component_of_row[row]];
 }
 
-// Loads that change with the deformations: rows of dq/de that are not 0.
 static void list_acting(struct contact_solver *c)
 {
     c->n_acting = 0;
@@ -148,8 +154,8 @@ static void list_acting(struct contact_solver *c)
     }
 }
 
-// The matrix of another step does where little has changed: the same loads act, with
-// about the same slopes.
+// Whether the matrix of an earlier step does: the same rows act, with about the same
+// slopes.
 static bool is_factored(const struct contact_solver *c)
 {
     const double near = 1e-3;
@@ -174,7 +180,7 @@ static int stride_of(const struct contact_solver *c)
     return ((c->n_acting + 7) / 8 | 1) * 8;
 }
 
-// 1 + dq/de W
+// 1 + S f W
 static void fill_matrix(struct contact_solver *c)
 {
     for (int a = 0; a < c->n_acting; a++) {
@@ -215,7 +221,6 @@ static bool factor(struct contact_solver *c)
     return true;
 }
 
-// How q would change; the deformations follow from it.
 static bool find_step(struct contact_solver *c)
 {
     list_acting(c);
@@ -238,7 +243,7 @@ static bool find_step(struct contact_solver *c)
     return true;
 }
 
-// Pulls of springs follow the loads that Newton's method says.
+// The shear force of a spring: load + excess + tangent e, less the bond.
 static void advance(struct contact_solver *c)
 {
     for (int e = 0; e < c->n_active; e++) {
@@ -258,8 +263,8 @@ static void advance(struct contact_solver *c)
         c->deformation[row] += c->step[row];
 }
 
-// Given up where nothing gets better; nearly found is enough where pairs hold hardly
-// anything and numbers end.
+// Gives up when the residual has not halved in PATIENCE steps. Where pairs hold hardly
+// anything, so that rounding ends it earlier, 1e-6 of the free deformation will do.
 bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enough)
 {
     enum { PATIENCE = 4, AT_THE_END = 3 };

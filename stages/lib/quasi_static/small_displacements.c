@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displacements that are small: directions are those of the packing.
+// Small displacements: directions and arms are those of the packing, so B is constant
+// and K changes with the state of contacts and bonds only. It is factored again when
+// the contact solver has spent 16 times as many multiplications as a factor takes.
 #include "quasi_static_internal.h"
 
 #include <math.h>
@@ -19,8 +21,8 @@ static bool factor_small(struct quasi_static *qs)
     return stiffness_factor(qs->matrix, tangent, NULL, qs->regularisation);
 }
 
-// The next equilibrium, or step in time on the way there, from the last one: to well
-// below what may be left, as forces on many grains add up, where that comes easily.
+// To target_fraction of the tolerance, or as far below the tolerance as steps reduce
+// the residual to a tenth.
 static bool solve_small(struct quasi_static *qs)
 {
     enum { ROUNDS = 20 };
@@ -45,8 +47,8 @@ static bool solve_small(struct quasi_static *qs)
     return largest_residual(qs) <= qs->tolerance_now;
 }
 
-// At once or, where that is not found, in time. What does not even then come to rest
-// leaves if nothing supports it; else it goes on moving under the next load.
+// Fragments that nothing holds are detached where they move far or find no rest; others
+// that find none go on moving under the next load.
 static enum status balance_small(struct quasi_static *qs, struct reason *reason)
 {
     (void)reason;

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// K = sum over pairs of B^T tangent B, and of geometric stiffness, with a
+// regularisation on the diagonal: blocks of 6 by 6 for the grains that move, three
+// translations and three rotations each. Its lower triangle lies by columns; K = L L^T
+// by sparse/supernodal.h, whose halves of solutions are L^-1 of a load.
 #include "stiffness.h"
 
 #include "basics/memory.h"
@@ -6,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEGREES = 6 }; // of freedom of a grain: three translations, three turns
+enum { DEGREES = 6 }; // of freedom of a grain
 
 static_assert(sizeof(struct displacement) == DEGREES * sizeof(double), "six numbers");
 
@@ -28,7 +32,7 @@ struct stiffness {
     double *value;
     struct supernodal *factor;
     double *load;         // (n_moving * DEGREES)
-    double *begun, *left; // the same, halves of answers
+    double *begun, *left; // the same: L^-1 of the load, and of what is left of it
 };
 
 // ---- pattern ------------------------------------------------------------------------
@@ -138,7 +142,7 @@ static double *numbers_of(const struct stiffness *s, int block, int *stride)
     return s->value + s->start[column] + (block - s->diagonal[b->column]) * DEGREES;
 }
 
-// What the loads of a pair do to the grain at END, six rows: B^T.
+// B^T of the grain at END, a row for each component.
 static void kinematic_rows_of(const struct contact_pair *pair, int end,
                               double arm[COMPONENTS][DEGREES])
 {
@@ -235,7 +239,7 @@ bool stiffness_is_positive(const struct stiffness *s)
     return is_positive;
 }
 
-// ---- answers ------------------------------------------------------------------------
+// ---- solutions ----------------------------------------------------------------------
 
 void stiffness_begin(struct stiffness *s, const struct displacement *load)
 {

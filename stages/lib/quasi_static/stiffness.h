@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sparse stiffness of pairs between grains, factored, and what displacements
-// answer a load.
+// The sparse stiffness K of all pairs, factored.
 #ifndef CRAQUELURE_STIFFNESS_H
 #define CRAQUELURE_STIFFNESS_H
 
@@ -10,30 +9,31 @@
 
 struct stiffness;
 
-// For N grains, of which those FIXED (n) do not move, and N_PAIR pairs, whose grains
-// must stay the same. The caller frees it with stiffness_free.
+// For N grains, of which those FIXED (n) do not move, and N_PAIR pairs, which are kept,
+// not copied, and whose grains must stay the same. The caller frees it with
+// stiffness_free.
 struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
                                    const struct contact_pair *pair);
 void stiffness_free(struct stiffness *stiffness);
 
-// With TANGENT (n_pair) of each pair, >= 0 for each deformation, GEOMETRIC (n_pair) of
-// it, which may be NULL, and of every grain besides what is SOFT against translations
-// and turns. False: it is singular.
+// Factors K of the TANGENT (n_pair) of each component, >= 0, the GEOMETRIC stiffness
+// (n_pair; NULL: none) and SOFT on the diagonal, for translations and for rotations.
+// False: a pivot that no number holds.
 bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[COMPONENTS],
                       const struct pair_stiffness *geometric, const double soft[2]);
 
-// Whether that is positive: whether any load grows with the displacement it makes.
+// Whether K, as last factored, is positive definite to what rounding leaves.
 bool stiffness_is_positive(const struct stiffness *stiffness);
 
-// Begins the answer to LOAD (n), forces and moments, by the last factor. Finishing it,
-// as often as wanted, is into ANSWER (n) the displacements under that load less what
-// was taken off since the last time; 0 for fixed grains.
+// Solves K ANSWER = LOAD (n) by the last factor, forward and then backward. The
+// backward part, which may follow as often as wanted, is of the load less what was
+// subtracted since the last time; the answer (n) is 0 for fixed grains.
 void stiffness_begin(struct stiffness *stiffness, const struct displacement *load);
 void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
-// Halves of the answers to as many GROUPS of unit loads as HALVES, COUNT (groups) in
-// each. The product of halves is how the deformations of the ones answer loads of the
-// others. The caller frees each (groups) with halves_free.
+// L^-1 B^T of single components, in up to HALVES GROUPS of COUNT (groups) each, LANES
+// at most. PRODUCT of two such: entries of W = B K^-1 B^T, a row for each of A. The
+// caller frees each (groups) with halves_free.
 struct unit_load {
     int32_t pair, component;
 };
@@ -42,8 +42,8 @@ void stiffness_halves(struct stiffness *stiffness, int groups, const int *count,
 void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
                        const struct halves *b, double *product);
 
-// How the load that was begun with, whole, deformations the pairs of HALVES:
-// DEFORMATION for each of them. And takes those unit loads times LOAD off it.
+// DEFORMATION of the components of HALVES under the load of stiffness_begin, all of it;
+// and subtracts B^T LOAD, a number for each, from it.
 void stiffness_deformation(const struct stiffness *stiffness,
                            const struct halves *halves, double *deformation);
 void stiffness_subtract(struct stiffness *stiffness, const struct halves *halves,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains that come near each other on the way: sought anew when one has moved so far
-// that some may.
+// Pairs are sought again when a grain has moved further since the last search than the
+// range that was searched allows. New ones get the deformation that they would have had
+// if they had been pairs from the start.
 #include "contact_detection.h"
 
 #include "basics/memory.h"
@@ -11,17 +12,17 @@
 
 static bool may_touch(const struct quasi_static *qs)
 {
-    double smallest = INFINITY, furthest_way = 0;
+    double smallest = INFINITY, furthest = 0;
     for (int i = 0; i < qs->n; i++) {
-        const double way =
+        const double moved =
             distance(qs->displacement[i].translation, qs->large->searched_at[i]);
         smallest = fmin(smallest, qs->packing->radius[i] / qs->length);
-        if (!qs->is_detached[i]) furthest_way = fmax(furthest_way, way);
+        if (!qs->is_detached[i]) furthest = fmax(furthest, moved);
     }
-    return furthest_way > search_range * smallest;
+    return furthest > search_range * smallest;
 }
 
-// Grains at the trial, within the box where it repeats.
+// Grains where they are now, within the box where it repeats.
 static struct packing moved_packing(const struct quasi_static *qs)
 {
     struct packing now = *qs->packing;
@@ -41,7 +42,7 @@ static struct packing moved_packing(const struct quasi_static *qs)
     return now;
 }
 
-// The pairs that pairs are of, sorted; with the wall, -1 comes first.
+// The grains of all pairs, sorted; with the wall, -1 comes first.
 static int32_t (*known_pairs(const struct quasi_static *qs))[2]
 {
     int32_t(*grains)[2] = allocate((size_t)qs->n_pair, sizeof *grains);
@@ -55,7 +56,8 @@ static int32_t (*known_pairs(const struct quasi_static *qs))[2]
     return grains;
 }
 
-// A pair as it would have been all the time, but that nothing touched.
+// PAIR as it would be at the last equilibrium had it been one from the start, open; and
+// its frame there.
 static struct contact_pair new_pair(const struct quasi_static *qs,
                                     struct contact_pair pair, struct pair_frame *before)
 {
@@ -106,11 +108,11 @@ static void append_near(struct quasi_static *qs)
             (n_known > 0 &&
              bsearch(near[k], known, (size_t)n_known, sizeof *known, compare_pairs)))
             continue;
-        const struct vector way =
+        const struct vector moved =
             subtract(qs->displacement[j].translation, qs->displacement[i].translation);
         append_pair(qs, grain_pair(&setup, i, j,
                                    subtract(nearest_image(&now, i, j),
-                                            scale(qs->length, way))));
+                                            scale(qs->length, moved))));
     }
     for (int i = 0; i < qs->n && qs->setup.has_wall; i++) {
         const double height = qs->packing->position[i].z +

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The softest mode of a body that nothing holds, among those without momentum, and
-// whether it is resisted: by Davidson's method, as the factor holds the body, which is
-// turned over else, and so is not that of the stiffness itself.
+// The lowest mode x of a body that nothing holds, among those without momentum, by
+// Davidson's method (1975): the stiffness A (pairs as factored, and geometric) on a
+// basis of at most MOST vectors, its lowest Ritz pair (s, x), and as the next vector
+// the residual A x - s x, preconditioned by the factor of K. K is A with the
+// stabilisation, so inverse iteration with it would not find modes of A.
 #include "softest_mode.h"
 #include "stabilisation.h"
 
@@ -30,7 +32,7 @@ static double product(const double *a, const double *b, int n)
     return sum;
 }
 
-// What pairs, as they are in the factor, and their loads resist MODE with.
+// LOAD (n) = A MODE.
 static void resist_mode(const struct quasi_static *qs, const struct displacement *mode,
                         struct displacement *load)
 {
@@ -51,7 +53,7 @@ static void resist_mode(const struct quasi_static *qs, const struct displacement
     free(turning);
 }
 
-// One more, from STEP as the factor answers it. Whether it is not of the others.
+// One more vector, K^-1 STEP orthogonal to the others. False: it depends on them.
 static bool widen(struct quasi_static *qs, struct basis *basis)
 {
     const int n = 6 * qs->n, k = basis->count;
@@ -82,7 +84,7 @@ static bool widen(struct quasi_static *qs, struct basis *basis)
     return true;
 }
 
-// The least that the basis knows.
+// The lowest Ritz value; its vector's parts of the basis.
 static double soften(struct basis *basis)
 {
     const size_t count = (size_t)basis->count;
@@ -105,7 +107,7 @@ static double soften(struct basis *basis)
     return stiffness;
 }
 
-// Into STEP the softest mode as OF_VECTORS, and what resists it as OF_IMAGES.
+// STEP = OF_IMAGES A x + OF_VECTORS x.
 static void combine(const struct quasi_static *qs, const struct basis *basis,
                     double of_images, double of_vectors)
 {
@@ -117,7 +119,7 @@ static void combine(const struct quasi_static *qs, const struct basis *basis,
                                         of_vectors * basis->vector[k][i]);
 }
 
-// Without the symmetry of what grains may do together.
+// A start without any symmetry that modes may have.
 static void begin_mode(struct quasi_static *qs)
 {
     for (int i = 0; i < qs->n; i++) {
@@ -165,7 +167,7 @@ int davidson_softest_mode(struct quasi_static *qs, double *stiffness)
     return softest;
 }
 
-// To what rounding leaves of it.
+// To rounding, which goes by the stabilisation.
 bool davidson_is_stable(struct quasi_static *qs)
 {
     double stiffness;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dynamics, where equilibrium ends: dashpots at all pairs, in proportion to their
-// stiffness, slow the way down to the next equilibrium, which is walked in implicit
-// steps of time.
+// Overdamped dynamics under the present load factor: dashpots at all pairs, in
+// proportion to K, and implicit Euler steps as in viscous_relaxation.c, each an
+// increment. `damping` is viscosity over time step. It begins with a small perturbation
+// along the softest mode, in the direction in which the load does work, and ends when
+// the residual without dashpots is within the tolerance.
 #include "implicit_dynamics.h"
 #include "increment.h"
 #include "softest_mode.h"
@@ -10,8 +12,8 @@
 
 // ---- how it begins ------------------------------------------------------------------
 
-// The way that the rest of the load pushes; where it does not tell, as a row that is
-// pushed at its end, the way inverse iteration has come to.
+// 1 or -1: the direction along the mode in which the load works. Where the load does
+// not tell, as for a straight row pushed at its end, 1.
 static double direction_of_load(const struct quasi_static *qs)
 {
     double work = 0, load = 0;
@@ -38,18 +40,18 @@ void perturb_along_mode(struct quasi_static *qs)
 
 // ---- steps in time ------------------------------------------------------------------
 
-// Of dashpots, over the stiffness and a time step: no step is longer or shorter. Forces
-// that no pair bears take steps that are shorter by as much.
+// Bounds on the damping, and so on steps. Where forces exceed what the stiffest pair
+// bears, the upper one is larger by as much.
 static const double softest = 1e-8, stiffest = 1e12;
 
-// How long steps are.
+// The length of steps, and of the last that were found and not found; 0: none.
 struct time_step {
     double damping;
-    double found, missed; // the last of those with which a step was; 0: none
+    double found, missed;
 };
 
-// Longer as things come to rest, as far as an increment allows; not at once beyond
-// where none was found.
+// So long that the next moves by 0.8 of an increment; but half way, by logarithms, to a
+// length with which none was found.
 static void lengthen(struct time_step *step, double moved)
 {
     const double before = step->damping;
@@ -80,8 +82,7 @@ static double static_residual(struct quasi_static *qs)
     return largest_residual(qs);
 }
 
-// Fragments that nothing holds leave when they have moved so far that they would not
-// be found at rest by small displacements either.
+// Fragments that nothing holds leave when they have moved by more than is small.
 static bool detach_loose(struct quasi_static *qs, const struct displacement *start)
 {
     for (int i = 0; i < qs->n; i++)
@@ -90,8 +91,8 @@ static bool detach_loose(struct quasi_static *qs, const struct displacement *sta
     return detach_beyond(qs, qs->step, small_limit);
 }
 
-// Steps that get somewhere do not count: those in which something moves by half an
-// increment, or by which a tenth of what was left to balance is gone.
+// At most so many steps without progress. Progress is a bond that breaks, a motion of
+// half an increment, or a residual that is less by a tenth than any before.
 static bool integrate(struct quasi_static *qs, const struct displacement *start)
 {
     const int most = (int)(20 / qs->setup.increment);
@@ -126,8 +127,8 @@ static bool integrate(struct quasi_static *qs, const struct displacement *start)
     return false;
 }
 
-// Dashpots at pairs do not see loose grains roll. Where things do not come to rest so,
-// others hold each grain a little, in proportion to the softest pair.
+// Dashpots at pairs do not slow loose grains that roll. Where there is no rest with
+// them, each grain has one of its own as well, in proportion to the softest pair.
 bool follow_dynamics(struct quasi_static *qs, const struct displacement *start)
 {
     bool rests = false;

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Newton's method on the present geometry, with the tangent and frames as they were
+// last factored, and Anderson acceleration of the steps: a new factor when the residual
+// does not fall to a tenth in a step, after 1, 4, 16, ... steps with the old one. Then:
+// how far the increment led, whether grains have come to touch, and whether the tangent
+// there is positive definite, that is, whether equilibrium is stable.
 #include "increment.h"
 #include "contact_detection.h"
 #include "softest_mode.h"
@@ -8,15 +13,16 @@
 // Mean radii that a grain may move in an increment, so that others do not pass it.
 static const double stride = 0.5;
 
-// The furthest that a grain or a pair has turned, or grains came closer, since the
-// last equilibrium.
+// The largest rotation of a grain or pair since the last equilibrium, and approach of
+// grains; translations count as STRIDE over what an increment may turn.
 static double furthest_since(const struct quasi_static *qs)
 {
     double most = 0;
     for (int i = 0; i < qs->n; i++) {
         const struct displacement since = displacement_since_previous(qs, i);
-        const double way = norm(since.translation) * qs->setup.increment / stride;
-        const double size = fmax(norm(since.rotation), way);
+        const double translated =
+            norm(since.translation) * qs->setup.increment / stride;
+        const double size = fmax(norm(since.rotation), translated);
         if (!qs->is_detached[i] && !(size <= most)) most = size;
     }
     for (int j = 0; j < qs->n_pair; j++) {
@@ -31,7 +37,7 @@ static double furthest_since(const struct quasi_static *qs)
     return most;
 }
 
-// Newton's method goes astray before it goes so far, or where numbers end.
+// Newton's method does not converge from so far, nor from numbers that are none.
 static bool is_astray(const struct quasi_static *qs)
 {
     double sum = 0;
@@ -77,7 +83,7 @@ bool solve_increment(struct quasi_static *qs)
     return largest_residual(qs) <= qs->tolerance_now;
 }
 
-// One whose dense systems take as long as others altogether counts as so many more.
+// One whose dense systems take as long as several increments counts as so many more.
 static void count_work(struct quasi_static *qs)
 {
     const double usual = 4e7; // multiplications

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Large displacements: deformation in frames that turn with the pairs, so B and K
+// change with the iterate u. Newton's method looks for
+//     load - damping dashpot_force - B(u)^T response - (1 - s) r0 = 0,
+// s the load factor and r0 the residual at the last equilibrium, with
+//     K = B^T tangent B + geometric stiffness + regularisation + stabilisation.
 #include "increment.h"
 #include "load_stepping.h"
 #include "stabilisation.h"
@@ -26,7 +31,7 @@ static void update_large_deformation(struct quasi_static *qs)
     }
 }
 
-// The load of pair J on the grain at END, at the trial.
+// B(u)^T response of pair J, on the grain at END.
 static struct displacement grain_load_of(const struct quasi_static *qs, int j, int end)
 {
     struct contact_pair pair = qs->pair[j];
@@ -67,8 +72,9 @@ static bool factor_large(struct quasi_static *qs)
     return !large->is_unstable;
 }
 
-// Dashpots resist as pairs do, not as their loads turn: the part of a step that does
-// is none of theirs. Steps with pairs unlike the factor are no linear iteration.
+// Dashpots have the material part of K only: the geometric part of a step is not
+// theirs. Anderson acceleration takes steps of a linear iteration: none with active
+// pairs.
 static void adjust_large_step(struct quasi_static *qs)
 {
     if (qs->damping > 0) subtract_geometric_load(qs, qs->step, qs->rhs);

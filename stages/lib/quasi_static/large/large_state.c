@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-// Rows that buckle do so later by what is soft against translations.
+// The regularisation of translations would make straight rows buckle later.
 struct large_state *large_state_create(struct quasi_static *qs)
 {
     struct large_state *large = NEW_ARRAY(struct large_state, 1);
@@ -56,9 +56,9 @@ struct displacement displacement_since_previous(const struct quasi_static *qs, i
     return displacement_between(&qs->previous[i], &qs->displacement[i]);
 }
 
-// With dashpots, (1 + damping) times the stiffness resists, but for this part of it.
-// Where nothing resists twist, what turns with the shear force has no symmetric part to
-// speak of: half of it there would look like grains that give way about their contacts.
+// Dashpots, (1 + damping) K in all, have no geometric part: it is divided by as much.
+// Where nothing resists torsion only the normal force has one: the part of the shear
+// force is not symmetric there, and its symmetric half would look like a mechanism.
 void large_linearise(struct quasi_static *qs)
 {
     struct large_state *large = qs->large;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The load is let in by increments, as long as there is a stable equilibrium near the
-// last one.
+// The load factor s goes from 0 to 1 by increments, as long as there is a stable
+// equilibrium near the last one. They grow up to twofold where they led less far than
+// they may, and shrink where they led too far or nowhere. At a limit point, s no larger
+// than LEAST_INCREMENT beyond, a fragment that nothing holds leaves if it is what gives
+// way, or a bond that is at its strength breaks; else dynamics decides. Then s begins
+// again at 0, with the residual that is left.
 #include "load_stepping.h"
 #include "contact_detection.h"
 #include "implicit_dynamics.h"
@@ -13,19 +17,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Increments get no smaller than this share of what is to be let in: so exactly is
-// known where equilibrium ends.
+// The smallest increment of the load factor: so exactly are limit points known.
 static const double least_increment = 1e-6;
 
-// Without a sign that it ends, equilibrium is not looked for in smaller ones than this.
+// Where the tangent stays positive, increments that find no equilibrium get no smaller
+// than this, of the largest that did.
 static const double rough_increment = 1e-3;
 
-// Nor after so many that took long and were not found.
+// Nor are they tried again after so many that took long.
 static const int most_costly = 3;
 
-// ---- the way ------------------------------------------------------------------------
+// ---- increments ---------------------------------------------------------------------
 
-static void start_residual(struct quasi_static *qs)
+static void record_start(struct quasi_static *qs)
 {
     qs->damping = 0;
     qs->large->load_factor = 1;
@@ -35,18 +39,18 @@ static void start_residual(struct quasi_static *qs)
            (size_t)qs->n * sizeof *qs->residual);
 }
 
-// How far the way is.
+// Progress from one start to the next.
 struct load_path {
-    double reached, increment;
-    double widest; // increment so far, 0: none
-    double before; // of the load, balanced when this began
-    int costly;    // increments not found that took long
+    double reached, increment; // of the load factor
+    double widest;             // increment that was found so far, 0: none
+    double before;             // of the load, balanced when this began
+    int costly;                // increments that took long and were not found
 };
 
 static struct load_path begin_load_path(struct quasi_static *qs, double before)
 {
     update_fragments(qs);
-    start_residual(qs);
+    record_start(qs);
     return (struct load_path){.increment = 1, .before = before};
 }
 
@@ -77,7 +81,7 @@ static enum advance try_increment(struct quasi_static *qs, struct load_path *pat
     return outcome;
 }
 
-// ---- its end ------------------------------------------------------------------------
+// ---- limit points -------------------------------------------------------------------
 
 static bool detach_fragment(struct quasi_static *qs, int fragment)
 {
@@ -89,10 +93,10 @@ static bool detach_fragment(struct quasi_static *qs, int fragment)
     return true;
 }
 
-// Where the stiffness is not positive, a fragment that nothing holds leaves if it is
-// what gives way, or else a bond that is at its strength there breaks. Whether there
-// was one: if not, SOFTEST gave path. In this order: a loose grain would else break one
-// bond after the other, none of which had been relieved by the last.
+// The fragment of the grain that moves most in the softest mode, SOFTEST, leaves if
+// nothing holds it; else a bond at its strength breaks. Not the other way round: a
+// loose grain would make bonds break one after another, none relieved by the last.
+// False: neither.
 static bool detach_or_break(struct quasi_static *qs, double reached, int *softest)
 {
     qs->large->load_factor = reached;
@@ -128,8 +132,8 @@ static enum status refuse_long(struct quasi_static *qs, const struct load_path *
         balanced(path), qs->large->work_limit, grain_of_largest_residual(qs));
 }
 
-// Something went on moving, and does so under the next load. Bonds that break may leave
-// it so several times under one.
+// What moves goes on under the next load. It counts once under a load, also where bonds
+// that break begin it again.
 static void accept_unconverged(struct quasi_static *qs)
 {
     if (!qs->large->is_unconverged) qs->n_unconverged++;
@@ -141,17 +145,17 @@ static void accept_unconverged(struct quasi_static *qs)
     qs->large->factor_is_stale = true;
 }
 
-// Rest was found: it snapped through or buckled if anything moved further from START
-// than it may in an increment.
+// Dynamics found rest: an instability, if a grain moved further from START than it may
+// in an increment.
 static void record_instability(struct quasi_static *qs,
                                const struct displacement *start, double balanced)
 {
     double most = qs->setup.increment;
     for (int i = 0; i < qs->n; i++) {
-        const double way =
+        const double moved =
             displacement_size(displacement_between(&start[i], &qs->previous[i]));
-        if (qs->is_detached[i] || !(way > most)) continue;
-        most = way;
+        if (qs->is_detached[i] || !(moved > most)) continue;
+        most = moved;
         qs->last_unstable = i;
     }
     if (!(most > qs->setup.increment)) return;
@@ -159,7 +163,7 @@ static void record_instability(struct quasi_static *qs,
     qs->large->fraction_at_instability = balanced;
 }
 
-// Where slip and contacts that open leave none near the last: few steps mostly do.
+// Viscous relaxation, where slip or contacts that open are the reason: few steps do.
 static bool relax_slip(struct quasi_static *qs)
 {
     qs->may_detach = true;
@@ -173,25 +177,25 @@ static bool relax_slip(struct quasi_static *qs)
     return rests;
 }
 
-// What is left of the load, or what nothing holds, leaves.
+// Fragments that nothing holds leave if they are not balanced.
 static bool detach_unbalanced(struct quasi_static *qs)
 {
     update_fragments(qs);
     return detach_beyond(qs, qs->residual, qs->setup.tolerance * qs->largest_load);
 }
 
-enum end { AT_REST, DETACHED, MOVING };
+enum dynamics_end { AT_REST, DETACHED, MOVING };
 
-// From where equilibrium ends dynamics decides: under as much more of the load as was
-// the most to be let in at a time, or all of it where slip is the end.
-static enum end follow_past(struct quasi_static *qs, const struct load_path *path,
-                            bool is_unstable)
+// Dynamics from the limit point on, under a load factor larger by the widest increment
+// so far, or under all of the load where slip is the reason.
+static enum dynamics_end follow_past(struct quasi_static *qs,
+                                     const struct load_path *path, bool is_unstable)
 {
     const double more = is_unstable && path->widest > 0 ? path->widest : 1;
     struct displacement *start = duplicate(qs->previous, (size_t)qs->n, sizeof *start);
     if (is_unstable) perturb_along_mode(qs);
     qs->large->load_factor = fmin(1, path->reached + more);
-    enum end end = !is_unstable && relax_slip(qs) ? AT_REST : MOVING;
+    enum dynamics_end end = !is_unstable && relax_slip(qs) ? AT_REST : MOVING;
     if (end == MOVING && !is_unstable && detach_unbalanced(qs)) end = DETACHED;
     if (end == MOVING && follow_dynamics(qs, start)) end = AT_REST;
     if (end == MOVING && detach_unbalanced(qs)) end = DETACHED;
@@ -200,13 +204,13 @@ static enum end follow_past(struct quasi_static *qs, const struct load_path *pat
     return end;
 }
 
-// Where there is no stable equilibrium near the last one.
 static enum status pass_limit_point(struct quasi_static *qs, struct load_path *path,
                                     bool is_unstable, struct reason *reason)
 {
     int softest = 0;
     const bool gives_way = is_unstable && detach_or_break(qs, path->reached, &softest);
-    const enum end end = gives_way ? DETACHED : follow_past(qs, path, is_unstable);
+    const enum dynamics_end end =
+        gives_way ? DETACHED : follow_past(qs, path, is_unstable);
     if (end == MOVING && is_unstable)
         return refuse_end(balanced(path), softest, reason);
     if (end == MOVING) accept_unconverged(qs);

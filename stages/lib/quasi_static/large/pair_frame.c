@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The frame of a pair turns with the normal n, which follows the centres, and about n
+// with the mean rotation of the two grains. From the last equilibrium on grains i and j
+// move by translations x and rotations w; the frame half way gives the midpoint rule:
+//     d[NORMAL]  = distance now less distance at the start            (exact)
+//     d[SHEAR]  += t . (arc of j about i - (a_i w_i + a_j w_j) x n)
+//     d[TORSION], d[BENDING] += n, t . (w_j - w_i)                    [K 4.13-4.17]
+// Geometric stiffness: the change of B^T load as the frame turns with the grains, for a
+// unit of each of the twelve displacements.
 #include "pair_frame.h"
 
 #include <string.h>
@@ -29,7 +37,8 @@ static struct vector unit(struct vector a)
     return scale(1 / norm(a), a);
 }
 
-// The axes across a normal that turns to NORMAL the shortest way, and by SPIN about it.
+// The axes of a frame whose normal turns to NORMAL by the smallest rotation, and which
+// then turns by SPIN about it.
 static void turn_axes(const struct vector *axis, struct vector normal, double spin,
                       struct vector *turned)
 {
@@ -42,17 +51,17 @@ static void turn_axes(const struct vector *axis, struct vector normal, double sp
     turned[2] = cross(normal, turned[1]);
 }
 
-// What the motion since the last equilibrium does to a pair, about its middle.
+// The motion of a pair since the last equilibrium.
 struct relative_motion {
     struct vector bend;    // change of the normal
     double stretch;        // of the distance, since the start
     double closer;         // the part of it since the last equilibrium
-    struct vector mean;    // turn of both grains
-    struct vector apart;   // turn of the second less the first
-    struct vector rolling; // turns times arms
+    struct vector mean;    // rotation of both grains
+    struct vector apart;   // rotation of the second less that of the first
+    struct vector rolling; // rotations times arms
 };
 
-// No difference of two positions: small displacements keep their digits.
+// Without differences of positions: small displacements keep their digits.
 static struct relative_motion motion_of(const struct contact_pair *pair,
                                         const struct pair_motion *pair_motion)
 {
@@ -78,13 +87,13 @@ static struct relative_motion motion_of(const struct contact_pair *pair,
                          scale(previous->arm[1] + half, j.rotation));
     if (has_wall(pair)) return motion;
     const double distance = previous->arm[0] + previous->arm[1] + motion.closer;
-    const struct vector way = subtract(j.translation, i.translation);
+    const struct vector shift = subtract(j.translation, i.translation);
     motion.bend =
-        scale(1 / distance, subtract(way, scale(motion.closer, previous->axis[0])));
+        scale(1 / distance, subtract(shift, scale(motion.closer, previous->axis[0])));
     return motion;
 }
 
-// The way of the second grain about the first: the arc over the chord BEND.
+// The path of the second grain about the first: the arc over the chord BEND.
 static struct vector arc(const struct relative_motion *motion, double distance)
 {
     const double half = fmin(0.5 * norm(motion->bend), 1);
@@ -106,7 +115,7 @@ void large_deformation(const struct contact_pair *pair,
     current->arm[0] = previous->arm[0] + 0.5 * motion.closer;
     current->arm[1] = has_wall(pair) ? 0 : previous->arm[1] + 0.5 * motion.closer;
     const double distance = previous->arm[0] + previous->arm[1] + 0.5 * motion.closer;
-    // A wall lies still: what its grain moves sideways is all of it.
+    // A wall does not turn with the grain.
     const struct vector across = has_wall(pair)
                                      ? scale(-1, pair_motion->by[0]->translation)
                                      : arc(&motion, distance);
@@ -140,19 +149,19 @@ static struct carried carried_by(const struct pair_frame *frame,
     return carried;
 }
 
-// How the loads on both grains change when these are WAY further apart and have turned
-// by TURN, both together.
+// How the loads on both grains change when the second has moved by SHIFT against the
+// first, and their rotations add up to TURN.
 static void change_loads(const struct contact_pair *pair,
                          const struct pair_frame *frame, const struct carried *carried,
-                         struct vector way, struct vector turn,
+                         struct vector shift, struct vector turn,
                          struct displacement change[2])
 {
     const struct vector n = frame->axis[0];
     const bool wall = has_wall(pair);
     struct vector with = scale(0.5 * dot(n, turn), n); // the pair turns
     if (!wall)
-        with = add(with, scale(1 / (frame->arm[0] + frame->arm[1]), cross(n, way)));
-    const double longer[2] = {0.5 * dot(n, way), wall ? 0 : 0.5 * dot(n, way)};
+        with = add(with, scale(1 / (frame->arm[0] + frame->arm[1]), cross(n, shift)));
+    const double longer[2] = {0.5 * dot(n, shift), wall ? 0 : 0.5 * dot(n, shift)};
     const struct vector force = cross(with, carried->force);
     const struct vector moment = cross(with, carried->moment);
     const struct vector turning = cross(with, carried->turning);
@@ -172,13 +181,13 @@ void geometric_stiffness(const struct contact_pair *pair,
     const struct carried carried = carried_by(frame, load);
     double column[12][12];
     for (int c = 0; c < 12; c++) {
-        struct vector way = none, turn = none;
+        struct vector shift = none, turn = none;
         if (c % 6 < 3)
-            set_component(&way, c % 6, c < 6 ? -1 : 1);
+            set_component(&shift, c % 6, c < 6 ? -1 : 1);
         else
             set_component(&turn, c % 6 - 3, 1);
         struct displacement change[2];
-        change_loads(pair, frame, &carried, way, turn, change);
+        change_loads(pair, frame, &carried, shift, turn, change);
         memcpy(column[c], change, sizeof column[c]);
     }
     for (int c = 0; c < 12; c++)

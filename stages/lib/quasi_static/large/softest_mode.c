@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inverse iteration with the tangent at the last equilibrium, K x' = x: x tends to the
+// mode of the lowest stiffness by its size. Where the tangent has no factor, with that
+// of the pairs alone, without geometric stiffness.
 #include "softest_mode.h"
 
-// The mode that is resisted least at the last equilibrium, or by pairs alone if that
-// is not positive either, by inverse iteration.
 int find_softest_mode(struct quasi_static *qs)
 {
     enum { ROUNDS = 8 };
-    const struct displacement none = {{0, 0, 0}, {0, 0, 0}};
     int softest = 0;
     const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
     if (!factor_tangent(qs)) {
@@ -18,7 +18,7 @@ int find_softest_mode(struct quasi_static *qs)
     if (qs->setup.is_free) return davidson_softest_mode(qs, NULL);
     for (int i = 0; i < qs->n; i++)
         qs->step[i] = qs->is_detached[i]
-                          ? none
+                          ? no_displacement
                           : (struct displacement){{1, 0.7, 0.4 + i % 3}, {0.3, 0.6, 1}};
     for (int round = 0; round < ROUNDS; round++) {
         stiffness_begin(qs->matrix, qs->step);

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A free body under pressure is a pencil on its tip: without the net moment that is
+// taken off, the loads of pairs would turn it over, so K has negative directions of
+// rigid rotation. What K resists a rigid rotation N with is at most P = |K N| / |N|,
+// however that is coupled to other motions, and K + 2 P is positive where K is for all
+// others.
 #include "stabilisation.h"
 
 #include "basics/memory.h"
@@ -37,10 +42,6 @@ static double square(const struct displacement *a, int n)
     return sum;
 }
 
-// Pressed together it is a pencil on its tip: alone, without what is taken off, the
-// loads of pairs turn it over. What it resists a turn as one with, however that is
-// coupled to others, is at most P = |K N| / |N|, and K + 2 P is positive where K is for
-// all other motions.
 double find_stabilisation(const struct quasi_static *qs)
 {
     struct vector *moved = displacements_in_metres(qs);

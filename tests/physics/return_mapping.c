@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One contact settled among others (settle_joint.h): what is said to be found is one of
-// its equilibria, by the law that Newton's method goes by, whatever surrounds it.
+// One contact solved among others (return_mapping.h): each solution is an equilibrium
+// by the contact law of Newton's method, whatever the local problem.
 #include "../random.h"
 #include "../test.h"
 #include "quasi_static/return_mapping.h"
