@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_CONDITIONS_H
 #define CRAQUELURE_CONDITIONS_H
 
-#include "drying.h"
+#include "dry/run/drying.h"
 
 // Scaled units: the mean throat length is 1, the density of the liquid is 1, and so is
 // the fall of the vapour's potential from saturation to the drying air.

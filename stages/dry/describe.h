@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_DRY_DESCRIBE_H
 #define CRAQUELURE_DRY_DESCRIBE_H
 
-#include "drying.h"
+#include "dry/run/drying.h"
 
 #include <stddef.h>
 

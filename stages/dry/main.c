@@ -6,11 +6,11 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "conditions.h"
-#include "drying.h"
-#include "mass_transfer.h"
+#include "dry/gas/mass_transfer.h"
+#include "dry/run/drying.h"
+#include "dry/run/initial_saturation.h"
 #include "network/enclosed.h"
 #include "parameters.h"
-#include "start.h"
 #include "write_drying.h"
 
 #include <math.h>

@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_DRY_PARAMETERS_H
 #define CRAQUELURE_DRY_PARAMETERS_H
 
-#include "drying.h"
-#include "mass_transfer.h"
+#include "dry/gas/mass_transfer.h"
+#include "dry/run/drying.h"
 #include "network/drawn_radii.h"
 #include "parameters/conditions.h"
 #include "parameters/parameters.h"

@@ -5,7 +5,7 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "describe.h"
-#include "profiles.h"
+#include "dry/run/profiles.h"
 #include "write_layer.h"
 
 #include <limits.h>

@@ -4,8 +4,8 @@
 #define CRAQUELURE_WRITE_LAYER_H
 
 #include "artifacts/artifact.h"
-#include "drying.h"
-#include "mass_transfer.h"
+#include "dry/gas/mass_transfer.h"
+#include "dry/run/drying.h"
 
 // Its columns, their exchange areas and links, as dry_network had them.
 void put_boundary_layer(struct artifact *artifact, const struct network *network,

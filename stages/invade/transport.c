@@ -2,7 +2,7 @@
 #include "transport.h"
 
 #include "basics/memory.h"
-#include "sparse/kron.h"
+#include "elimination/kron.h"
 #include "sparse/linear_solver.h"
 
 #include <math.h>

@@ -17,10 +17,10 @@
 // how many nodes evaporate, how many of these evaporate otherwise by more than 1e-6
 // afterwards, and how many would have to be told of it if smaller changes were put off
 // until they are 1e-6 together.
-#include "dry/boundary_layer.h"
-#include "dry/clocks.h"
 #include "dry/conditions.h"
-#include "dry/drying.h"
+#include "dry/gas/boundary_layer.h"
+#include "dry/inviscid/emptying_times.h"
+#include "dry/run/drying.h"
 #include "network/invasion.h"
 
 #include "../random.h"

@@ -3,9 +3,9 @@
 // 3.3.5, Fig. 3.44], no area lost or won anywhere, and lateral diffusion over stripes
 // that has a closed form.
 #include "../test.h"
-#include "dry/boundary_layer.h"
-#include "dry/column_order.h"
-#include "dry/vapour.h"
+#include "dry/gas/boundary_layer.h"
+#include "dry/gas/nested_dissection_order.h"
+#include "dry/gas/vapour.h"
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"

@@ -2,7 +2,7 @@
 // Clusters kept online against clusters found anew after every event, on small random
 // networks with parallel throats and loose pieces.
 #include "../test.h"
-#include "dry/clusters.h"
+#include "dry/liquid/clusters.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"

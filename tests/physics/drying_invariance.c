@@ -2,7 +2,7 @@
 // What drying must not depend on: how nodes and throats are numbered, the unit of
 // length, and, while the liquid is in one piece, how fast it dries.
 #include "../test.h"
-#include "dry/clusters.h"
+#include "dry/liquid/clusters.h"
 #include "network/invasion.h"
 #include "support_lattice.h"
 

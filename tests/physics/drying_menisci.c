@@ -4,7 +4,7 @@
 // that are gas and all bodies of liquid, without elimination.
 #include "../test.h"
 #include "dry/conditions.h"
-#include "dry/curved.h"
+#include "dry/kelvin/kelvin_menisci.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"

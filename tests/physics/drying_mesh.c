@@ -2,8 +2,8 @@
 // Sites eliminated one by one against Gaussian elimination in long double, over twelve
 // decades of conductance.
 #include "../test.h"
-#include "dry/star_mesh.h"
-#include "dry/triangle.h"
+#include "elimination/dense_front.h"
+#include "elimination/kron_fronts.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"

@@ -3,7 +3,7 @@
 #include "../test.h"
 #include "support_lattice.h"
 
-#include "dry/profiles.h"
+#include "dry/run/profiles.h"
 
 #include <stdbool.h>
 

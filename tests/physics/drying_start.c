@@ -6,7 +6,7 @@
 #include "support_lattice.h"
 
 #include "basics/memory.h"
-#include "dry/start.h"
+#include "dry/run/initial_saturation.h"
 #include "network/invasion.h"
 
 #include <stdbool.h>

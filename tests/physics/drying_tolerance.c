@@ -2,9 +2,9 @@
 // Drying with vapour_tolerance beside the exact vapour of the same throats and nodes,
 // event by event: what wet nodes give off, errors added up, and the rate.
 #include "../test.h"
-#include "dry/boundary_layer.h"
-#include "dry/clocks.h"
 #include "dry/conditions.h"
+#include "dry/gas/boundary_layer.h"
+#include "dry/inviscid/emptying_times.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"

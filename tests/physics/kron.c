@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flow through networks of conductances over many decades, by elimination and by a
 // graph with a factor that follows, next to Gauss's elimination in 600 bits (MPFR).
-#include "sparse/kron.h"
+#include "elimination/kron.h"
 #include "../test.h"
-#include "dry/liquid_graph.h"
+#include "dry/liquid/cluster_laplacian.h"
 
 #include "basics/memory.h"
 #include "sparse/plain_cholmod.h"

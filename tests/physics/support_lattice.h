@@ -4,7 +4,7 @@
 #define CRAQUELURE_SUPPORT_LATTICE_H
 
 #include "../random.h"
-#include "dry/drying.h"
+#include "dry/run/drying.h"
 
 // Counts of nodes along x, y, z; all throats of length SPACING and radius 0.2 SPACING.
 // Of the faces only those on the walls, one square a grain. Freed with network_free.

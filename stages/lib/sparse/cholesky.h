@@ -4,7 +4,7 @@
 #define CRAQUELURE_CHOLESKY_H
 
 #include "basics/status.h"
-#include "matrix.h"
+#include "elimination/conductance_matrix.h"
 
 #include <stdbool.h>
 

@@ -5,8 +5,8 @@
 #define CRAQUELURE_LINEAR_SOLVER_H
 
 #include "cholesky.h"
-#include "matrix.h"
-#include "sampled_factor.h"
+#include "elimination/approximate_cholesky.h"
+#include "elimination/conductance_matrix.h"
 
 enum solver { SOLVER_AUTO, SOLVER_CHOLESKY, SOLVER_ITERATION };
 

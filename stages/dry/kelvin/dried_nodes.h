@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What throats that empty change in the balances of the other bodies of liquid: those
+// at the throats' ends, or that part, are others; nodes that dry leave the vapour.
+#ifndef CRAQUELURE_DRAINED_H
+#define CRAQUELURE_DRAINED_H
+
+#include "dry/liquid/occupancy.h"
+
+struct dried_link {
+    int site;
+    double conductance;
+};
+
+struct dried_node {
+    int begin, end; // of its links, as they were when it dried
+    double total;   // conductance of all its links
+};
+
+struct drained {
+    bool by_throat; // a throat is a body of liquid; else a cluster
+    int n_throat;   // that have emptied
+    int n_body;
+    int *body;  // (n_body) throats or clusters that are others now
+    bool *seen; // (n_throat of the network) whether in BODY
+    int n_node, node_capacity;
+    struct dried_node *node; // (n_node)
+    int n_link, link_capacity;
+    struct dried_link *link; // (n_link)
+    int *other;              // (n_site) room
+    double *conductance;     // (n_site) 0 between calls
+};
+
+// For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
+// with drained_free.
+struct drained drained_make(int n_throat, int n_site, bool by_throat);
+
+// THROAT is about to be emptied; it has been.
+void drained_note_before(struct drained *drained, struct phases *phases, int throat);
+void drained_note_after(struct drained *drained, const struct phases *phases);
+
+// Forgets what has drained.
+void drained_clear(struct drained *drained);
+
+void drained_free(struct drained *drained);
+
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kelvin's law: the vapour above a curved meniscus.
+//
+// The potential -ln(1 - p_v/p_g), scaled to 0 above a flat meniscus and 1 in the drying
+// air, rises with the exponent p_c M / (rho R T) by which the vapour pressure falls.
+#ifndef CRAQUELURE_KELVIN_LAW_H
+#define CRAQUELURE_KELVIN_LAW_H
+
+#include "dry/conditions.h"
+
+struct kelvin_law {
+    double over_flat, saturation; // p_g - p_sat, p_sat, Pa
+    double fall;                  // of -ln(1 - p_v/p_g) from flat menisci to the air
+    double exponent;              // of a throat 1 m in radius
+    double of_pressure;           // of 1 Pa
+    double steepness;             // rise of the exponent a metre upwards, 1/m
+};
+
+// Of the liquid, the gas and the temperature of CONDITIONS.
+struct kelvin_law kelvin_law(const struct drying_conditions *conditions);
+
+// Above a meniscus, how it rises with the exponent, and at which exponent it is so.
+double kelvin_potential(const struct kelvin_law *law, double exponent);
+double kelvin_slope(const struct kelvin_law *law, double exponent);
+double kelvin_exponent_at(const struct kelvin_law *law, double potential);
+
+// At which half of the gas beside saturated vapour would be vapour: below 0, bulging.
+double kelvin_least_exponent(const struct kelvin_law *law);
+
+// STATUS_BAD_DATA with the throat whose meniscus has no more vapour than the air: it
+// never dries.
+enum status check_kelvin(const struct drying_conditions *conditions,
+                         const struct network *network, struct reason *reason);
+
+#endif

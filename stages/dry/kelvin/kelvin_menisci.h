@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Menisci with vapour pressures of their own (Kelvin): p_v = p_sat exp(-p_c M/(rho R
+// T)) above a meniscus of capillary pressure p_c = 2 sigma cos(theta) / r.
+//
+// What has one curvature is a body of liquid: a throat, where the liquid does not move;
+// a cluster, where it has no viscosity and so one pressure, that at which gas enters
+// its widest meniscus throat. Under gravity the pressure of a cluster falls with
+// height, and so does the vapour above it. A node between several bodies has the mean
+// of their potentials, by the sections of the throats, as it shares out what it
+// evaporates.
+//
+// So vapour goes from wide menisci to narrow ones, and may condense there: a throat
+// partly empty then fills. Where that which gas enters is full the menisci of the body
+// become flatter until it neither takes nor gives: its pressure is unknown, and found
+// so that nothing condenses and no meniscus is more curved than its throat makes it (an
+// obstacle problem).
+#ifndef CRAQUELURE_CURVED_H
+#define CRAQUELURE_CURVED_H
+
+#include "dry/conditions.h"
+#include "dry/liquid/losses.h"
+#include "dry/liquid/occupancy.h"
+#include "kelvin_law.h"
+
+struct floating;
+
+struct share {
+    int body;    // its place
+    double part; // of the sections at the node
+};
+
+struct curved {
+    bool by_throat;  // a throat is a body of liquid; else a cluster
+    double *section; // (n_throat) proportional to its cross-section
+    double *own;     // (n_throat) potential above its meniscus: 0 flat, 1 as in the air
+    double rate;     // into the air, scaled
+    double residual; // largest so far of the balances, of that rate
+    struct kelvin_law law;
+    struct floating *floating;
+    bool *floated;      // (n_throat) by throat or cluster: did, when last found
+    double *floated_at; // (n_throat) its potential then
+
+    // Of the bodies beside gas, as they were when so many throats held liquid.
+    int listed_at; // -1: not yet
+    int n;
+    int *body;                // (n) throat or cluster
+    int *throat;              // (n) that gas enters: what the body loses or takes up
+    double *potential;        // (n)
+    double *gain;             // (n) what it evaporates; below 0: takes up
+    bool *floats;             // (n) flatter than its throat makes it
+    bool *flows;              // (n) its exponent and potential are given, by its flow
+    double *exponent;         // (n) p_c M / (rho R T) in its throat; as curved as that
+                              // makes it, if it floats
+    int *place;               // (n_throat) of a throat or cluster, -1: none
+    double *reach;            // (n) at most what conducts vapour from it
+    double *noise, all_noise; // (n) less gain than this is none; their sum
+    int *ranked;              // (n) places by throats, ascending
+    int *at_throat;           // (n_throat) room
+    int *offset;              // (n_wet+1) of the shares in each wet node
+    struct share *share;      // (offset[n_wet])
+    double *raised;           // (n_wet) potential that gravity adds there
+    double *conducted;        // (n_wet) at most what conducts vapour from there
+    double *outside;          // (n_site) conductance of the boundary layer, at first
+    double *level, *flow;     // (n_site) room
+};
+
+// For PHASES before any throat has emptied. The caller frees it with curved_free.
+struct curved curved_make(struct phases *phases,
+                          const struct drying_conditions *conditions);
+
+// What each body loses, or takes up (negative), with PHASES as they are, by throats.
+// LOSSES come in ascending throats.
+//
+// STATUS_NOT_CONVERGED if the menisci are not found.
+enum status curved_find(struct curved *curved, struct phases *phases,
+                        struct losses *losses, struct reason *reason);
+
+// Empties THROAT, as phases_empty_throat, which does as well: then less can be gone on
+// from.
+void curved_empty_throat(struct curved *curved, struct phases *phases, int throat);
+
+// Next time bodies are listed anew and nothing is gone on from but the state.
+void curved_forget(struct curved *curved);
+
+// The same in steps, for viscous liquid: lists the bodies, of which those are given
+// that are throats of a cluster of several; finds the others from what is given, and
+// what all evaporate; adds to LOSSES, which has those of the given, what the others
+// lose, and makes all of it equal to what goes into the air.
+void curved_begin(struct curved *curved, struct phases *phases);
+enum status curved_find_others(struct curved *curved, const struct phases *phases,
+                               struct reason *reason);
+enum status curved_end(struct curved *curved, const struct phases *phases,
+                       struct losses *losses, struct reason *reason);
+
+// What drives vapour from the widest meniscus into the air, of what would from a flat
+// one.
+double curved_drive(const struct curved *curved);
+
+// What the bodies evaporate at their potentials.
+void curved_find_gains(struct curved *curved, const struct phases *phases);
+
+void curved_state(struct curved *curved, const struct network *network,
+                  struct state *state);
+
+void curved_free(struct curved *curved);
+
+#endif

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kelvin_response.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Of the conductance of its throat: less and the flow settles what evaporates in a few
+// rounds.
+static const double FELT = 1e-2;
+
+int throat_of(const struct curved_flow *both, int k)
+{
+    return both->curved->throat[both->body[k]];
+}
+
+static int cluster_of(const struct curved *curved, const struct phases *phases,
+                      const struct share *share)
+{
+    return phases->clusters.of_throat[curved->throat[share->body]];
+}
+
+// Part of the K-th wet node that is of the cluster of SHARE.
+static double part_of_cluster(const struct curved *curved, const struct phases *phases,
+                              int k, const struct share *share)
+{
+    double part = 0;
+    for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
+        if (cluster_of(curved, phases, &curved->share[i]) ==
+            cluster_of(curved, phases, share))
+            part += curved->share[i].part;
+    return part;
+}
+
+// The cluster of which the K-th wet node is alone; a number of its own if of several.
+static int group_of(const struct curved *curved, const struct phases *phases, int k)
+{
+    const struct share *share = &curved->share[curved->offset[k]];
+    return part_of_cluster(curved, phases, k, share) > 1 - 1e-9
+               ? cluster_of(curved, phases, share)
+               : -1 - k;
+}
+
+struct links {
+    int *group;   // (n_site)
+    int *other;   // (n_site) room
+    double *link; // (n_site) room, 0 between calls
+};
+
+// Conductance from the K-th wet node to others and the air: to all in ALL, but to those
+// of its group in APART.
+static void find_degrees(const struct phases *phases, struct links *links, int k,
+                         double *all, double *apart)
+{
+    const struct star_mesh *mesh = &phases->vapour.mesh;
+    const int node = phases->wet[k];
+    const int n = star_mesh_list_links(mesh, node, links->other, links->link);
+    *all = *apart = mesh->air[node];
+    for (int i = 0; i < n; i++) {
+        const int other = links->other[i];
+        *all += links->link[other];
+        if (links->group[other] != links->group[node]) *apart += links->link[other];
+        links->link[other] = 0;
+    }
+}
+
+static void add_falls(struct curved_flow *both, const struct phases *phases,
+                      struct links *links, const int *place)
+{
+    const struct curved *curved = both->curved;
+    for (int k = 0; k < phases->n_wet; k++) {
+        double all, apart;
+        find_degrees(phases, links, k, &all, &apart);
+        for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++) {
+            const struct share *share = &curved->share[i];
+            const int which = place[share->body] - 1;
+            if (which < 0) continue;
+            both->single[which] += share->part * all;
+            both->lumped[which] +=
+                share->part * part_of_cluster(curved, phases, k, share) * apart;
+        }
+    }
+}
+
+void find_falls(struct curved_flow *both, const struct phases *phases)
+{
+    const struct curved *curved = both->curved;
+    const int n_site = phases->vapour.n_site;
+    struct links links = {.group = NEW_ARRAY(int, n_site),
+                          .other = NEW_ARRAY(int, n_site),
+                          .link = NEW_ARRAY(double, n_site)};
+    int *place = NEW_ARRAY(int, curved->n);
+    for (int k = 0; k < both->n; k++) {
+        place[both->body[k]] = k + 1;
+        both->lumped[k] = both->single[k] = 0;
+    }
+    for (int k = 0; k < phases->n_wet; k++)
+        links.group[phases->wet[k]] = group_of(curved, phases, k);
+    add_falls(both, phases, &links, place);
+    free(links.group);
+    free(links.other);
+    free(links.link);
+    free(place);
+}
+
+// What the K-th evaporates alone rises with its pressure by this.
+static double rise_alone(const struct curved_flow *both, int k, double *slope)
+{
+    const struct curved *curved = both->curved;
+    *slope = both->unit * kelvin_slope(&curved->law, curved->exponent[both->body[k]]);
+    return *slope * both->single[k];
+}
+
+// Of each cluster, whether a response is needed: none of its menisci moves, or one
+// evaporates so much more with its pressure that the flow is felt.
+static bool *find_responsive(const struct curved_flow *both,
+                             const struct phases *phases)
+{
+    const struct liquid_flow *flow = both->flow;
+    bool *moves = NEW_ARRAY(bool, phases->clusters.n_id);
+    bool *responsive = NEW_ARRAY(bool, phases->clusters.n_id);
+    for (int k = 0; k < both->n; k++) {
+        const int throat = throat_of(both, k);
+        const int cluster = phases->clusters.of_throat[throat];
+        double slope;
+        moves[cluster] |= flow->moving[throat];
+        responsive[cluster] |=
+            rise_alone(both, k, &slope) > FELT * flow->conductance[throat];
+    }
+    for (int c = 0; c < phases->clusters.n_id; c++)
+        responsive[c] |= !moves[c];
+    free(moves);
+    return responsive;
+}
+
+void set_responses(struct curved_flow *both, const struct phases *phases)
+{
+    struct liquid_flow *flow = both->flow;
+    bool *responsive = find_responsive(both, phases);
+    for (int k = 0; k < both->n; k++) {
+        const int throat = throat_of(both, k);
+        double slope;
+        const double alone = rise_alone(both, k, &slope);
+        const double more = fmax(both->single[k] - both->lumped[k], 0);
+        const double part = alone / (alone + flow->conductance[throat]);
+        flow->response[throat] = responsive[phases->clusters.of_throat[throat]]
+                                     ? slope * (both->lumped[k] + part * more)
+                                     : 0;
+    }
+    free(responsive);
+}

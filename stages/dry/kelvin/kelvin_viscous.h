@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Viscous liquid whose menisci have vapour pressures of their own (Kelvin).
+//
+// Each throat that gas touches has one meniscus. One that moves is as curved as its
+// throat makes it; one that stays is as curved as the pressure says that the flow has
+// there, never more than its throat can hold, and flat or bulging where the liquid is
+// pressed against it. A node has the mean of their potentials by sections, as it shares
+// out what it evaporates. What evaporates follows from the pressures, the flow from
+// what evaporates: a fixed point.
+//
+// Near it what a meniscus evaporates rises with its pressure, and the flow is solved
+// with that response: so it is found with any viscosity. A throat by itself is left to
+// curved.h: nothing flows in it, and it waits where it would take up vapour. So does a
+// cluster of which no meniscus moves: the response of its menisci says at which
+// pressure.
+#ifndef CRAQUELURE_CURVED_FLOW_H
+#define CRAQUELURE_CURVED_FLOW_H
+
+#include "dry/liquid/viscous.h"
+#include "kelvin_menisci.h"
+#include "sparse/anderson.h"
+
+struct curved_flow {
+    struct curved *curved;
+    struct liquid_flow *flow;
+    double
+        *surplus;   // (n_throat) of its meniscus, as in FLOW, when last found; -1: none
+    bool *waited;   // (n_throat) none of its cluster moved
+    double unit;    // p_c M / (rho R T) where p_c is the flow's unit of pressure
+    int64_t rounds; // in which flow and vapour were found
+
+    // Of the menisci at hand that flow.
+    int n;
+    int *body;         // (n) place in CURVED
+    double *x, *image; // (n) surpluses
+    double *lumped;    // (n) fall of what evaporates with the potential, all of its
+    double *single;    // cluster changing alike; or it alone
+    struct anderson anderson;
+};
+
+// CURVED and FLOW must live as long. The caller frees it with curved_flow_free.
+struct curved_flow curved_flow_make(struct curved *curved, struct liquid_flow *flow);
+
+// What each throat loses, or takes up (negative), with PHASES as they are. LOSSES come
+// in ascending throats.
+//
+// STATUS_NOT_CONVERGED if flow and vapour are not found.
+enum status curved_flow_find(struct curved_flow *both, struct phases *phases,
+                             struct losses *losses, struct reason *reason);
+
+void curved_flow_state(struct curved_flow *both, struct state *state);
+
+void curved_flow_free(struct curved_flow *both);
+
+#endif

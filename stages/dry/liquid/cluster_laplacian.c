@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cluster_laplacian.h"
+
+#include "basics/memory.h"
+#include "sparse/conjugate_gradients.h"
+#include "updated_cholesky.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// When conjugate gradients take more steps than this, the factor has drifted away.
+enum { MOST_STEPS = 30 };
+
+// --- the rows ------------------------------------------------------------------------
+
+static void allocate_rows(struct liquid_graph *graph, int n, int n_link)
+{
+    *graph = (struct liquid_graph){.n = n,
+                                   .present = NEW_ARRAY(double, n),
+                                   .offset = NEW_ARRAY(int, n + 2),
+                                   .column = NEW_ARRAY(int, 2 * n_link),
+                                   .mirror = NEW_ARRAY(int, 2 * n_link),
+                                   .conductance = NEW_ARRAY(double, 2 * n_link),
+                                   .ground = NEW_ARRAY(double, n),
+                                   .potential = NEW_ARRAY(struct compensated, n),
+                                   .source = NEW_ARRAY(double, n),
+                                   .lack = NEW_ARRAY(double, n)};
+    for (int i = 0; i < n; i++)
+        graph->present[i] = 1;
+}
+
+static void fill_rows(struct liquid_graph *graph, int n_link,
+                      const struct graph_link *link, const int *row, int *entry)
+{
+    for (int k = 0; k < n_link; k++) {
+        graph->offset[row[link[k].a] + 2]++;
+        graph->offset[row[link[k].b] + 2]++;
+    }
+    for (int i = 0; i < graph->n; i++)
+        graph->offset[i + 2] += graph->offset[i + 1];
+    for (int k = 0; k < n_link; k++) {
+        const int a = row[link[k].a], b = row[link[k].b];
+        const int here = graph->offset[a + 1]++, there = graph->offset[b + 1]++;
+        graph->column[here] = b;
+        graph->column[there] = a;
+        graph->mirror[here] = there;
+        graph->mirror[there] = here;
+        graph->conductance[here] = graph->conductance[there] = link[k].conductance;
+        entry[k] = here;
+    }
+}
+
+struct liquid_graph *liquid_graph_make(cholmod_common *common, int n, int n_link,
+                                       const struct graph_link *link, int *row,
+                                       int *entry)
+{
+    if (!graph_factor_order(common, n, n_link, link, row)) return NULL;
+    struct liquid_graph *graph = NEW_ARRAY(struct liquid_graph, 1);
+    allocate_rows(graph, n, n_link);
+    fill_rows(graph, n_link, link, row, entry);
+    graph->factor = graph_factor_make(common, graph);
+    return graph;
+}
+
+void liquid_graph_free(struct liquid_graph *graph)
+{
+    if (!graph) return;
+    graph_factor_free(graph->factor);
+    free(graph->present);
+    free(graph->offset);
+    free(graph->column);
+    free(graph->mirror);
+    free(graph->conductance);
+    free(graph->ground);
+    free(graph->potential);
+    free(graph->source);
+    free(graph->lack);
+    free(graph);
+}
+
+// --- changes -------------------------------------------------------------------------
+
+void liquid_graph_set(struct liquid_graph *graph, int entry, double conductance)
+{
+    if (graph->conductance[entry] == conductance) return;
+    graph->conductance[entry] = graph->conductance[graph->mirror[entry]] = conductance;
+    graph_factor_note(graph->factor, entry);
+}
+
+void liquid_graph_leave(struct liquid_graph *graph, int row)
+{
+    graph->n_left += graph->present[row] != 0;
+    graph->present[row] = 0;
+}
+
+void liquid_graph_cut(struct liquid_graph *graph, int row)
+{
+    liquid_graph_leave(graph, row);
+    for (int k = graph->offset[row]; k < graph->offset[row + 1]; k++)
+        liquid_graph_set(graph, k, 0);
+}
+
+void liquid_graph_set_arms(struct liquid_graph *graph, int n_arm,
+                           const struct graph_arm *arm)
+{
+    for (int k = 0; k < graph->n; k++)
+        graph->ground[k] = 0;
+    for (int k = 0; k < n_arm; k++)
+        graph->ground[arm[k].a] += arm[k].conductance;
+    graph->n_arm = n_arm;
+    graph->arm = arm;
+}
+
+// --- the balances --------------------------------------------------------------------
+
+double liquid_graph_lack(struct liquid_graph *graph)
+{
+    const struct compensated *potential = graph->potential;
+    double *lack = graph->lack;
+    for (int i = 0; i < graph->n; i++) {
+        double sum = 0;
+        for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
+            sum += graph->conductance[k] *
+                   compensated_difference(potential[graph->column[k]], potential[i]);
+        lack[i] = graph->present[i] != 0 ? graph->source[i] + sum : 0;
+    }
+    for (int k = 0; k < graph->n_arm; k++) {
+        const struct graph_arm *arm = &graph->arm[k];
+        const struct compensated level = {.value = arm->level};
+        lack[arm->a] +=
+            arm->conductance * compensated_difference(level, potential[arm->a]);
+    }
+    double largest = 0, sum = 0;
+    for (int i = 0; i < graph->n; i++) {
+        if (fabs(lack[i]) > largest) largest = fabs(lack[i]);
+        sum += lack[i];
+    }
+    return isfinite(sum) ? largest : INFINITY;
+}
+
+static void multiply(void *context, const double *x, double *image)
+{
+    const struct liquid_graph *graph = context;
+    for (int i = 0; i < graph->n; i++) {
+        double sum = graph->ground[i] * x[i];
+        for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
+            sum += graph->conductance[k] * (x[i] - x[graph->column[k]]);
+        image[i] = sum;
+    }
+}
+
+static void precondition(void *context, const double *residual, double *z)
+{
+    const struct liquid_graph *graph = context;
+    graph_factor_solve(graph->factor, residual, z);
+    for (int i = 0; i < graph->n; i++)
+        z[i] *= graph->present[i];
+}
+
+// Raises all potentials alike until what the balances lack adds up to nothing. Mostly a
+// cluster rises or falls nearly as one, and the rest is found with more digits then.
+static void level_potentials(struct liquid_graph *graph)
+{
+    double lack = 0, ground = 0;
+    for (int i = 0; i < graph->n; i++) {
+        lack += graph->lack[i];
+        ground += graph->present[i] * graph->ground[i];
+    }
+    if (!(ground > 0)) return;
+    const double rise = lack / ground;
+    for (int i = 0; i < graph->n; i++) {
+        compensated_add(&graph->potential[i], rise);
+        graph->lack[i] -= graph->present[i] * graph->ground[i] * rise;
+    }
+}
+
+bool liquid_graph_correct(struct liquid_graph *graph, double aim)
+{
+    if (!graph_factor_follow(graph->factor, graph)) return false;
+    level_potentials(graph);
+    double **room = graph_factor_room(graph->factor);
+    const struct linear_problem problem = {
+        graph->n, graph, multiply, precondition, {room[0], room[1], room[2]}};
+    double *correction = room[3];
+    conjugate_gradients(&problem, graph->lack, correction, aim, MOST_STEPS);
+    if (!(sqrt(sum_of_products(graph->lack, graph->lack, graph->n)) <= aim))
+        graph_factor_forget(graph->factor);
+    for (int i = 0; i < graph->n; i++)
+        compensated_add(&graph->potential[i], correction[i]);
+    return true;
+}

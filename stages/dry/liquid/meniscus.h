@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// At which pressure of the liquid gas enters a throat: below that of the gas by the
+// capillary pressure 2 sigma cos(theta) / r, and lower down under gravity by less.
+#ifndef CRAQUELURE_MENISCUS_H
+#define CRAQUELURE_MENISCUS_H
+
+#include "dry/conditions.h"
+
+// In scaled units (conditions.h), pressures in the unit at which viscosity drops out of
+// Poiseuille's law: flow = pi r^4 / (8 L) times the fall of pressure.
+struct menisci {
+    const struct network *network;
+    double length;   // m, the unit
+    double tension;  // 2 sigma cos(theta), in pressure times length
+    double weight;   // rho g, in pressure over length; 0: no gravity
+    double *radius;  // (n_throat)
+    double *height;  // (n_throat) of the throat's middle; NULL: no gravity
+    double pressure; // Pa, the unit
+};
+
+// What CONDITIONS say of the throats of NETWORK. Without viscosity the unit of pressure
+// is the capillary pressure of a throat one mean length wide. The caller frees it with
+// menisci_free.
+struct menisci menisci_make(const struct network *network,
+                            const struct drying_conditions *conditions,
+                            const struct drying_scale *scale);
+
+// The potential (pressure and weight) at which gas enters THROAT, above that of
+// REFERENCE. Exactly 0 for equal radii at one height; no digits are lost for radii that
+// are nearly equal.
+double menisci_potential(const struct menisci *menisci, int throat, int reference);
+
+// Pressure at NODE, above that at the middle of THROAT, of liquid at rest.
+double menisci_weight(const struct menisci *menisci, int throat, int node);
+
+// EASE (n_throat): the potentials at which gas enters the throats, for clusters_make.
+void menisci_ease(const struct menisci *menisci, double *ease);
+
+void menisci_free(struct menisci *menisci);
+
+#endif

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check_state.h"
+
+#include "basics/disjoint_sets.h"
+#include "basics/memory.h"
+#include "dry/inviscid/evaporation_shares.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// ---- clusters ----------------------------------------------------------------------
+
+// Each identity has the throats it counts, or is listed once as unused.
+static bool identities_fit(const struct clusters *clusters)
+{
+    const int n = clusters->n_id, n_throat = clusters->network->n_throat;
+    int *size = NEW_ARRAY(int, n);
+    bool *is_unused = NEW_ARRAY(bool, n), fits = true;
+    for (int t = 0; t < n_throat; t++)
+        if (clusters->of_throat[t] >= 0) size[clusters->of_throat[t]]++;
+    for (int k = 0; k < clusters->n_unused; k++) {
+        fits &= !is_unused[clusters->unused[k]];
+        is_unused[clusters->unused[k]] = true;
+    }
+    for (int c = 0; c < n; c++)
+        fits &= size[c] == clusters->size[c] && (size[c] == 0) == is_unused[c];
+    fits &= clusters->count == n - clusters->n_unused;
+    free(size);
+    free(is_unused);
+    return fits;
+}
+
+// A cluster is one connected piece, and all of it.
+static bool pieces_fit(const struct clusters *clusters)
+{
+    const struct incidence *incidence = clusters->incidence;
+    const int n_throat = clusters->network->n_throat;
+    int *parent = NEW_ARRAY(int, n_throat), pieces = 0;
+    bool fits = true;
+    for (int t = 0; t < n_throat; t++)
+        parent[t] = t;
+    for (int i = 0; i < clusters->network->n_node; i++) {
+        int before = -1;
+        for (int k = incidence->offset[i];
+             clusters->joins[i] && k < incidence->offset[i + 1]; k++) {
+            const int throat = incidence->throat[k];
+            if (clusters->of_throat[throat] < 0) continue;
+            if (before >= 0) {
+                fits &= clusters->of_throat[before] == clusters->of_throat[throat];
+                unite_sets(parent, before, throat);
+            }
+            before = throat;
+        }
+    }
+    for (int t = 0; t < n_throat; t++)
+        pieces += clusters->of_throat[t] >= 0 && parent[t] == t;
+    free(parent);
+    return fits && pieces == clusters->count;
+}
+
+// A heap holds no throat twice, and all menisci of its cluster, of which there are
+// some.
+static bool heap_fits(const struct clusters *clusters, int cluster, int menisci,
+                      int *last_heap)
+{
+    const struct rank_heap *heap = &clusters->heap[cluster];
+    for (int k = 0; k < heap->n; k++) {
+        if (k > 0 && heap->rank[(k - 1) / 2] >= heap->rank[k]) return false;
+        const int throat = clusters->throat_at_rank[heap->rank[k]];
+        if (last_heap[throat] == cluster) return false;
+        last_heap[throat] = cluster;
+        menisci -= clusters->of_throat[throat] == cluster && clusters->meniscus[throat];
+    }
+    return menisci == 0;
+}
+
+static bool menisci_fit(const struct clusters *clusters)
+{
+    const int n_throat = clusters->network->n_throat;
+    int *menisci = NEW_ARRAY(int, clusters->n_id),
+        *last_heap = NEW_ARRAY(int, n_throat);
+    bool fits = true;
+    for (int t = 0; t < n_throat; t++) {
+        last_heap[t] = -1;
+        if (clusters->of_throat[t] >= 0 && clusters->meniscus[t])
+            menisci[clusters->of_throat[t]]++;
+    }
+    for (int c = 0; c < clusters->n_id; c++)
+        fits &= (menisci[c] > 0 || clusters->size[c] == 0) &&
+                heap_fits(clusters, c, menisci[c], last_heap);
+    free(menisci);
+    free(last_heap);
+    return fits;
+}
+
+// ---- phases ------------------------------------------------------------------------
+
+// Liquid is counted where it is.
+static bool liquid_fits(const struct phases *phases)
+{
+    const struct network *network = phases->network;
+    int *beside = NEW_ARRAY(int, network->n_node), n_full = 0;
+    bool fits = true;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (phases->clusters.of_throat[t] < 0) continue;
+        fits &= network->throat_kind[t] == THROAT_NETWORK;
+        n_full++;
+        for (int end = 0; end < 2; end++)
+            beside[network->throat_nodes[t][end]]++;
+    }
+    for (int i = 0; i < network->n_node; i++)
+        fits &= beside[i] == phases->liquid_beside[i];
+    free(beside);
+    return fits && n_full == phases->n_full;
+}
+
+// Wet nodes are listed once each, have liquid, and menisci in its throats.
+static bool wet_nodes_fit(const struct phases *phases)
+{
+    const struct clusters *clusters = &phases->clusters;
+    const struct incidence *incidence = &phases->incidence;
+    int placed = 0;
+    for (int i = 0; i < phases->network->n_node; i++)
+        placed += phases->wet_place[i] >= 0;
+    for (int w = 0; w < phases->n_wet; w++) {
+        const int node = phases->wet[w];
+        if (phases->wet_place[node] != w || phases->liquid_beside[node] == 0)
+            return false;
+        for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
+            if (clusters->of_throat[incidence->throat[k]] >= 0 &&
+                !clusters->meniscus[incidence->throat[k]])
+                return false;
+    }
+    return placed == phases->n_wet;
+}
+
+// ---- clocks ------------------------------------------------------------------------
+
+// A clock belongs to an account that has no other, and to a throat of it with liquid;
+// or it is listed once as unused.
+static bool owners_fit(const struct clocks *clocks)
+{
+    const struct phases *phases = clocks->phases;
+    int running = 0, unused = 0;
+    for (int k = 0; k < clocks->n; k++) {
+        const int owner = clocks->owner[k], throat = clocks->throat[k];
+        if (!(clocks->rate[k] >= 0)) return false;
+        if (owner < 0) {
+            if (clocks->charges[k] > 0 || clocks->has_sum[k] || throat >= 0)
+                return false;
+            continue;
+        }
+        running++;
+        if (clocks->clock[owner] != k || throat < 0 || clocks->charges[k] == 0 ||
+            phases->clusters.of_throat[throat] < 0 ||
+            account_of(clocks, throat) != owner)
+            return false;
+    }
+    bool *seen = NEW_ARRAY(bool, clocks->n);
+    for (int k = 0; k < clocks->n_unused; k++) {
+        unused += clocks->owner[clocks->unused[k]] < 0 && !seen[clocks->unused[k]];
+        seen[clocks->unused[k]] = true;
+    }
+    free(seen);
+    return unused == clocks->n_unused && running + unused == clocks->n &&
+           running == clocks->n_losing;
+}
+
+// The throats that lose, in their order, are those of the clocks.
+static bool losing_fit(const struct clocks *clocks)
+{
+    for (int l = 0; l < clocks->n_losing; l++) {
+        const int throat = clocks->losing[l];
+        if (l > 0 && clocks->losing[l - 1] >= throat) return false;
+        const int owner = account_of(clocks, throat);
+        if (owner < 0 || clocks->clock[owner] < 0 ||
+            clocks->throat[clocks->clock[owner]] != throat)
+            return false;
+    }
+    return true;
+}
+
+// Each charge and its place at a node point at each other, and clocks count them.
+static bool charges_fit(const struct clocks *clocks)
+{
+    const struct incidence *incidence = &clocks->phases->incidence;
+    int *count = NEW_ARRAY(int, clocks->n), placed = 0;
+    bool fits = true;
+    for (int k = 0; k < 2 * clocks->phases->network->n_throat; k++)
+        placed += clocks->charge_place[k] >= 0;
+    for (int k = 0; k < clocks->n_charge; k++) {
+        const struct charge *charge = &clocks->charge[k];
+        const int at = clocks->charge_incidence[k];
+        count[charge->clock]++;
+        fits &=
+            clocks->charge_place[at] == k && charge->share >= 0 &&
+            at >= incidence->offset[charge->node] &&
+            at < incidence->offset[charge->node + 1] &&
+            account_of(clocks, incidence->throat[at]) == clocks->owner[charge->clock];
+    }
+    for (int k = 0; k < clocks->n; k++)
+        fits &= count[k] == clocks->charges[k];
+    free(count);
+    return fits && placed == clocks->n_charge;
+}
+
+// ---- the history -------------------------------------------------------------------
+
+static bool lies_within(const double *value, int64_t n, double least, double most)
+{
+    for (int64_t k = 0; k < n; k++)
+        if (!(value[k] >= least && value[k] <= most)) return false;
+    return true;
+}
+
+static bool rises(const double *value, int n)
+{
+    for (int k = 1; k < n; k++)
+        if (value[k] < value[k - 1]) return false;
+    return true;
+}
+
+static bool history_fits(const struct recorder *recorder)
+{
+    const struct drying_history *history = recorder->history;
+    const int n = history->n_step, n_event = history->n_event;
+    for (int k = 0; k < n; k++)
+        if (history->change_offset[k + 1] < history->change_offset[k]) return false;
+    return history->change_offset[0] == 0 &&
+           history->change_offset[n] == recorder->n_change &&
+           lies_within(history->change_saturation, recorder->n_change, 0, 1) &&
+           lies_within(history->saturation, n, 0, 1) &&
+           lies_within(history->rate, n, 0, INFINITY) &&
+           lies_within(history->time, n, 0, INFINITY) && rises(history->time, n) &&
+           lies_within(history->event_time, n_event, 0, INFINITY) &&
+           rises(history->event_time, n_event);
+}
+
+// ---- the run -----------------------------------------------------------------------
+
+// Throats that have ended since the last step are listed once each. FLAGGED: is_ended
+// says of all whether they are; else they have no liquid any more.
+static bool ended_fit(const struct run *run, bool flagged)
+{
+    const int n_throat = run->phases.network->n_throat;
+    bool *seen = NEW_ARRAY(bool, n_throat), fits = true;
+    for (int k = 0; k < run->n_ended; k++) {
+        const int throat = run->ended[k];
+        fits &=
+            !seen[throat] && (flagged || run->phases.clusters.of_throat[throat] < 0);
+        seen[throat] = true;
+    }
+    for (int t = 0; t < n_throat && flagged; t++)
+        fits &= seen[t] == run->is_ended[t];
+    free(seen);
+    return fits;
+}
+
+// In ascending order, of throats with liquid.
+static bool losses_fit(const struct run *run)
+{
+    for (int k = 0; k < run->losses.n; k++) {
+        const int throat = run->losses.loss[k].throat;
+        if (run->phases.clusters.of_throat[throat] < 0 ||
+            (k > 0 && run->losses.loss[k - 1].throat >= throat))
+            return false;
+    }
+    return true;
+}
+
+bool run_fits(const struct run *run)
+{
+    const struct phases *phases = &run->phases;
+    const struct clusters *clusters = &phases->clusters;
+    const bool has_clocks =
+        run->conditions->liquid != LIQUID_VISCOUS && !run->conditions->kelvin;
+    return identities_fit(clusters) && pieces_fit(clusters) && menisci_fit(clusters) &&
+           liquid_fits(phases) && wet_nodes_fit(phases) &&
+           star_mesh_fits(&phases->vapour.mesh) && ended_fit(run, !has_clocks) &&
+           losses_fit(run) && history_fits(&run->recorder) &&
+           (!has_clocks || (owners_fit(&run->clocks) && losing_fit(&run->clocks) &&
+                            charges_fit(&run->clocks)));
+}

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The run itself [K 3.4.2]: vapour, losses, the throat that empties first, and again.
+#include "drying.h"
+
+#include "basics/memory.h"
+#include "basics/sorted.h"
+#include "dry/gas/boundary_layer.h"
+#include "initial_saturation.h"
+#include "network/checks.h"
+#include "resume.h"
+#include "run.h"
+#include "truncate_history.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// From 1 at the start to exactly 0 at the end.
+static double network_saturation(const struct run *run)
+{
+    if (run->phases.n_full == 0) return 0;
+    const double liquid = compensated_value(run->phases.total_liquid);
+    return fmin(1, fmax(0, liquid / run->phases.capacity));
+}
+
+double rate_now(const struct run *run)
+{
+    if (run->phases.n_full == 0) return 0;
+    return run->conditions->kelvin ? run->curved.rate
+                                   : vapour_rate(&run->phases.vapour);
+}
+
+enum status refuse_standstill(const struct run *run, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "nothing evaporates any more with %d throats still wet (rates too "
+                  "small for the arithmetic)",
+                  run->phases.n_full);
+}
+
+bool snapshot_is_due(const struct run *run)
+{
+    const int next = run->recorder.history->n_pressure;
+    return run->conditions->liquid == LIQUID_VISCOUS &&
+           next < run->conditions->n_snapshot &&
+           network_saturation(run) <= run->conditions->snapshot[next];
+}
+
+static bool goes_on(const struct run *run)
+{
+    return run->phases.n_full > 0 &&
+           network_saturation(run) > run->conditions->stop_saturation;
+}
+
+bool step_is_due(struct run *run)
+{
+    const double fallen = run->step_saturation - network_saturation(run);
+    if (fallen < run->conditions->step_interval && goes_on(run) &&
+        !snapshot_is_due(run)) {
+        run->n_skipped++;
+        return false;
+    }
+    if (run->n_skipped > 0) {
+        const double evaporated =
+            compensated_difference(run->evaporated, run->step_evaporated);
+        const double time = compensated_difference(run->time, run->step_time);
+        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
+    }
+    return true;
+}
+
+void sort_ended(struct run *run)
+{
+    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, rising_ints);
+}
+
+void record_state(struct run *run)
+{
+    recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
+                      network_saturation(run), rate_now(run) * run->scale.rate,
+                      run->phases.clusters.count);
+    run->n_skipped = 0;
+    run->step_saturation = network_saturation(run);
+    run->step_time = run->time;
+    run->step_evaporated = run->evaporated;
+}
+
+void note_breakthrough(struct run *run)
+{
+    struct drying_history *history = run->recorder.history;
+    if (run->phases.breakthrough && history->breakthrough_saturation == 0)
+        history->breakthrough_saturation = network_saturation(run);
+}
+
+static void note_first_period(struct run *run)
+{
+    struct drying_history *history = run->recorder.history;
+    const double fraction = run->conditions->first_period_rate_fraction;
+    if (history->first_period_end_saturation == 0 &&
+        rate_now(run) < fraction * run->first_rate)
+        history->first_period_end_saturation = network_saturation(run);
+}
+
+static void begin(struct run *run)
+{
+    run->n_at_start = run->phases.n_full;
+    run->first_rate = rate_now(run);
+    note_breakthrough(run);
+    record_state(run);
+}
+
+static enum status go_on(struct run *run, struct reason *reason)
+{
+    if (run->conditions->kelvin) return dry_by_curvature(run, reason);
+    if (run->conditions->liquid == LIQUID_VISCOUS) return dry_by_flow(run, reason);
+    return dry_by_clocks(run, reason);
+}
+
+static enum status dry_all(struct run *run, const struct drying_progress *progress,
+                           struct reason *reason)
+{
+    enum status status = STATUS_OK;
+    while (!status && goes_on(run)) {
+        status = go_on(run, reason);
+        note_first_period(run);
+        if (progress && progress->report)
+            progress->report(progress->context,
+                             1 - (double)run->phases.n_full / run->n_at_start);
+        if (!status) keep_if_due(run, progress ? progress->keeper : NULL);
+    }
+    return status;
+}
+
+static void summarise(const struct run *run, struct drying_history *history)
+{
+    history->boundary_layer_thickness = run->scale.boundary_layer * run->scale.length;
+    history->boundary_layers = run->phases.layer.layers;
+    history->initial_liquid = run->phases.initial_liquid * run->scale.mass;
+    history->evaporated = compensated_value(run->evaporated) * run->scale.mass;
+    history->vapour_residual = fmax(run->imbalance, run->curved.residual);
+    history->liquid_residual = run->flow.residual;
+    history->flow_solutions = run->flow.solutions;
+    history->flow_rounds = run->flow.rounds;
+    if (run->conditions->stop_saturation > 0)
+        stop_history(history, run->phases.network, run->conditions->stop_saturation);
+}
+
+// Takes the liquid that is not there at the start.
+static enum status start(struct run *run, struct reason *reason)
+{
+    const struct drying_conditions *conditions = run->conditions;
+    struct phases *phases = &run->phases;
+    const int n = phases->network->n_throat;
+    if (!conditions->start && conditions->start_saturation == 1) return STATUS_OK;
+    double *invaded = NEW_ARRAY(double, n);
+    const double *left = conditions->start ? conditions->start : invaded;
+    enum status status = STATUS_OK;
+    if (!conditions->start)
+        status = invaded_saturations(phases, conditions->start_saturation,
+                                     conditions->start_trapping, invaded, reason);
+    if (!status) start_from(phases, left);
+    for (int t = 0; !status && t < n; t++)
+        if (phases->volume[t] > 0 && left[t] < 1)
+            recorder_add_change(&run->recorder, t, left[t]);
+    free(invaded);
+    return status;
+}
+
+// What the liquid needs, and the first step.
+static void prepare(struct run *run)
+{
+    const struct network *network = run->phases.network;
+    const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
+    const bool is_curved = run->conditions->kelvin;
+    if (is_viscous)
+        run->flow =
+            liquid_flow_make(&run->phases, run->scale.length,
+                             menisci_make(network, run->conditions, &run->scale));
+    if (is_curved) run->curved = curved_make(&run->phases, run->conditions);
+    if (is_viscous && is_curved) run->both = curved_flow_make(&run->curved, &run->flow);
+    if (is_viscous || is_curved)
+        run->losses = losses_make(network->n_throat);
+    else
+        run->clocks =
+            clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
+    run->step_saturation = network_saturation(run);
+    run->ended = NEW_ARRAY(int, network->n_throat);
+    run->is_ended = NEW_ARRAY(bool, network->n_throat);
+    run->saturation = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        run->saturation[t] = phases_saturation(&run->phases, t);
+}
+
+// How easily gas enters each throat against gravity. The caller frees it.
+static double *find_ease(const struct network *network,
+                         const struct drying_conditions *conditions,
+                         const struct drying_scale *scale)
+{
+    struct menisci menisci = menisci_make(network, conditions, scale);
+    double *ease = NEW_ARRAY(double, network->n_throat);
+    menisci_ease(&menisci, ease);
+    menisci_free(&menisci);
+    return ease;
+}
+
+static enum status make_phases(const struct network *network, struct run *run,
+                               struct reason *reason)
+{
+    const struct drying_conditions *conditions = run->conditions;
+    struct boundary_layer layer;
+    enum status status = boundary_layers_make(
+        network, conditions->open_walls, run->scale.length, run->scale.boundary_layer,
+        &(struct boundary_form){conditions->feet, conditions->layers,
+                                conditions->lumped},
+        &layer, reason);
+    if (status) {
+        boundary_layer_free(&layer);
+        return status;
+    }
+    double *ease = conditions->gravity != 0
+                       ? find_ease(network, conditions, &run->scale)
+                       : NULL; // by radius
+    const struct phases_form form = {.length = run->scale.length,
+                                     .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
+                                     .ease = ease,
+                                     .knudsen_radius = knudsen_radius(conditions),
+                                     .vapour_tolerance = conditions->vapour_tolerance};
+    status = phases_make(network, conditions->open_walls, &form, layer, &run->phases,
+                         reason);
+    free(ease);
+    return status;
+}
+
+// At the start, or where another run was when its state was kept.
+static enum status begin_run(struct run *run, const struct keeper *keeper,
+                             struct reason *reason)
+{
+    if (keeper && keeper->begin) {
+        prepare(run);
+        return go_on_from(run, keeper->begin, reason);
+    }
+    enum status status = start(run, reason);
+    if (status) return status;
+    prepare(run);
+    status = run->conditions->kelvin ? find_curved_losses(run, reason) : STATUS_OK;
+    if (status) return status;
+    if (!goes_on(run))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "stop_saturation: must be below the saturation at the start, %g, "
+                      "is %g",
+                      network_saturation(run), run->conditions->stop_saturation);
+    begin(run);
+    if (run->conditions->kelvin) keep_pressures(run);
+    return STATUS_OK;
+}
+
+static void free_run(struct run *run)
+{
+    liquid_flow_free(&run->flow);
+    losses_free(&run->losses);
+    curved_flow_free(&run->both);
+    curved_free(&run->curved);
+    clocks_free(&run->clocks);
+    free(run->ended);
+    free(run->is_ended);
+    free(run->saturation);
+    phases_free(&run->phases);
+}
+
+enum status dry_network(const struct network *network,
+                        const struct drying_conditions *conditions,
+                        const struct drying_progress *progress,
+                        struct drying_history *history, struct reason *reason)
+{
+    *history = (struct drying_history){0};
+    enum status status = check_conditions(conditions, reason);
+    if (!status) status = check_gravity(network, conditions->gravity, reason);
+    if (!status) status = check_throats(network, reason);
+    if (!status) status = check_scale(conditions, network, reason);
+    if (!status) status = check_kelvin(conditions, network, reason);
+    if (!status) status = check_steps(conditions, network, reason);
+    if (status) return status;
+
+    struct run run = {.conditions = conditions,
+                      .scale = drying_scale(network, conditions),
+                      .recorder = recorder_make(history)};
+    status = make_phases(network, &run, reason);
+    const struct keeper *keeper = progress ? progress->keeper : NULL;
+    if (!status && conditions->vapour_tolerance > 0 && keeper &&
+        (keeper->due || keeper->begin))
+        status =
+            refuse(reason, STATUS_BAD_DATA,
+                   "vapour_tolerance: must be 0 where a checkpoint is kept, is %g: "
+                   "with 0 the vapour is exact; or run without --checkpoint",
+                   conditions->vapour_tolerance);
+    if (!status) status = begin_run(&run, keeper, reason);
+    if (!status) status = dry_all(&run, progress, reason);
+    if (!status) summarise(&run, history);
+    free_run(&run);
+    return status;
+}

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pore-network drying [K 3.4, 3.3.5, 5.4]: which throat empties when, as vapour leaves
+// a network of liquid-filled throats through its open walls.
+//
+// Model. Vapour diffuses, quasi-steadily and isothermally, through the throats that are
+// completely empty and through a boundary layer above the open wall [K 3.9]. A node
+// that touches both liquid and gas is wet: its vapour is saturated, and what it
+// evaporates is charged to the liquid throats at the node in proportion to their
+// cross-sections. Left out: liquid films, adsorption, viscosity of the gas, gradients
+// of temperature [K 3.4.2].
+//
+// Everything here is in SI units. Inside, lengths are scaled by the mean throat length
+// and vapour by its driving force, so that the same network at another scale gives the
+// same dimensionless result.
+#ifndef CRAQUELURE_DRYING_H
+#define CRAQUELURE_DRYING_H
+
+#include "basics/status.h"
+#include "checkpoint/keeper.h"
+#include "dry/gas/boundary_layer.h"
+#include "network/network.h"
+
+// How the liquid moves between the throats of a cluster.
+enum liquid_limit {
+    // Viscosity negligible: a cluster loses all it evaporates from its widest meniscus
+    // throat, that of lowest capillary pressure [K 3.4.2, steps 1-6].
+    LIQUID_INVISCID = 0,
+    // Viscosity suppresses all flow: each throat loses what it evaporates itself.
+    LIQUID_IMMOBILE = 1,
+    // Poiseuille flow within each cluster [K 3.10]: between the two limits, which it
+    // reaches as the viscosity goes to 0 and to infinity.
+    LIQUID_VISCOUS = 2
+};
+
+// Molar gas constant, J/(mol K): exact in the SI; [K Table 3.1] rounds it to 8.3145.
+#define GAS_CONSTANT 8.31446261815324
+
+struct drying_conditions {
+    double temperature;         // K
+    double gas_pressure;        // p_g, Pa
+    double saturation_pressure; // of vapour at the temperature, Pa; below p_g
+    double air_vapour_pressure; // in the drying air, Pa; from 0 to below saturation
+    double diffusivity;         // delta of vapour in the gas, m2/s
+    double molar_mass;          // of the liquid, kg/mol
+    double liquid_density;      // kg/m3
+    double viscosity;       // kinematic, of the liquid, m2/s; above 0 if it is viscous
+    double surface_tension; // N/m; above 0 if the liquid is viscous
+    double contact_angle;   // degrees, from 0 to below 90
+    double gravity;         // towards -z, m/s2; 0: none
+    bool knudsen;           // molecules meet the walls of narrow throats
+    bool kelvin;            // curved menisci have less vapour
+    int n_snapshot;
+    const double *snapshot; // (n_snapshot) saturations, each below the one before:
+                            // where the pressures of viscous liquid are kept
+    // Viscous: conductances are renewed when a throat's saturation has changed by this,
+    // in (0,1]; 1: only when a throat has emptied or filled, as K does.
+    double saturation_step;
+    double mass_transfer;    // beta, m/s; the boundary layer is delta/beta thick
+    int layers;              // of the boundary layer; 0: as thick as a throat is long
+    enum boundary_feet feet; // where its columns stand
+    bool lumped;             // no lattice of layers and columns, only beta
+    unsigned open_walls;     // bits of enum wall; at least one
+    enum liquid_limit liquid;
+    // Liquid at the start, of the throats' volume, in (0,1]: what is left when gas has
+    // come in through the open walls, the widest throat it touches first. Or by
+    // throats.
+    double start_saturation;
+    bool start_trapping;    // what gas then cuts off from the walls opposite stays
+    const double *start;    // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    double stop_saturation; // where it ends, from 0 (dry) to below what it begins with
+    // What all wet nodes give off is known to this part of the rate, its errors added
+    // up: from 1e-6 on, links on large fronts are floats. 0: exact.
+    double vapour_tolerance;
+    // Fall of the network's saturation from one recorded step to the next; 0: each
+    // event is a step.
+    double step_interval;
+    double
+        first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends
+};
+
+enum event_kind {
+    EVENT_EMPTIED = 0, // completely
+    EVENT_REFILLED = 1 // by flow from its cluster, after it was partly empty
+};
+
+// What happened, from the start to the dry network. Step 0 is the initial state;
+// each later step is the moment at which a throat has just emptied, or several that tie
+// to rounding (as all do that recede at one speed from one node). In viscous liquid it
+// may also be that of a throat that has filled again, or of a change of
+// saturation_step. Between two steps every throat's saturation is linear in time, and
+// the rate is constant.
+struct drying_history {
+    int n_step;
+    double *time;       // (n_step) s, increasing (as far as its digits reach) from 0
+    double *saturation; // (n_step) liquid over the throats' volume; to exactly the stop
+    double *rate;       // (n_step) kg/s into the drying air from this step to the next;
+                        // the last is 0 when all is dry
+    int32_t *clusters;  // (n_step) connected pieces of liquid
+
+    int n_event;           // one for each throat that held liquid, and the refills
+    double *event_time;    // (n_event) s
+    int32_t *event_throat; // (n_event) index in the network
+    uint8_t *event_kind;   // (n_event) enum event_kind
+
+    // Throats whose saturation at step k differs from that at step k-1, ascending
+    // within a step: entries change_offset[k] .. change_offset[k+1]-1. At step 0 those
+    // of kind THROAT_NETWORK that do not begin full (the others never hold liquid).
+    int64_t *change_offset;    // (n_step+1)
+    int32_t *change_throat;    // (change_offset[n_step])
+    double *change_saturation; // of the throat, 0 to 1; exactly 0 once empty
+
+    // Saturation of the network when gas first reaches a node on a closed wall opposite
+    // an open one; 0 if it never does (or only as the last throat empties).
+    double breakthrough_saturation;
+    // Saturation at which the rate first is below first_period_rate_fraction times the
+    // first rate.
+    double first_period_end_saturation;
+
+    double boundary_layer_thickness; // m
+    int boundary_layers;
+    double initial_liquid; // kg: what the throats lose in all, since all end empty
+    double evaporated;     // kg: integral of the rate into the drying air
+    double
+        vapour_residual; // |what throats lose less what reaches the air|, of the rate
+    int n_pressure;      // snapshots so far
+    double *pressure;    // (n_snapshot, n_node) Pa, of viscous liquid less that of the
+                      // gas, in the first step with at most the snapshot's saturation;
+                      // 0 in gas. NULL: none asked for, or the liquid is not viscous
+    double
+        liquid_residual; // of the liquid's balances, of the largest flow in a cluster
+    int64_t flow_solutions, flow_rounds; // clusters solved, and rounds to find menisci
+};
+
+// Told now and then how far the run is, as the fraction of all throats that is empty.
+struct drying_progress {
+    void (*report)(void *context, double fraction); // may be NULL
+    void *context;
+    const struct keeper *keeper; // keeps the state on the way; may be NULL
+};
+
+// Dries NETWORK, of which only the throats of kind THROAT_NETWORK take part, to the
+// end. HISTORY is overwritten; the caller frees it with drying_history_free, also after
+// a failure. PROGRESS may be NULL.
+//
+// STATUS_BAD_DATA: conditions under which nothing would dry or that are not positive;
+// no open wall; a throat of zero length or radius (merge-nodes removes the
+// first); no throat reaches the open wall; liquid without a way to it.
+// STATUS_NOT_CONVERGED: rates too small for the arithmetic to dry anything.
+//
+// Cost of an event: the square of the wet nodes that see each other through the gas, at
+// most; the rest goes with those it changes, and with what is recorded.
+enum status dry_network(const struct network *network,
+                        const struct drying_conditions *conditions,
+                        const struct drying_progress *progress,
+                        struct drying_history *history, struct reason *reason);
+
+// Frees what the history owns and empties it; safe on an empty one.
+void drying_history_free(struct drying_history *history);
+
+#endif

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "initial_saturation.h"
+
+#include "basics/memory.h"
+#include "network/invasion.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Of all liquid, in which rounding may end when all that can leave has left.
+static const double LEAST_REST = 1e-12;
+
+// --- by invasion -------------------------------------------------------------------
+
+// As gas sees it here: in place of walls, nodes that are exposed and those on far
+// walls.
+enum { INLET = 1, OUTLET = 2 };
+
+static uint8_t *ways_in_and_out(const struct phases *phases)
+{
+    const struct network *network = phases->network;
+    uint8_t *ways = NEW_ARRAY(uint8_t, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        ways[i] = network->node_walls[i] & phases->far_walls ? OUTLET : 0;
+    for (int i = 0; i < phases->layer.n_exposed; i++)
+        ways[phases->layer.exposed[i]] |= INLET;
+    return ways;
+}
+
+static enum status find_invasion(const struct phases *phases, bool trapping,
+                                 struct invasion *invasion, struct reason *reason)
+{
+    struct network network = *phases->network;
+    double *ease = NEW_ARRAY(double, network.n_throat);
+    for (int t = 0; t < network.n_throat; t++)
+        ease[t] = -phases->clusters.rank[t];
+    network.node_walls = ways_in_and_out(phases);
+    const struct invasion_conditions conditions = {
+        .ease = ease, .inlet = INLET, .outlet = OUTLET, .trapping = trapping};
+    enum status status = invade(&network, &conditions, invasion, reason);
+    if (status && trapping)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "start_trapping: no throat reaches a closed wall opposite an "
+                        "open one, through which liquid could leave");
+    free(network.node_walls);
+    free(ease);
+    return status;
+}
+
+enum status invaded_saturations(const struct phases *phases, double saturation,
+                                bool trapping, double *left, struct reason *reason)
+{
+    struct invasion invasion;
+    enum status status = find_invasion(phases, trapping, &invasion, reason);
+    if (status) return status;
+    for (int t = 0; t < phases->network->n_throat; t++)
+        left[t] = phases->volume[t] > 0;
+    struct compensated excess = {.value = (1 - saturation) * phases->capacity};
+    for (int k = 0; k < invasion.n && compensated_value(excess) > 0; k++) {
+        const int throat = invasion.throat[k];
+        const double volume = phases->volume[throat];
+        left[throat] = fmax(0, 1 - compensated_value(excess) / volume);
+        compensated_add(&excess, -volume);
+    }
+    invasion_free(&invasion);
+    const double rest = compensated_value(excess) / phases->capacity;
+    if (rest > LEAST_REST)
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "start_saturation: must be above %.6g, which gas cuts off "
+                        "(start_trapping), is %g",
+                        saturation + rest, saturation);
+    return status;
+}
+
+// --- from a record -----------------------------------------------------------------
+
+double *recorded_saturations(const struct network *network,
+                             const struct drying_record *record, double saturation)
+{
+    const size_t n = (size_t)network->n_throat;
+    double *before = NEW_ARRAY(double, n), *now = full_saturations(network);
+    apply_changes(record, 0, now);
+    int step = 0;
+    while (record->saturation[step] > saturation && step < record->n_step - 1) {
+        memcpy(before, now, n * sizeof *now);
+        apply_changes(record, ++step, now);
+    }
+    if (step > 0) {
+        const double rest = (saturation - record->saturation[step]) /
+                            (record->saturation[step - 1] - record->saturation[step]);
+        for (size_t t = 0; t < n; t++)
+            now[t] += fmin(1, fmax(0, rest)) * (before[t] - now[t]);
+    }
+    free(before);
+    return now;
+}
+
+// --- either ------------------------------------------------------------------------
+
+void start_from(struct phases *phases, const double *start)
+{
+    struct compensated total = {0};
+    for (int t = 0; t < phases->network->n_throat; t++) {
+        if (!(phases->volume[t] > 0)) continue;
+        if (start[t] == 0) {
+            phases_empty_throat(phases, t);
+            continue;
+        }
+        phases->liquid[t].value = start[t] * phases->volume[t];
+        compensated_add(&total, phases->liquid[t].value);
+    }
+    phases->total_liquid = total;
+    phases->initial_liquid = compensated_value(total);
+}

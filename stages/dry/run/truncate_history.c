@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truncate_history.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// What changed in the last step is only SHARE of the way.
+static void cut_changes(struct drying_history *history, const struct network *network,
+                        double share)
+{
+    const int last = history->n_step - 1;
+    double *now = NEW_ARRAY(double, network->n_throat);
+    for (int t = 0; t < network->n_throat; t++)
+        now[t] = network->throat_kind[t] == THROAT_NETWORK;
+    for (int64_t k = 0; k < history->change_offset[last]; k++)
+        now[history->change_throat[k]] = history->change_saturation[k];
+    for (int64_t k = history->change_offset[last]; k < history->change_offset[last + 1];
+         k++) {
+        const double before = now[history->change_throat[k]];
+        history->change_saturation[k] =
+            before + share * (history->change_saturation[k] - before);
+    }
+    free(now);
+}
+
+void stop_history(struct drying_history *history, const struct network *network,
+                  double saturation)
+{
+    const int last = history->n_step - 1;
+    const double before = history->saturation[last - 1];
+    const double share = (before - saturation) / (before - history->saturation[last]);
+    const double began = history->time[last - 1];
+    const double time = began + share * (history->time[last] - began);
+    const double rate = history->rate[last - 1];
+    history->evaporated -= rate * (history->time[last] - time);
+    cut_changes(history, network, share);
+    while (share < 1 && history->n_event > 0 &&
+           history->event_time[history->n_event - 1] > time)
+        history->n_event--;
+    history->time[last] = time;
+    history->saturation[last] = saturation;
+    history->rate[last] = rate;
+    if (share < 1) history->clusters[last] = history->clusters[last - 1];
+    if (history->breakthrough_saturation < saturation)
+        history->breakthrough_saturation = 0;
+    if (history->first_period_end_saturation < saturation)
+        history->first_period_end_saturation = 0;
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For processors with AVX-512.
+#if defined __x86_64__
+#pragma GCC target("avx512f,avx512dq,avx512vl,fma")
+#endif
+#define NUMBER double
+#define BYTES 64
+#define TILE_ROWS 8
+#define VECTORS 3
+#define PASS triangle_pass_wide_double
+#define GATHER triangle_gather_wide_double
+#include "dense_front_kernel.h"

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conductances between sites, and between each site and the air, from which sites are
+// eliminated one by one. An eliminated site leaves links between all its neighbours,
+//     c_jk += c_ij c_ik / sum_l c_il   (star-mesh transformation),
+// so what is left carries the same flows. Sums and products of positive numbers only:
+// every conductance keeps its digits over any range (Grassmann, Taksar and Heyman
+// 1985).
+//
+// All sites beside one connected piece of eliminated ones are linked with each other;
+// such a front is kept as a dense triangle. A site may be on several fronts, which
+// become one when it is eliminated (the multifrontal method, in an order that is given
+// as it goes).
+#ifndef CRAQUELURE_STAR_MESH_H
+#define CRAQUELURE_STAR_MESH_H
+
+#include "basics/compensated.h"
+#include "checkpoint/stream.h"
+
+#include <stdbool.h>
+
+struct front;
+struct membership; // a site's place on a front
+
+struct star_mesh {
+    int n_site;
+    bool is_rounded;            // links on large fronts are floats
+    double *air;                // (n_site) conductance to the air
+    struct compensated all_air; // its sum
+    double summed_air;          // the sum when all were last added up
+    int *first;                 // (n_site) its memberships, -1: none
+
+    struct membership *membership;
+    int n_membership, membership_capacity, unused_membership;
+    struct front *front;
+    int n_front, front_capacity, unused_front;
+
+    // Sites that have come to have a conductance to the air since N_LINKED was last set
+    // to 0; some may have been eliminated.
+    int n_linked;
+    int *linked; // (n_linked)
+
+    double *row; // of the site that is eliminated
+    int *place;  // on a front, of the members of one that joins it
+    int row_capacity, place_capacity;
+
+    // As listed last.
+    int n_pair, pair_capacity, n_wide, wide_capacity;
+    struct pair *pair; // (n_pair) fronts of two sites
+    int *wide;         // (n_wide) those of more
+    int widest;        // sites on one
+};
+
+// No links yet. ROUNDED: links on large fronts are kept as floats.
+struct star_mesh star_mesh_make(int n_site, bool is_rounded);
+
+// Adds to the conductance between A and B, of which none has been eliminated, or
+// between SITE and the air.
+void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance);
+void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
+
+// SITE leaves the mesh. O(n^2) for a front of n sites.
+void star_mesh_eliminate(struct star_mesh *mesh, int site);
+
+// Does what eliminations have left to do at SITE; before star_mesh_list_links.
+void star_mesh_bring_up_to_date(struct star_mesh *mesh, int site);
+
+// Does that everywhere, and lists all links; before star_mesh_add_flows.
+void star_mesh_list_fronts(struct star_mesh *mesh);
+
+// Adds to FLOW (n_site) what flows to each site from the others when sites are at LEVEL
+// (n_site). Not where links are floats.
+void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
+                         double *flow);
+
+// Lists in OTHER the sites that SITE is linked with, and in LINK (n_site), which is 0
+// before, the conductances at their places. Returns how many there are.
+int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
+                         double *link);
+
+void star_mesh_state(struct star_mesh *mesh, struct state *state);
+
+// Of a state that was read: whether fronts and memberships agree.
+bool star_mesh_fits(const struct star_mesh *mesh);
+
+void star_mesh_free(struct star_mesh *mesh);
+
+#endif
