@@ -3,7 +3,67 @@
 #ifndef CRAQUELURE_CONDITIONS_H
 #define CRAQUELURE_CONDITIONS_H
 
-#include "dry/run/drying.h"
+#include "basics/status.h"
+#include "dry/gas/boundary_layer.h"
+#include "network/network.h"
+
+// How the liquid moves between the throats of a cluster.
+enum liquid_limit {
+    // Viscosity negligible: a cluster loses all it evaporates from its widest meniscus
+    // throat, that of lowest capillary pressure [K 3.4.2, steps 1-6].
+    LIQUID_INVISCID = 0,
+    // Viscosity suppresses all flow: each throat loses what it evaporates itself.
+    LIQUID_IMMOBILE = 1,
+    // Poiseuille flow within each cluster [K 3.10]: between the two limits, which it
+    // reaches as the viscosity goes to 0 and to infinity.
+    LIQUID_VISCOUS = 2
+};
+
+// Molar gas constant, J/(mol K): exact in the SI; [K Table 3.1] rounds it to 8.3145.
+#define GAS_CONSTANT 8.31446261815324
+
+struct drying_conditions {
+    double temperature;         // K
+    double gas_pressure;        // p_g, Pa
+    double saturation_pressure; // of vapour at the temperature, Pa; below p_g
+    double air_vapour_pressure; // in the drying air, Pa; from 0 to below saturation
+    double diffusivity;         // delta of vapour in the gas, m2/s
+    double molar_mass;          // of the liquid, kg/mol
+    double liquid_density;      // kg/m3
+    double viscosity;       // kinematic, of the liquid, m2/s; above 0 if it is viscous
+    double surface_tension; // N/m; above 0 if the liquid is viscous
+    double contact_angle;   // degrees, from 0 to below 90
+    double gravity;         // towards -z, m/s2; 0: none
+    bool knudsen;           // molecules meet the walls of narrow throats
+    bool kelvin;            // curved menisci have less vapour
+    int n_snapshot;
+    const double *snapshot; // (n_snapshot) saturations, each below the one before:
+                            // where the pressures of viscous liquid are kept
+    // Viscous: conductances are renewed when a throat's saturation has changed by this,
+    // in (0,1]; 1: only when a throat has emptied or filled, as K does.
+    double saturation_step;
+    double mass_transfer;    // beta, m/s; the boundary layer is delta/beta thick
+    int layers;              // of the boundary layer; 0: as thick as a throat is long
+    enum boundary_feet feet; // where its columns stand
+    bool lumped;             // no lattice of layers and columns, only beta
+    unsigned open_walls;     // bits of enum wall; at least one
+    enum liquid_limit liquid;
+    // Liquid at the start, of the throats' volume, in (0,1]: what is left when gas has
+    // come in through the open walls, the widest throat it touches first. Or by
+    // throats.
+    double start_saturation;
+    bool start_trapping;    // what gas then cuts off from the walls opposite stays
+    const double *start;    // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    double stop_saturation; // where it ends, from 0 (dry) to below what it begins with
+    // What all wet nodes give off is known to this part of the rate, its errors added
+    // up: from 1e-6 on, links on large fronts are floats. 0: exact.
+    double vapour_tolerance;
+    // Fall of the network's saturation from one recorded step to the next; 0: each
+    // event is a step.
+    double step_interval;
+    double
+        first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends
+};
 
 // Scaled units: the mean throat length is 1, the density of the liquid is 1, and so is
 // the fall of the vapour's potential from saturation to the drying air.

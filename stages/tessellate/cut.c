@@ -4,6 +4,7 @@
 #include "basics/memory.h"
 #include "loops.h"
 #include "reduce.h"
+#include "throats_beside.h"
 
 #include <stdlib.h>
 

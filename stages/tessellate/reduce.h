@@ -5,10 +5,6 @@
 
 #include "network/network.h"
 
-// (n_throat) whether one of GRAINS, (n_particle), is beside the throat. In a network
-// whose throats are in the order of tessellate. The caller frees it.
-bool *throats_beside(const struct network *network, const bool *grains);
-
 // Elimination strategy [K 3.3.3, 3.7]: takes from a network truncated to its box the
 // cells that the box cuts, and what belongs to no other cell: faces, throats and nodes.
 // A cell is cut when it has a face on a wall, be it unbounded or only larger than the
@@ -28,8 +24,5 @@ void reduce_to_plane(struct network *network);
 // Takes away nodes whose NUMBER, (n_node), is negative; of the others it becomes the
 // new one.
 void pack_nodes(struct network *network, int *number);
-
-// The first throat whose nodes do not come before these two.
-int first_throat_between(const struct network *network, const int32_t ends[2]);
 
 #endif

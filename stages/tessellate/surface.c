@@ -2,7 +2,7 @@
 #include "surface.h"
 
 #include "basics/memory.h"
-#include "reduce.h"
+#include "throats_beside.h"
 
 #include <stdlib.h>
 

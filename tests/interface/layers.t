@@ -74,6 +74,11 @@ found_in({"stages/two/gas/gas.c": "#include \"two/two.h\"\nint gas(void);\nint g
           "stages/two/two.h": "#define TWO 2\n"},
          "a room that uses what lies above all rooms",
          "stages/two/gas/gas.c includes stages/two/two.h: above its rooms")
+found_in({"stages/two/README.md": "| 1 | `gas` |\n| 2 | `units` |\n| 3 | `run` |\n",
+          "stages/two/gas/gas.c": "#include \"two/units.h\"\nint gas(void);\nint gas(void) { return UNIT; }\n",
+          "stages/two/units.h": "#define UNIT 2\n"},
+         "a room that uses a file which the table puts above it",
+         "stages/two/gas/gas.c includes stages/two/units.h: layer 2, from layer 1")
 found_in({"stages/lib/other/other.c": "int low(void);\nint other(void);\nint other(void) { return low(); }\n"},
          "a library that the table does not name",
          "stages/lib/other/other uses low of stages/lib/low/low: not both in the table of layers: "

@@ -3,6 +3,7 @@
 
 #include "basics/memory.h"
 #include "dried_nodes.h"
+#include "kelvin_evaporation.h"
 #include "schur_rows.h"
 #include "sparse/plain_cholmod.h"
 #include "sparse/plain_solve.h"

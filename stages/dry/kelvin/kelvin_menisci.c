@@ -4,18 +4,14 @@
 #include "basics/memory.h"
 #include "equilibrated_menisci.h"
 #include "kelvin_bodies.h"
+#include "kelvin_evaporation.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 // In the first rounds all menisci that break their condition change at once; from then
 // on only the first of them, which always comes to an end (Murty 1974).
 enum { ROUNDS_AT_ONCE = 10, MOST_ROUNDS = 1000 };
-
-// What flows between sites at different potentials is known to this part of conductance
-// times potential; less is nothing.
-static const double NOISE = 1e-15;
 
 // A meniscus this much more curved than its throat, of its potential, still floats:
 // what is on the verge would change its mind for rounding.
@@ -117,61 +113,6 @@ void curved_free(struct curved *curved)
     *curved = (struct curved){0};
 }
 
-// --- what they evaporate -----------------------------------------------------------
-
-// Adds to TO (n) what the bodies at the K-th wet node have of FLOW.
-static void share_flow(const struct curved *curved, int k, double flow, double *to)
-{
-    for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
-        to[curved->share[i].body] += curved->share[i].part * flow;
-}
-
-// The mean over the menisci of each wet node.
-static void find_levels(struct curved *curved, const struct phases *phases)
-{
-    for (int k = 0; k < phases->n_wet; k++) {
-        double mean = curved->raised[k];
-        for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
-            mean += curved->share[i].part * curved->potential[curved->share[i].body];
-        curved->level[phases->wet[k]] = mean;
-    }
-}
-
-void curved_find_gains(struct curved *curved, const struct phases *phases)
-{
-    const struct star_mesh *mesh = &phases->vapour.mesh;
-    struct compensated rate = {0};
-    find_levels(curved, phases);
-    for (int k = 0; k < phases->n_wet; k++) {
-        const int node = phases->wet[k];
-        curved->flow[node] = mesh->air[node] * (1 - curved->level[node]);
-        if (mesh->air[node] > 0) compensated_add(&rate, curved->flow[node]);
-    }
-    curved->rate = compensated_value(rate);
-    star_mesh_add_flows(mesh, curved->level, curved->flow);
-    memset(curved->gain, 0, (size_t)curved->n * sizeof *curved->gain);
-    for (int k = 0; k < phases->n_wet; k++)
-        share_flow(curved, k, curved->flow[phases->wet[k]], curved->gain);
-}
-
-// Of which each body evaporates the potential's NOISE.
-static void find_reaches(struct curved *curved, const struct phases *phases)
-{
-    memset(curved->reach, 0, (size_t)curved->n * sizeof *curved->reach);
-    for (int k = 0; k < phases->n_wet; k++)
-        share_flow(curved, k, curved->conducted[k], curved->reach);
-}
-
-// How little of what each body evaporates is nothing.
-static void find_noise(struct curved *curved)
-{
-    curved->all_noise = 0;
-    for (int a = 0; a < curved->n; a++) {
-        curved->noise[a] = NOISE * curved->reach[a] * fabs(curved->potential[a]);
-        curved->all_noise += curved->noise[a];
-    }
-}
-
 // --- menisci that are flatter ------------------------------------------------------
 
 struct revision {
@@ -248,7 +189,7 @@ static void balance(struct curved *curved, struct losses *losses)
 static enum status find_potentials(struct curved *curved, const struct phases *phases,
                                    struct reason *reason)
 {
-    find_noise(curved);
+    curved_find_noise(curved);
     for (int round = 0; round < MOST_ROUNDS; round++) {
         if (!float_freely(curved, phases))
             return refuse(reason, STATUS_INTERNAL, "kelvin: out of memory");
@@ -281,7 +222,7 @@ static void begin_anew(struct curved *curved, struct phases *phases)
     curved_list_bodies(curved, phases);
     star_mesh_list_fronts(&phases->vapour.mesh);
     floating_follow(curved->floating, curved, phases, n_emptied);
-    find_reaches(curved, phases);
+    curved_find_reaches(curved, phases);
     curved_raise_nodes(curved, phases);
     curved_find_gains(curved, phases);
 }

@@ -96,9 +96,6 @@ enum status curved_end(struct curved *curved, const struct phases *phases,
 // one.
 double curved_drive(const struct curved *curved);
 
-// What the bodies evaporate at their potentials.
-void curved_find_gains(struct curved *curved, const struct phases *phases);
-
 void curved_state(struct curved *curved, const struct network *network,
                   struct state *state);
 

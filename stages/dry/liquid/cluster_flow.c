@@ -3,10 +3,6 @@
 
 #include <math.h>
 
-// Of the flow that a response would make of all of a potential: what rounding leaves is
-// FLOW_AIM of this.
-static const double ROUNDED = 1e-2;
-
 static void list_ends(struct liquid_flow *flow, const struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
@@ -19,22 +15,6 @@ static void list_ends(struct liquid_flow *flow, const struct piece *piece)
          t = solver->lists.next[t])
         if (!flow->moving[t] && flow->response[t] > 0)
             solver->mover[solver->n_end++] = t;
-}
-
-double flow_scale(const struct liquid_flow *flow, const struct piece *piece)
-{
-    const struct flow_solver *solver = flow->solver;
-    double scale = piece->turnover;
-    for (int k = 0; k < solver->n_mover; k++)
-        scale = fmax(scale, fabs(solver->inflow[solver->mover[k]]));
-    for (int k = solver->n_mover; k < solver->n_end; k++) {
-        const int throat = solver->mover[k];
-        const double moves =
-            menisci_potential(&flow->menisci, throat, piece->reference);
-        const double sum = fabs(moves) + fabs(flow->surplus[throat]);
-        scale = fmax(scale, ROUNDED * flow->response[throat] * sum);
-    }
-    return scale;
 }
 
 enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,

@@ -7,17 +7,12 @@
 
 #include "flow_solver.h"
 
-// Largest error of a node's balance, relative to the largest flow in its cluster, and
-// what is aimed at.
+// Largest error of a node's balance, relative to the largest flow in its cluster.
 #define FLOW_TOLERANCE 1e-11
-static const double FLOW_AIM = 5e-13;
 
 // Potentials, flows to the menisci that FLOW says move, and their scale.
 enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
                                struct reason *reason);
-
-// The scale of the flows: the largest to or from a moving meniscus, or what evaporates.
-double flow_scale(const struct liquid_flow *flow, const struct piece *piece);
 
 // Either way: movers and nodes are listed; returns the error of the balances, of the
 // largest flow.

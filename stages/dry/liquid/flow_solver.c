@@ -3,7 +3,12 @@
 
 #include "basics/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+// Of the flow that a response would make of all of a potential: what rounding leaves is
+// FLOW_AIM of this.
+static const double ROUNDED = 1e-2;
 
 // --- one throat, one cluster ---------------------------------------------------------
 
@@ -229,4 +234,22 @@ void flow_solver_free(struct flow_solver *solver)
     free(solver->level);
     free(solver->link);
     free(solver);
+}
+
+// --- scale ---------------------------------------------------------------------------
+
+double flow_scale(const struct liquid_flow *flow, const struct piece *piece)
+{
+    const struct flow_solver *solver = flow->solver;
+    double scale = piece->turnover;
+    for (int k = 0; k < solver->n_mover; k++)
+        scale = fmax(scale, fabs(solver->inflow[solver->mover[k]]));
+    for (int k = solver->n_mover; k < solver->n_end; k++) {
+        const int throat = solver->mover[k];
+        const double moves =
+            menisci_potential(&flow->menisci, throat, piece->reference);
+        const double sum = fabs(moves) + fabs(flow->surplus[throat]);
+        scale = fmax(scale, ROUNDED * flow->response[throat] * sum);
+    }
+    return scale;
 }

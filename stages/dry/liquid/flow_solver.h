@@ -9,6 +9,10 @@
 #include "sparse/plain_cholmod.h"
 #include "viscous.h"
 
+// Error of a node's balance that is aimed at, relative to the largest flow in its
+// cluster.
+static const double FLOW_AIM = 5e-13;
+
 // What is known of a cluster from before.
 struct cluster_memory {
     struct liquid_graph *graph; // NULL: none
@@ -58,6 +62,9 @@ struct piece {
 // Keeps PHASES, which must live as long. The caller frees it with flow_solver_free.
 struct flow_solver *flow_solver_make(const struct phases *phases);
 void flow_solver_free(struct flow_solver *solver);
+
+// The scale of the flows: the largest to or from a moving meniscus, or what evaporates.
+double flow_scale(const struct liquid_flow *flow, const struct piece *piece);
 
 // Nothing is remembered of the clusters as they were.
 void flow_solver_forget(struct flow_solver *solver, const struct phases *phases);

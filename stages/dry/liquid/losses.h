@@ -3,7 +3,6 @@
 #ifndef CRAQUELURE_LOSSES_H
 #define CRAQUELURE_LOSSES_H
 
-#include "dry/run/drying.h"
 #include "occupancy.h"
 #include "viscous.h"
 

@@ -39,6 +39,12 @@ struct run {
     double *saturation; // (n_throat) at that step
 };
 
+// Of the throats' volume, from 1 at the start to exactly 0 when all is dry.
+double network_saturation(const struct run *run);
+
+// Whether there is liquid, and more than where the run is to stop.
+bool goes_on(const struct run *run);
+
 // Into the drying air, scaled; 0 when all is dry.
 double rate_now(const struct run *run);
 

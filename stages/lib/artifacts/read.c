@@ -16,14 +16,6 @@
 const char *const provenance_names[] = {"program", "parameters", "inputs", "model",
                                         NULL};
 
-bool is_hdf5(const struct bytes *bytes)
-{
-    static const unsigned char signature[8] = {0x89, 'H',  'D',  'F',
-                                               '\r', '\n', 0x1a, '\n'};
-    return bytes->size >= sizeof signature &&
-           !memcmp(bytes->data, signature, sizeof signature);
-}
-
 static hid_t open_image(const char *path, const struct bytes *image)
 {
     if (image->size == 0) die(STATUS_BAD_DATA, "%s: is empty", input_name(path));

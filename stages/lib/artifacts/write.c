@@ -346,12 +346,6 @@ static void put_provenance(struct artifact *artifact, json_t *members)
     json_decref(members);
 }
 
-void hdf5_begin(void)
-{
-    H5dont_atexit();
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
-
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
                      json_t *inputs, const char *model)
 {

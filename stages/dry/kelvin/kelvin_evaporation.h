@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What bodies of liquid evaporate at given potentials, and how well that is known.
+#ifndef CRAQUELURE_KELVIN_EVAPORATION_H
+#define CRAQUELURE_KELVIN_EVAPORATION_H
+
+#include "kelvin_menisci.h"
+
+// Finds GAIN of each body, and RATE into the air, from POTENTIAL.
+void curved_find_gains(struct curved *curved, const struct phases *phases);
+
+// Finds REACH of each body from what its nodes conduct.
+void curved_find_reaches(struct curved *curved, const struct phases *phases);
+
+// Finds NOISE of each body: gains below it are rounding.
+void curved_find_noise(struct curved *curved);
+
+#endif

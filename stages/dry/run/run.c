@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every way of drying asks of a run and records of it.
+#include "run.h"
+
+#include "basics/sorted.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// From 1 at the start to exactly 0 at the end.
+double network_saturation(const struct run *run)
+{
+    if (run->phases.n_full == 0) return 0;
+    const double liquid = compensated_value(run->phases.total_liquid);
+    return fmin(1, fmax(0, liquid / run->phases.capacity));
+}
+
+double rate_now(const struct run *run)
+{
+    if (run->phases.n_full == 0) return 0;
+    return run->conditions->kelvin ? run->curved.rate
+                                   : vapour_rate(&run->phases.vapour);
+}
+
+bool goes_on(const struct run *run)
+{
+    return run->phases.n_full > 0 &&
+           network_saturation(run) > run->conditions->stop_saturation;
+}
+
+bool snapshot_is_due(const struct run *run)
+{
+    const int next = run->recorder.history->n_pressure;
+    return run->conditions->liquid == LIQUID_VISCOUS &&
+           next < run->conditions->n_snapshot &&
+           network_saturation(run) <= run->conditions->snapshot[next];
+}
+
+bool step_is_due(struct run *run)
+{
+    const double fallen = run->step_saturation - network_saturation(run);
+    if (fallen < run->conditions->step_interval && goes_on(run) &&
+        !snapshot_is_due(run)) {
+        run->n_skipped++;
+        return false;
+    }
+    if (run->n_skipped > 0) {
+        const double evaporated =
+            compensated_difference(run->evaporated, run->step_evaporated);
+        const double time = compensated_difference(run->time, run->step_time);
+        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
+    }
+    return true;
+}
+
+void sort_ended(struct run *run)
+{
+    qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, rising_ints);
+}
+
+void record_state(struct run *run)
+{
+    recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
+                      network_saturation(run), rate_now(run) * run->scale.rate,
+                      run->phases.clusters.count);
+    run->n_skipped = 0;
+    run->step_saturation = network_saturation(run);
+    run->step_time = run->time;
+    run->step_evaporated = run->evaporated;
+}
+
+void note_breakthrough(struct run *run)
+{
+    struct drying_history *history = run->recorder.history;
+    if (run->phases.breakthrough && history->breakthrough_saturation == 0)
+        history->breakthrough_saturation = network_saturation(run);
+}
+
+enum status refuse_standstill(const struct run *run, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "nothing evaporates any more with %d throats still wet (rates too "
+                  "small for the arithmetic)",
+                  run->phases.n_full);
+}
