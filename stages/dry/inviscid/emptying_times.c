@@ -299,30 +299,30 @@ void clocks_empty_ended(struct clocks *clocks)
 
 // --- state -------------------------------------------------------------------------
 
-void clocks_state(struct clocks *clocks, struct state *state)
+void clocks_state(struct clocks *clocks, struct checkpoint_stream *stream)
 {
     const int n_throat = clocks->phases->network->n_throat;
-    for (int k = 0; state->restoring && k < clocks->n; k++)
+    for (int k = 0; stream->restoring && k < clocks->n; k++)
         if (clocks->owner[k] >= 0) clocks->clock[clocks->owner[k]] = -1;
-    state_integer(state, &clocks->n, 0, n_throat);
-    state_integer(state, &clocks->n_unused, 0, n_throat);
-    state_integer(state, &clocks->n_losing, 0, n_throat);
-    charges_state(clocks, state);
-    state_integers(state, clocks->owner, clocks->n, -1, n_throat - 1);
-    state_integers(state, clocks->throat, clocks->n, -1, n_throat - 1);
-    state_integers(state, clocks->charges, clocks->n, 0, clocks->n_charge);
-    state_integers(state, clocks->unused, clocks->n_unused, 0, clocks->n - 1);
-    state_integers(state, clocks->losing, clocks->n_losing, 0, n_throat - 1);
-    state_flags(state, clocks->has_sum, clocks->n);
-    state_sums(state, clocks->sum, clocks->n);
-    state_numbers(state, clocks->summed, clocks->n);
-    state_numbers(state, clocks->rate, clocks->n);
-    state_numbers(state, clocks->left, clocks->n);
-    state_numbers(state, clocks->left_lost, clocks->n);
-    state_numbers(state, clocks->since, clocks->n);
-    state_numbers(state, &clocks->now, 1);
-    state_numbers(state, clocks->saturation, n_throat);
-    for (int k = 0; state->restoring && k < clocks->n; k++) {
+    stream_integer(stream, &clocks->n, 0, n_throat);
+    stream_integer(stream, &clocks->n_unused, 0, n_throat);
+    stream_integer(stream, &clocks->n_losing, 0, n_throat);
+    charges_state(clocks, stream);
+    stream_integers(stream, clocks->owner, clocks->n, -1, n_throat - 1);
+    stream_integers(stream, clocks->throat, clocks->n, -1, n_throat - 1);
+    stream_integers(stream, clocks->charges, clocks->n, 0, clocks->n_charge);
+    stream_integers(stream, clocks->unused, clocks->n_unused, 0, clocks->n - 1);
+    stream_integers(stream, clocks->losing, clocks->n_losing, 0, n_throat - 1);
+    stream_flags(stream, clocks->has_sum, clocks->n);
+    stream_sums(stream, clocks->sum, clocks->n);
+    stream_numbers(stream, clocks->summed, clocks->n);
+    stream_numbers(stream, clocks->rate, clocks->n);
+    stream_numbers(stream, clocks->left, clocks->n);
+    stream_numbers(stream, clocks->left_lost, clocks->n);
+    stream_numbers(stream, clocks->since, clocks->n);
+    stream_numbers(stream, &clocks->now, 1);
+    stream_numbers(stream, clocks->saturation, n_throat);
+    for (int k = 0; stream->restoring && k < clocks->n; k++) {
         if (clocks->owner[k] >= 0) clocks->clock[clocks->owner[k]] = k;
         const int throat = clocks->throat[k];
         clocks->nothing[k] = throat < 0 ? 0 : TIE * clocks->phases->volume[throat];

@@ -71,7 +71,7 @@ double clocks_saturation(const struct clocks *clocks, int throat);
 double clocks_imbalance(const struct clocks *clocks);
 
 // Between two events.
-void clocks_state(struct clocks *clocks, struct state *state);
+void clocks_state(struct clocks *clocks, struct checkpoint_stream *stream);
 
 void clocks_free(struct clocks *clocks);
 

@@ -151,18 +151,19 @@ bool charges_lack_digits(const struct clocks *clocks)
     return false;
 }
 
-void charges_state(struct clocks *clocks, struct state *state)
+void charges_state(struct clocks *clocks, struct checkpoint_stream *stream)
 {
     const struct network *network = clocks->phases->network;
     const int n_incidence = 2 * network->n_throat;
-    state_integer(state, &clocks->n_charge, 0, n_incidence);
+    stream_integer(stream, &clocks->n_charge, 0, n_incidence);
     for (int k = 0; k < clocks->n_charge; k++) {
         struct charge *charge = &clocks->charge[k];
-        state_numbers(state, &charge->share, 1);
-        state_integer(state, &charge->node, 0, network->n_node - 1);
-        state_integer(state, &charge->clock, 0, clocks->n - 1);
+        stream_numbers(stream, &charge->share, 1);
+        stream_integer(stream, &charge->node, 0, network->n_node - 1);
+        stream_integer(stream, &charge->clock, 0, clocks->n - 1);
     }
-    state_integers(state, clocks->charge_incidence, clocks->n_charge, 0,
-                   n_incidence - 1);
-    state_integers(state, clocks->charge_place, n_incidence, -1, clocks->n_charge - 1);
+    stream_integers(stream, clocks->charge_incidence, clocks->n_charge, 0,
+                    n_incidence - 1);
+    stream_integers(stream, clocks->charge_place, n_incidence, -1,
+                    clocks->n_charge - 1);
 }

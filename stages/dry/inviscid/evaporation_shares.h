@@ -35,6 +35,6 @@ bool charges_lack_digits(const struct clocks *clocks);
 // Sets all rates: sums of positive numbers, so that nothing is lost.
 void charges_add_up(struct clocks *clocks);
 
-void charges_state(struct clocks *clocks, struct state *state);
+void charges_state(struct clocks *clocks, struct checkpoint_stream *stream);
 
 #endif

@@ -275,12 +275,12 @@ enum status curved_find(struct curved *curved, struct phases *phases,
 }
 
 void curved_state(struct curved *curved, const struct network *network,
-                  struct state *state)
+                  struct checkpoint_stream *stream)
 {
     const int n_throat = network->n_throat;
-    state_numbers(state, curved->outside, network->n_node);
-    state_numbers(state, &curved->rate, 1);
-    state_numbers(state, &curved->residual, 1);
-    state_flags(state, curved->floated, n_throat);
-    state_numbers(state, curved->floated_at, n_throat);
+    stream_numbers(stream, curved->outside, network->n_node);
+    stream_numbers(stream, &curved->rate, 1);
+    stream_numbers(stream, &curved->residual, 1);
+    stream_flags(stream, curved->floated, n_throat);
+    stream_numbers(stream, curved->floated_at, n_throat);
 }

@@ -97,7 +97,7 @@ enum status curved_end(struct curved *curved, const struct phases *phases,
 double curved_drive(const struct curved *curved);
 
 void curved_state(struct curved *curved, const struct network *network,
-                  struct state *state);
+                  struct checkpoint_stream *stream);
 
 void curved_free(struct curved *curved);
 

@@ -72,11 +72,11 @@ void curved_flow_free(struct curved_flow *both)
     *both = (struct curved_flow){0};
 }
 
-void curved_flow_state(struct curved_flow *both, struct state *state)
+void curved_flow_state(struct curved_flow *both, struct checkpoint_stream *stream)
 {
-    state_numbers(state, both->surplus, both->flow->network->n_throat);
-    state_flags(state, both->waited, both->flow->network->n_throat);
-    state_long(state, &both->rounds);
+    stream_numbers(stream, both->surplus, both->flow->network->n_throat);
+    stream_flags(stream, both->waited, both->flow->network->n_throat);
+    stream_long(stream, &both->rounds);
 }
 
 // --- menisci -----------------------------------------------------------------------

@@ -48,7 +48,7 @@ struct curved_flow curved_flow_make(struct curved *curved, struct liquid_flow *f
 enum status curved_flow_find(struct curved_flow *both, struct phases *phases,
                              struct losses *losses, struct reason *reason);
 
-void curved_flow_state(struct curved_flow *both, struct state *state);
+void curved_flow_state(struct curved_flow *both, struct checkpoint_stream *stream);
 
 void curved_flow_free(struct curved_flow *both);
 

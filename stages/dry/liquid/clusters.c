@@ -310,43 +310,45 @@ void clusters_free(struct clusters *clusters)
 
 // --- state -------------------------------------------------------------------------
 
-static void heap_state(struct rank_heap *heap, int n_throat, struct state *state)
+static void heap_state(struct rank_heap *heap, int n_throat,
+                       struct checkpoint_stream *stream)
 {
     int64_t n = heap->n;
-    heap->rank = state_room(state, heap->rank, &n, sizeof *heap->rank);
-    if (state->restoring) heap->n = heap->capacity = (int)n;
-    state_integers(state, heap->rank, heap->n, 0, n_throat - 1);
+    heap->rank = stream_room(stream, heap->rank, &n, sizeof *heap->rank);
+    if (stream->restoring) heap->n = heap->capacity = (int)n;
+    stream_integers(stream, heap->rank, heap->n, 0, n_throat - 1);
 }
 
-static void identities_state(struct clusters *clusters, struct state *state)
+static void identities_state(struct clusters *clusters,
+                             struct checkpoint_stream *stream)
 {
     int64_t n = clusters->n_id;
-    if (state->restoring)
+    if (stream->restoring)
         for (int c = 0; c < clusters->n_id; c++)
             free(clusters->heap[c].rank);
-    clusters->size = state_room(state, clusters->size, &n, sizeof *clusters->size);
-    clusters->heap = state_room(state, clusters->heap, &n, sizeof *clusters->heap);
-    if (state->restoring) {
+    clusters->size = stream_room(stream, clusters->size, &n, sizeof *clusters->size);
+    clusters->heap = stream_room(stream, clusters->heap, &n, sizeof *clusters->heap);
+    if (stream->restoring) {
         memset(clusters->heap, 0, (size_t)n * sizeof *clusters->heap);
         clusters->n_id = clusters->capacity = (int)n;
     }
     const int n_throat = clusters->network->n_throat;
-    state_integers(state, clusters->size, n, 0, n_throat);
+    stream_integers(stream, clusters->size, n, 0, n_throat);
     for (int c = 0; c < clusters->n_id; c++)
-        heap_state(&clusters->heap[c], n_throat, state);
+        heap_state(&clusters->heap[c], n_throat, stream);
     n = clusters->n_unused;
-    clusters->unused = state_room(state, clusters->unused, &n, sizeof(int));
-    if (state->restoring) clusters->n_unused = clusters->unused_capacity = (int)n;
-    state_integers(state, clusters->unused, n, 0, clusters->n_id - 1);
+    clusters->unused = stream_room(stream, clusters->unused, &n, sizeof(int));
+    if (stream->restoring) clusters->n_unused = clusters->unused_capacity = (int)n;
+    stream_integers(stream, clusters->unused, n, 0, clusters->n_id - 1);
 }
 
-void clusters_state(struct clusters *clusters, struct state *state)
+void clusters_state(struct clusters *clusters, struct checkpoint_stream *stream)
 {
     const struct network *network = clusters->network;
-    identities_state(clusters, state);
-    state_integer(state, &clusters->count, 0, clusters->n_id);
-    state_flags(state, clusters->joins, network->n_node);
-    state_integers(state, clusters->of_throat, network->n_throat, -1,
-                   clusters->n_id - 1);
-    state_flags(state, clusters->meniscus, network->n_throat);
+    identities_state(clusters, stream);
+    stream_integer(stream, &clusters->count, 0, clusters->n_id);
+    stream_flags(stream, clusters->joins, network->n_node);
+    stream_integers(stream, clusters->of_throat, network->n_throat, -1,
+                    clusters->n_id - 1);
+    stream_flags(stream, clusters->meniscus, network->n_throat);
 }

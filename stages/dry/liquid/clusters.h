@@ -8,8 +8,8 @@
 #ifndef CRAQUELURE_CLUSTERS_H
 #define CRAQUELURE_CLUSTERS_H
 
-#include "network/network.h"
 #include "checkpoint/stream.h"
+#include "network/network.h"
 
 #include <stdbool.h>
 
@@ -65,7 +65,7 @@ void clusters_empty_throat(struct clusters *clusters, int throat);
 // cluster.
 int clusters_invasion_throat(struct clusters *clusters, int cluster);
 
-void clusters_state(struct clusters *clusters, struct state *state);
+void clusters_state(struct clusters *clusters, struct checkpoint_stream *stream);
 
 void clusters_free(struct clusters *clusters);
 

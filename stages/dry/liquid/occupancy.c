@@ -131,19 +131,19 @@ void phases_free(struct phases *phases)
     *phases = (struct phases){0};
 }
 
-void phases_state(struct phases *phases, struct state *state)
+void phases_state(struct phases *phases, struct checkpoint_stream *stream)
 {
     const int n_node = phases->network->n_node, n_throat = phases->network->n_throat;
-    state_sums(state, phases->liquid, n_throat);
-    state_sums(state, &phases->total_liquid, 1);
-    state_numbers(state, &phases->initial_liquid, 1);
-    state_integer(state, &phases->n_full, 0, n_throat);
-    state_flags(state, phases->gas, n_node);
-    state_integers(state, phases->liquid_beside, n_node, 0, n_throat);
-    state_integer(state, &phases->n_wet, 0, n_node);
-    state_integers(state, phases->wet, phases->n_wet, 0, n_node - 1);
-    state_integers(state, phases->wet_place, n_node, -1, phases->n_wet - 1);
-    state_flags(state, &phases->breakthrough, 1);
-    star_mesh_state(&phases->vapour.mesh, state);
-    clusters_state(&phases->clusters, state);
+    stream_sums(stream, phases->liquid, n_throat);
+    stream_sums(stream, &phases->total_liquid, 1);
+    stream_numbers(stream, &phases->initial_liquid, 1);
+    stream_integer(stream, &phases->n_full, 0, n_throat);
+    stream_flags(stream, phases->gas, n_node);
+    stream_integers(stream, phases->liquid_beside, n_node, 0, n_throat);
+    stream_integer(stream, &phases->n_wet, 0, n_node);
+    stream_integers(stream, phases->wet, phases->n_wet, 0, n_node - 1);
+    stream_integers(stream, phases->wet_place, n_node, -1, phases->n_wet - 1);
+    stream_flags(stream, &phases->breakthrough, 1);
+    star_mesh_state(&phases->vapour.mesh, stream);
+    clusters_state(&phases->clusters, stream);
 }

@@ -55,7 +55,7 @@ void phases_empty_throat(struct phases *phases, int throat);
 // Of THROAT, where the phases know it: at the start, and in viscous liquid.
 double phases_saturation(const struct phases *phases, int throat);
 
-void phases_state(struct phases *phases, struct state *state);
+void phases_state(struct phases *phases, struct checkpoint_stream *stream);
 
 void phases_free(struct phases *phases);
 

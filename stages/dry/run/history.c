@@ -72,59 +72,64 @@ void recorder_set_last_rate(struct recorder *recorder, double rate)
 
 // --- state -------------------------------------------------------------------------
 
-static void events_state(struct recorder *recorder, int n_throat, struct state *state)
+static void events_state(struct recorder *recorder, int n_throat,
+                         struct checkpoint_stream *stream)
 {
     struct drying_history *history = recorder->history;
     int64_t n = history->n_event;
-    history->event_time = state_room(state, history->event_time, &n, sizeof(double));
-    history->event_throat = state_room(state, history->event_throat, &n, sizeof(int));
-    history->event_kind = state_room(state, history->event_kind, &n, 1);
-    if (state->restoring) history->n_event = recorder->event_capacity = (int)n;
-    state_numbers(state, history->event_time, n);
-    state_integers(state, history->event_throat, n, 0, n_throat - 1);
-    state_bytes(state, history->event_kind, n, EVENT_REFILLED);
+    history->event_time = stream_room(stream, history->event_time, &n, sizeof(double));
+    history->event_throat = stream_room(stream, history->event_throat, &n, sizeof(int));
+    history->event_kind = stream_room(stream, history->event_kind, &n, 1);
+    if (stream->restoring) history->n_event = recorder->event_capacity = (int)n;
+    stream_numbers(stream, history->event_time, n);
+    stream_integers(stream, history->event_throat, n, 0, n_throat - 1);
+    stream_bytes(stream, history->event_kind, n, EVENT_REFILLED);
 }
 
-static void changes_state(struct recorder *recorder, int n_throat, struct state *state)
+static void changes_state(struct recorder *recorder, int n_throat,
+                          struct checkpoint_stream *stream)
 {
     struct drying_history *history = recorder->history;
     int64_t n = recorder->n_change;
-    history->change_throat = state_room(state, history->change_throat, &n, sizeof(int));
+    history->change_throat =
+        stream_room(stream, history->change_throat, &n, sizeof(int));
     history->change_saturation =
-        state_room(state, history->change_saturation, &n, sizeof(double));
-    if (state->restoring) recorder->n_change = recorder->change_capacity = n;
-    state_integers(state, history->change_throat, n, 0, n_throat - 1);
-    state_numbers(state, history->change_saturation, n);
+        stream_room(stream, history->change_saturation, &n, sizeof(double));
+    if (stream->restoring) recorder->n_change = recorder->change_capacity = n;
+    stream_integers(stream, history->change_throat, n, 0, n_throat - 1);
+    stream_numbers(stream, history->change_saturation, n);
 }
 
-static void steps_state(struct recorder *recorder, int n_throat, struct state *state)
+static void steps_state(struct recorder *recorder, int n_throat,
+                        struct checkpoint_stream *stream)
 {
     struct drying_history *history = recorder->history;
     int64_t n = history->n_step;
-    history->time = state_room(state, history->time, &n, sizeof(double));
-    history->saturation = state_room(state, history->saturation, &n, sizeof(double));
-    history->rate = state_room(state, history->rate, &n, sizeof(double));
-    history->clusters = state_room(state, history->clusters, &n, sizeof(int32_t));
+    history->time = stream_room(stream, history->time, &n, sizeof(double));
+    history->saturation = stream_room(stream, history->saturation, &n, sizeof(double));
+    history->rate = stream_room(stream, history->rate, &n, sizeof(double));
+    history->clusters = stream_room(stream, history->clusters, &n, sizeof(int32_t));
     history->change_offset = // there is room for one more
-        state_room(state, history->change_offset, &n, sizeof(int64_t));
-    if (state->restoring) history->n_step = recorder->step_capacity = (int)n;
-    state_numbers(state, history->time, n);
-    state_numbers(state, history->saturation, n);
-    state_numbers(state, history->rate, n);
-    state_integers(state, history->clusters, n, 0, n_throat);
+        stream_room(stream, history->change_offset, &n, sizeof(int64_t));
+    if (stream->restoring) history->n_step = recorder->step_capacity = (int)n;
+    stream_numbers(stream, history->time, n);
+    stream_numbers(stream, history->saturation, n);
+    stream_numbers(stream, history->rate, n);
+    stream_integers(stream, history->clusters, n, 0, n_throat);
     for (int64_t k = 0; k <= n; k++) {
-        state_long(state, &history->change_offset[k]);
-        state->failed |= history->change_offset[k] > recorder->n_change;
+        stream_long(stream, &history->change_offset[k]);
+        stream->failed |= history->change_offset[k] > recorder->n_change;
     }
 }
 
-void recorder_state(struct recorder *recorder, int n_throat, struct state *state)
+void recorder_state(struct recorder *recorder, int n_throat,
+                    struct checkpoint_stream *stream)
 {
-    events_state(recorder, n_throat, state);
-    changes_state(recorder, n_throat, state);
-    steps_state(recorder, n_throat, state);
-    state_numbers(state, &recorder->history->breakthrough_saturation, 1);
-    state_numbers(state, &recorder->history->first_period_end_saturation, 1);
+    events_state(recorder, n_throat, stream);
+    changes_state(recorder, n_throat, stream);
+    steps_state(recorder, n_throat, stream);
+    stream_numbers(stream, &recorder->history->breakthrough_saturation, 1);
+    stream_numbers(stream, &recorder->history->first_period_end_saturation, 1);
 }
 
 // -----------------------------------------------------------------------------------

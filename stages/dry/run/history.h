@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_HISTORY_H
 #define CRAQUELURE_HISTORY_H
 
-#include "drying.h"
 #include "checkpoint/stream.h"
+#include "drying.h"
 
 // A history that grows; it has no step yet.
 struct recorder {
@@ -28,6 +28,7 @@ void recorder_add_step(struct recorder *recorder, double time, double saturation
 void recorder_set_last_rate(struct recorder *recorder, double rate);
 
 // For a network of N_THROAT throats. Pressures are not in it.
-void recorder_state(struct recorder *recorder, int n_throat, struct state *state);
+void recorder_state(struct recorder *recorder, int n_throat,
+                    struct checkpoint_stream *stream);
 
 #endif

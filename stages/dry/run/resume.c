@@ -9,72 +9,73 @@
 // A factorisation costs as much as some ten steps.
 enum { STEPS_BETWEEN_CUTS = 256 };
 
-static void pressures_state(struct run *run, struct state *state)
+static void pressures_state(struct run *run, struct checkpoint_stream *stream)
 {
     struct drying_history *history = run->recorder.history;
-    state_integer(state, &history->n_pressure, 0, run->conditions->n_snapshot);
+    stream_integer(stream, &history->n_pressure, 0, run->conditions->n_snapshot);
     const int64_t n_node = run->phases.network->n_node;
-    if (state->restoring && history->n_pressure > 0)
+    if (stream->restoring && history->n_pressure > 0)
         history->pressure =
             NEW_ARRAY(double, n_node *(int64_t)run->conditions->n_snapshot);
-    state_numbers(state, history->pressure, n_node * history->n_pressure);
+    stream_numbers(stream, history->pressure, n_node * history->n_pressure);
 }
 
-static void flow_state(struct run *run, struct state *state)
+static void flow_state(struct run *run, struct checkpoint_stream *stream)
 {
     struct liquid_flow *flow = &run->flow;
-    state_flags(state, flow->moving, run->phases.network->n_throat);
-    state_numbers(state, &flow->residual, 1);
-    state_long(state, &flow->rounds);
-    state_long(state, &flow->solutions);
-    pressures_state(run, state);
+    stream_flags(stream, flow->moving, run->phases.network->n_throat);
+    stream_numbers(stream, &flow->residual, 1);
+    stream_long(stream, &flow->rounds);
+    stream_long(stream, &flow->solutions);
+    pressures_state(run, stream);
 }
 
-static void steps_state(struct run *run, struct state *state)
+static void steps_state(struct run *run, struct checkpoint_stream *stream)
 {
     const int n_throat = run->phases.network->n_throat;
-    state_numbers(state, &run->step_saturation, 1);
-    state_sums(state, &run->step_time, 1);
-    state_sums(state, &run->step_evaporated, 1);
-    state_integer(state, &run->n_skipped, 0, INT_MAX);
-    state_integer(state, &run->n_ended, 0, n_throat);
-    state_integers(state, run->ended, run->n_ended, 0, n_throat - 1);
-    state_flags(state, run->is_ended, n_throat);
-    state_integer(state, &run->n_idle, 0, INT_MAX);
-    state_numbers(state, run->saturation, n_throat);
+    stream_numbers(stream, &run->step_saturation, 1);
+    stream_sums(stream, &run->step_time, 1);
+    stream_sums(stream, &run->step_evaporated, 1);
+    stream_integer(stream, &run->n_skipped, 0, INT_MAX);
+    stream_integer(stream, &run->n_ended, 0, n_throat);
+    stream_integers(stream, run->ended, run->n_ended, 0, n_throat - 1);
+    stream_flags(stream, run->is_ended, n_throat);
+    stream_integer(stream, &run->n_idle, 0, INT_MAX);
+    stream_numbers(stream, run->saturation, n_throat);
 }
 
 // Of menisci with vapour pressures of their own they are found before the state is
 // kept.
-static void losses_state(struct losses *losses, int n_throat, struct state *state)
+static void losses_state(struct losses *losses, int n_throat,
+                         struct checkpoint_stream *stream)
 {
-    state_integer(state, &losses->n, 0, n_throat);
+    stream_integer(stream, &losses->n, 0, n_throat);
     for (int k = 0; k < losses->n; k++) {
-        state_integer(state, &losses->loss[k].throat, 0, n_throat - 1);
-        state_numbers(state, &losses->loss[k].rate, 1);
+        stream_integer(stream, &losses->loss[k].throat, 0, n_throat - 1);
+        stream_numbers(stream, &losses->loss[k].rate, 1);
     }
 }
 
-static void run_state(struct run *run, struct state *state)
+static void run_state(struct run *run, struct checkpoint_stream *stream)
 {
-    state_sums(state, &run->time, 1);
-    state_sums(state, &run->evaporated, 1);
-    state_numbers(state, &run->imbalance, 1);
-    state_numbers(state, &run->first_rate, 1);
-    state_integer(state, &run->n_at_start, 0, run->phases.network->n_throat);
-    state_long(state, &run->n_flow_step);
-    recorder_state(&run->recorder, run->phases.network->n_throat, state);
-    phases_state(&run->phases, state);
-    steps_state(run, state);
+    stream_sums(stream, &run->time, 1);
+    stream_sums(stream, &run->evaporated, 1);
+    stream_numbers(stream, &run->imbalance, 1);
+    stream_numbers(stream, &run->first_rate, 1);
+    stream_integer(stream, &run->n_at_start, 0, run->phases.network->n_throat);
+    stream_long(stream, &run->n_flow_step);
+    recorder_state(&run->recorder, run->phases.network->n_throat, stream);
+    phases_state(&run->phases, stream);
+    steps_state(run, stream);
     const int n_throat = run->phases.network->n_throat;
     const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
     if (run->conditions->kelvin) {
-        curved_state(&run->curved, run->phases.network, state);
-        losses_state(&run->losses, n_throat, state);
+        curved_state(&run->curved, run->phases.network, stream);
+        losses_state(&run->losses, n_throat, stream);
     }
-    if (is_viscous) flow_state(run, state);
-    if (is_viscous && run->conditions->kelvin) curved_flow_state(&run->both, state);
-    if (!is_viscous && !run->conditions->kelvin) clocks_state(&run->clocks, state);
+    if (is_viscous) flow_state(run, stream);
+    if (is_viscous && run->conditions->kelvin) curved_flow_state(&run->both, stream);
+    if (!is_viscous && !run->conditions->kelvin) clocks_state(&run->clocks, stream);
 }
 
 static const char streams[] = "drying";
@@ -87,10 +88,10 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
         liquid_flow_forget(&run->flow, &run->phases);
     if (run->conditions->kelvin) curved_forget(&run->curved);
     if (!is_due(keeper)) return;
-    struct state state = state_to_keep();
-    run_state(run, &state);
-    struct kept_state kept = {.stage = state_list(&state, streams)};
-    state_free(&state);
+    struct checkpoint_stream stream = stream_to_keep();
+    run_state(run, &stream);
+    struct kept_state kept = {.stage = stream_list(&stream, streams)};
+    stream_free(&stream);
     keeper->keep(keeper->context, &kept);
     free_kept_state(&kept);
 }
@@ -98,9 +99,9 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
 enum status go_on_from(struct run *run, const struct kept_state *kept,
                        struct reason *reason)
 {
-    struct state state = state_to_restore(&kept->stage, streams);
-    run_state(run, &state);
-    if (!state_is_whole(&state) || !run_fits(run))
+    struct checkpoint_stream stream = stream_to_restore(&kept->stage, streams);
+    run_state(run, &stream);
+    if (!stream_is_whole(&stream) || !run_fits(run))
         return refuse(reason, STATUS_BAD_DATA,
                       "/stage: is not the state of a drying of this network");
     if (run->conditions->liquid == LIQUID_VISCOUS)

@@ -10,8 +10,8 @@
 // makes them faster.
 void keep_if_due(struct run *run, const struct keeper *keeper);
 
-// RUN, made for the start of the same network and conditions, goes on from STATE.
-// STATUS_BAD_DATA: STATE is not of such a run.
+// RUN, made for the start of the same network and conditions, goes on from STREAM.
+// STATUS_BAD_DATA: STREAM is not of such a run.
 enum status go_on_from(struct run *run, const struct kept_state *kept,
                        struct reason *reason);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "checkpoint/keeper.h"
 
-void free_kept_state(struct kept_state *state)
+void free_kept_state(struct kept_state *stream)
 {
-    free_arrays(state->engine.array, state->engine.count);
-    free_arrays(state->stage.array, state->stage.count);
-    *state = (struct kept_state){{NULL, 0}, {NULL, 0}};
+    free_arrays(stream->engine.array, stream->engine.count);
+    free_arrays(stream->stage.array, stream->stage.count);
+    *stream = (struct kept_state){{NULL, 0}, {NULL, 0}};
 }
 
 bool is_due(const struct keeper *keeper)

@@ -14,12 +14,12 @@ struct keeper {
     // Asked often; whether it is time to keep the state. NULL: it never is.
     bool (*due)(void *context);
     // Need not return: the run may end here.
-    void (*keep)(void *context, const struct kept_state *state);
+    void (*keep)(void *context, const struct kept_state *stream);
     void *context;
     const struct kept_state *begin; // to go on from; NULL: begin at the beginning
 };
 
-void free_kept_state(struct kept_state *state);
+void free_kept_state(struct kept_state *stream);
 
 // Whether it is time to keep the state; never with NULL.
 bool is_due(const struct keeper *keeper);

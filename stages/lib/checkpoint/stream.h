@@ -11,44 +11,48 @@
 
 #include <stdint.h>
 
-struct state_stream {
+struct value_list {
     void *data;
     int64_t n, capacity; // read: up to CAPACITY, N of them so far
 };
 
-struct state {
+struct checkpoint_stream {
     bool restoring;
     bool failed; // restoring: there was less, or other, than must be; zeros since then
-    struct state_stream number, integer, byte;
+    struct value_list number, integer, byte;
 };
 
-// What a run goes on from, kept or restored by the same calls: NAME_state(..., STATE)
-// writes what NAME has, or reads it. The caller frees with state_free; LIST must live
+// What a run goes on from, kept or restored by the same calls: NAME_state(..., STREAM)
+// writes what NAME has, or reads it. The caller frees with stream_free; LIST must live
 // as long. The lists have PREFIX_numbers, PREFIX_integers and PREFIX_bytes.
-struct state state_to_keep(void);
-struct state state_to_restore(const struct array_list *list, const char *prefix);
+struct checkpoint_stream stream_to_keep(void);
+struct checkpoint_stream stream_to_restore(const struct array_list *list,
+                                           const char *prefix);
 
 // Each writes N values at AT, or reads them. Integers lie from LEAST to MOST, bytes
 // from 0 to MOST; a state with others has failed.
-void state_numbers(struct state *state, double *at, int64_t n);
-void state_sums(struct state *state, struct compensated *at, int64_t n);
-void state_integers(struct state *state, int32_t *at, int64_t n, int32_t least,
-                    int32_t most);
-void state_bytes(struct state *state, uint8_t *at, int64_t n, uint8_t most);
-void state_flags(struct state *state, bool *at, int64_t n);
-void state_integer(struct state *state, int *at, int least, int most);
-void state_long(struct state *state, int64_t *at); // 0 to 2^53
+void stream_numbers(struct checkpoint_stream *stream, double *at, int64_t n);
+void stream_sums(struct checkpoint_stream *stream, struct compensated *at, int64_t n);
+void stream_integers(struct checkpoint_stream *stream, int32_t *at, int64_t n,
+                     int32_t least, int32_t most);
+void stream_bytes(struct checkpoint_stream *stream, uint8_t *at, int64_t n,
+                  uint8_t most);
+void stream_flags(struct checkpoint_stream *stream, bool *at, int64_t n);
+void stream_integer(struct checkpoint_stream *stream, int *at, int least, int most);
+void stream_long(struct checkpoint_stream *stream, int64_t *at); // 0 to 2^53
 
 // ARRAY, with N elements of SIZE bytes, is written next: makes room for as many as are
 // read (up to 2^31), and says how many in N.
-void *state_room(struct state *state, void *array, int64_t *n, size_t size);
+void *stream_room(struct checkpoint_stream *stream, void *array, int64_t *n,
+                  size_t size);
 
 // All is written: the lists for a keeper, which frees them.
-struct array_list state_list(const struct state *state, const char *prefix);
+struct array_list stream_list(const struct checkpoint_stream *stream,
+                              const char *prefix);
 
 // All is read: whether that was all there is, and none failed.
-bool state_is_whole(const struct state *state);
+bool stream_is_whole(const struct checkpoint_stream *stream);
 
-void state_free(struct state *state);
+void stream_free(struct checkpoint_stream *stream);
 
 #endif

@@ -41,7 +41,7 @@ struct round {
     double *sum; // of the widths in a row
     int row_capacity, sum_capacity;
     size_t n_entry, capacity;
-    uint64_t state; // of the draws
+    uint64_t stream; // of the draws
 };
 
 struct row {
@@ -53,9 +53,9 @@ struct row {
 enum { MOST_DEGREE = 200 };
 
 // SplitMix64: from 0 to 1.
-static double draw(uint64_t *state)
+static double draw(uint64_t *stream)
 {
-    uint64_t z = *state += 0x9e3779b97f4a7c15;
+    uint64_t z = *stream += 0x9e3779b97f4a7c15;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
     z = (z ^ z >> 27) * 0x94d049bb133111eb;
     return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
@@ -126,7 +126,7 @@ static void eliminate(struct shrinking_graph *graph, int i, struct round *round)
             break;
         }
         const double f = last / whole;
-        const double r = round->sum[k] + draw(&round->state) * (sum - round->sum[k]);
+        const double r = round->sum[k] + draw(&round->stream) * (sum - round->sum[k]);
         const int other = search(round->sum, k + 1, length, r);
         share[k] = (float)(f * rest);
         graph_replace(graph, half.to, i, graph->half[first + other].to,

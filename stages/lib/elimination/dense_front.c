@@ -220,23 +220,24 @@ void triangle_add_products(struct triangle *triangle, int n, double factor,
     }
 }
 
-void triangle_state(struct triangle *triangle, int n, struct state *state)
+void triangle_state(struct triangle *triangle, int n, struct checkpoint_stream *stream)
 {
     int n_waiting = triangle->n_waiting;
-    state_flags(state, &triangle->is_large, 1);
-    state_integer(state, &n_waiting, 0, MOST_SOURCES - 1);
+    stream_flags(stream, &triangle->is_large, 1);
+    stream_integer(stream, &n_waiting, 0, MOST_SOURCES - 1);
     for (int i = 0; i < n; i++) {
-        if (state->restoring) triangle_add_row(triangle, i);
-        state_numbers(state, (double *)triangle->entry + triangle_row(triangle, i), i);
+        if (stream->restoring) triangle_add_row(triangle, i);
+        stream_numbers(stream, (double *)triangle->entry + triangle_row(triangle, i),
+                       i);
     }
-    state->failed |= n_waiting > 0 && !triangle->is_large;
-    if (n_waiting == 0 || state->failed) return;
-    if (state->restoring) make_waiting_room(triangle, n);
+    stream->failed |= n_waiting > 0 && !triangle->is_large;
+    if (n_waiting == 0 || stream->failed) return;
+    if (stream->restoring) make_waiting_room(triangle, n);
     triangle->n_waiting = n_waiting;
-    state_numbers(state, triangle->factor, n_waiting);
-    state_numbers(state, triangle->waiting,
-                  (int64_t)blocks_of(triangle, n) * MOST_SOURCES *
-                      columns_in_block(triangle));
+    stream_numbers(stream, triangle->factor, n_waiting);
+    stream_numbers(stream, triangle->waiting,
+                   (int64_t)blocks_of(triangle, n) * MOST_SOURCES *
+                       columns_in_block(triangle));
 }
 
 void triangle_free(struct triangle *triangle)

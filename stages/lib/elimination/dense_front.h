@@ -73,7 +73,7 @@ void triangle_add_products(struct triangle *triangle, int n, double factor,
 void triangle_bring_up_to_date(struct triangle *triangle, int n);
 
 // Of N rows, none of them rounded.
-void triangle_state(struct triangle *triangle, int n, struct state *state);
+void triangle_state(struct triangle *triangle, int n, struct checkpoint_stream *stream);
 
 void triangle_free(struct triangle *triangle);
 

@@ -281,54 +281,54 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
 // --- state -------------------------------------------------------------------------
 
 static void front_state(struct front *front, int n_site, int n_front,
-                        struct state *state)
+                        struct checkpoint_stream *stream)
 {
-    state_integer(state, &front->n, 0, n_site);
-    state_integer(state, &front->next_unused, -1, n_front - 1);
-    if (state->restoring) {
+    stream_integer(stream, &front->n, 0, n_site);
+    stream_integer(stream, &front->next_unused, -1, n_front - 1);
+    if (stream->restoring) {
         front->capacity = front->n;
         front->site = NEW_ARRAY(int, front->n);
     }
-    state_integers(state, front->site, front->n, 0, n_site - 1);
-    triangle_state(&front->triangle, front->n, state);
+    stream_integers(stream, front->site, front->n, 0, n_site - 1);
+    triangle_state(&front->triangle, front->n, stream);
 }
 
-static void fronts_state(struct star_mesh *mesh, struct state *state)
+static void fronts_state(struct star_mesh *mesh, struct checkpoint_stream *stream)
 {
     int64_t n = mesh->n_front;
-    if (state->restoring)
+    if (stream->restoring)
         for (int f = 0; f < mesh->n_front; f++)
             empty_front(&mesh->front[f]);
-    mesh->front = state_room(state, mesh->front, &n, sizeof *mesh->front);
-    if (state->restoring) {
+    mesh->front = stream_room(stream, mesh->front, &n, sizeof *mesh->front);
+    if (stream->restoring) {
         memset(mesh->front, 0, (size_t)n * sizeof *mesh->front);
         mesh->n_front = mesh->front_capacity = (int)n;
     }
-    state_integer(state, &mesh->unused_front, -1, (int)n - 1);
+    stream_integer(stream, &mesh->unused_front, -1, (int)n - 1);
     for (int f = 0; f < mesh->n_front; f++)
-        front_state(&mesh->front[f], mesh->n_site, mesh->n_front, state);
+        front_state(&mesh->front[f], mesh->n_site, mesh->n_front, stream);
 }
 
-static void memberships_state(struct star_mesh *mesh, struct state *state)
+static void memberships_state(struct star_mesh *mesh, struct checkpoint_stream *stream)
 {
     int64_t n = mesh->n_membership;
     mesh->membership =
-        state_room(state, mesh->membership, &n, sizeof *mesh->membership);
-    if (state->restoring) mesh->n_membership = mesh->membership_capacity = (int)n;
-    state_integer(state, &mesh->unused_membership, -1, (int)n - 1);
-    state_integers(state, mesh->first, mesh->n_site, -1, (int)n - 1);
+        stream_room(stream, mesh->membership, &n, sizeof *mesh->membership);
+    if (stream->restoring) mesh->n_membership = mesh->membership_capacity = (int)n;
+    stream_integer(stream, &mesh->unused_membership, -1, (int)n - 1);
+    stream_integers(stream, mesh->first, mesh->n_site, -1, (int)n - 1);
     for (int k = 0; k < mesh->n_membership; k++) {
-        state_integer(state, &mesh->membership[k].front, 0, mesh->n_front - 1);
-        state_integer(state, &mesh->membership[k].place, 0, mesh->n_site - 1);
-        state_integer(state, &mesh->membership[k].next, -1, (int)n - 1);
+        stream_integer(stream, &mesh->membership[k].front, 0, mesh->n_front - 1);
+        stream_integer(stream, &mesh->membership[k].place, 0, mesh->n_site - 1);
+        stream_integer(stream, &mesh->membership[k].next, -1, (int)n - 1);
     }
 }
 
-void star_mesh_state(struct star_mesh *mesh, struct state *state)
+void star_mesh_state(struct star_mesh *mesh, struct checkpoint_stream *stream)
 {
-    state_numbers(state, mesh->air, mesh->n_site);
-    state_sums(state, &mesh->all_air, 1);
-    state_numbers(state, &mesh->summed_air, 1);
-    fronts_state(mesh, state);
-    memberships_state(mesh, state);
+    stream_numbers(stream, mesh->air, mesh->n_site);
+    stream_sums(stream, &mesh->all_air, 1);
+    stream_numbers(stream, &mesh->summed_air, 1);
+    fronts_state(mesh, stream);
+    memberships_state(mesh, stream);
 }

@@ -77,7 +77,7 @@ void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
 int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
                          double *link);
 
-void star_mesh_state(struct star_mesh *mesh, struct state *state);
+void star_mesh_state(struct star_mesh *mesh, struct checkpoint_stream *stream);
 
 // Of a state that was read: whether fronts and memberships agree.
 bool star_mesh_fits(const struct star_mesh *mesh);
