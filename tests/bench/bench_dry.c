@@ -196,22 +196,23 @@ static int follow_shifts(const int n[3], const struct drying_conditions c, int e
     struct network network = lattice(n);
     struct phases phases;
     begin_drying(&network, &c, &phases);
-    struct clocks clocks = clocks_make(&phases, c.liquid == LIQUID_IMMOBILE);
+    struct emptying_times times =
+        emptying_times_make(&phases, c.liquid == LIQUID_IMMOBILE);
     double *before = NEW_ARRAY(double, network.n_node);
     struct shifts shifts = {0};
     for (int event = 0; phases.n_full > 0; event++) {
         const double rate = vapour_rate(&phases.vapour);
         for (int k = 0; event % every == 0 && k < phases.n_wet; k++)
             before[phases.wet[k]] = vapour_evaporation(&phases.vapour, phases.wet[k]);
-        if (clocks_advance(&clocks) < 0) break;
-        clocks_empty_ended(&clocks);
+        if (emptying_times_advance(&times) < 0) break;
+        emptying_times_empty_ended(&times);
         if (event % every == 0 && vapour_rate(&phases.vapour) != rate)
             count_shifts(&phases, before, &shifts);
     }
     printf("%d %.0f %.0f %.0f\n", network.n_throat, shifts.evaporating / shifts.n_event,
            shifts.changed / shifts.n_event, shifts.told / shifts.n_event);
     free(before);
-    clocks_free(&clocks);
+    emptying_times_free(&times);
     phases_free(&phases);
     network_free(&network);
     return STATUS_OK;

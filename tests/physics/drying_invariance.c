@@ -36,7 +36,7 @@ static struct network renumbered(const struct network *old, int n[3],
     return new;
 }
 
-static void check_steps(const struct drying_history *a, const struct drying_history *b)
+static void compare_steps(const struct drying_history *a, const struct drying_history *b)
 {
     assert_int_equal(a->n_step, b->n_step);
     for (int k = 0; k < a->n_step; k++) {
@@ -65,7 +65,7 @@ static void check_renumbered(enum liquid_limit liquid, double spread,
     conditions.kelvin = kelvin;
     struct drying_history a = dry_and_check(&network, &conditions);
     struct drying_history b = dry_and_check(&other, &conditions);
-    if (!kelvin) check_steps(&a, &b);
+    if (!kelvin) compare_steps(&a, &b);
     double *emptied =
         NEW_ARRAY(double, network.n_throat); // throats that tie have no order
     for (int k = 0; k < b.n_event; k++)

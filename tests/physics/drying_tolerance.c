@@ -67,18 +67,19 @@ static struct errors dry_beside_exact(const struct network *network,
     struct vapour exact = vapour_make(network, scale.length, 0, &phases.layer, 0);
     int *liquid_beside =
         duplicate(phases.liquid_beside, (size_t)network->n_node, sizeof *liquid_beside);
-    struct clocks clocks = clocks_make(&phases, conditions->liquid == LIQUID_IMMOBILE);
+    struct emptying_times times =
+        emptying_times_make(&phases, conditions->liquid == LIQUID_IMMOBILE);
     struct errors errors = {0};
     compare(&phases, &exact, &errors);
     while (phases.n_full > 0) {
-        assert_true(clocks_advance(&clocks) >= 0);
-        for (int k = 0; k < clocks.n_ended; k++)
-            empty_exactly(&phases, &exact, clocks.ended[k], liquid_beside);
-        clocks_empty_ended(&clocks);
+        assert_true(emptying_times_advance(&times) >= 0);
+        for (int k = 0; k < times.n_ended; k++)
+            empty_exactly(&phases, &exact, times.ended[k], liquid_beside);
+        emptying_times_empty_ended(&times);
         if (phases.n_full > 0) compare(&phases, &exact, &errors);
-        assert_true(fabs(clocks_imbalance(&clocks)) < 1e-12);
+        assert_true(fabs(emptying_times_imbalance(&times)) < 1e-12);
     }
-    clocks_free(&clocks);
+    emptying_times_free(&times);
     free(liquid_beside);
     vapour_free(&exact);
     phases_free(&phases);

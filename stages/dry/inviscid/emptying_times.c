@@ -15,317 +15,318 @@ static const double TIE = 1e-12;
 
 // --- who loses ---------------------------------------------------------------------
 
-// From the throat that the account is to lose from.
-static void start_clock(struct clocks *clocks, int k)
+// From the throat that the reservoir is to lose from.
+static void start_timer(struct emptying_times *times, int k)
 {
-    const int owner = clocks->owner[k];
-    const int throat = clocks->by_throat
+    const int owner = times->owner[k];
+    const int throat = times->by_throat
                            ? owner
-                           : clusters_invasion_throat(&clocks->phases->clusters, owner);
-    const int place = first_not_below(clocks->losing, clocks->n_losing, throat);
-    memmove(clocks->losing + place + 1, clocks->losing + place,
-            (size_t)(clocks->n_losing++ - place) * sizeof *clocks->losing);
-    clocks->losing[place] = throat;
-    clocks->throat[k] = throat;
-    clocks->left[k] = clocks->saturation[throat] * clocks->phases->volume[throat];
-    clocks->left_lost[k] = 0;
-    clocks->since[k] = clocks->now;
-    clocks->nothing[k] = TIE * clocks->phases->volume[throat];
+                           : clusters_invasion_throat(&times->phases->clusters, owner);
+    const int place = first_not_below(times->losing, times->n_losing, throat);
+    memmove(times->losing + place + 1, times->losing + place,
+            (size_t)(times->n_losing++ - place) * sizeof *times->losing);
+    times->losing[place] = throat;
+    times->throat[k] = throat;
+    times->left[k] = times->saturation[throat] * times->phases->volume[throat];
+    times->left_lost[k] = 0;
+    times->since[k] = times->now;
+    times->nothing[k] = TIE * times->phases->volume[throat];
 }
 
 // Two-sum: what is rounded off LEFT is kept beside it.
-static void settle_clock(struct clocks *clocks, int k)
+static void advance_timer(struct emptying_times *times, int k)
 {
-    const double left = clocks->left[k];
+    const double left = times->left[k];
     const double amount =
-        clocks->left_lost[k] - clocks->rate[k] * (clocks->now - clocks->since[k]);
+        times->left_lost[k] - times->rate[k] * (times->now - times->since[k]);
     const double after = left + amount, back = after - left;
-    clocks->left_lost[k] = (left - (after - back)) + (amount - back);
-    clocks->left[k] = after;
-    clocks->since[k] = clocks->now;
+    times->left_lost[k] = (left - (after - back)) + (amount - back);
+    times->left[k] = after;
+    times->since[k] = times->now;
 }
 
-static void stop_clock(struct clocks *clocks, int k)
+static void stop_timer(struct emptying_times *times, int k)
 {
-    const int throat = clocks->throat[k];
-    const int place = first_not_below(clocks->losing, clocks->n_losing, throat);
-    memmove(clocks->losing + place, clocks->losing + place + 1,
-            (size_t)(--clocks->n_losing - place) * sizeof *clocks->losing);
-    settle_clock(clocks, k);
-    clocks->saturation[throat] =
-        (clocks->left[k] + clocks->left_lost[k]) / clocks->phases->volume[throat];
-    clocks->throat[k] = -1;
+    const int throat = times->throat[k];
+    const int place = first_not_below(times->losing, times->n_losing, throat);
+    memmove(times->losing + place, times->losing + place + 1,
+            (size_t)(--times->n_losing - place) * sizeof *times->losing);
+    advance_timer(times, k);
+    times->saturation[throat] =
+        (times->left[k] + times->left_lost[k]) / times->phases->volume[throat];
+    times->throat[k] = -1;
 }
 
 // --- rates -------------------------------------------------------------------------
 
-static void settle_all(struct clocks *clocks)
+static void advance_all(struct emptying_times *times)
 {
-    for (int k = 0; k < clocks->n; k++)
-        settle_clock(clocks, k);
-    for (int k = 0; k < clocks->n; k++)
-        clocks->since[k] = 0;
-    clocks->now = 0;
+    for (int k = 0; k < times->n; k++)
+        advance_timer(times, k);
+    for (int k = 0; k < times->n; k++)
+        times->since[k] = 0;
+    times->now = 0;
 }
 
 // Infinite, or no number, without a rate.
-static inline void find_end(struct clocks *clocks, int k)
+static inline void find_end(struct emptying_times *times, int k)
 {
-    const double each = 1 / clocks->rate[k], left = clocks->left[k];
-    clocks->end[k] = clocks->since[k] + left * each;
-    clocks->tie[k] = clocks->since[k] + (left - clocks->nothing[k]) * each;
+    const double each = 1 / times->rate[k], left = times->left[k];
+    times->end[k] = times->since[k] + left * each;
+    times->tie[k] = times->since[k] + (left - times->nothing[k]) * each;
 }
 
-static void end_clock(struct clocks *clocks, int k)
+static void end_timer(struct emptying_times *times, int k)
 {
-    if (clocks->throat[k] >= 0) stop_clock(clocks, k);
-    clocks->clock[clocks->owner[k]] = -1;
-    clocks->owner[k] = -1;
-    clocks->has_sum[k] = false;
-    clocks->rate[k] = clocks->nothing[k] = 0;
-    clocks->left[k] = 1;
-    find_end(clocks, k);
-    clocks->unused[clocks->n_unused++] = k;
+    if (times->throat[k] >= 0) stop_timer(times, k);
+    times->timer[times->owner[k]] = -1;
+    times->owner[k] = -1;
+    times->has_sum[k] = false;
+    times->rate[k] = times->nothing[k] = 0;
+    times->left[k] = 1;
+    find_end(times, k);
+    times->unused[times->n_unused++] = k;
 }
 
-// The clocks with other charges than before run on from now.
-static void renew_touched(struct clocks *clocks)
+// The timers with other shares than before run on from now.
+static void renew_dirty(struct emptying_times *times)
 {
-    for (int l = 0; l < clocks->n_touched; l++) {
-        const int k = clocks->touched[l];
-        clocks->is_touched[k] = false;
-        if (clocks->charges[k] == 0) {
-            end_clock(clocks, k);
+    for (int l = 0; l < times->n_dirty; l++) {
+        const int k = times->dirty[l];
+        times->is_dirty[k] = false;
+        if (times->shares[k] == 0) {
+            end_timer(times, k);
             continue;
         }
-        if (clocks->throat[k] < 0)
-            start_clock(clocks, k);
+        if (times->throat[k] < 0)
+            start_timer(times, k);
         else
-            settle_clock(clocks, k);
-        charges_set_rate(clocks, k);
-        find_end(clocks, k);
+            advance_timer(times, k);
+        evaporation_shares_set_rate(times, k);
+        find_end(times, k);
     }
-    clocks->n_touched = 0;
+    times->n_dirty = 0;
 }
 
 // ALL_CHANGED: what each node evaporates.
-static void set_rates(struct clocks *clocks, bool all_changed)
+static void set_rates(struct emptying_times *times, bool all_changed)
 {
-    struct star_mesh *mesh = &clocks->phases->vapour.mesh;
+    struct star_mesh *mesh = &times->phases->vapour.mesh;
     for (int k = 0; k < mesh->n_linked; k++)
-        charge_by_node(clocks, mesh->linked[k]);
+        share_by_node(times, mesh->linked[k]);
     mesh->n_linked = 0;
-    const bool all = all_changed || charges_lack_digits(clocks);
+    const bool all = all_changed || evaporation_shares_lack_digits(times);
     if (all) {
-        settle_all(clocks);
-        charges_add_up(clocks);
+        advance_all(times);
+        evaporation_shares_add_up(times);
     }
-    renew_touched(clocks);
-    for (int k = 0; all && k < clocks->n; k++)
-        find_end(clocks, k);
+    renew_dirty(times);
+    for (int k = 0; all && k < times->n; k++)
+        find_end(times, k);
 }
 
-struct clocks clocks_make(struct phases *phases, bool by_throat)
+struct emptying_times emptying_times_make(struct phases *phases, bool by_throat)
 {
     const int n = phases->network->n_throat;
-    struct clocks clocks = {.phases = phases,
-                            .by_throat = by_throat,
-                            .charge = NEW_ARRAY(struct charge, 2 * (size_t)n),
-                            .charge_incidence = NEW_ARRAY(int, 2 * (size_t)n),
-                            .charge_place = NEW_ARRAY(int, 2 * (size_t)n),
-                            .clock = NEW_ARRAY(int, n),
-                            .owner = NEW_ARRAY(int, n),
-                            .throat = NEW_ARRAY(int, n),
-                            .charges = NEW_ARRAY(int, n),
-                            .has_sum = NEW_ARRAY(bool, n),
-                            .sum = NEW_ARRAY(struct compensated, n),
-                            .summed = NEW_ARRAY(double, n),
-                            .rate = NEW_ARRAY(double, n),
-                            .left = NEW_ARRAY(double, n),
-                            .left_lost = NEW_ARRAY(double, n),
-                            .since = NEW_ARRAY(double, n),
-                            .nothing = NEW_ARRAY(double, n),
-                            .end = NEW_ARRAY(double, n),
-                            .tie = NEW_ARRAY(double, n),
-                            .saturation = NEW_ARRAY(double, n),
-                            .unused = NEW_ARRAY(int, n),
-                            .losing = NEW_ARRAY(int, n),
-                            .touched = NEW_ARRAY(int, n),
-                            .is_touched = NEW_ARRAY(bool, n)};
+    struct emptying_times times = {
+        .phases = phases,
+        .by_throat = by_throat,
+        .share = NEW_ARRAY(struct evaporation_share, 2 * (size_t)n),
+        .share_incidence = NEW_ARRAY(int, 2 * (size_t)n),
+        .share_place = NEW_ARRAY(int, 2 * (size_t)n),
+        .timer = NEW_ARRAY(int, n),
+        .owner = NEW_ARRAY(int, n),
+        .throat = NEW_ARRAY(int, n),
+        .shares = NEW_ARRAY(int, n),
+        .has_sum = NEW_ARRAY(bool, n),
+        .sum = NEW_ARRAY(struct compensated, n),
+        .summed = NEW_ARRAY(double, n),
+        .rate = NEW_ARRAY(double, n),
+        .left = NEW_ARRAY(double, n),
+        .left_lost = NEW_ARRAY(double, n),
+        .since = NEW_ARRAY(double, n),
+        .nothing = NEW_ARRAY(double, n),
+        .end = NEW_ARRAY(double, n),
+        .tie = NEW_ARRAY(double, n),
+        .saturation = NEW_ARRAY(double, n),
+        .unused = NEW_ARRAY(int, n),
+        .losing = NEW_ARRAY(int, n),
+        .dirty = NEW_ARRAY(int, n),
+        .is_dirty = NEW_ARRAY(bool, n)};
     for (int t = 0; t < n; t++) {
-        clocks.saturation[t] = phases_saturation(phases, t);
-        clocks.clock[t] = -1;
-        clocks.charge_place[2 * t] = clocks.charge_place[2 * t + 1] = -1;
+        times.saturation[t] = phases_saturation(phases, t);
+        times.timer[t] = -1;
+        times.share_place[2 * t] = times.share_place[2 * t + 1] = -1;
     }
     for (int k = 0; k < phases->n_wet; k++)
-        charge_by_node(&clocks, phases->wet[k]);
+        share_by_node(&times, phases->wet[k]);
     phases->vapour.mesh.n_linked = 0;
-    set_rates(&clocks, true);
-    return clocks;
+    set_rates(&times, true);
+    return times;
 }
 
-void clocks_free(struct clocks *clocks)
+void emptying_times_free(struct emptying_times *times)
 {
-    free(clocks->charge);
-    free(clocks->charge_incidence);
-    free(clocks->charge_place);
-    free(clocks->clock);
-    free(clocks->owner);
-    free(clocks->throat);
-    free(clocks->charges);
-    free(clocks->has_sum);
-    free(clocks->sum);
-    free(clocks->summed);
-    free(clocks->rate);
-    free(clocks->left);
-    free(clocks->left_lost);
-    free(clocks->since);
-    free(clocks->nothing);
-    free(clocks->end);
-    free(clocks->tie);
-    free(clocks->saturation);
-    free(clocks->unused);
-    free(clocks->losing);
-    free(clocks->touched);
-    free(clocks->is_touched);
-    free(clocks->ended);
-    *clocks = (struct clocks){0};
+    free(times->share);
+    free(times->share_incidence);
+    free(times->share_place);
+    free(times->timer);
+    free(times->owner);
+    free(times->throat);
+    free(times->shares);
+    free(times->has_sum);
+    free(times->sum);
+    free(times->summed);
+    free(times->rate);
+    free(times->left);
+    free(times->left_lost);
+    free(times->since);
+    free(times->nothing);
+    free(times->end);
+    free(times->tie);
+    free(times->saturation);
+    free(times->unused);
+    free(times->losing);
+    free(times->dirty);
+    free(times->is_dirty);
+    free(times->ended);
+    *times = (struct emptying_times){0};
 }
 
-double clocks_saturation(const struct clocks *clocks, int throat)
+double emptying_times_saturation(const struct emptying_times *times, int throat)
 {
-    const int owner = account_of(clocks, throat);
+    const int owner = reservoir_of(times, throat);
     if (owner < 0) return 0;
-    const int k = clocks->clock[owner];
-    if (k < 0 || clocks->throat[k] != throat) return clocks->saturation[throat];
-    const double lost = clocks->rate[k] * (clocks->now - clocks->since[k]);
-    return (clocks->left[k] + (clocks->left_lost[k] - lost)) /
-           clocks->phases->volume[throat];
+    const int k = times->timer[owner];
+    if (k < 0 || times->throat[k] != throat) return times->saturation[throat];
+    const double lost = times->rate[k] * (times->now - times->since[k]);
+    return (times->left[k] + (times->left_lost[k] - lost)) /
+           times->phases->volume[throat];
 }
 
-double clocks_imbalance(const struct clocks *clocks)
+double emptying_times_imbalance(const struct emptying_times *times)
 {
-    const struct vapour *vapour = &clocks->phases->vapour;
+    const struct vapour *vapour = &times->phases->vapour;
     const double rate = vapour_rate(vapour);
     struct compensated sum = {.value = -rate};
-    for (int k = 0; k < clocks->n; k++)
-        compensated_add(&sum, clocks->rate[k]);
-    return clocks->n_losing > 0 ? compensated_value(sum) / rate : 0;
+    for (int k = 0; k < times->n; k++)
+        compensated_add(&sum, times->rate[k]);
+    return times->n_losing > 0 ? compensated_value(sum) / rate : 0;
 }
 
 // --- events ------------------------------------------------------------------------
 
 // INFINITY if none loses.
-static double first_end(const struct clocks *clocks)
+static double first_end(const struct emptying_times *times)
 {
     enum { LANES = 16 };
     double first[LANES];
     for (int l = 0; l < LANES; l++)
         first[l] = INFINITY;
     int k = 0;
-    for (; k + LANES <= clocks->n; k += LANES)
+    for (; k + LANES <= times->n; k += LANES)
         for (int l = 0; l < LANES; l++)
-            first[l] = clocks->end[k + l] < first[l] ? clocks->end[k + l] : first[l];
-    for (; k < clocks->n; k++)
-        first[0] = fmin(first[0], clocks->end[k]);
+            first[l] = times->end[k + l] < first[l] ? times->end[k + l] : first[l];
+    for (; k < times->n; k++)
+        first[0] = fmin(first[0], times->end[k]);
     for (int l = 1; l < LANES; l++)
         first[0] = fmin(first[0], first[l]);
     return first[0];
 }
 
-static void end_throat(struct clocks *clocks, int k)
+static void end_throat(struct emptying_times *times, int k)
 {
-    struct phases *phases = clocks->phases;
-    settle_clock(clocks, k);
-    compensated_add(&phases->total_liquid, -clocks->left[k]);
-    compensated_add(&phases->total_liquid, -clocks->left_lost[k]);
-    clocks->left[k] = clocks->left_lost[k] = 0;
-    GROW_ARRAY(clocks->ended, clocks->n_ended, clocks->ended_capacity);
-    clocks->ended[clocks->n_ended++] = clocks->throat[k];
+    struct phases *phases = times->phases;
+    advance_timer(times, k);
+    compensated_add(&phases->total_liquid, -times->left[k]);
+    compensated_add(&phases->total_liquid, -times->left_lost[k]);
+    times->left[k] = times->left_lost[k] = 0;
+    GROW_ARRAY(times->ended, times->n_ended, times->ended_capacity);
+    times->ended[times->n_ended++] = times->throat[k];
 }
 
 // Those that have lost all. Blocks in which none has are passed over in few steps.
-static void end_throats(struct clocks *clocks)
+static void end_throats(struct emptying_times *times)
 {
     enum { BLOCK = 128 };
-    clocks->n_ended = 0;
-    for (int first = 0; first < clocks->n; first += BLOCK) {
-        const int last = first + BLOCK < clocks->n ? first + BLOCK : clocks->n;
+    times->n_ended = 0;
+    for (int first = 0; first < times->n; first += BLOCK) {
+        const int last = first + BLOCK < times->n ? first + BLOCK : times->n;
         int any = 0;
         for (int k = first; k < last; k++)
-            any |= clocks->tie[k] <= clocks->now;
+            any |= times->tie[k] <= times->now;
         for (int k = first; any && k < last; k++)
-            if (clocks->tie[k] <= clocks->now) end_throat(clocks, k);
+            if (times->tie[k] <= times->now) end_throat(times, k);
     }
-    if (clocks->n_ended > 1)
-        qsort(clocks->ended, (size_t)clocks->n_ended, sizeof *clocks->ended,
-              rising_ints);
+    if (times->n_ended > 1)
+        qsort(times->ended, (size_t)times->n_ended, sizeof *times->ended, rising_ints);
 }
 
-double clocks_advance(struct clocks *clocks)
+double emptying_times_advance(struct emptying_times *times)
 {
-    struct phases *phases = clocks->phases;
-    const double end = first_end(clocks);
+    struct phases *phases = times->phases;
+    const double end = first_end(times);
     if (end == INFINITY) return -1;
-    const double span = end - clocks->now;
+    const double span = end - times->now;
     compensated_add(&phases->total_liquid, -vapour_rate(&phases->vapour) * span);
-    clocks->now = end;
-    end_throats(clocks);
+    times->now = end;
+    end_throats(times);
     return span;
 }
 
 // Returns whether a node dries.
-static bool empty_throat(struct clocks *clocks, int throat)
+static bool empty_throat(struct emptying_times *times, int throat)
 {
-    struct phases *phases = clocks->phases;
-    const int k = clocks->clock[account_of(clocks, throat)];
-    stop_clock(clocks, k);
-    touch_clock(clocks, k);
+    struct phases *phases = times->phases;
+    const int k = times->timer[reservoir_of(times, throat)];
+    stop_timer(times, k);
+    mark_dirty(times, k);
     phases_empty_throat(phases, throat);
-    charge_by_ends(clocks, throat);
+    share_by_ends(times, throat);
     for (int l = 0; l < phases->clusters.n_moved; l++)
-        charge_by_ends(clocks, phases->clusters.moved[l]);
+        share_by_ends(times, phases->clusters.moved[l]);
     const int32_t *node = phases->network->throat_nodes[throat];
     return phases->liquid_beside[node[0]] == 0 || phases->liquid_beside[node[1]] == 0;
 }
 
-void clocks_empty_ended(struct clocks *clocks)
+void emptying_times_empty_ended(struct emptying_times *times)
 {
     bool dries = false;
-    for (int k = 0; k < clocks->n_ended; k++)
-        dries |= empty_throat(clocks, clocks->ended[k]);
-    set_rates(clocks, dries);
+    for (int k = 0; k < times->n_ended; k++)
+        dries |= empty_throat(times, times->ended[k]);
+    set_rates(times, dries);
 }
 
 // --- state -------------------------------------------------------------------------
 
-void clocks_state(struct clocks *clocks, struct checkpoint_stream *stream)
+void emptying_times_state(struct emptying_times *times,
+                          struct checkpoint_stream *stream)
 {
-    const int n_throat = clocks->phases->network->n_throat;
-    for (int k = 0; stream->restoring && k < clocks->n; k++)
-        if (clocks->owner[k] >= 0) clocks->clock[clocks->owner[k]] = -1;
-    stream_integer(stream, &clocks->n, 0, n_throat);
-    stream_integer(stream, &clocks->n_unused, 0, n_throat);
-    stream_integer(stream, &clocks->n_losing, 0, n_throat);
-    charges_state(clocks, stream);
-    stream_integers(stream, clocks->owner, clocks->n, -1, n_throat - 1);
-    stream_integers(stream, clocks->throat, clocks->n, -1, n_throat - 1);
-    stream_integers(stream, clocks->charges, clocks->n, 0, clocks->n_charge);
-    stream_integers(stream, clocks->unused, clocks->n_unused, 0, clocks->n - 1);
-    stream_integers(stream, clocks->losing, clocks->n_losing, 0, n_throat - 1);
-    stream_flags(stream, clocks->has_sum, clocks->n);
-    stream_sums(stream, clocks->sum, clocks->n);
-    stream_numbers(stream, clocks->summed, clocks->n);
-    stream_numbers(stream, clocks->rate, clocks->n);
-    stream_numbers(stream, clocks->left, clocks->n);
-    stream_numbers(stream, clocks->left_lost, clocks->n);
-    stream_numbers(stream, clocks->since, clocks->n);
-    stream_numbers(stream, &clocks->now, 1);
-    stream_numbers(stream, clocks->saturation, n_throat);
-    for (int k = 0; stream->restoring && k < clocks->n; k++) {
-        if (clocks->owner[k] >= 0) clocks->clock[clocks->owner[k]] = k;
-        const int throat = clocks->throat[k];
-        clocks->nothing[k] = throat < 0 ? 0 : TIE * clocks->phases->volume[throat];
-        find_end(clocks, k);
+    const int n_throat = times->phases->network->n_throat;
+    for (int k = 0; stream->restoring && k < times->n; k++)
+        if (times->owner[k] >= 0) times->timer[times->owner[k]] = -1;
+    stream_integer(stream, &times->n, 0, n_throat);
+    stream_integer(stream, &times->n_unused, 0, n_throat);
+    stream_integer(stream, &times->n_losing, 0, n_throat);
+    evaporation_shares_state(times, stream);
+    stream_integers(stream, times->owner, times->n, -1, n_throat - 1);
+    stream_integers(stream, times->throat, times->n, -1, n_throat - 1);
+    stream_integers(stream, times->shares, times->n, 0, times->n_share);
+    stream_integers(stream, times->unused, times->n_unused, 0, times->n - 1);
+    stream_integers(stream, times->losing, times->n_losing, 0, n_throat - 1);
+    stream_flags(stream, times->has_sum, times->n);
+    stream_sums(stream, times->sum, times->n);
+    stream_numbers(stream, times->summed, times->n);
+    stream_numbers(stream, times->rate, times->n);
+    stream_numbers(stream, times->left, times->n);
+    stream_numbers(stream, times->left_lost, times->n);
+    stream_numbers(stream, times->since, times->n);
+    stream_numbers(stream, &times->now, 1);
+    stream_numbers(stream, times->saturation, n_throat);
+    for (int k = 0; stream->restoring && k < times->n; k++) {
+        if (times->owner[k] >= 0) times->timer[times->owner[k]] = k;
+        const int throat = times->throat[k];
+        times->nothing[k] = throat < 0 ? 0 : TIE * times->phases->volume[throat];
+        find_end(times, k);
     }
 }

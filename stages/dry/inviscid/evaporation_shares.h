@@ -1,40 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What wet nodes charge clocks with: the rates of struct clocks, which they keep.
-#ifndef CRAQUELURE_CHARGES_H
-#define CRAQUELURE_CHARGES_H
+// What each reservoir loses of what wet nodes evaporate: the rates of its timer.
+#ifndef CRAQUELURE_EVAPORATION_SHARES_H
+#define CRAQUELURE_EVAPORATION_SHARES_H
 
 #include "emptying_times.h"
 
-// What a node that is linked to the air charges an account with, of what it evaporates.
-struct charge {
-    double share;
-    int node, clock;
+// Of what a node with a path to the air evaporates, this part is taken from the
+// reservoir of TIMER.
+struct evaporation_share {
+    double part;
+    int node, timer;
 };
 
 // By cluster or by throat; -1 if THROAT holds no liquid.
-static inline int account_of(const struct clocks *clocks, int throat)
+static inline int reservoir_of(const struct emptying_times *times, int throat)
 {
-    return clocks->by_throat ? throat : clocks->phases->clusters.of_throat[throat];
+    return times->by_throat ? throat : times->phases->clusters.of_throat[throat];
 }
 
 // NODE, or both of THROAT, have other throats with liquid than before, or are linked to
-// the air now: clocks whose sums change are touched. They begin where there was none,
-// and run on without a charge.
-void charge_by_node(struct clocks *clocks, int node);
-void charge_by_ends(struct clocks *clocks, int throat);
+// the air now: timers whose sums change are dirty. They begin where there was none,
+// and run on without a share.
+void share_by_node(struct emptying_times *times, int node);
+void share_by_ends(struct emptying_times *times, int throat);
 
-// The rate of CLOCK is to be set anew.
-void touch_clock(struct clocks *clocks, int clock);
+// The rate of TIMER is to be set anew.
+void mark_dirty(struct emptying_times *times, int timer);
 
-// Sets the rate of a touched clock from its sum.
-void charges_set_rate(struct clocks *clocks, int clock);
+// Sets the rate of a dirty timer from its sum.
+void evaporation_shares_set_rate(struct emptying_times *times, int timer);
 
 // Whether all must be added up anew, as too little is left of a sum for its digits.
-bool charges_lack_digits(const struct clocks *clocks);
+bool evaporation_shares_lack_digits(const struct emptying_times *times);
 
 // Sets all rates: sums of positive numbers, so that nothing is lost.
-void charges_add_up(struct clocks *clocks);
+void evaporation_shares_add_up(struct emptying_times *times);
 
-void charges_state(struct clocks *clocks, struct checkpoint_stream *stream);
+void evaporation_shares_state(struct emptying_times *times,
+                              struct checkpoint_stream *stream);
 
 #endif

@@ -134,74 +134,73 @@ static bool wet_nodes_fit(const struct phases *phases)
     return placed == phases->n_wet;
 }
 
-// ---- clocks ------------------------------------------------------------------------
+// ---- timers ------------------------------------------------------------------------
 
-// A clock belongs to an account that has no other, and to a throat of it with liquid;
+// A timer belongs to an reservoir that has no other, and to a throat of it with liquid;
 // or it is listed once as unused.
-static bool owners_fit(const struct clocks *clocks)
+static bool owners_fit(const struct emptying_times *times)
 {
-    const struct phases *phases = clocks->phases;
+    const struct phases *phases = times->phases;
     int running = 0, unused = 0;
-    for (int k = 0; k < clocks->n; k++) {
-        const int owner = clocks->owner[k], throat = clocks->throat[k];
-        if (!(clocks->rate[k] >= 0)) return false;
+    for (int k = 0; k < times->n; k++) {
+        const int owner = times->owner[k], throat = times->throat[k];
+        if (!(times->rate[k] >= 0)) return false;
         if (owner < 0) {
-            if (clocks->charges[k] > 0 || clocks->has_sum[k] || throat >= 0)
-                return false;
+            if (times->shares[k] > 0 || times->has_sum[k] || throat >= 0) return false;
             continue;
         }
         running++;
-        if (clocks->clock[owner] != k || throat < 0 || clocks->charges[k] == 0 ||
+        if (times->timer[owner] != k || throat < 0 || times->shares[k] == 0 ||
             phases->clusters.of_throat[throat] < 0 ||
-            account_of(clocks, throat) != owner)
+            reservoir_of(times, throat) != owner)
             return false;
     }
-    bool *seen = NEW_ARRAY(bool, clocks->n);
-    for (int k = 0; k < clocks->n_unused; k++) {
-        unused += clocks->owner[clocks->unused[k]] < 0 && !seen[clocks->unused[k]];
-        seen[clocks->unused[k]] = true;
+    bool *seen = NEW_ARRAY(bool, times->n);
+    for (int k = 0; k < times->n_unused; k++) {
+        unused += times->owner[times->unused[k]] < 0 && !seen[times->unused[k]];
+        seen[times->unused[k]] = true;
     }
     free(seen);
-    return unused == clocks->n_unused && running + unused == clocks->n &&
-           running == clocks->n_losing;
+    return unused == times->n_unused && running + unused == times->n &&
+           running == times->n_losing;
 }
 
-// The throats that lose, in their order, are those of the clocks.
-static bool losing_fit(const struct clocks *clocks)
+// The throats that lose, in their order, are those of the timers.
+static bool losing_fit(const struct emptying_times *times)
 {
-    for (int l = 0; l < clocks->n_losing; l++) {
-        const int throat = clocks->losing[l];
-        if (l > 0 && clocks->losing[l - 1] >= throat) return false;
-        const int owner = account_of(clocks, throat);
-        if (owner < 0 || clocks->clock[owner] < 0 ||
-            clocks->throat[clocks->clock[owner]] != throat)
+    for (int l = 0; l < times->n_losing; l++) {
+        const int throat = times->losing[l];
+        if (l > 0 && times->losing[l - 1] >= throat) return false;
+        const int owner = reservoir_of(times, throat);
+        if (owner < 0 || times->timer[owner] < 0 ||
+            times->throat[times->timer[owner]] != throat)
             return false;
     }
     return true;
 }
 
-// Each charge and its place at a node point at each other, and clocks count them.
-static bool charges_fit(const struct clocks *clocks)
+// Each share and its place at a node point at each other, and timers count them.
+static bool shares_fit(const struct emptying_times *times)
 {
-    const struct incidence *incidence = &clocks->phases->incidence;
-    int *count = NEW_ARRAY(int, clocks->n), placed = 0;
+    const struct incidence *incidence = &times->phases->incidence;
+    int *count = NEW_ARRAY(int, times->n), placed = 0;
     bool fits = true;
-    for (int k = 0; k < 2 * clocks->phases->network->n_throat; k++)
-        placed += clocks->charge_place[k] >= 0;
-    for (int k = 0; k < clocks->n_charge; k++) {
-        const struct charge *charge = &clocks->charge[k];
-        const int at = clocks->charge_incidence[k];
-        count[charge->clock]++;
+    for (int k = 0; k < 2 * times->phases->network->n_throat; k++)
+        placed += times->share_place[k] >= 0;
+    for (int k = 0; k < times->n_share; k++) {
+        const struct evaporation_share *share = &times->share[k];
+        const int at = times->share_incidence[k];
+        count[share->timer]++;
         fits &=
-            clocks->charge_place[at] == k && charge->share >= 0 &&
-            at >= incidence->offset[charge->node] &&
-            at < incidence->offset[charge->node + 1] &&
-            account_of(clocks, incidence->throat[at]) == clocks->owner[charge->clock];
+            times->share_place[at] == k && share->part >= 0 &&
+            at >= incidence->offset[share->node] &&
+            at < incidence->offset[share->node + 1] &&
+            reservoir_of(times, incidence->throat[at]) == times->owner[share->timer];
     }
-    for (int k = 0; k < clocks->n; k++)
-        fits &= count[k] == clocks->charges[k];
+    for (int k = 0; k < times->n; k++)
+        fits &= count[k] == times->shares[k];
     free(count);
-    return fits && placed == clocks->n_charge;
+    return fits && placed == times->n_share;
 }
 
 // ---- the history -------------------------------------------------------------------
@@ -272,12 +271,12 @@ bool run_fits(const struct run *run)
 {
     const struct phases *phases = &run->phases;
     const struct clusters *clusters = &phases->clusters;
-    const bool has_clocks =
+    const bool has_timers =
         run->conditions->liquid != LIQUID_VISCOUS && !run->conditions->kelvin;
     return identities_fit(clusters) && pieces_fit(clusters) && menisci_fit(clusters) &&
            liquid_fits(phases) && wet_nodes_fit(phases) &&
-           star_mesh_fits(&phases->vapour.mesh) && ended_fit(run, !has_clocks) &&
+           star_mesh_fits(&phases->vapour.mesh) && ended_fit(run, !has_timers) &&
            losses_fit(run) && history_fits(&run->recorder) &&
-           (!has_clocks || (owners_fit(&run->clocks) && losing_fit(&run->clocks) &&
-                            charges_fit(&run->clocks)));
+           (!has_timers || (owners_fit(&run->times) && losing_fit(&run->times) &&
+                            shares_fit(&run->times)));
 }

@@ -32,9 +32,10 @@ static void begin(struct run *run)
 
 static enum status go_on(struct run *run, struct reason *reason)
 {
-    if (run->conditions->kelvin) return dry_by_curvature(run, reason);
-    if (run->conditions->liquid == LIQUID_VISCOUS) return dry_by_flow(run, reason);
-    return dry_by_clocks(run, reason);
+    if (run->conditions->kelvin) return drying_step_kelvin(run, reason);
+    if (run->conditions->liquid == LIQUID_VISCOUS)
+        return drying_step_viscous(run, reason);
+    return drying_step_inviscid(run, reason);
 }
 
 static enum status dry_all(struct run *run, const struct drying_progress *progress,
@@ -102,8 +103,8 @@ static void prepare(struct run *run)
     if (is_viscous || is_curved)
         run->losses = losses_make(network->n_throat);
     else
-        run->clocks =
-            clocks_make(&run->phases, run->conditions->liquid == LIQUID_IMMOBILE);
+        run->times = emptying_times_make(&run->phases,
+                                         run->conditions->liquid == LIQUID_IMMOBILE);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, network->n_throat);
     run->is_ended = NEW_ARRAY(bool, network->n_throat);
@@ -181,7 +182,7 @@ static void free_run(struct run *run)
     losses_free(&run->losses);
     curved_flow_free(&run->both);
     curved_free(&run->curved);
-    clocks_free(&run->clocks);
+    emptying_times_free(&run->times);
     free(run->ended);
     free(run->is_ended);
     free(run->saturation);

@@ -5,7 +5,7 @@
 // Model. Vapour diffuses, quasi-steadily and isothermally, through the throats that are
 // completely empty and through a boundary layer above the open wall [K 3.9]. A node
 // that touches both liquid and gas is wet: its vapour is saturated, and what it
-// evaporates is charged to the liquid throats at the node in proportion to their
+// evaporates is shared to the liquid throats at the node in proportion to their
 // cross-sections. Left out: liquid films, adsorption, viscosity of the gas, gradients
 // of temperature [K 3.4.2].
 //

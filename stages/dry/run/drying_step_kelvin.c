@@ -11,7 +11,7 @@ enum status find_curved_losses(struct run *run, struct reason *reason)
     return curved_flow_find(&run->both, &run->phases, &run->losses, reason);
 }
 
-enum status dry_by_curvature(struct run *run, struct reason *reason)
+enum status drying_step_kelvin(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
     if (run->losses.n == 0) return refuse_standstill(run, reason);

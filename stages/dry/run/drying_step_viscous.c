@@ -147,7 +147,7 @@ enum status note_idle(struct run *run, bool idle, struct reason *reason)
                   run->n_idle, run->phases.n_full);
 }
 
-enum status dry_by_flow(struct run *run, struct reason *reason)
+enum status drying_step_viscous(struct run *run, struct reason *reason)
 {
     struct phases *phases = &run->phases;
     run->flow.wants_pressures = snapshot_is_due(run);

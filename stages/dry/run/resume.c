@@ -75,12 +75,13 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
     }
     if (is_viscous) flow_state(run, stream);
     if (is_viscous && run->conditions->kelvin) curved_flow_state(&run->both, stream);
-    if (!is_viscous && !run->conditions->kelvin) clocks_state(&run->clocks, stream);
+    if (!is_viscous && !run->conditions->kelvin)
+        emptying_times_state(&run->times, stream);
 }
 
 static const char streams[] = "drying";
 
-// Clocks are cut anywhere.
+// Timers are cut anywhere.
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;

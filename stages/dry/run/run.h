@@ -16,13 +16,13 @@ struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
     struct phases phases;
-    struct clocks clocks;    // of liquid without viscosity, or immobile
-    struct liquid_flow flow; // of viscous liquid
-    struct curved curved;    // of menisci with vapour pressures of their own
-    struct curved_flow both; // of the last two
-    struct losses losses;    // of the last three
-    int n_idle;              // viscous: steps since a throat has emptied
-    int64_t n_flow_step;     // viscous, curved: steps so far, recorded or not
+    struct emptying_times times; // of liquid without viscosity, or immobile
+    struct liquid_flow flow;     // of viscous liquid
+    struct curved curved;        // of menisci with vapour pressures of their own
+    struct curved_flow both;     // of the last two
+    struct losses losses;        // of the last three
+    int n_idle;                  // viscous: steps since a throat has emptied
+    int64_t n_flow_step;         // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
     double first_rate;                   // scaled
@@ -86,8 +86,8 @@ enum status note_idle(struct run *run, bool idle, struct reason *reason);
 // One event on: liquid without viscosity, or immobile; viscous liquid; menisci with
 // vapour pressures of their own, the losses being those of now.
 // STATUS_NOT_CONVERGED: nothing evaporates any more, or the flow is not found.
-enum status dry_by_clocks(struct run *run, struct reason *reason);
-enum status dry_by_flow(struct run *run, struct reason *reason);
-enum status dry_by_curvature(struct run *run, struct reason *reason);
+enum status drying_step_inviscid(struct run *run, struct reason *reason);
+enum status drying_step_viscous(struct run *run, struct reason *reason);
+enum status drying_step_kelvin(struct run *run, struct reason *reason);
 
 #endif
