@@ -156,16 +156,16 @@ static int invade_lattice(const int n[3], bool trapping)
 }
 
 static void begin_drying(const struct network *network,
-                         const struct drying_conditions *c, struct phases *phases)
+                         const struct drying_conditions *c, struct occupancy *occupancy)
 {
     const struct drying_scale scale = drying_scale(network, c);
-    const struct phases_form form = {.length = scale.length,
-                                     .gas_parts = c->liquid != LIQUID_IMMOBILE};
+    const struct occupancy_form form = {.length = scale.length,
+                                        .gas_parts = c->liquid != LIQUID_IMMOBILE};
     struct boundary_layer layer;
     struct reason reason;
     if (boundary_layers_make(network, c->open_walls, scale.length, scale.boundary_layer,
                              &(struct boundary_form){.layers = 0}, &layer, &reason) ||
-        phases_make(network, c->open_walls, &form, layer, phases, &reason)) {
+        occupancy_make(network, c->open_walls, &form, layer, occupancy, &reason)) {
         fprintf(stderr, "bench_dry: %s\n", reason.text);
         exit(STATUS_INTERNAL);
     }
@@ -176,12 +176,12 @@ struct shifts {
     int n_event;
 };
 
-static void count_shifts(const struct phases *phases, const double *before,
+static void count_shifts(const struct occupancy *occupancy, const double *before,
                          struct shifts *shifts)
 {
-    for (int k = 0; k < phases->n_wet; k++) {
-        const int node = phases->wet[k];
-        const double now = vapour_evaporation(&phases->vapour, node);
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        const int node = occupancy->wet[k];
+        const double now = vapour_evaporation(&occupancy->vapour, node);
         if (!(now > 0 && before[node] > 0)) continue;
         const double shift = fabs(now / before[node] - 1);
         shifts->evaporating++;
@@ -194,26 +194,27 @@ static void count_shifts(const struct phases *phases, const double *before,
 static int follow_shifts(const int n[3], const struct drying_conditions c, int every)
 {
     struct network network = lattice(n);
-    struct phases phases;
-    begin_drying(&network, &c, &phases);
+    struct occupancy occupancy;
+    begin_drying(&network, &c, &occupancy);
     struct emptying_times times =
-        emptying_times_make(&phases, c.liquid == LIQUID_IMMOBILE);
+        emptying_times_make(&occupancy, c.liquid == LIQUID_IMMOBILE);
     double *before = NEW_ARRAY(double, network.n_node);
     struct shifts shifts = {0};
-    for (int event = 0; phases.n_full > 0; event++) {
-        const double rate = vapour_rate(&phases.vapour);
-        for (int k = 0; event % every == 0 && k < phases.n_wet; k++)
-            before[phases.wet[k]] = vapour_evaporation(&phases.vapour, phases.wet[k]);
+    for (int event = 0; occupancy.n_full > 0; event++) {
+        const double rate = vapour_rate(&occupancy.vapour);
+        for (int k = 0; event % every == 0 && k < occupancy.n_wet; k++)
+            before[occupancy.wet[k]] =
+                vapour_evaporation(&occupancy.vapour, occupancy.wet[k]);
         if (emptying_times_advance(&times) < 0) break;
         emptying_times_empty_ended(&times);
-        if (event % every == 0 && vapour_rate(&phases.vapour) != rate)
-            count_shifts(&phases, before, &shifts);
+        if (event % every == 0 && vapour_rate(&occupancy.vapour) != rate)
+            count_shifts(&occupancy, before, &shifts);
     }
     printf("%d %.0f %.0f %.0f\n", network.n_throat, shifts.evaporating / shifts.n_event,
            shifts.changed / shifts.n_event, shifts.told / shifts.n_event);
     free(before);
     emptying_times_free(&times);
-    phases_free(&phases);
+    occupancy_free(&occupancy);
     network_free(&network);
     return STATUS_OK;
 }

@@ -20,7 +20,7 @@ static const long double DAMPED = 0.7L;
 
 // By nodes and bodies: a throat or a cluster.
 struct field {
-    const struct phases *phases;
+    const struct occupancy *occupancy;
     bool by_throat;
     long double *level;     // (n_node)
     long double *air;       // (n_node) conductance to the air
@@ -30,7 +30,7 @@ struct field {
 
 static int body_of(const struct field *field, int throat)
 {
-    return field->by_throat ? throat : field->phases->clusters.of_throat[throat];
+    return field->by_throat ? throat : field->occupancy->clusters.of_throat[throat];
 }
 
 // ln((p_g - p_v) / (p_g - p_sat)), over that of the air.
@@ -45,23 +45,23 @@ static long double potential_of(const struct drying_conditions *c, double radius
            logl((c->gas_pressure - (long double)c->air_vapour_pressure) / flat);
 }
 
-static struct field make_field(const struct phases *phases,
+static struct field make_field(const struct occupancy *occupancy,
                                const struct drying_conditions *conditions)
 {
-    const struct network *network = phases->network;
-    struct field field = {.phases = phases,
+    const struct network *network = occupancy->network;
+    struct field field = {.occupancy = occupancy,
                           .by_throat = conditions->liquid == LIQUID_IMMOBILE,
                           .level = NEW_ARRAY(long double, network->n_node),
                           .air = NEW_ARRAY(long double, network->n_node),
                           .potential = NEW_ARRAY(long double, network->n_throat),
                           .own = NEW_ARRAY(long double, network->n_throat)};
-    for (int i = 0; i < phases->layer.n_exposed; i++)
-        field.air[phases->layer.exposed[i]] +=
-            (long double)phases->layer.area[i] / phases->layer.spacing;
+    for (int i = 0; i < occupancy->layer.n_exposed; i++)
+        field.air[occupancy->layer.exposed[i]] +=
+            (long double)occupancy->layer.area[i] / occupancy->layer.spacing;
     for (int t = 0; t < network->n_throat; t++)
         for (int end = 0; end < 2; end++) {
             const int node = network->throat_nodes[t][end];
-            if (phases->clusters.of_throat[t] < 0 || phases->wet_place[node] < 0)
+            if (occupancy->clusters.of_throat[t] < 0 || occupancy->wet_place[node] < 0)
                 continue;
             const int body = body_of(&field, t);
             const long double own = potential_of(conditions, network->throat_radius[t]);
@@ -79,24 +79,24 @@ static void free_field(struct field *field)
     free(field->own);
 }
 
-static double section(const struct phases *phases, int throat)
+static double section(const struct occupancy *occupancy, int throat)
 {
-    const double r = phases->network->throat_radius[throat];
-    return phases->clusters.of_throat[throat] < 0 ? 0 : r * r;
+    const double r = occupancy->network->throat_radius[throat];
+    return occupancy->clusters.of_throat[throat] < 0 ? 0 : r * r;
 }
 
 // What flows to NODE, and the conductances from it.
 static long double inflow(const struct field *field, int node, long double *degree)
 {
-    const struct phases *phases = field->phases;
+    const struct occupancy *occupancy = field->occupancy;
     long double flow = field->air[node] * (1 - field->level[node]);
     *degree = field->air[node];
-    for (int k = phases->incidence.offset[node]; k < phases->incidence.offset[node + 1];
-         k++) {
-        const int throat = phases->incidence.throat[k];
-        const int32_t *ends = phases->network->throat_nodes[throat];
-        if (phases->clusters.of_throat[throat] >= 0) continue;
-        const long double conductance = phases->vapour.conductance[throat];
+    for (int k = occupancy->incidence.offset[node];
+         k < occupancy->incidence.offset[node + 1]; k++) {
+        const int throat = occupancy->incidence.throat[k];
+        const int32_t *ends = occupancy->network->throat_nodes[throat];
+        if (occupancy->clusters.of_throat[throat] >= 0) continue;
+        const long double conductance = occupancy->vapour.conductance[throat];
         flow += conductance * (field->level[ends[0] == node ? ends[1] : ends[0]] -
                                field->level[node]);
         *degree += conductance;
@@ -106,12 +106,12 @@ static long double inflow(const struct field *field, int node, long double *degr
 
 static void set_level(struct field *field, int node)
 {
-    const struct phases *phases = field->phases;
+    const struct occupancy *occupancy = field->occupancy;
     long double sum = 0, mean = 0;
-    for (int k = phases->incidence.offset[node]; k < phases->incidence.offset[node + 1];
-         k++) {
-        const int throat = phases->incidence.throat[k];
-        const double part = section(phases, throat);
+    for (int k = occupancy->incidence.offset[node];
+         k < occupancy->incidence.offset[node + 1]; k++) {
+        const int throat = occupancy->incidence.throat[k];
+        const double part = section(occupancy, throat);
         if (!(part > 0)) continue;
         sum += part;
         mean += part * field->potential[body_of(field, throat)];
@@ -122,20 +122,20 @@ static void set_level(struct field *field, int node)
 // GAIN and SLOPE (n_throat), by bodies.
 static void find_gains(const struct field *field, long double *gain, long double *slope)
 {
-    const struct phases *phases = field->phases;
-    for (int t = 0; t < phases->network->n_throat; t++)
+    const struct occupancy *occupancy = field->occupancy;
+    for (int t = 0; t < occupancy->network->n_throat; t++)
         gain[t] = slope[t] = 0;
-    for (int k = 0; k < phases->n_wet; k++) {
-        const int node = phases->wet[k];
-        const int begin = phases->incidence.offset[node];
-        const int end = phases->incidence.offset[node + 1];
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        const int node = occupancy->wet[k];
+        const int begin = occupancy->incidence.offset[node];
+        const int end = occupancy->incidence.offset[node + 1];
         long double degree, sum = 0;
         const long double flow = inflow(field, node, &degree);
         for (int i = begin; i < end; i++)
-            sum += section(phases, phases->incidence.throat[i]);
+            sum += section(occupancy, occupancy->incidence.throat[i]);
         for (int i = begin; i < end; i++) {
-            const int throat = phases->incidence.throat[i];
-            const long double part = section(phases, throat) / sum;
+            const int throat = occupancy->incidence.throat[i];
+            const long double part = section(occupancy, throat) / sum;
             if (!(part > 0)) continue;
             gain[body_of(field, throat)] += part * flow;
             slope[body_of(field, throat)] += part * degree;
@@ -147,20 +147,20 @@ static void find_gains(const struct field *field, long double *gain, long double
 // nothing. Until nothing changes any more.
 static void relax(struct field *field, long double *gain, long double *slope)
 {
-    const struct phases *phases = field->phases;
+    const struct occupancy *occupancy = field->occupancy;
     for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
         long double change = 0;
-        for (int k = 0; k < phases->n_wet; k++)
-            set_level(field, phases->wet[k]);
-        for (int i = 0; i < phases->network->n_node; i++) {
+        for (int k = 0; k < occupancy->n_wet; k++)
+            set_level(field, occupancy->wet[k]);
+        for (int i = 0; i < occupancy->network->n_node; i++) {
             long double degree;
-            if (!phases->gas[i] || phases->wet_place[i] >= 0) continue;
+            if (!occupancy->gas[i] || occupancy->wet_place[i] >= 0) continue;
             const long double flow = inflow(field, i, &degree);
             change = fmaxl(change, fabsl(flow / degree));
             field->level[i] += flow / degree;
         }
         find_gains(field, gain, slope);
-        for (int b = 0; b < phases->network->n_throat; b++) {
+        for (int b = 0; b < occupancy->network->n_throat; b++) {
             if (!(slope[b] > 0)) continue;
             const long double next =
                 fminl(field->own[b], field->potential[b] + DAMPED * gain[b] / slope[b]);
@@ -173,18 +173,18 @@ static void relax(struct field *field, long double *gain, long double *slope)
 }
 
 // Returns how many wait.
-static int compare(const struct phases *phases,
+static int compare(const struct occupancy *occupancy,
                    const struct drying_conditions *conditions,
-                   const struct curved *curved, const struct losses *losses)
+                   const struct kelvin_menisci *kelvin, const struct losses *losses)
 {
-    const int n = phases->network->n_throat;
-    struct field field = make_field(phases, conditions);
+    const int n = occupancy->network->n_throat;
+    struct field field = make_field(occupancy, conditions);
     long double *gain = NEW_ARRAY(long double, n), *slope = NEW_ARRAY(long double, n);
     relax(&field, gain, slope);
     long double rate = 0;
-    for (int i = 0; i < phases->network->n_node; i++)
+    for (int i = 0; i < occupancy->network->n_node; i++)
         if (field.air[i] > 0) rate += field.air[i] * (1 - field.level[i]);
-    assert_true(fabsl(curved->rate / rate - 1) < 1e-11L);
+    assert_true(fabsl(kelvin->rate / rate - 1) < 1e-11L);
     int n_wait = 0;
     for (int b = 0; b < n; b++)
         n_wait += slope[b] > 0 && field.potential[b] < field.own[b] * (1 - 1e-9L);
@@ -201,16 +201,16 @@ static int compare(const struct phases *phases,
     return n_wait;
 }
 
-static int some_meniscus(struct phases *phases, bool by_throat, uint64_t *seed)
+static int some_meniscus(struct occupancy *occupancy, bool by_throat, uint64_t *seed)
 {
-    const int node = phases->wet[(int)(next_random(seed) * phases->n_wet)];
-    int k = phases->incidence.offset[node];
-    while (phases->clusters.of_throat[phases->incidence.throat[k]] < 0)
+    const int node = occupancy->wet[(int)(next_random(seed) * occupancy->n_wet)];
+    int k = occupancy->incidence.offset[node];
+    while (occupancy->clusters.of_throat[occupancy->incidence.throat[k]] < 0)
         k++;
-    const int throat = phases->incidence.throat[k];
+    const int throat = occupancy->incidence.throat[k];
     return by_throat ? throat
-                     : clusters_invasion_throat(&phases->clusters,
-                                                phases->clusters.of_throat[throat]);
+                     : clusters_invasion_throat(&occupancy->clusters,
+                                                occupancy->clusters.of_throat[throat]);
 }
 
 // FOLLOW: what was found before is gone on from.
@@ -223,7 +223,7 @@ static void check(enum liquid_limit liquid, bool follow)
     conditions.mass_transfer *= 100; // relaxation is slow where air is hard to reach
     const struct drying_scale scale = drying_scale(&network, &conditions);
     struct boundary_layer layer;
-    struct phases phases;
+    struct occupancy occupancy;
     struct reason reason;
     assert_int_equal(boundary_layers_make(
                          &network, conditions.open_walls, scale.length,
@@ -231,29 +231,29 @@ static void check(enum liquid_limit liquid, bool follow)
                          &(struct boundary_form){.feet = FEET_SURFACE, .lumped = true},
                          &layer, &reason),
                      STATUS_OK);
-    const struct phases_form form = {.length = scale.length,
-                                     .gas_parts = liquid != LIQUID_IMMOBILE};
-    assert_int_equal(
-        phases_make(&network, conditions.open_walls, &form, layer, &phases, &reason),
-        STATUS_OK);
-    struct curved curved = curved_make(&phases, &conditions);
+    const struct occupancy_form form = {.length = scale.length,
+                                        .gas_parts = liquid != LIQUID_IMMOBILE};
+    assert_int_equal(occupancy_make(&network, conditions.open_walls, &form, layer,
+                                    &occupancy, &reason),
+                     STATUS_OK);
+    struct kelvin_menisci kelvin = kelvin_menisci_make(&occupancy, &conditions);
     struct losses losses = losses_make(network.n_throat);
     uint64_t seed = 3;
     int n_wait = 0;
-    for (int k = 0; phases.n_full > 3; k++) {
-        if (curved_find(&curved, &phases, &losses, &reason))
+    for (int k = 0; occupancy.n_full > 3; k++) {
+        if (kelvin_menisci_find(&kelvin, &occupancy, &losses, &reason))
             fail_msg("%s", reason.text);
-        if (k % 8 == 0) n_wait += compare(&phases, &conditions, &curved, &losses);
-        const int throat = some_meniscus(&phases, liquid == LIQUID_IMMOBILE, &seed);
+        if (k % 8 == 0) n_wait += compare(&occupancy, &conditions, &kelvin, &losses);
+        const int throat = some_meniscus(&occupancy, liquid == LIQUID_IMMOBILE, &seed);
         if (follow)
-            curved_empty_throat(&curved, &phases, throat);
+            kelvin_menisci_empty_throat(&kelvin, &occupancy, throat);
         else
-            phases_empty_throat(&phases, throat);
+            occupancy_empty_throat(&occupancy, throat);
     }
     assert_true(n_wait > 10);
     losses_free(&losses);
-    curved_free(&curved);
-    phases_free(&phases);
+    kelvin_menisci_free(&kelvin);
+    occupancy_free(&occupancy);
     network_free(&network);
 }
 

@@ -18,14 +18,14 @@ struct errors {
     double sum, rate; // largest, of the exact rate
 };
 
-static void compare(const struct phases *phases, const struct vapour *exact,
+static void compare(const struct occupancy *occupancy, const struct vapour *exact,
                     struct errors *errors)
 {
-    const struct vapour *vapour = &phases->vapour;
+    const struct vapour *vapour = &occupancy->vapour;
     const double rate = vapour_rate(exact);
     double sum = 0;
-    for (int k = 0; k < phases->n_wet; k++) {
-        const int node = phases->wet[k];
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        const int node = occupancy->wet[k];
         const double given_off = vapour_evaporation(vapour, node);
         const double truth = vapour_evaporation(exact, node);
         assert_true(given_off >= 0 && (truth > 0 || given_off == 0));
@@ -35,10 +35,10 @@ static void compare(const struct phases *phases, const struct vapour *exact,
     errors->rate = fmax(errors->rate, fabs(vapour_rate(vapour) / rate - 1));
 }
 
-static void empty_exactly(const struct phases *phases, struct vapour *exact, int throat,
-                          int *liquid_beside)
+static void empty_exactly(const struct occupancy *occupancy, struct vapour *exact,
+                          int throat, int *liquid_beside)
 {
-    const int32_t *node = phases->network->throat_nodes[throat];
+    const int32_t *node = occupancy->network->throat_nodes[throat];
     vapour_open_throat(exact, throat, node[0], node[1]);
     for (int end = 0; end < 2; end++)
         if (--liquid_beside[node[end]] == 0) vapour_dry_node(exact, node[end]);
@@ -48,11 +48,12 @@ static struct errors dry_beside_exact(const struct network *network,
                                       const struct drying_conditions *conditions)
 {
     const struct drying_scale scale = drying_scale(network, conditions);
-    const struct phases_form form = {.length = scale.length,
-                                     .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
-                                     .vapour_tolerance = conditions->vapour_tolerance};
+    const struct occupancy_form form = {
+        .length = scale.length,
+        .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
+        .vapour_tolerance = conditions->vapour_tolerance};
     struct boundary_layer layer;
-    struct phases phases;
+    struct occupancy occupancy;
     struct reason reason;
     assert_int_equal(boundary_layers_make(network, conditions->open_walls, scale.length,
                                           scale.boundary_layer,
@@ -61,28 +62,28 @@ static struct errors dry_beside_exact(const struct network *network,
                                                                   conditions->lumped},
                                           &layer, &reason),
                      STATUS_OK);
-    assert_int_equal(
-        phases_make(network, conditions->open_walls, &form, layer, &phases, &reason),
-        STATUS_OK);
-    struct vapour exact = vapour_make(network, scale.length, 0, &phases.layer, 0);
-    int *liquid_beside =
-        duplicate(phases.liquid_beside, (size_t)network->n_node, sizeof *liquid_beside);
+    assert_int_equal(occupancy_make(network, conditions->open_walls, &form, layer,
+                                    &occupancy, &reason),
+                     STATUS_OK);
+    struct vapour exact = vapour_make(network, scale.length, 0, &occupancy.layer, 0);
+    int *liquid_beside = duplicate(occupancy.liquid_beside, (size_t)network->n_node,
+                                   sizeof *liquid_beside);
     struct emptying_times times =
-        emptying_times_make(&phases, conditions->liquid == LIQUID_IMMOBILE);
+        emptying_times_make(&occupancy, conditions->liquid == LIQUID_IMMOBILE);
     struct errors errors = {0};
-    compare(&phases, &exact, &errors);
-    while (phases.n_full > 0) {
+    compare(&occupancy, &exact, &errors);
+    while (occupancy.n_full > 0) {
         assert_true(emptying_times_advance(&times) >= 0);
         for (int k = 0; k < times.n_ended; k++)
-            empty_exactly(&phases, &exact, times.ended[k], liquid_beside);
+            empty_exactly(&occupancy, &exact, times.ended[k], liquid_beside);
         emptying_times_empty_ended(&times);
-        if (phases.n_full > 0) compare(&phases, &exact, &errors);
+        if (occupancy.n_full > 0) compare(&occupancy, &exact, &errors);
         assert_true(fabs(emptying_times_imbalance(&times)) < 1e-12);
     }
     emptying_times_free(&times);
     free(liquid_beside);
     vapour_free(&exact);
-    phases_free(&phases);
+    occupancy_free(&occupancy);
     return errors;
 }
 

@@ -3,6 +3,7 @@
 // beside forces found anew.
 #include "../test.h"
 #include "basics/memory.h"
+#include "bridges/bridges.h"
 #include "force-protocol/auxiliary.h"
 #include "force-protocol/rings.h"
 #include "force-protocol/times.h"

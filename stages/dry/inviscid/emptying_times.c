@@ -19,18 +19,18 @@ static const double TIE = 1e-12;
 static void start_timer(struct emptying_times *times, int k)
 {
     const int owner = times->owner[k];
-    const int throat = times->by_throat
-                           ? owner
-                           : clusters_invasion_throat(&times->phases->clusters, owner);
+    const int throat =
+        times->by_throat ? owner
+                         : clusters_invasion_throat(&times->occupancy->clusters, owner);
     const int place = first_not_below(times->losing, times->n_losing, throat);
     memmove(times->losing + place + 1, times->losing + place,
             (size_t)(times->n_losing++ - place) * sizeof *times->losing);
     times->losing[place] = throat;
     times->throat[k] = throat;
-    times->left[k] = times->saturation[throat] * times->phases->volume[throat];
+    times->left[k] = times->saturation[throat] * times->occupancy->volume[throat];
     times->left_lost[k] = 0;
     times->since[k] = times->now;
-    times->nothing[k] = TIE * times->phases->volume[throat];
+    times->nothing[k] = TIE * times->occupancy->volume[throat];
 }
 
 // Two-sum: what is rounded off LEFT is kept beside it.
@@ -53,7 +53,7 @@ static void stop_timer(struct emptying_times *times, int k)
             (size_t)(--times->n_losing - place) * sizeof *times->losing);
     advance_timer(times, k);
     times->saturation[throat] =
-        (times->left[k] + times->left_lost[k]) / times->phases->volume[throat];
+        (times->left[k] + times->left_lost[k]) / times->occupancy->volume[throat];
     times->throat[k] = -1;
 }
 
@@ -111,7 +111,7 @@ static void renew_dirty(struct emptying_times *times)
 // ALL_CHANGED: what each node evaporates.
 static void set_rates(struct emptying_times *times, bool all_changed)
 {
-    struct star_mesh *mesh = &times->phases->vapour.mesh;
+    struct star_mesh *mesh = &times->occupancy->vapour.mesh;
     for (int k = 0; k < mesh->n_linked; k++)
         share_by_node(times, mesh->linked[k]);
     mesh->n_linked = 0;
@@ -125,11 +125,11 @@ static void set_rates(struct emptying_times *times, bool all_changed)
         find_end(times, k);
 }
 
-struct emptying_times emptying_times_make(struct phases *phases, bool by_throat)
+struct emptying_times emptying_times_make(struct occupancy *occupancy, bool by_throat)
 {
-    const int n = phases->network->n_throat;
+    const int n = occupancy->network->n_throat;
     struct emptying_times times = {
-        .phases = phases,
+        .occupancy = occupancy,
         .by_throat = by_throat,
         .share = NEW_ARRAY(struct evaporation_share, 2 * (size_t)n),
         .share_incidence = NEW_ARRAY(int, 2 * (size_t)n),
@@ -154,13 +154,13 @@ struct emptying_times emptying_times_make(struct phases *phases, bool by_throat)
         .dirty = NEW_ARRAY(int, n),
         .is_dirty = NEW_ARRAY(bool, n)};
     for (int t = 0; t < n; t++) {
-        times.saturation[t] = phases_saturation(phases, t);
+        times.saturation[t] = occupancy_saturation(occupancy, t);
         times.timer[t] = -1;
         times.share_place[2 * t] = times.share_place[2 * t + 1] = -1;
     }
-    for (int k = 0; k < phases->n_wet; k++)
-        share_by_node(&times, phases->wet[k]);
-    phases->vapour.mesh.n_linked = 0;
+    for (int k = 0; k < occupancy->n_wet; k++)
+        share_by_node(&times, occupancy->wet[k]);
+    occupancy->vapour.mesh.n_linked = 0;
     set_rates(&times, true);
     return times;
 }
@@ -201,12 +201,12 @@ double emptying_times_saturation(const struct emptying_times *times, int throat)
     if (k < 0 || times->throat[k] != throat) return times->saturation[throat];
     const double lost = times->rate[k] * (times->now - times->since[k]);
     return (times->left[k] + (times->left_lost[k] - lost)) /
-           times->phases->volume[throat];
+           times->occupancy->volume[throat];
 }
 
 double emptying_times_imbalance(const struct emptying_times *times)
 {
-    const struct vapour *vapour = &times->phases->vapour;
+    const struct vapour *vapour = &times->occupancy->vapour;
     const double rate = vapour_rate(vapour);
     struct compensated sum = {.value = -rate};
     for (int k = 0; k < times->n; k++)
@@ -236,10 +236,10 @@ static double first_end(const struct emptying_times *times)
 
 static void end_throat(struct emptying_times *times, int k)
 {
-    struct phases *phases = times->phases;
+    struct occupancy *occupancy = times->occupancy;
     advance_timer(times, k);
-    compensated_add(&phases->total_liquid, -times->left[k]);
-    compensated_add(&phases->total_liquid, -times->left_lost[k]);
+    compensated_add(&occupancy->total_liquid, -times->left[k]);
+    compensated_add(&occupancy->total_liquid, -times->left_lost[k]);
     times->left[k] = times->left_lost[k] = 0;
     GROW_ARRAY(times->ended, times->n_ended, times->ended_capacity);
     times->ended[times->n_ended++] = times->throat[k];
@@ -264,11 +264,11 @@ static void end_throats(struct emptying_times *times)
 
 double emptying_times_advance(struct emptying_times *times)
 {
-    struct phases *phases = times->phases;
+    struct occupancy *occupancy = times->occupancy;
     const double end = first_end(times);
     if (end == INFINITY) return -1;
     const double span = end - times->now;
-    compensated_add(&phases->total_liquid, -vapour_rate(&phases->vapour) * span);
+    compensated_add(&occupancy->total_liquid, -vapour_rate(&occupancy->vapour) * span);
     times->now = end;
     end_throats(times);
     return span;
@@ -277,16 +277,17 @@ double emptying_times_advance(struct emptying_times *times)
 // Returns whether a node dries.
 static bool empty_throat(struct emptying_times *times, int throat)
 {
-    struct phases *phases = times->phases;
+    struct occupancy *occupancy = times->occupancy;
     const int k = times->timer[reservoir_of(times, throat)];
     stop_timer(times, k);
     mark_dirty(times, k);
-    phases_empty_throat(phases, throat);
+    occupancy_empty_throat(occupancy, throat);
     share_by_ends(times, throat);
-    for (int l = 0; l < phases->clusters.n_moved; l++)
-        share_by_ends(times, phases->clusters.moved[l]);
-    const int32_t *node = phases->network->throat_nodes[throat];
-    return phases->liquid_beside[node[0]] == 0 || phases->liquid_beside[node[1]] == 0;
+    for (int l = 0; l < occupancy->clusters.n_moved; l++)
+        share_by_ends(times, occupancy->clusters.moved[l]);
+    const int32_t *node = occupancy->network->throat_nodes[throat];
+    return occupancy->liquid_beside[node[0]] == 0 ||
+           occupancy->liquid_beside[node[1]] == 0;
 }
 
 void emptying_times_empty_ended(struct emptying_times *times)
@@ -302,7 +303,7 @@ void emptying_times_empty_ended(struct emptying_times *times)
 void emptying_times_state(struct emptying_times *times,
                           struct checkpoint_stream *stream)
 {
-    const int n_throat = times->phases->network->n_throat;
+    const int n_throat = times->occupancy->network->n_throat;
     for (int k = 0; stream->restoring && k < times->n; k++)
         if (times->owner[k] >= 0) times->timer[times->owner[k]] = -1;
     stream_integer(stream, &times->n, 0, n_throat);
@@ -326,7 +327,7 @@ void emptying_times_state(struct emptying_times *times,
     for (int k = 0; stream->restoring && k < times->n; k++) {
         if (times->owner[k] >= 0) times->timer[times->owner[k]] = k;
         const int throat = times->throat[k];
-        times->nothing[k] = throat < 0 ? 0 : TIE * times->phases->volume[throat];
+        times->nothing[k] = throat < 0 ? 0 : TIE * times->occupancy->volume[throat];
         find_end(times, k);
     }
 }

@@ -15,7 +15,7 @@
 struct evaporation_share;
 
 struct emptying_times {
-    struct phases *phases;
+    struct occupancy *occupancy;
     bool by_throat; // a reservoir for each throat; else for each cluster
 
     int n_share;
@@ -53,9 +53,9 @@ struct emptying_times {
     int *ended; // (n_ended) throats that empty now, ascending
 };
 
-// For PHASES as they are, with the liquid there is in each throat; they must live as
+// For OCCUPANCY as they are, with the liquid there is in each throat; they must live as
 // long, and throats be emptied only here.
-struct emptying_times emptying_times_make(struct phases *phases, bool by_throat);
+struct emptying_times emptying_times_make(struct occupancy *occupancy, bool by_throat);
 
 // Goes to the moment at which the first throat, or several that tie to rounding, lose
 // their last liquid; they become times->ended. Returns the time that has passed; -1 if

@@ -30,7 +30,7 @@ static int timer_of(struct emptying_times *times, int owner)
 static double amount_of(const struct emptying_times *times,
                         const struct evaporation_share *share)
 {
-    return share->part * times->phases->vapour.mesh.air[share->node];
+    return share->part * times->occupancy->vapour.mesh.air[share->node];
 }
 
 static void add_to_sum(struct emptying_times *times, int k, double amount)
@@ -64,9 +64,10 @@ static void remove_share(struct emptying_times *times, int place)
 static void add_share(struct emptying_times *times, int node, int incidence,
                       double part)
 {
-    const int owner = reservoir_of(times, times->phases->incidence.throat[incidence]);
+    const int owner =
+        reservoir_of(times, times->occupancy->incidence.throat[incidence]);
     const int timer = timer_of(times, owner);
-    for (int k = times->phases->incidence.offset[node]; k < incidence; k++) {
+    for (int k = times->occupancy->incidence.offset[node]; k < incidence; k++) {
         const int place = times->share_place[k];
         if (place < 0 || times->share[place].timer != timer) continue;
         times->share[place].part += part;
@@ -82,17 +83,18 @@ static void add_share(struct emptying_times *times, int node, int incidence,
 // By the throats that hold liquid now: shares are proportional to their cross-sections.
 void share_by_node(struct emptying_times *times, int node)
 {
-    const struct phases *phases = times->phases;
-    const int begin = phases->incidence.offset[node];
-    const int end = phases->incidence.offset[node + 1];
+    const struct occupancy *occupancy = times->occupancy;
+    const int begin = occupancy->incidence.offset[node];
+    const int end = occupancy->incidence.offset[node + 1];
     double sum = 0;
     for (int k = begin; k < end; k++) {
         if (times->share_place[k] >= 0) remove_share(times, times->share_place[k]);
-        sum += liquid_section(phases, phases->incidence.throat[k]);
+        sum += liquid_section(occupancy, occupancy->incidence.throat[k]);
     }
-    if (!(vapour_evaporation(&phases->vapour, node) > 0)) return;
+    if (!(vapour_evaporation(&occupancy->vapour, node) > 0)) return;
     for (int k = begin; k < end; k++) {
-        const double section = liquid_section(phases, phases->incidence.throat[k]);
+        const double section =
+            liquid_section(occupancy, occupancy->incidence.throat[k]);
         if (section > 0) add_share(times, node, k, section / sum);
     }
     for (int k = begin; k < end; k++) {
@@ -106,7 +108,7 @@ void share_by_node(struct emptying_times *times, int node)
 void share_by_ends(struct emptying_times *times, int throat)
 {
     for (int end = 0; end < 2; end++)
-        share_by_node(times, times->phases->network->throat_nodes[throat][end]);
+        share_by_node(times, times->occupancy->network->throat_nodes[throat][end]);
 }
 
 static int most_shares(const struct emptying_times *times)
@@ -154,7 +156,7 @@ bool evaporation_shares_lack_digits(const struct emptying_times *times)
 void evaporation_shares_state(struct emptying_times *times,
                               struct checkpoint_stream *stream)
 {
-    const struct network *network = times->phases->network;
+    const struct network *network = times->occupancy->network;
     const int n_incidence = 2 * network->n_throat;
     stream_integer(stream, &times->n_share, 0, n_incidence);
     for (int k = 0; k < times->n_share; k++) {

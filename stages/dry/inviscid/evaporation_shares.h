@@ -15,7 +15,7 @@ struct evaporation_share {
 // By cluster or by throat; -1 if THROAT holds no liquid.
 static inline int reservoir_of(const struct emptying_times *times, int throat)
 {
-    return times->by_throat ? throat : times->phases->clusters.of_throat[throat];
+    return times->by_throat ? throat : times->occupancy->clusters.of_throat[throat];
 }
 
 // NODE, or both of THROAT, have other throats with liquid than before, or are linked to

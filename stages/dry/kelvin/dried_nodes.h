@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What throats that empty change in the balances of the other bodies of liquid: those
 // at the throats' ends, or that part, are others; nodes that dry leave the vapour.
-#ifndef CRAQUELURE_DRAINED_H
-#define CRAQUELURE_DRAINED_H
+#ifndef CRAQUELURE_DRIED_NODES_H
+#define CRAQUELURE_DRIED_NODES_H
 
 #include "dry/liquid/occupancy.h"
 
@@ -16,7 +16,7 @@ struct dried_node {
     double total;   // conductance of all its links
 };
 
-struct drained {
+struct dried_nodes {
     bool by_throat; // a throat is a body of liquid; else a cluster
     int n_throat;   // that have emptied
     int n_body;
@@ -31,16 +31,18 @@ struct drained {
 };
 
 // For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
-// with drained_free.
-struct drained drained_make(int n_throat, int n_site, bool by_throat);
+// with dried_nodes_free.
+struct dried_nodes dried_nodes_make(int n_throat, int n_site, bool by_throat);
 
 // THROAT is about to be emptied; it has been.
-void drained_note_before(struct drained *drained, struct phases *phases, int throat);
-void drained_note_after(struct drained *drained, const struct phases *phases);
+void dried_nodes_note_before(struct dried_nodes *dried, struct occupancy *occupancy,
+                             int throat);
+void dried_nodes_note_after(struct dried_nodes *dried,
+                            const struct occupancy *occupancy);
 
-// Forgets what has drained.
-void drained_clear(struct drained *drained);
+// Forgets what has dried.
+void dried_nodes_clear(struct dried_nodes *dried);
 
-void drained_free(struct drained *drained);
+void dried_nodes_free(struct dried_nodes *dried);
 
 #endif

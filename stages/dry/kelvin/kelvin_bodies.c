@@ -5,29 +5,32 @@
 // makes, menisci lose as little, and to fill them would be a step of that kind again.
 static const double SCRATCH = 1e-12;
 
-bool curved_is_full(const struct curved *curved, const struct phases *phases, int place)
+bool kelvin_is_full(const struct kelvin_menisci *kelvin,
+                    const struct occupancy *occupancy, int place)
 {
-    return phases_saturation(phases, curved->throat[place]) > 1 - SCRATCH;
+    return occupancy_saturation(occupancy, kelvin->throat[place]) > 1 - SCRATCH;
 }
 
-// Its place. What floated when last found is likely to float again.
-static int find_body(struct curved *curved, struct phases *phases, int body)
+// Its place. What was equilibrated when last found is likely to be so again.
+static int find_body(struct kelvin_menisci *kelvin, struct occupancy *occupancy,
+                     int body)
 {
-    if (curved->place[body] >= 0) return curved->place[body];
-    const int place = curved->n++;
-    curved->place[body] = place;
-    curved->body[place] = body;
-    curved->throat[place] =
-        curved->by_throat ? body : clusters_invasion_throat(&phases->clusters, body);
-    curved->flows[place] = curved->by_throat && phases->clusters.gas_parts &&
-                           phases->clusters.size[phases->clusters.of_throat[body]] > 1;
-    curved->exponent[place] =
-        curved->law.exponent / phases->network->throat_radius[curved->throat[place]];
-    curved->floats[place] = curved->floated[body] && !curved->flows[place] &&
-                            curved_is_full(curved, phases, place);
-    curved->potential[place] = curved->floats[place]
-                                   ? curved->floated_at[body]
-                                   : curved->own[curved->throat[place]];
+    if (kelvin->place[body] >= 0) return kelvin->place[body];
+    const int place = kelvin->n++;
+    kelvin->place[body] = place;
+    kelvin->body[place] = body;
+    kelvin->throat[place] =
+        kelvin->by_throat ? body : clusters_invasion_throat(&occupancy->clusters, body);
+    kelvin->flows[place] =
+        kelvin->by_throat && occupancy->clusters.gas_parts &&
+        occupancy->clusters.size[occupancy->clusters.of_throat[body]] > 1;
+    kelvin->exponent[place] =
+        kelvin->law.exponent / occupancy->network->throat_radius[kelvin->throat[place]];
+    kelvin->zero_flux[place] = kelvin->had_zero_flux[body] && !kelvin->flows[place] &&
+                               kelvin_is_full(kelvin, occupancy, place);
+    kelvin->potential[place] = kelvin->zero_flux[place]
+                                   ? kelvin->zero_flux_potential[body]
+                                   : kelvin->entry_potential[kelvin->throat[place]];
     return place;
 }
 
@@ -42,79 +45,81 @@ static int add_share(struct share *share, int begin, int end, int body, double s
     return k == end ? end + 1 : end;
 }
 
-// The shares of the K-th wet node come at curved->offset[k]. No more conducts vapour
+// The shares of the K-th wet node come at kelvin->offset[k]. No more conducts vapour
 // from it than at first and in the throats that have emptied since: what is eliminated
 // only puts more in series.
-static void list_shares(struct curved *curved, struct phases *phases, int k)
+static void list_shares(struct kelvin_menisci *kelvin, struct occupancy *occupancy,
+                        int k)
 {
-    const int node = phases->wet[k], begin = curved->offset[k];
+    const int node = occupancy->wet[k], begin = kelvin->offset[k];
     int end = begin;
     double sum = 0;
-    curved->conducted[k] = curved->outside[node];
-    for (int i = phases->incidence.offset[node]; i < phases->incidence.offset[node + 1];
-         i++) {
-        const int throat = phases->incidence.throat[i];
-        const int cluster = phases->clusters.of_throat[throat];
+    kelvin->conducted[k] = kelvin->outside[node];
+    for (int i = occupancy->incidence.offset[node];
+         i < occupancy->incidence.offset[node + 1]; i++) {
+        const int throat = occupancy->incidence.throat[i];
+        const int cluster = occupancy->clusters.of_throat[throat];
         if (cluster < 0) {
-            curved->conducted[k] += phases->vapour.conductance[throat];
+            kelvin->conducted[k] += occupancy->vapour.conductance[throat];
             continue;
         }
-        const int body = curved->by_throat ? throat : cluster;
-        end = add_share(curved->share, begin, end, find_body(curved, phases, body),
-                        curved->section[throat]);
-        sum += curved->section[throat];
+        const int body = kelvin->by_throat ? throat : cluster;
+        end = add_share(kelvin->share, begin, end, find_body(kelvin, occupancy, body),
+                        kelvin->section[throat]);
+        sum += kelvin->section[throat];
     }
     for (int i = begin; i < end; i++)
-        curved->share[i].part = end == begin + 1 ? 1 : curved->share[i].part / sum;
-    curved->offset[k + 1] = end;
+        kelvin->share[i].part = end == begin + 1 ? 1 : kelvin->share[i].part / sum;
+    kelvin->offset[k + 1] = end;
 }
 
 // By throats, ascending.
-static void rank_bodies(struct curved *curved, int n_throat)
+static void rank_bodies(struct kelvin_menisci *kelvin, int n_throat)
 {
-    for (int a = 0; a < curved->n; a++)
-        curved->at_throat[curved->throat[a]] = a + 1;
+    for (int a = 0; a < kelvin->n; a++)
+        kelvin->at_throat[kelvin->throat[a]] = a + 1;
     int n = 0;
     for (int t = 0; t < n_throat; t++) {
-        if (curved->at_throat[t] == 0) continue;
-        curved->ranked[n++] = curved->at_throat[t] - 1;
-        curved->at_throat[t] = 0;
+        if (kelvin->at_throat[t] == 0) continue;
+        kelvin->ranked[n++] = kelvin->at_throat[t] - 1;
+        kelvin->at_throat[t] = 0;
     }
 }
 
-void curved_list_bodies(struct curved *curved, struct phases *phases)
+void kelvin_list_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    for (int a = 0; a < curved->n; a++)
-        curved->place[curved->body[a]] = -1;
-    curved->n = 0;
-    for (int k = 0; k < phases->n_wet; k++)
-        list_shares(curved, phases, k);
-    rank_bodies(curved, phases->network->n_throat);
+    for (int a = 0; a < kelvin->n; a++)
+        kelvin->place[kelvin->body[a]] = -1;
+    kelvin->n = 0;
+    for (int k = 0; k < occupancy->n_wet; k++)
+        list_shares(kelvin, occupancy, k);
+    rank_bodies(kelvin, occupancy->network->n_throat);
 }
 
 // What the potential at NODE is above that at the middle of the throat of a body, in
 // liquid at rest.
-static double potential_over_middle(const struct curved *curved,
+static double potential_over_middle(const struct kelvin_menisci *kelvin,
                                     const struct network *network, int node, int place)
 {
-    const struct kelvin_law *law = &curved->law;
-    const int32_t *end = network->throat_nodes[curved->throat[place]];
+    const struct kelvin_law *law = &kelvin->law;
+    const int32_t *end = network->throat_nodes[kelvin->throat[place]];
     const struct vector *at = network->node_position;
     const double height = at[node].z - (at[end[0]].z + at[end[1]].z) / 2;
-    const double exponent = curved->exponent[place];
+    const double exponent = kelvin->exponent[place];
     return kelvin_potential(law, exponent + law->steepness * height) -
            kelvin_potential(law, exponent);
 }
 
-void curved_raise_nodes(struct curved *curved, const struct phases *phases)
+void kelvin_raise_nodes(struct kelvin_menisci *kelvin,
+                        const struct occupancy *occupancy)
 {
-    for (int k = 0; k < phases->n_wet; k++) {
-        curved->raised[k] = 0;
-        for (int i = curved->offset[k];
-             curved->law.steepness != 0 && i < curved->offset[k + 1]; i++)
-            curved->raised[k] +=
-                curved->share[i].part * potential_over_middle(curved, phases->network,
-                                                              phases->wet[k],
-                                                              curved->share[i].body);
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        kelvin->raised[k] = 0;
+        for (int i = kelvin->offset[k];
+             kelvin->law.steepness != 0 && i < kelvin->offset[k + 1]; i++)
+            kelvin->raised[k] +=
+                kelvin->share[i].part *
+                potential_over_middle(kelvin, occupancy->network, occupancy->wet[k],
+                                      kelvin->share[i].body);
     }
 }

@@ -9,52 +9,55 @@
 static const double NOISE = 1e-15;
 
 // Adds to TO (n) what the bodies at the K-th wet node have of FLOW.
-static void share_flow(const struct curved *curved, int k, double flow, double *to)
+static void share_flow(const struct kelvin_menisci *kelvin, int k, double flow,
+                       double *to)
 {
-    for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
-        to[curved->share[i].body] += curved->share[i].part * flow;
+    for (int i = kelvin->offset[k]; i < kelvin->offset[k + 1]; i++)
+        to[kelvin->share[i].body] += kelvin->share[i].part * flow;
 }
 
 // The mean over the menisci of each wet node.
-static void find_levels(struct curved *curved, const struct phases *phases)
+static void find_levels(struct kelvin_menisci *kelvin,
+                        const struct occupancy *occupancy)
 {
-    for (int k = 0; k < phases->n_wet; k++) {
-        double mean = curved->raised[k];
-        for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
-            mean += curved->share[i].part * curved->potential[curved->share[i].body];
-        curved->level[phases->wet[k]] = mean;
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        double mean = kelvin->raised[k];
+        for (int i = kelvin->offset[k]; i < kelvin->offset[k + 1]; i++)
+            mean += kelvin->share[i].part * kelvin->potential[kelvin->share[i].body];
+        kelvin->level[occupancy->wet[k]] = mean;
     }
 }
 
-void curved_find_gains(struct curved *curved, const struct phases *phases)
+void kelvin_find_gains(struct kelvin_menisci *kelvin, const struct occupancy *occupancy)
 {
-    const struct star_mesh *mesh = &phases->vapour.mesh;
+    const struct star_mesh *mesh = &occupancy->vapour.mesh;
     struct compensated rate = {0};
-    find_levels(curved, phases);
-    for (int k = 0; k < phases->n_wet; k++) {
-        const int node = phases->wet[k];
-        curved->flow[node] = mesh->air[node] * (1 - curved->level[node]);
-        if (mesh->air[node] > 0) compensated_add(&rate, curved->flow[node]);
+    find_levels(kelvin, occupancy);
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        const int node = occupancy->wet[k];
+        kelvin->flow[node] = mesh->air[node] * (1 - kelvin->level[node]);
+        if (mesh->air[node] > 0) compensated_add(&rate, kelvin->flow[node]);
     }
-    curved->rate = compensated_value(rate);
-    star_mesh_add_flows(mesh, curved->level, curved->flow);
-    memset(curved->gain, 0, (size_t)curved->n * sizeof *curved->gain);
-    for (int k = 0; k < phases->n_wet; k++)
-        share_flow(curved, k, curved->flow[phases->wet[k]], curved->gain);
+    kelvin->rate = compensated_value(rate);
+    star_mesh_add_flows(mesh, kelvin->level, kelvin->flow);
+    memset(kelvin->gain, 0, (size_t)kelvin->n * sizeof *kelvin->gain);
+    for (int k = 0; k < occupancy->n_wet; k++)
+        share_flow(kelvin, k, kelvin->flow[occupancy->wet[k]], kelvin->gain);
 }
 
-void curved_find_reaches(struct curved *curved, const struct phases *phases)
+void kelvin_find_reaches(struct kelvin_menisci *kelvin,
+                         const struct occupancy *occupancy)
 {
-    memset(curved->reach, 0, (size_t)curved->n * sizeof *curved->reach);
-    for (int k = 0; k < phases->n_wet; k++)
-        share_flow(curved, k, curved->conducted[k], curved->reach);
+    memset(kelvin->reach, 0, (size_t)kelvin->n * sizeof *kelvin->reach);
+    for (int k = 0; k < occupancy->n_wet; k++)
+        share_flow(kelvin, k, kelvin->conducted[k], kelvin->reach);
 }
 
-void curved_find_noise(struct curved *curved)
+void kelvin_find_noise(struct kelvin_menisci *kelvin)
 {
-    curved->all_noise = 0;
-    for (int a = 0; a < curved->n; a++) {
-        curved->noise[a] = NOISE * curved->reach[a] * fabs(curved->potential[a]);
-        curved->all_noise += curved->noise[a];
+    kelvin->all_noise = 0;
+    for (int a = 0; a < kelvin->n; a++) {
+        kelvin->noise[a] = NOISE * kelvin->reach[a] * fabs(kelvin->potential[a]);
+        kelvin->all_noise += kelvin->noise[a];
     }
 }

@@ -6,12 +6,14 @@
 #include "kelvin_menisci.h"
 
 // Finds GAIN of each body, and RATE into the air, from POTENTIAL.
-void curved_find_gains(struct curved *curved, const struct phases *phases);
+void kelvin_find_gains(struct kelvin_menisci *kelvin,
+                       const struct occupancy *occupancy);
 
 // Finds REACH of each body from what its nodes conduct.
-void curved_find_reaches(struct curved *curved, const struct phases *phases);
+void kelvin_find_reaches(struct kelvin_menisci *kelvin,
+                         const struct occupancy *occupancy);
 
 // Finds NOISE of each body: gains below it are rounding.
-void curved_find_noise(struct curved *curved);
+void kelvin_find_noise(struct kelvin_menisci *kelvin);
 
 #endif

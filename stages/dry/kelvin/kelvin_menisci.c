@@ -13,26 +13,26 @@
 // on only the first of them, which always comes to an end (Murty 1974).
 enum { ROUNDS_AT_ONCE = 10, MOST_ROUNDS = 1000 };
 
-// A meniscus this much more curved than its throat, of its potential, still floats:
-// what is on the verge would change its mind for rounding.
+// A meniscus this much more curved than its throat, of its potential, stays
+// equilibrated: hysteresis, for a body at the threshold would flip by rounding.
 static const double VERGE = 1e-10;
 
 // Largest part of the rate into the air that may be lost in that: late, wet nodes have
 // links that conduct a million times what leads to the air.
 static const double ENOUGH = 1e-6;
 
-static void find_outside(struct curved *curved, struct phases *phases)
+static void find_outside(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    struct star_mesh *mesh = &phases->vapour.mesh;
-    const int n_site = phases->vapour.n_site;
+    struct star_mesh *mesh = &occupancy->vapour.mesh;
+    const int n_site = occupancy->vapour.n_site;
     int *other = NEW_ARRAY(int, n_site);
     double *link = NEW_ARRAY(double, n_site);
     star_mesh_list_fronts(mesh);
     for (int i = 0; i < n_site; i++) {
-        curved->outside[i] = mesh->air[i];
+        kelvin->outside[i] = mesh->air[i];
         const int n = star_mesh_list_links(mesh, i, other, link);
         for (int k = 0; k < n; k++) {
-            curved->outside[i] += link[other[k]];
+            kelvin->outside[i] += link[other[k]];
             link[other[k]] = 0;
         }
     }
@@ -40,77 +40,79 @@ static void find_outside(struct curved *curved, struct phases *phases)
     free(link);
 }
 
-struct curved curved_make(struct phases *phases,
-                          const struct drying_conditions *conditions)
+struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
+                                          const struct drying_conditions *conditions)
 {
-    const struct network *network = phases->network;
+    const struct network *network = occupancy->network;
     const int n = network->n_throat;
-    struct curved curved = {.listed_at = -1,
-                            .by_throat = conditions->liquid != LIQUID_INVISCID,
-                            .own = NEW_ARRAY(double, n),
-                            .section = NEW_ARRAY(double, n),
-                            .law = kelvin_law(conditions),
-                            .throat = NEW_ARRAY(int, n),
-                            .potential = NEW_ARRAY(double, n),
-                            .gain = NEW_ARRAY(double, n),
-                            .floats = NEW_ARRAY(bool, n),
-                            .flows = NEW_ARRAY(bool, n),
-                            .exponent = NEW_ARRAY(double, n),
-                            .place = NEW_ARRAY(int, n),
-                            .floated = NEW_ARRAY(bool, n),
-                            .floated_at = NEW_ARRAY(double, n),
-                            .body = NEW_ARRAY(int, n),
-                            .ranked = NEW_ARRAY(int, n),
-                            .at_throat = NEW_ARRAY(int, n),
-                            .offset = NEW_ARRAY(int, network->n_node + 1),
-                            .share = NEW_ARRAY(struct share, 2 * (size_t)n),
-                            .raised = NEW_ARRAY(double, network->n_node),
-                            .conducted = NEW_ARRAY(double, network->n_node),
-                            .outside = NEW_ARRAY(double, phases->vapour.n_site),
-                            .reach = NEW_ARRAY(double, n),
-                            .noise = NEW_ARRAY(double, n),
-                            .level = NEW_ARRAY(double, phases->vapour.n_site),
-                            .flow = NEW_ARRAY(double, phases->vapour.n_site)};
-    curved.floating = floating_make(n, phases->vapour.n_site, curved.by_throat);
+    struct kelvin_menisci kelvin = {
+        .listed_at = -1,
+        .by_throat = conditions->liquid != LIQUID_INVISCID,
+        .entry_potential = NEW_ARRAY(double, n),
+        .section = NEW_ARRAY(double, n),
+        .law = kelvin_law(conditions),
+        .throat = NEW_ARRAY(int, n),
+        .potential = NEW_ARRAY(double, n),
+        .gain = NEW_ARRAY(double, n),
+        .zero_flux = NEW_ARRAY(bool, n),
+        .flows = NEW_ARRAY(bool, n),
+        .exponent = NEW_ARRAY(double, n),
+        .place = NEW_ARRAY(int, n),
+        .had_zero_flux = NEW_ARRAY(bool, n),
+        .zero_flux_potential = NEW_ARRAY(double, n),
+        .body = NEW_ARRAY(int, n),
+        .ranked = NEW_ARRAY(int, n),
+        .at_throat = NEW_ARRAY(int, n),
+        .offset = NEW_ARRAY(int, network->n_node + 1),
+        .share = NEW_ARRAY(struct share, 2 * (size_t)n),
+        .raised = NEW_ARRAY(double, network->n_node),
+        .conducted = NEW_ARRAY(double, network->n_node),
+        .outside = NEW_ARRAY(double, occupancy->vapour.n_site),
+        .reach = NEW_ARRAY(double, n),
+        .noise = NEW_ARRAY(double, n),
+        .level = NEW_ARRAY(double, occupancy->vapour.n_site),
+        .flow = NEW_ARRAY(double, occupancy->vapour.n_site)};
+    kelvin.equilibrated =
+        equilibrated_make(n, occupancy->vapour.n_site, kelvin.by_throat);
     for (int t = 0; t < n; t++)
-        curved.section[t] = phases->volume[t] / network->throat_length[t];
-    find_outside(&curved, phases);
+        kelvin.section[t] = occupancy->volume[t] / network->throat_length[t];
+    find_outside(&kelvin, occupancy);
     for (int t = 0; t < n; t++) {
-        curved.place[t] = -1;
+        kelvin.place[t] = -1;
         if (network->throat_kind[t] == THROAT_NETWORK)
-            curved.own[t] = kelvin_potential(
-                &curved.law, curved.law.exponent / network->throat_radius[t]);
+            kelvin.entry_potential[t] = kelvin_potential(
+                &kelvin.law, kelvin.law.exponent / network->throat_radius[t]);
     }
-    return curved;
+    return kelvin;
 }
 
-void curved_free(struct curved *curved)
+void kelvin_menisci_free(struct kelvin_menisci *kelvin)
 {
-    free(curved->own);
-    free(curved->section);
-    free(curved->throat);
-    free(curved->potential);
-    free(curved->gain);
-    free(curved->floats);
-    free(curved->flows);
-    free(curved->exponent);
-    free(curved->place);
-    free(curved->floated);
-    free(curved->floated_at);
-    free(curved->body);
-    free(curved->ranked);
-    free(curved->at_throat);
-    free(curved->offset);
-    free(curved->share);
-    free(curved->raised);
-    free(curved->conducted);
-    free(curved->outside);
-    free(curved->level);
-    free(curved->flow);
-    free(curved->reach);
-    free(curved->noise);
-    floating_free(curved->floating);
-    *curved = (struct curved){0};
+    free(kelvin->entry_potential);
+    free(kelvin->section);
+    free(kelvin->throat);
+    free(kelvin->potential);
+    free(kelvin->gain);
+    free(kelvin->zero_flux);
+    free(kelvin->flows);
+    free(kelvin->exponent);
+    free(kelvin->place);
+    free(kelvin->had_zero_flux);
+    free(kelvin->zero_flux_potential);
+    free(kelvin->body);
+    free(kelvin->ranked);
+    free(kelvin->at_throat);
+    free(kelvin->offset);
+    free(kelvin->share);
+    free(kelvin->raised);
+    free(kelvin->conducted);
+    free(kelvin->outside);
+    free(kelvin->level);
+    free(kelvin->flow);
+    free(kelvin->reach);
+    free(kelvin->noise);
+    equilibrated_free(kelvin->equilibrated);
+    *kelvin = (struct kelvin_menisci){0};
 }
 
 // --- menisci that are flatter ------------------------------------------------------
@@ -119,38 +121,40 @@ struct revision {
     int begun, ended;
 };
 
-static double excess(const struct curved *curved, int a)
+static double excess_curvature(const struct kelvin_menisci *kelvin, int a)
 {
-    const double own = curved->own[curved->throat[a]];
-    if (!curved->floats[a] || curved->flows[a] || curved->potential[a] <= own) return 0;
-    return curved->potential[a] / own - 1;
+    const double entry_potential = kelvin->entry_potential[kelvin->throat[a]];
+    if (!kelvin->zero_flux[a] || kelvin->flows[a] ||
+        kelvin->potential[a] <= entry_potential)
+        return 0;
+    return kelvin->potential[a] / entry_potential - 1;
 }
 
-// Those more curved than this cease to float: not all that are too much so, for others
-// follow when the worst have.
-static double most_excess(const struct curved *curved)
+// Those more curved than this cease to be equilibrated: not all that are too much so,
+// for others follow when the worst have.
+static double most_excess(const struct kelvin_menisci *kelvin)
 {
     double worst = 0;
-    for (int a = 0; a < curved->n; a++)
-        worst = fmax(worst, excess(curved, a));
+    for (int a = 0; a < kelvin->n; a++)
+        worst = fmax(worst, excess_curvature(kelvin, a));
     return fmax(VERGE, worst / 2);
 }
 
-// Which begin or cease to float; no more than MOST.
-static struct revision revise(struct curved *curved, const struct phases *phases,
-                              int most)
+// Which begin or cease to be equilibrated; no more than MOST.
+static struct revision revise(struct kelvin_menisci *kelvin,
+                              const struct occupancy *occupancy, int most)
 {
     struct revision revision = {0};
-    const double most_curved = most_excess(curved);
-    for (int a = 0; a < curved->n && revision.begun + revision.ended < most; a++) {
-        if (curved->flows[a]) continue;
-        if (excess(curved, a) > most_curved) {
-            curved->floats[a] = false;
-            curved->potential[a] = curved->own[curved->throat[a]];
+    const double most_curved = most_excess(kelvin);
+    for (int a = 0; a < kelvin->n && revision.begun + revision.ended < most; a++) {
+        if (kelvin->flows[a]) continue;
+        if (excess_curvature(kelvin, a) > most_curved) {
+            kelvin->zero_flux[a] = false;
+            kelvin->potential[a] = kelvin->entry_potential[kelvin->throat[a]];
             revision.ended++;
-        } else if (!curved->floats[a] && curved->gain[a] < -10 * curved->all_noise &&
-                   curved_is_full(curved, phases, a)) {
-            curved->floats[a] = true;
+        } else if (!kelvin->zero_flux[a] && kelvin->gain[a] < -10 * kelvin->all_noise &&
+                   kelvin_is_full(kelvin, occupancy, a)) {
+            kelvin->zero_flux[a] = true;
             revision.begun++;
         }
     }
@@ -159,128 +163,134 @@ static struct revision revise(struct curved *curved, const struct phases *phases
 
 // --- all ---------------------------------------------------------------------------
 
-static void add_losses(const struct curved *curved, const struct phases *phases,
-                       struct losses *losses)
+static void add_losses(const struct kelvin_menisci *kelvin,
+                       const struct occupancy *occupancy, struct losses *losses)
 {
-    for (int r = 0; r < curved->n; r++) {
-        const int a = curved->ranked[r], throat = curved->throat[a];
-        const double gain = curved->gain[a];
-        if (curved->floats[a] || curved->flows[a] || fabs(gain) <= curved->noise[a] ||
-            (gain < 0 && curved_is_full(curved, phases, a)))
+    for (int r = 0; r < kelvin->n; r++) {
+        const int a = kelvin->ranked[r], throat = kelvin->throat[a];
+        const double gain = kelvin->gain[a];
+        if (kelvin->zero_flux[a] || kelvin->flows[a] ||
+            fabs(gain) <= kelvin->noise[a] ||
+            (gain < 0 && kelvin_is_full(kelvin, occupancy, a)))
             continue;
         losses->loss[losses->n++] = (struct loss){throat, gain};
     }
 }
 
 // The error of the balances is left to the largest.
-static void balance(struct curved *curved, struct losses *losses)
+static void balance(struct kelvin_menisci *kelvin, struct losses *losses)
 {
-    struct compensated rest = {.value = curved->rate};
+    struct compensated rest = {.value = kelvin->rate};
     int largest = 0;
     for (int k = 0; k < losses->n; k++) {
         compensated_add(&rest, -losses->loss[k].rate);
         if (losses->loss[k].rate > losses->loss[largest].rate) largest = k;
     }
     if (losses->n > 0) losses->loss[largest].rate += compensated_value(rest);
-    const double residual = fabs(compensated_value(rest)) / curved->rate;
-    if (!(residual <= curved->residual)) curved->residual = residual;
+    const double residual = fabs(compensated_value(rest)) / kelvin->rate;
+    if (!(residual <= kelvin->residual)) kelvin->residual = residual;
 }
 
-static enum status find_potentials(struct curved *curved, const struct phases *phases,
+static enum status find_potentials(struct kelvin_menisci *kelvin,
+                                   const struct occupancy *occupancy,
                                    struct reason *reason)
 {
-    curved_find_noise(curved);
+    kelvin_find_noise(kelvin);
     for (int round = 0; round < MOST_ROUNDS; round++) {
-        if (!float_freely(curved, phases))
+        if (!solve_zero_flux(kelvin, occupancy))
             return refuse(reason, STATUS_INTERNAL, "kelvin: out of memory");
-        const int most = round < ROUNDS_AT_ONCE ? curved->n : 1;
-        const struct revision revision = revise(curved, phases, most);
+        const int most = round < ROUNDS_AT_ONCE ? kelvin->n : 1;
+        const struct revision revision = revise(kelvin, occupancy, most);
         if (revision.begun + revision.ended == 0) return STATUS_OK;
-        if (revision.ended > 0) curved_find_gains(curved, phases);
+        if (revision.ended > 0) kelvin_find_gains(kelvin, occupancy);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: no consistent menisci after %d rounds, among %d",
-                  MOST_ROUNDS, curved->n);
+                  MOST_ROUNDS, kelvin->n);
 }
 
-void curved_forget(struct curved *curved)
+void kelvin_menisci_forget(struct kelvin_menisci *kelvin)
 {
-    curved->listed_at = -1;
-    floating_forget(curved->floating);
+    kelvin->listed_at = -1;
+    equilibrated_forget(kelvin->equilibrated);
 }
 
-void curved_empty_throat(struct curved *curved, struct phases *phases, int throat)
+void kelvin_menisci_empty_throat(struct kelvin_menisci *kelvin,
+                                 struct occupancy *occupancy, int throat)
 {
-    floating_empty_throat(curved->floating, phases, throat);
+    equilibrated_empty_throat(kelvin->equilibrated, occupancy, throat);
 }
 
 // A throat has emptied.
-static void begin_anew(struct curved *curved, struct phases *phases)
+static void begin_anew(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    const int n_emptied = curved->listed_at - phases->n_full;
-    curved->listed_at = phases->n_full;
-    curved_list_bodies(curved, phases);
-    star_mesh_list_fronts(&phases->vapour.mesh);
-    floating_follow(curved->floating, curved, phases, n_emptied);
-    curved_find_reaches(curved, phases);
-    curved_raise_nodes(curved, phases);
-    curved_find_gains(curved, phases);
+    const int n_emptied = kelvin->listed_at - occupancy->n_full;
+    kelvin->listed_at = occupancy->n_full;
+    kelvin_list_bodies(kelvin, occupancy);
+    star_mesh_list_fronts(&occupancy->vapour.mesh);
+    equilibrated_follow(kelvin->equilibrated, kelvin, occupancy, n_emptied);
+    kelvin_find_reaches(kelvin, occupancy);
+    kelvin_raise_nodes(kelvin, occupancy);
+    kelvin_find_gains(kelvin, occupancy);
 }
 
-void curved_begin(struct curved *curved, struct phases *phases)
+void kelvin_menisci_begin(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    if (curved->listed_at != phases->n_full) begin_anew(curved, phases);
+    if (kelvin->listed_at != occupancy->n_full) begin_anew(kelvin, occupancy);
 }
 
-enum status curved_find_others(struct curved *curved, const struct phases *phases,
+enum status kelvin_menisci_find_others(struct kelvin_menisci *kelvin,
+                                       const struct occupancy *occupancy,
+                                       struct reason *reason)
+{
+    kelvin_raise_nodes(kelvin, occupancy);
+    kelvin_find_gains(kelvin, occupancy);
+    return find_potentials(kelvin, occupancy, reason);
+}
+
+enum status kelvin_menisci_end(struct kelvin_menisci *kelvin,
+                               const struct occupancy *occupancy, struct losses *losses,
                                struct reason *reason)
 {
-    curved_raise_nodes(curved, phases);
-    curved_find_gains(curved, phases);
-    return find_potentials(curved, phases, reason);
-}
-
-enum status curved_end(struct curved *curved, const struct phases *phases,
-                       struct losses *losses, struct reason *reason)
-{
-    add_losses(curved, phases, losses);
-    balance(curved, losses);
-    for (int a = 0; a < curved->n; a++) {
-        curved->floated[curved->body[a]] = curved->floats[a];
-        curved->floated_at[curved->body[a]] = curved->potential[a];
+    add_losses(kelvin, occupancy, losses);
+    balance(kelvin, losses);
+    for (int a = 0; a < kelvin->n; a++) {
+        kelvin->had_zero_flux[kelvin->body[a]] = kelvin->zero_flux[a];
+        kelvin->zero_flux_potential[kelvin->body[a]] = kelvin->potential[a];
     }
-    if (curved->residual <= ENOUGH) return STATUS_OK;
+    if (kelvin->residual <= ENOUGH) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: what %d menisci evaporate is %.3g off what goes into the "
                   "air, of that; needed is %g; the widest are driven by %.2g of what "
                   "flat ones would be",
-                  curved->n, curved->residual, ENOUGH, curved_drive(curved));
+                  kelvin->n, kelvin->residual, ENOUGH, kelvin_drive(kelvin));
 }
 
-double curved_drive(const struct curved *curved)
+double kelvin_drive(const struct kelvin_menisci *kelvin)
 {
     double least = INFINITY;
-    for (int a = 0; a < curved->n; a++)
-        least = fmin(least, curved->potential[a]);
+    for (int a = 0; a < kelvin->n; a++)
+        least = fmin(least, kelvin->potential[a]);
     return 1 - least;
 }
 
-enum status curved_find(struct curved *curved, struct phases *phases,
-                        struct losses *losses, struct reason *reason)
+enum status kelvin_menisci_find(struct kelvin_menisci *kelvin,
+                                struct occupancy *occupancy, struct losses *losses,
+                                struct reason *reason)
 {
     losses->n = 0;
-    curved_begin(curved, phases);
-    const enum status status = find_potentials(curved, phases, reason);
-    return status ? status : curved_end(curved, phases, losses, reason);
+    kelvin_menisci_begin(kelvin, occupancy);
+    const enum status status = find_potentials(kelvin, occupancy, reason);
+    return status ? status : kelvin_menisci_end(kelvin, occupancy, losses, reason);
 }
 
-void curved_state(struct curved *curved, const struct network *network,
-                  struct checkpoint_stream *stream)
+void kelvin_menisci_state(struct kelvin_menisci *kelvin, const struct network *network,
+                          struct checkpoint_stream *stream)
 {
     const int n_throat = network->n_throat;
-    stream_numbers(stream, curved->outside, network->n_node);
-    stream_numbers(stream, &curved->rate, 1);
-    stream_numbers(stream, &curved->residual, 1);
-    stream_flags(stream, curved->floated, n_throat);
-    stream_numbers(stream, curved->floated_at, n_throat);
+    stream_numbers(stream, kelvin->outside, network->n_node);
+    stream_numbers(stream, &kelvin->rate, 1);
+    stream_numbers(stream, &kelvin->residual, 1);
+    stream_flags(stream, kelvin->had_zero_flux, n_throat);
+    stream_numbers(stream, kelvin->zero_flux_potential, n_throat);
 }

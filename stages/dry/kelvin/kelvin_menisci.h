@@ -14,31 +14,32 @@
 // become flatter until it neither takes nor gives: its pressure is unknown, and found
 // so that nothing condenses and no meniscus is more curved than its throat makes it (an
 // obstacle problem).
-#ifndef CRAQUELURE_CURVED_H
-#define CRAQUELURE_CURVED_H
+#ifndef CRAQUELURE_KELVIN_MENISCI_H
+#define CRAQUELURE_KELVIN_MENISCI_H
 
 #include "dry/conditions.h"
 #include "dry/liquid/losses.h"
 #include "dry/liquid/occupancy.h"
 #include "kelvin_law.h"
 
-struct floating;
+struct equilibrated_menisci;
 
 struct share {
     int body;    // its place
     double part; // of the sections at the node
 };
 
-struct curved {
-    bool by_throat;  // a throat is a body of liquid; else a cluster
-    double *section; // (n_throat) proportional to its cross-section
-    double *own;     // (n_throat) potential above its meniscus: 0 flat, 1 as in the air
-    double rate;     // into the air, scaled
-    double residual; // largest so far of the balances, of that rate
+struct kelvin_menisci {
+    bool by_throat;          // a throat is a body of liquid; else a cluster
+    double *section;         // (n_throat) proportional to its cross-section
+    double *entry_potential; // (n_throat) potential above its meniscus: 0 flat, 1 as in
+                             // the air
+    double rate;             // into the air, scaled
+    double residual;         // largest so far of the balances, of that rate
     struct kelvin_law law;
-    struct floating *floating;
-    bool *floated;      // (n_throat) by throat or cluster: did, when last found
-    double *floated_at; // (n_throat) its potential then
+    struct equilibrated_menisci *equilibrated;
+    bool *had_zero_flux; // (n_throat) by throat or cluster: did, when last found
+    double *zero_flux_potential; // (n_throat) its potential then
 
     // Of the bodies beside gas, as they were when so many throats held liquid.
     int listed_at; // -1: not yet
@@ -47,10 +48,10 @@ struct curved {
     int *throat;              // (n) that gas enters: what the body loses or takes up
     double *potential;        // (n)
     double *gain;             // (n) what it evaporates; below 0: takes up
-    bool *floats;             // (n) flatter than its throat makes it
+    bool *zero_flux;          // (n) flatter than its throat makes it
     bool *flows;              // (n) its exponent and potential are given, by its flow
     double *exponent;         // (n) p_c M / (rho R T) in its throat; as curved as that
-                              // makes it, if it floats
+                              // makes it, if equilibrated
     int *place;               // (n_throat) of a throat or cluster, -1: none
     double *reach;            // (n) at most what conducts vapour from it
     double *noise, all_noise; // (n) less gain than this is none; their sum
@@ -64,41 +65,46 @@ struct curved {
     double *level, *flow;     // (n_site) room
 };
 
-// For PHASES before any throat has emptied. The caller frees it with curved_free.
-struct curved curved_make(struct phases *phases,
-                          const struct drying_conditions *conditions);
+// For OCCUPANCY before any throat has emptied. The caller frees it with
+// kelvin_menisci_free.
+struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
+                                          const struct drying_conditions *conditions);
 
-// What each body loses, or takes up (negative), with PHASES as they are, by throats.
+// What each body loses, or takes up (negative), with OCCUPANCY as they are, by throats.
 // LOSSES come in ascending throats.
 //
 // STATUS_NOT_CONVERGED if the menisci are not found.
-enum status curved_find(struct curved *curved, struct phases *phases,
-                        struct losses *losses, struct reason *reason);
+enum status kelvin_menisci_find(struct kelvin_menisci *kelvin,
+                                struct occupancy *occupancy, struct losses *losses,
+                                struct reason *reason);
 
-// Empties THROAT, as phases_empty_throat, which does as well: then less can be gone on
-// from.
-void curved_empty_throat(struct curved *curved, struct phases *phases, int throat);
+// Empties THROAT, as occupancy_empty_throat, which does as well: then less can be gone
+// on from.
+void kelvin_menisci_empty_throat(struct kelvin_menisci *kelvin,
+                                 struct occupancy *occupancy, int throat);
 
 // Next time bodies are listed anew and nothing is gone on from but the state.
-void curved_forget(struct curved *curved);
+void kelvin_menisci_forget(struct kelvin_menisci *kelvin);
 
 // The same in steps, for viscous liquid: lists the bodies, of which those are given
 // that are throats of a cluster of several; finds the others from what is given, and
 // what all evaporate; adds to LOSSES, which has those of the given, what the others
 // lose, and makes all of it equal to what goes into the air.
-void curved_begin(struct curved *curved, struct phases *phases);
-enum status curved_find_others(struct curved *curved, const struct phases *phases,
+void kelvin_menisci_begin(struct kelvin_menisci *kelvin, struct occupancy *occupancy);
+enum status kelvin_menisci_find_others(struct kelvin_menisci *kelvin,
+                                       const struct occupancy *occupancy,
+                                       struct reason *reason);
+enum status kelvin_menisci_end(struct kelvin_menisci *kelvin,
+                               const struct occupancy *occupancy, struct losses *losses,
                                struct reason *reason);
-enum status curved_end(struct curved *curved, const struct phases *phases,
-                       struct losses *losses, struct reason *reason);
 
 // What drives vapour from the widest meniscus into the air, of what would from a flat
 // one.
-double curved_drive(const struct curved *curved);
+double kelvin_drive(const struct kelvin_menisci *kelvin);
 
-void curved_state(struct curved *curved, const struct network *network,
-                  struct checkpoint_stream *stream);
+void kelvin_menisci_state(struct kelvin_menisci *kelvin, const struct network *network,
+                          struct checkpoint_stream *stream);
 
-void curved_free(struct curved *curved);
+void kelvin_menisci_free(struct kelvin_menisci *kelvin);
 
 #endif

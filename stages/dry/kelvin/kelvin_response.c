@@ -10,35 +10,37 @@
 // rounds.
 static const double FELT = 1e-2;
 
-int throat_of(const struct curved_flow *both, int k)
+int throat_of(const struct kelvin_viscous *both, int k)
 {
-    return both->curved->throat[both->body[k]];
+    return both->kelvin->throat[both->body[k]];
 }
 
-static int cluster_of(const struct curved *curved, const struct phases *phases,
-                      const struct share *share)
+static int cluster_of(const struct kelvin_menisci *kelvin,
+                      const struct occupancy *occupancy, const struct share *share)
 {
-    return phases->clusters.of_throat[curved->throat[share->body]];
+    return occupancy->clusters.of_throat[kelvin->throat[share->body]];
 }
 
 // Part of the K-th wet node that is of the cluster of SHARE.
-static double part_of_cluster(const struct curved *curved, const struct phases *phases,
-                              int k, const struct share *share)
+static double part_of_cluster(const struct kelvin_menisci *kelvin,
+                              const struct occupancy *occupancy, int k,
+                              const struct share *share)
 {
     double part = 0;
-    for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++)
-        if (cluster_of(curved, phases, &curved->share[i]) ==
-            cluster_of(curved, phases, share))
-            part += curved->share[i].part;
+    for (int i = kelvin->offset[k]; i < kelvin->offset[k + 1]; i++)
+        if (cluster_of(kelvin, occupancy, &kelvin->share[i]) ==
+            cluster_of(kelvin, occupancy, share))
+            part += kelvin->share[i].part;
     return part;
 }
 
 // The cluster of which the K-th wet node is alone; a number of its own if of several.
-static int group_of(const struct curved *curved, const struct phases *phases, int k)
+static int group_of(const struct kelvin_menisci *kelvin,
+                    const struct occupancy *occupancy, int k)
 {
-    const struct share *share = &curved->share[curved->offset[k]];
-    return part_of_cluster(curved, phases, k, share) > 1 - 1e-9
-               ? cluster_of(curved, phases, share)
+    const struct share *share = &kelvin->share[kelvin->offset[k]];
+    return part_of_cluster(kelvin, occupancy, k, share) > 1 - 1e-9
+               ? cluster_of(kelvin, occupancy, share)
                : -1 - k;
 }
 
@@ -50,11 +52,11 @@ struct links {
 
 // Conductance from the K-th wet node to others and the air: to all in ALL, but to those
 // of its group in APART.
-static void find_degrees(const struct phases *phases, struct links *links, int k,
+static void find_degrees(const struct occupancy *occupancy, struct links *links, int k,
                          double *all, double *apart)
 {
-    const struct star_mesh *mesh = &phases->vapour.mesh;
-    const int node = phases->wet[k];
+    const struct star_mesh *mesh = &occupancy->vapour.mesh;
+    const int node = occupancy->wet[k];
     const int n = star_mesh_list_links(mesh, node, links->other, links->link);
     *all = *apart = mesh->air[node];
     for (int i = 0; i < n; i++) {
@@ -65,39 +67,39 @@ static void find_degrees(const struct phases *phases, struct links *links, int k
     }
 }
 
-static void add_falls(struct curved_flow *both, const struct phases *phases,
+static void add_falls(struct kelvin_viscous *both, const struct occupancy *occupancy,
                       struct links *links, const int *place)
 {
-    const struct curved *curved = both->curved;
-    for (int k = 0; k < phases->n_wet; k++) {
+    const struct kelvin_menisci *kelvin = both->kelvin;
+    for (int k = 0; k < occupancy->n_wet; k++) {
         double all, apart;
-        find_degrees(phases, links, k, &all, &apart);
-        for (int i = curved->offset[k]; i < curved->offset[k + 1]; i++) {
-            const struct share *share = &curved->share[i];
+        find_degrees(occupancy, links, k, &all, &apart);
+        for (int i = kelvin->offset[k]; i < kelvin->offset[k + 1]; i++) {
+            const struct share *share = &kelvin->share[i];
             const int which = place[share->body] - 1;
             if (which < 0) continue;
             both->single[which] += share->part * all;
             both->lumped[which] +=
-                share->part * part_of_cluster(curved, phases, k, share) * apart;
+                share->part * part_of_cluster(kelvin, occupancy, k, share) * apart;
         }
     }
 }
 
-void find_falls(struct curved_flow *both, const struct phases *phases)
+void find_falls(struct kelvin_viscous *both, const struct occupancy *occupancy)
 {
-    const struct curved *curved = both->curved;
-    const int n_site = phases->vapour.n_site;
+    const struct kelvin_menisci *kelvin = both->kelvin;
+    const int n_site = occupancy->vapour.n_site;
     struct links links = {.group = NEW_ARRAY(int, n_site),
                           .other = NEW_ARRAY(int, n_site),
                           .link = NEW_ARRAY(double, n_site)};
-    int *place = NEW_ARRAY(int, curved->n);
+    int *place = NEW_ARRAY(int, kelvin->n);
     for (int k = 0; k < both->n; k++) {
         place[both->body[k]] = k + 1;
         both->lumped[k] = both->single[k] = 0;
     }
-    for (int k = 0; k < phases->n_wet; k++)
-        links.group[phases->wet[k]] = group_of(curved, phases, k);
-    add_falls(both, phases, &links, place);
+    for (int k = 0; k < occupancy->n_wet; k++)
+        links.group[occupancy->wet[k]] = group_of(kelvin, occupancy, k);
+    add_falls(both, occupancy, &links, place);
     free(links.group);
     free(links.other);
     free(links.link);
@@ -105,46 +107,46 @@ void find_falls(struct curved_flow *both, const struct phases *phases)
 }
 
 // What the K-th evaporates alone rises with its pressure by this.
-static double rise_alone(const struct curved_flow *both, int k, double *slope)
+static double rise_alone(const struct kelvin_viscous *both, int k, double *slope)
 {
-    const struct curved *curved = both->curved;
-    *slope = both->unit * kelvin_slope(&curved->law, curved->exponent[both->body[k]]);
+    const struct kelvin_menisci *kelvin = both->kelvin;
+    *slope = both->unit * kelvin_slope(&kelvin->law, kelvin->exponent[both->body[k]]);
     return *slope * both->single[k];
 }
 
 // Of each cluster, whether a response is needed: none of its menisci moves, or one
 // evaporates so much more with its pressure that the flow is felt.
-static bool *find_responsive(const struct curved_flow *both,
-                             const struct phases *phases)
+static bool *find_responsive(const struct kelvin_viscous *both,
+                             const struct occupancy *occupancy)
 {
     const struct liquid_flow *flow = both->flow;
-    bool *moves = NEW_ARRAY(bool, phases->clusters.n_id);
-    bool *responsive = NEW_ARRAY(bool, phases->clusters.n_id);
+    bool *moves = NEW_ARRAY(bool, occupancy->clusters.n_id);
+    bool *responsive = NEW_ARRAY(bool, occupancy->clusters.n_id);
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k);
-        const int cluster = phases->clusters.of_throat[throat];
+        const int cluster = occupancy->clusters.of_throat[throat];
         double slope;
         moves[cluster] |= flow->moving[throat];
         responsive[cluster] |=
             rise_alone(both, k, &slope) > FELT * flow->conductance[throat];
     }
-    for (int c = 0; c < phases->clusters.n_id; c++)
+    for (int c = 0; c < occupancy->clusters.n_id; c++)
         responsive[c] |= !moves[c];
     free(moves);
     return responsive;
 }
 
-void set_responses(struct curved_flow *both, const struct phases *phases)
+void set_responses(struct kelvin_viscous *both, const struct occupancy *occupancy)
 {
     struct liquid_flow *flow = both->flow;
-    bool *responsive = find_responsive(both, phases);
+    bool *responsive = find_responsive(both, occupancy);
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k);
         double slope;
         const double alone = rise_alone(both, k, &slope);
         const double more = fmax(both->single[k] - both->lumped[k], 0);
         const double part = alone / (alone + flow->conductance[throat]);
-        flow->response[throat] = responsive[phases->clusters.of_throat[throat]]
+        flow->response[throat] = responsive[occupancy->clusters.of_throat[throat]]
                                      ? slope * (both->lumped[k] + part * more)
                                      : 0;
     }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How what menisci evaporate falls with their potentials: bounds, from the conductances
 // of the vapour's links.
-#ifndef CRAQUELURE_CURVED_RESPONSE_H
-#define CRAQUELURE_CURVED_RESPONSE_H
+#ifndef CRAQUELURE_KELVIN_RESPONSE_H
+#define CRAQUELURE_KELVIN_RESPONSE_H
 
 #include "kelvin_viscous.h"
 
 // Of the K-th meniscus at hand that flows.
-int throat_of(const struct curved_flow *both, int k);
+int throat_of(const struct kelvin_viscous *both, int k);
 
 // Fills LUMPED and SINGLE for the menisci as they are listed.
-void find_falls(struct curved_flow *both, const struct phases *phases);
+void find_falls(struct kelvin_viscous *both, const struct occupancy *occupancy);
 
 // Of the flow, at the exponents of now: where liquid flows easily menisci rise and fall
 // with their cluster, else alone.
-void set_responses(struct curved_flow *both, const struct phases *phases);
+void set_responses(struct kelvin_viscous *both, const struct occupancy *occupancy);
 
 #endif

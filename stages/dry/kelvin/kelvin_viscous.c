@@ -38,30 +38,32 @@ static const double VERGE = 0.01;
 // at once.
 static const double FAR = 0.1;
 
-struct curved_flow curved_flow_make(struct curved *curved, struct liquid_flow *flow)
+struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
+                                          struct liquid_flow *flow)
 {
     const struct network *network = flow->network;
     const int n = network->n_throat;
-    struct curved_flow both = {.curved = curved,
-                               .flow = flow,
-                               .surplus = NEW_ARRAY(double, n),
-                               .waited = NEW_ARRAY(bool, n),
-                               .unit = curved->law.of_pressure * flow->menisci.pressure,
-                               .body = NEW_ARRAY(int, n),
-                               .x = NEW_ARRAY(double, n),
-                               .image = NEW_ARRAY(double, n),
-                               .lumped = NEW_ARRAY(double, n),
-                               .single = NEW_ARRAY(double, n),
-                               .anderson = anderson_make(n)};
+    struct kelvin_viscous both = {.kelvin = kelvin,
+                                  .flow = flow,
+                                  .excess = NEW_ARRAY(double, n),
+                                  .waited = NEW_ARRAY(bool, n),
+                                  .unit =
+                                      kelvin->law.of_pressure * flow->menisci.pressure,
+                                  .body = NEW_ARRAY(int, n),
+                                  .x = NEW_ARRAY(double, n),
+                                  .image = NEW_ARRAY(double, n),
+                                  .lumped = NEW_ARRAY(double, n),
+                                  .single = NEW_ARRAY(double, n),
+                                  .anderson = anderson_make(n)};
     for (int t = 0; t < n; t++)
-        both.surplus[t] = -1;
+        both.excess[t] = -1;
     liquid_flow_respond(flow);
     return both;
 }
 
-void curved_flow_free(struct curved_flow *both)
+void kelvin_viscous_free(struct kelvin_viscous *both)
 {
-    free(both->surplus);
+    free(both->excess);
     free(both->waited);
     free(both->body);
     free(both->x);
@@ -69,51 +71,51 @@ void curved_flow_free(struct curved_flow *both)
     free(both->lumped);
     free(both->single);
     anderson_free(&both->anderson);
-    *both = (struct curved_flow){0};
+    *both = (struct kelvin_viscous){0};
 }
 
-void curved_flow_state(struct curved_flow *both, struct checkpoint_stream *stream)
+void kelvin_viscous_state(struct kelvin_viscous *both, struct checkpoint_stream *stream)
 {
-    stream_numbers(stream, both->surplus, both->flow->network->n_throat);
+    stream_numbers(stream, both->excess, both->flow->network->n_throat);
     stream_flags(stream, both->waited, both->flow->network->n_throat);
     stream_long(stream, &both->rounds);
 }
 
 // --- menisci -----------------------------------------------------------------------
 
-static double own_exponent(const struct curved_flow *both, int throat)
+static double entry_exponent(const struct kelvin_viscous *both, int throat)
 {
-    return both->curved->law.exponent / both->flow->network->throat_radius[throat];
+    return both->kelvin->law.exponent / both->flow->network->throat_radius[throat];
 }
 
 // Those in throats partly empty move, those that are new, and else as they did.
-static void list_menisci(struct curved_flow *both, struct phases *phases)
+static void list_menisci(struct kelvin_viscous *both, struct occupancy *occupancy)
 {
-    struct curved *curved = both->curved;
+    struct kelvin_menisci *kelvin = both->kelvin;
     both->n = 0;
-    for (int a = 0; a < curved->n; a++) {
-        const int throat = curved->throat[a];
-        if (!curved->flows[a]) continue;
+    for (int a = 0; a < kelvin->n; a++) {
+        const int throat = kelvin->throat[a];
+        if (!kelvin->flows[a]) continue;
         both->body[both->n] = a;
         both->x[both->n++] = kelvin_potential(
-            &curved->law,
-            own_exponent(both, throat) - both->unit * fmax(both->surplus[throat], 0));
+            &kelvin->law,
+            entry_exponent(both, throat) - both->unit * fmax(both->excess[throat], 0));
         both->flow->moving[throat] |=
-            both->surplus[throat] < 0 || !throat_is_full(phases, throat);
+            both->excess[throat] < 0 || !throat_is_full(occupancy, throat);
     }
 }
 
 // Of a cluster of which none moves and which did not wait, the one begins that gas
 // enters most easily.
-static void begin_lone(struct curved_flow *both, struct phases *phases)
+static void begin_lone(struct kelvin_viscous *both, struct occupancy *occupancy)
 {
-    bool *any = NEW_ARRAY(bool, phases->clusters.n_id);
+    bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
     for (int k = 0; k < both->n; k++)
-        any[phases->clusters.of_throat[throat_of(both, k)]] |=
+        any[occupancy->clusters.of_throat[throat_of(both, k)]] |=
             both->flow->moving[throat_of(both, k)];
     for (int k = 0; k < both->n; k++) {
-        const int cluster = phases->clusters.of_throat[throat_of(both, k)];
-        const int first = clusters_invasion_throat(&phases->clusters, cluster);
+        const int cluster = occupancy->clusters.of_throat[throat_of(both, k)];
+        const int first = clusters_invasion_throat(&occupancy->clusters, cluster);
         if (!any[cluster] && !(both->waited[first])) both->flow->moving[first] = true;
     }
     free(any);
@@ -122,47 +124,50 @@ static void begin_lone(struct curved_flow *both, struct phases *phases)
 // On the way menisci may bulge, but not so far that the gas would be all vapour, or be
 // more curved than their throats can hold, but not so that it would be dry (where
 // vapour rounds to none, neither).
-static void set_potentials(struct curved_flow *both)
+static void set_potentials(struct kelvin_viscous *both)
 {
-    struct curved *curved = both->curved;
+    struct kelvin_menisci *kelvin = both->kelvin;
     const double flattest =
-        kelvin_potential(&curved->law, kelvin_least_exponent(&curved->law));
+        kelvin_potential(&kelvin->law, kelvin_least_exponent(&kelvin->law));
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k), a = both->body[k];
-        const double own = own_exponent(both, throat);
-        const double most = kelvin_potential(&curved->law, 2 * own);
+        const double entry = entry_exponent(both, throat);
+        const double most = kelvin_potential(&kelvin->law, 2 * entry);
         const bool moves = both->flow->moving[throat];
         both->x[k] = fmin(fmax(both->x[k], flattest), most);
-        curved->exponent[a] =
-            moves ? own : fmin(kelvin_exponent_at(&curved->law, both->x[k]), 2 * own);
-        curved->potential[a] = moves ? kelvin_potential(&curved->law, own) : both->x[k];
-        both->x[k] = curved->potential[a];
-        both->flow->surplus[throat] = (own - curved->exponent[a]) / both->unit;
+        kelvin->exponent[a] =
+            moves ? entry
+                  : fmin(kelvin_exponent_at(&kelvin->law, both->x[k]), 2 * entry);
+        kelvin->potential[a] =
+            moves ? kelvin_potential(&kelvin->law, entry) : both->x[k];
+        both->x[k] = kelvin->potential[a];
+        both->flow->excess[throat] = (entry - kelvin->exponent[a]) / both->unit;
     }
 }
 
 // The flow's answer, by the slope of the potential.
-static double potential_found(const struct curved_flow *both, int k)
+static double potential_found(const struct kelvin_viscous *both, int k)
 {
     const struct liquid_flow *flow = both->flow;
     const int throat = throat_of(both, k);
     if (flow->moving[throat]) return both->x[k];
     const double slope =
-        kelvin_slope(&both->curved->law, both->curved->exponent[both->body[k]]);
+        kelvin_slope(&both->kelvin->law, both->kelvin->exponent[both->body[k]]);
     return both->x[k] -
-           slope * both->unit * (flow->found[throat] - flow->surplus[throat]);
+           slope * both->unit * (flow->found[throat] - flow->excess[throat]);
 }
 
 // --- the flow ----------------------------------------------------------------------
 
-static enum status find_flow(struct curved_flow *both, const struct phases *phases,
-                             struct losses *losses, struct reason *reason)
+static enum status find_flow(struct kelvin_viscous *both,
+                             const struct occupancy *occupancy, struct losses *losses,
+                             struct reason *reason)
 {
     for (int k = 0; k < both->n; k++)
-        losses->charge[throat_of(both, k)] = both->curved->gain[both->body[k]];
-    set_responses(both, phases);
+        losses->charge[throat_of(both, k)] = both->kelvin->gain[both->body[k]];
+    set_responses(both, occupancy);
     losses->n = 0;
-    const enum status status = liquid_flow_find(both->flow, phases, losses->charge,
+    const enum status status = liquid_flow_find(both->flow, occupancy, losses->charge,
                                                 losses->loss, &losses->n, reason);
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k);
@@ -175,12 +180,13 @@ static enum status find_flow(struct curved_flow *both, const struct phases *phas
 // --- which move --------------------------------------------------------------------
 
 // The largest lack of each cluster.
-static double *find_most(const struct curved_flow *both, const struct phases *phases)
+static double *find_most(const struct kelvin_viscous *both,
+                         const struct occupancy *occupancy)
 {
-    double *most = NEW_ARRAY(double, phases->clusters.n_id);
+    double *most = NEW_ARRAY(double, occupancy->clusters.n_id);
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k);
-        const int cluster = phases->clusters.of_throat[throat];
+        const int cluster = occupancy->clusters.of_throat[throat];
         if (!both->flow->moving[throat])
             most[cluster] = fmax(most[cluster], -both->flow->found[throat]);
     }
@@ -190,20 +196,20 @@ static double *find_most(const struct curved_flow *both, const struct phases *ph
 // Those begin to move that are more curved than their throats by FAR of it, and nearly
 // the most of their cluster; those stop that take up more than NOISE, full. Returns how
 // many; no more than MOST.
-static int revise(struct curved_flow *both, const struct phases *phases, double far,
-                  double noise, int most)
+static int revise(struct kelvin_viscous *both, const struct occupancy *occupancy,
+                  double far, double noise, int most)
 {
     struct liquid_flow *flow = both->flow;
-    double *worst = find_most(both, phases);
+    double *worst = find_most(both, occupancy);
     int n = 0;
     for (int k = 0; k < both->n && n < most; k++) {
         const int throat = throat_of(both, k);
         const double found = flow->found[throat];
         const double enough =
-            fmax(BEGINNERS * worst[phases->clusters.of_throat[throat]],
-                 far * own_exponent(both, throat) / both->unit);
+            fmax(BEGINNERS * worst[occupancy->clusters.of_throat[throat]],
+                 far * entry_exponent(both, throat) / both->unit);
         const bool changes = flow->moving[throat]
-                                 ? throat_is_full(phases, throat) && found < -noise
+                                 ? throat_is_full(occupancy, throat) && found < -noise
                                  : found < 0 && -found >= enough;
         flow->moving[throat] ^= changes;
         n += changes;
@@ -214,13 +220,13 @@ static int revise(struct curved_flow *both, const struct phases *phases, double 
 
 // --- the fixed point ---------------------------------------------------------------
 
-static double agreement(const struct curved_flow *both)
+static double agreement(const struct kelvin_viscous *both)
 {
-    return fmax(AGREED * both->curved->rate, both->curved->all_noise);
+    return fmax(AGREED * both->kelvin->rate, both->kelvin->all_noise);
 }
 
 // No less than what evaporates would change by, added up.
-static double disagreement(const struct curved_flow *both)
+static double disagreement(const struct kelvin_viscous *both)
 {
     double sum = 0;
     for (int k = 0; k < both->n; k++)
@@ -228,18 +234,21 @@ static double disagreement(const struct curved_flow *both)
     return sum;
 }
 
-static enum status find_image(struct curved_flow *both, const struct phases *phases,
-                              struct losses *losses, struct reason *reason)
+static enum status find_image(struct kelvin_viscous *both,
+                              const struct occupancy *occupancy, struct losses *losses,
+                              struct reason *reason)
 {
     set_potentials(both);
-    const enum status status = curved_find_others(both->curved, phases, reason);
-    return status ? status : find_flow(both, phases, losses, reason);
+    const enum status status =
+        kelvin_menisci_find_others(both->kelvin, occupancy, reason);
+    return status ? status : find_flow(both, occupancy, losses, reason);
 }
 
 // How image less x of those menisci falls, in MATRIX (n,n), by differences.
-static enum status find_slopes(struct curved_flow *both, const struct phases *phases,
-                               const int *which, gsl_matrix *matrix,
-                               struct losses *losses, struct reason *reason)
+static enum status find_slopes(struct kelvin_viscous *both,
+                               const struct occupancy *occupancy, const int *which,
+                               gsl_matrix *matrix, struct losses *losses,
+                               struct reason *reason)
 {
     const size_t bytes = (size_t)both->n * sizeof *both->x, n = matrix->size1;
     double *x = NEW_ARRAY(double, both->n), *image = NEW_ARRAY(double, both->n);
@@ -250,7 +259,7 @@ static enum status find_slopes(struct curved_flow *both, const struct phases *ph
         memcpy(both->x, x, bytes);
         both->x[which[c]] *= 1 - DIFFERENCE;
         const double change = both->x[which[c]] - x[which[c]];
-        status = find_image(both, phases, losses, reason);
+        status = find_image(both, occupancy, losses, reason);
         for (size_t r = 0; r < n; r++)
             gsl_matrix_set(matrix, r, c,
                            (r == c) -
@@ -264,7 +273,7 @@ static enum status find_slopes(struct curved_flow *both, const struct phases *ph
 }
 
 // X + MATRIX^-1 (image - x).
-static enum status add_step(struct curved_flow *both, const int *which,
+static enum status add_step(struct kelvin_viscous *both, const int *which,
                             gsl_matrix *matrix, struct reason *reason)
 {
     const size_t n = matrix->size1;
@@ -290,21 +299,22 @@ static enum status add_step(struct curved_flow *both, const int *which,
 
 // Newton's: where hardly anything flows, menisci of one node may share what it has in
 // nearly any way, and mixing does not find which.
-static enum status newton_step(struct curved_flow *both, const struct phases *phases,
-                               struct losses *losses, struct reason *reason)
+static enum status newton_step(struct kelvin_viscous *both,
+                               const struct occupancy *occupancy, struct losses *losses,
+                               struct reason *reason)
 {
     int n = 0, *which = NEW_ARRAY(int, both->n);
     for (int k = 0; k < both->n; k++)
         if (!both->flow->moving[throat_of(both, k)]) which[n++] = k;
     gsl_matrix *matrix = gsl_matrix_alloc((size_t)n, (size_t)n);
-    enum status status = find_slopes(both, phases, which, matrix, losses, reason);
+    enum status status = find_slopes(both, occupancy, which, matrix, losses, reason);
     if (!status) status = add_step(both, which, matrix, reason);
     gsl_matrix_free(matrix);
     free(which);
     return status;
 }
 
-static void mix(struct curved_flow *both)
+static void mix(struct kelvin_viscous *both)
 {
     double *step = both->image;
     for (int k = 0; k < both->n; k++)
@@ -315,31 +325,32 @@ static void mix(struct curved_flow *both)
 }
 
 // For menisci of which it is known which move, but for those that are far from it.
-static enum status find_both(struct curved_flow *both, const struct phases *phases,
-                             bool revises, struct losses *losses, struct reason *reason)
+static enum status find_both(struct kelvin_viscous *both,
+                             const struct occupancy *occupancy, bool revises,
+                             struct losses *losses, struct reason *reason)
 {
-    struct curved *curved = both->curved;
+    struct kelvin_menisci *kelvin = both->kelvin;
     double apart = 0;
     int patience = PATIENT_ROUNDS;
     losses->n = 0;
     anderson_begin(&both->anderson, both->n);
     for (int round = 0; round < MOST_ROUNDS; round++) {
-        enum status status = find_image(both, phases, losses, reason);
+        enum status status = find_image(both, occupancy, losses, reason);
         if (status) return status;
         apart = disagreement(both);
         if (!isfinite(apart)) break;
         const double enough = round < patience ? 1 : ENOUGH;
         if (apart <= enough * agreement(both)) return STATUS_OK;
         both->rounds++;
-        const double noise = round < patience ? curved->rate : agreement(both) + apart;
-        if (revises && revise(both, phases, FAR, noise, both->n) > 0) {
+        const double noise = round < patience ? kelvin->rate : agreement(both) + apart;
+        if (revises && revise(both, occupancy, FAR, noise, both->n) > 0) {
             anderson_begin(&both->anderson, both->n);
             patience = round + PATIENT_ROUNDS;
         }
         if (round < patience)
             mix(both);
         else
-            status = newton_step(both, phases, losses, reason);
+            status = newton_step(both, occupancy, losses, reason);
         if (status) return status;
     }
     return refuse(
@@ -347,53 +358,55 @@ static enum status find_both(struct curved_flow *both, const struct phases *phas
         "kelvin: what %d menisci evaporate is %.3g off what flows to them, of "
         "the rate into the air; the widest are driven by %.2g of what flat "
         "ones would be",
-        both->n, apart / curved->rate, curved_drive(curved));
+        both->n, apart / kelvin->rate, kelvin_drive(kelvin));
 }
 
 // A full throat that loses no more than the rate is agreed to loses nothing.
-static void drop_noise(const struct curved_flow *both, const struct phases *phases,
-                       struct losses *losses)
+static void drop_noise(const struct kelvin_viscous *both,
+                       const struct occupancy *occupancy, struct losses *losses)
 {
     const double noise = agreement(both);
     int n = 0;
     for (int k = 0; k < losses->n; k++)
-        if (!throat_is_full(phases, losses->loss[k].throat) ||
+        if (!throat_is_full(occupancy, losses->loss[k].throat) ||
             losses->loss[k].rate > noise)
             losses->loss[n++] = losses->loss[k];
     losses->n = n;
 }
 
-static void keep(struct curved_flow *both, const struct phases *phases)
+static void keep(struct kelvin_viscous *both, const struct occupancy *occupancy)
 {
-    bool *any = NEW_ARRAY(bool, phases->clusters.n_id);
+    bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
     for (int k = 0; k < both->n; k++)
-        any[phases->clusters.of_throat[throat_of(both, k)]] |=
+        any[occupancy->clusters.of_throat[throat_of(both, k)]] |=
             both->flow->moving[throat_of(both, k)];
     for (int k = 0; k < both->n; k++) {
         const int throat = throat_of(both, k);
-        both->surplus[throat] = fmax(both->flow->surplus[throat], 0);
-        both->waited[throat] = !any[phases->clusters.of_throat[throat]];
+        both->excess[throat] = fmax(both->flow->excess[throat], 0);
+        both->waited[throat] = !any[occupancy->clusters.of_throat[throat]];
     }
     free(any);
 }
 
-enum status curved_flow_find(struct curved_flow *both, struct phases *phases,
-                             struct losses *losses, struct reason *reason)
+enum status kelvin_viscous_find(struct kelvin_viscous *both,
+                                struct occupancy *occupancy, struct losses *losses,
+                                struct reason *reason)
 {
-    curved_begin(both->curved, phases);
-    list_menisci(both, phases);
-    begin_lone(both, phases);
-    find_falls(both, phases);
+    kelvin_menisci_begin(both->kelvin, occupancy);
+    list_menisci(both, occupancy);
+    begin_lone(both, occupancy);
+    find_falls(both, occupancy);
     for (int round = 0; round < MOST_REVISIONS; round++) {
         const bool at_once = round < REVISIONS_AT_ONCE;
-        const enum status status = find_both(both, phases, at_once, losses, reason);
+        const enum status status = find_both(both, occupancy, at_once, losses, reason);
         if (status) return status;
-        if (revise(both, phases, at_once ? 0 : VERGE, agreement(both),
+        if (revise(both, occupancy, at_once ? 0 : VERGE, agreement(both),
                    at_once ? both->n : 1) > 0)
             continue;
-        keep(both, phases);
-        drop_noise(both, phases, losses);
-        const enum status ended = curved_end(both->curved, phases, losses, reason);
+        keep(both, occupancy);
+        drop_noise(both, occupancy, losses);
+        const enum status ended =
+            kelvin_menisci_end(both->kelvin, occupancy, losses, reason);
         losses_sort(losses);
         return ended;
     }

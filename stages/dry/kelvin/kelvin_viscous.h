@@ -10,46 +10,48 @@
 //
 // Near it what a meniscus evaporates rises with its pressure, and the flow is solved
 // with that response: so it is found with any viscosity. A throat by itself is left to
-// curved.h: nothing flows in it, and it waits where it would take up vapour. So does a
-// cluster of which no meniscus moves: the response of its menisci says at which
+// kelvin_menisci.h: nothing flows in it, and it waits where it would take up vapour. So
+// does a cluster of which no meniscus moves: the response of its menisci says at which
 // pressure.
-#ifndef CRAQUELURE_CURVED_FLOW_H
-#define CRAQUELURE_CURVED_FLOW_H
+#ifndef CRAQUELURE_KELVIN_VISCOUS_H
+#define CRAQUELURE_KELVIN_VISCOUS_H
 
 #include "dry/liquid/viscous.h"
 #include "kelvin_menisci.h"
 #include "sparse/anderson.h"
 
-struct curved_flow {
-    struct curved *curved;
+struct kelvin_viscous {
+    struct kelvin_menisci *kelvin;
     struct liquid_flow *flow;
-    double
-        *surplus;   // (n_throat) of its meniscus, as in FLOW, when last found; -1: none
+    double *excess; // (n_throat) of its meniscus, as in FLOW, when last found; -1: none
     bool *waited;   // (n_throat) none of its cluster moved
     double unit;    // p_c M / (rho R T) where p_c is the flow's unit of pressure
     int64_t rounds; // in which flow and vapour were found
 
     // Of the menisci at hand that flow.
     int n;
-    int *body;         // (n) place in CURVED
+    int *body;         // (n) place in KELVIN
     double *x, *image; // (n) surpluses
     double *lumped;    // (n) fall of what evaporates with the potential, all of its
     double *single;    // cluster changing alike; or it alone
     struct anderson anderson;
 };
 
-// CURVED and FLOW must live as long. The caller frees it with curved_flow_free.
-struct curved_flow curved_flow_make(struct curved *curved, struct liquid_flow *flow);
+// KELVIN and FLOW must live as long. The caller frees it with kelvin_viscous_free.
+struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
+                                          struct liquid_flow *flow);
 
-// What each throat loses, or takes up (negative), with PHASES as they are. LOSSES come
-// in ascending throats.
+// What each throat loses, or takes up (negative), with OCCUPANCY as they are. LOSSES
+// come in ascending throats.
 //
 // STATUS_NOT_CONVERGED if flow and vapour are not found.
-enum status curved_flow_find(struct curved_flow *both, struct phases *phases,
-                             struct losses *losses, struct reason *reason);
+enum status kelvin_viscous_find(struct kelvin_viscous *both,
+                                struct occupancy *occupancy, struct losses *losses,
+                                struct reason *reason);
 
-void curved_flow_state(struct curved_flow *both, struct checkpoint_stream *stream);
+void kelvin_viscous_state(struct kelvin_viscous *both,
+                          struct checkpoint_stream *stream);
 
-void curved_flow_free(struct curved_flow *both);
+void kelvin_viscous_free(struct kelvin_viscous *both);
 
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How what a body of liquid evaporates falls with the potentials of all: the rows of a
 // symmetric matrix, positive semidefinite and sparse, for most links are throats.
-#ifndef CRAQUELURE_BODY_ROWS_H
-#define CRAQUELURE_BODY_ROWS_H
+#ifndef CRAQUELURE_SCHUR_ROWS_H
+#define CRAQUELURE_SCHUR_ROWS_H
 
 #include "kelvin_menisci.h"
 
@@ -11,7 +11,7 @@ struct at_node {
     double part;
 };
 
-struct body_rows {
+struct schur_rows {
     int *offset;        // (bodies+1) of each body's wet nodes
     struct at_node *at; // (offset[bodies])
 
@@ -26,18 +26,18 @@ struct body_rows {
 };
 
 // For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
-// with body_rows_free.
-struct body_rows body_rows_make(int n_throat, int n_site);
+// with schur_rows_free.
+struct schur_rows schur_rows_make(int n_throat, int n_site);
 
 // Bodies have been listed.
-void body_rows_list(struct body_rows *rows, const struct curved *curved,
-                    const struct phases *phases);
+void schur_rows_list(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
+                     const struct occupancy *occupancy);
 
 // Makes the row of BODY; clears it.
-void body_rows_take(struct body_rows *rows, const struct curved *curved,
-                    const struct phases *phases, int body);
-void body_rows_clear(struct body_rows *rows);
+void schur_rows_take(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
+                     const struct occupancy *occupancy, int body);
+void schur_rows_clear(struct schur_rows *rows);
 
-void body_rows_free(struct body_rows *rows);
+void schur_rows_free(struct schur_rows *rows);
 
 #endif

@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-static double surplus_of(const struct liquid_flow *flow, int throat)
+static double excess_of(const struct liquid_flow *flow, int throat)
 {
-    return flow->moving[throat] ? 0 : flow->surplus[throat];
+    return flow->moving[throat] ? 0 : flow->excess[throat];
 }
 
 static double fall_between_ends(const void *context, int b, int a)
@@ -15,7 +15,7 @@ static double fall_between_ends(const void *context, int b, int a)
     const int to = flow->solver->mover[a], from = flow->solver->mover[b];
     const double fall = menisci_potential(&flow->menisci, from, to);
     if (a < flow->solver->n_mover && b < flow->solver->n_mover) return fall;
-    return fall + (surplus_of(flow, from) - surplus_of(flow, to));
+    return fall + (excess_of(flow, from) - excess_of(flow, to));
 }
 
 static void link_throat(struct liquid_flow *flow, int throat)

@@ -12,15 +12,15 @@ static const double ROUNDED = 1e-2;
 
 // --- one throat, one cluster ---------------------------------------------------------
 
-bool throat_is_full(const struct phases *phases, int throat)
+bool throat_is_full(const struct occupancy *occupancy, int throat)
 {
-    return !(phases_saturation(phases, throat) < 1);
+    return !(occupancy_saturation(occupancy, throat) < 1);
 }
 
 // Whether liquid goes from throat to throat at NODE.
-static bool passes_on(const struct phases *phases, int node)
+static bool passes_on(const struct occupancy *occupancy, int node)
 {
-    return phases->clusters.joins[node] && phases->liquid_beside[node] > 1;
+    return occupancy->clusters.joins[node] && occupancy->liquid_beside[node] > 1;
 }
 
 int liquid_ends(const struct liquid_flow *flow, int throat, int end[2])
@@ -28,7 +28,7 @@ int liquid_ends(const struct liquid_flow *flow, int throat, int end[2])
     int n = 0;
     for (int k = 0; k < 2; k++) {
         const int node = flow->network->throat_nodes[throat][k];
-        if (passes_on(flow->solver->phases, node)) end[n++] = node;
+        if (passes_on(flow->solver->occupancy, node)) end[n++] = node;
     }
     return n;
 }
@@ -36,7 +36,7 @@ int liquid_ends(const struct liquid_flow *flow, int throat, int end[2])
 double meniscus_arm(const struct liquid_flow *flow, int throat, int n)
 {
     return n * flow->conductance[throat] /
-           phases_saturation(flow->solver->phases, throat);
+           occupancy_saturation(flow->solver->occupancy, throat);
 }
 
 // Half of the response is at either end of a throat that has two.
@@ -60,7 +60,7 @@ double taken_from_end(const struct liquid_flow *flow, int throat, int n)
 double end_potential(const struct liquid_flow *flow, int throat, int reference)
 {
     const double moves = menisci_potential(&flow->menisci, throat, reference);
-    return flow->moving[throat] ? moves : moves + flow->surplus[throat];
+    return flow->moving[throat] ? moves : moves + flow->excess[throat];
 }
 
 double node_potential(const struct flow_solver *solver, int cluster, int node)
@@ -148,21 +148,21 @@ static void part_with(struct flow_solver *solver, const struct network *network,
     }
 }
 
-void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
+void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occupancy,
                         int throat)
 {
-    const struct clusters *clusters = &phases->clusters;
-    const struct incidence *incidence = &phases->incidence;
+    const struct clusters *clusters = &occupancy->clusters;
+    const struct incidence *incidence = &occupancy->incidence;
     reserve(solver, clusters->n_id);
     const int old = solver->lists.cluster[throat];
     struct cluster_memory *memory = &solver->cluster[old];
-    const int32_t *node = phases->network->throat_nodes[throat];
+    const int32_t *node = occupancy->network->throat_nodes[throat];
     for (int end = 0; end < 2; end++)
         cut_node(solver, memory, node[end]);
     throat_lists_follow(&solver->lists, clusters, throat);
     for (int k = 0; k < clusters->n_moved; k++) {
         const int moved = clusters->moved[k];
-        part_with(solver, phases->network, memory, moved);
+        part_with(solver, occupancy->network, memory, moved);
         throat_lists_follow(&solver->lists, clusters, moved);
         solver->cluster[clusters->of_throat[moved]] =
             (struct cluster_memory){.reference = memory->reference,
@@ -178,23 +178,25 @@ void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
     *memory = (struct cluster_memory){.reference = -1};
 }
 
-void flow_solver_forget(struct flow_solver *solver, const struct phases *phases)
+void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occupancy)
 {
     for (int c = 0; c < solver->capacity; c++) {
         free_graph(solver, &solver->cluster[c]);
         solver->cluster[c] = (struct cluster_memory){.reference = -1};
     }
-    reserve(solver, phases->clusters.n_id);
+    reserve(solver, occupancy->clusters.n_id);
     throat_lists_free(&solver->lists);
-    solver->lists = throat_lists_make(&phases->clusters, phases->network->n_throat);
+    solver->lists =
+        throat_lists_make(&occupancy->clusters, occupancy->network->n_throat);
 }
 
-struct flow_solver *flow_solver_make(const struct phases *phases)
+struct flow_solver *flow_solver_make(const struct occupancy *occupancy)
 {
-    const int n_node = phases->network->n_node, n_throat = phases->network->n_throat;
+    const int n_node = occupancy->network->n_node,
+              n_throat = occupancy->network->n_throat;
     struct flow_solver *solver = NEW_ARRAY(struct flow_solver, 1);
     *solver = (struct flow_solver){
-        .lists = throat_lists_make(&phases->clusters, n_throat),
+        .lists = throat_lists_make(&occupancy->clusters, n_throat),
         .row = NEW_ARRAY(int, n_node),
         .entry = NEW_ARRAY(int, n_throat),
         .potential = NEW_ARRAY(struct compensated, n_node),
@@ -209,7 +211,7 @@ struct flow_solver *flow_solver_make(const struct phases *phases)
         solver->row[i] = solver->site[i] = -1;
     for (int t = 0; t < n_throat; t++)
         solver->entry[t] = -1;
-    reserve(solver, phases->clusters.n_id);
+    reserve(solver, occupancy->clusters.n_id);
     plain_cholmod_start(&solver->common);
     return solver;
 }
@@ -248,7 +250,7 @@ double flow_scale(const struct liquid_flow *flow, const struct piece *piece)
         const int throat = solver->mover[k];
         const double moves =
             menisci_potential(&flow->menisci, throat, piece->reference);
-        const double sum = fabs(moves) + fabs(flow->surplus[throat]);
+        const double sum = fabs(moves) + fabs(flow->excess[throat]);
         scale = fmax(scale, ROUNDED * flow->response[throat] * sum);
     }
     return scale;

@@ -24,7 +24,7 @@ struct cluster_memory {
 };
 
 struct flow_solver {
-    const struct phases *phases;
+    const struct occupancy *occupancy;
     const double *charge;
     cholmod_common common;
     struct throat_lists lists;
@@ -59,22 +59,22 @@ struct piece {
     double flow;               // scale of the flows in it
 };
 
-// Keeps PHASES, which must live as long. The caller frees it with flow_solver_free.
-struct flow_solver *flow_solver_make(const struct phases *phases);
+// Keeps OCCUPANCY, which must live as long. The caller frees it with flow_solver_free.
+struct flow_solver *flow_solver_make(const struct occupancy *occupancy);
 void flow_solver_free(struct flow_solver *solver);
 
 // The scale of the flows: the largest to or from a moving meniscus, or what evaporates.
 double flow_scale(const struct liquid_flow *flow, const struct piece *piece);
 
 // Nothing is remembered of the clusters as they were.
-void flow_solver_forget(struct flow_solver *solver, const struct phases *phases);
+void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occupancy);
 
 // THROAT has emptied.
-void flow_solver_follow(struct flow_solver *solver, const struct phases *phases,
+void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occupancy,
                         int throat);
 
 // Whether a throat holds all it can.
-bool throat_is_full(const struct phases *phases, int throat);
+bool throat_is_full(const struct occupancy *occupancy, int throat);
 
 // The nodes at a throat's liquid ends; returns how many there are.
 int liquid_ends(const struct liquid_flow *flow, int throat, int end[2]);

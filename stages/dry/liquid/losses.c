@@ -20,24 +20,26 @@ void losses_free(struct losses *losses)
     *losses = (struct losses){0};
 }
 
-double liquid_section(const struct phases *phases, int throat)
+double liquid_section(const struct occupancy *occupancy, int throat)
 {
-    if (phases->clusters.of_throat[throat] < 0) return 0;
-    return phases->volume[throat] / phases->network->throat_length[throat];
+    if (occupancy->clusters.of_throat[throat] < 0) return 0;
+    return occupancy->volume[throat] / occupancy->network->throat_length[throat];
 }
 
-static void charge_throats(struct losses *losses, const struct phases *phases, int node)
+static void charge_throats(struct losses *losses, const struct occupancy *occupancy,
+                           int node)
 {
-    const double evaporation = vapour_evaporation(&phases->vapour, node);
+    const double evaporation = vapour_evaporation(&occupancy->vapour, node);
     if (!(evaporation > 0)) return; // shut in
-    const int begin = phases->incidence.offset[node];
-    const int end = phases->incidence.offset[node + 1];
+    const int begin = occupancy->incidence.offset[node];
+    const int end = occupancy->incidence.offset[node + 1];
     double section = 0;
     for (int k = begin; k < end; k++)
-        section += liquid_section(phases, phases->incidence.throat[k]);
+        section += liquid_section(occupancy, occupancy->incidence.throat[k]);
     for (int k = begin; k < end; k++) {
-        const int throat = phases->incidence.throat[k];
-        const double charge = evaporation * (liquid_section(phases, throat) / section);
+        const int throat = occupancy->incidence.throat[k];
+        const double charge =
+            evaporation * (liquid_section(occupancy, throat) / section);
         if (!(charge > 0)) continue;
         if (losses->charge[throat] == 0) losses->charged[losses->n_charged++] = throat;
         losses->charge[throat] += charge;
@@ -56,14 +58,14 @@ void losses_sort(struct losses *losses)
         qsort(losses->loss, (size_t)losses->n, sizeof *losses->loss, compare_losses);
 }
 
-enum status losses_find(struct losses *losses, struct phases *phases,
+enum status losses_find(struct losses *losses, struct occupancy *occupancy,
                         struct liquid_flow *flow, struct reason *reason)
 {
     losses->n = 0;
     losses->n_charged = 0;
-    for (int k = 0; k < phases->n_wet; k++)
-        charge_throats(losses, phases, phases->wet[k]);
-    const enum status status = liquid_flow_find(flow, phases, losses->charge,
+    for (int k = 0; k < occupancy->n_wet; k++)
+        charge_throats(losses, occupancy, occupancy->wet[k]);
+    const enum status status = liquid_flow_find(flow, occupancy, losses->charge,
                                                 losses->loss, &losses->n, reason);
     for (int k = 0; k < losses->n_charged; k++)
         losses->charge[losses->charged[k]] = 0;

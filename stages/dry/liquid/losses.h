@@ -25,14 +25,14 @@ struct losses losses_make(int n_throat);
 
 // Shares what the wet nodes evaporate among the throats with liquid beside them, in
 // proportion to their cross-sections, and finds with FLOW which throats it empties.
-enum status losses_find(struct losses *losses, struct phases *phases,
+enum status losses_find(struct losses *losses, struct occupancy *occupancy,
                         struct liquid_flow *flow, struct reason *reason);
 
 // By throats, ascending.
 void losses_sort(struct losses *losses);
 
 // Proportional to the cross-section of THROAT; 0 if it holds no liquid.
-double liquid_section(const struct phases *phases, int throat);
+double liquid_section(const struct occupancy *occupancy, int throat);
 
 void losses_free(struct losses *losses);
 

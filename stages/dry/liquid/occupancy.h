@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the liquid is: in the throats, in parts; in the nodes, all or nothing
 // [K 3.4.1].
-#ifndef CRAQUELURE_PHASES_H
-#define CRAQUELURE_PHASES_H
+#ifndef CRAQUELURE_OCCUPANCY_H
+#define CRAQUELURE_OCCUPANCY_H
 
 #include "basics/compensated.h"
 #include "clusters.h"
 #include "dry/gas/boundary_layer.h"
 #include "dry/gas/vapour.h"
 
-struct phases {
+struct occupancy {
     const struct network *network;
     struct incidence incidence;
     unsigned far_walls; // opposite an open one, and closed: bits of enum wall
@@ -32,7 +32,7 @@ struct phases {
     bool breakthrough; // gas has reached one of the far walls
 };
 
-struct phases_form {
+struct occupancy_form {
     double length;           // m, the unit
     bool gas_parts;          // as in struct clusters
     const double *ease;      // (n_throat) as clusters_make takes it
@@ -41,22 +41,23 @@ struct phases_form {
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and
-// wet. Takes over LAYER. The caller frees PHASES with
-// phases_free, also after a failure.
+// wet. Takes over LAYER. The caller frees OCCUPANCY with
+// occupancy_free, also after a failure.
 //
 // STATUS_BAD_DATA if a piece of the network has no way to an open wall.
-enum status phases_make(const struct network *network, unsigned open_walls,
-                        const struct phases_form *form, struct boundary_layer layer,
-                        struct phases *phases, struct reason *reason);
+enum status occupancy_make(const struct network *network, unsigned open_walls,
+                           const struct occupancy_form *form,
+                           struct boundary_layer layer, struct occupancy *occupancy,
+                           struct reason *reason);
 
 // THROAT has lost its last liquid: gas fills it and both its nodes.
-void phases_empty_throat(struct phases *phases, int throat);
+void occupancy_empty_throat(struct occupancy *occupancy, int throat);
 
-// Of THROAT, where the phases know it: at the start, and in viscous liquid.
-double phases_saturation(const struct phases *phases, int throat);
+// Of THROAT, where the occupancy tells it: at the start, and in viscous liquid.
+double occupancy_saturation(const struct occupancy *occupancy, int throat);
 
-void phases_state(struct phases *phases, struct checkpoint_stream *stream);
+void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stream);
 
-void phases_free(struct phases *phases);
+void occupancy_free(struct occupancy *occupancy);
 
 #endif

@@ -17,17 +17,17 @@ enum { MOST_ROUNDS = 200 };
 enum { PATIENT_ROUNDS = 20 };
 static const double BEGINNERS = 0.9;
 
-struct liquid_flow liquid_flow_make(const struct phases *phases, double length,
+struct liquid_flow liquid_flow_make(const struct occupancy *occupancy, double length,
                                     struct menisci menisci)
 {
-    const struct network *network = phases->network;
+    const struct network *network = occupancy->network;
     struct liquid_flow flow = {.network = network,
                                .menisci = menisci,
                                .conductance = NEW_ARRAY(double, network->n_throat),
                                .resistance = NEW_ARRAY(double, network->n_throat),
                                .moving = NEW_ARRAY(bool, network->n_throat),
                                .pressure = NEW_ARRAY(double, network->n_node),
-                               .solver = flow_solver_make(phases)};
+                               .solver = flow_solver_make(occupancy)};
     for (int t = 0; t < network->n_throat; t++) {
         const double r = network->throat_radius[t] / length;
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
@@ -38,11 +38,11 @@ struct liquid_flow liquid_flow_make(const struct phases *phases, double length,
     return flow;
 }
 
-void liquid_flow_follow(struct liquid_flow *flow, const struct phases *phases,
+void liquid_flow_follow(struct liquid_flow *flow, const struct occupancy *occupancy,
                         int throat)
 {
     flow->moving[throat] = false;
-    flow_solver_follow(flow->solver, phases, throat);
+    flow_solver_follow(flow->solver, occupancy, throat);
 }
 
 void liquid_flow_free(struct liquid_flow *flow)
@@ -53,7 +53,7 @@ void liquid_flow_free(struct liquid_flow *flow)
     free(flow->resistance);
     free(flow->moving);
     free(flow->response);
-    free(flow->surplus);
+    free(flow->excess);
     free(flow->found);
     free(flow->pressure);
     *flow = (struct liquid_flow){0};
@@ -62,7 +62,7 @@ void liquid_flow_free(struct liquid_flow *flow)
 void liquid_flow_respond(struct liquid_flow *flow)
 {
     flow->response = NEW_ARRAY(double, flow->network->n_throat);
-    flow->surplus = NEW_ARRAY(double, flow->network->n_throat);
+    flow->excess = NEW_ARRAY(double, flow->network->n_throat);
     flow->found = NEW_ARRAY(double, flow->network->n_throat);
 }
 
@@ -80,7 +80,7 @@ static int next_throat(const struct liquid_flow *flow, int throat)
 
 static bool is_full(const struct liquid_flow *flow, int throat)
 {
-    return throat_is_full(flow->solver->phases, throat);
+    return throat_is_full(flow->solver->occupancy, throat);
 }
 
 // Potential at which the meniscus of THROAT moves.
@@ -299,7 +299,7 @@ static bool is_shut_in(const struct liquid_flow *flow, const struct piece *piece
 static void keep_as_is(struct liquid_flow *flow, const struct piece *piece)
 {
     for (int t = first_meniscus(flow, piece); t >= 0; t = next_throat(flow, t))
-        flow->found[t] = flow->surplus[t];
+        flow->found[t] = flow->excess[t];
 }
 
 // Where the vapour responds: with menisci as they are given.
@@ -345,24 +345,24 @@ static enum status find_losses(struct liquid_flow *flow, struct piece *piece,
     return STATUS_OK;
 }
 
-enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phases,
-                             const double *charge, struct loss *loss, int *n_loss,
-                             struct reason *reason)
+enum status liquid_flow_find(struct liquid_flow *flow,
+                             const struct occupancy *occupancy, const double *charge,
+                             struct loss *loss, int *n_loss, struct reason *reason)
 {
-    flow->solver->phases = phases;
+    flow->solver->occupancy = occupancy;
     flow->solver->charge = charge;
     for (int i = 0; flow->wants_pressures && i < flow->network->n_node; i++)
         flow->pressure[i] = 0;
     enum status status = STATUS_OK;
-    for (int c = 0; !status && c < phases->clusters.n_id; c++) {
-        struct piece piece = {.cluster = c, .n_throat = phases->clusters.size[c]};
+    for (int c = 0; !status && c < occupancy->clusters.n_id; c++) {
+        struct piece piece = {.cluster = c, .n_throat = occupancy->clusters.size[c]};
         if (piece.n_throat > 0)
             status = find_losses(flow, &piece, loss, n_loss, reason);
     }
     return status;
 }
 
-void liquid_flow_forget(struct liquid_flow *flow, const struct phases *phases)
+void liquid_flow_forget(struct liquid_flow *flow, const struct occupancy *occupancy)
 {
-    flow_solver_forget(flow->solver, phases);
+    flow_solver_forget(flow->solver, occupancy);
 }

@@ -31,7 +31,7 @@ struct liquid_flow {
     bool *moving;        // (n_throat) its meniscus, when last solved for
     // Where vapour follows the pressure of menisci, else NULL. (n_throat)
     double *response; // of one that stays: rise of what evaporates with the pressure
-    double *surplus;  // pressure over that at which it moves, where CHARGE evaporates
+    double *excess;   // pressure over that at which it moves, where CHARGE evaporates
     double *found;    // what that is then; of one that moves: what it loses
     bool wants_pressures; // where they decide nothing, too
     double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit,
@@ -43,11 +43,11 @@ struct liquid_flow {
 
 // For a network full of liquid. Takes over MENISCI. The caller frees it with
 // liquid_flow_free.
-struct liquid_flow liquid_flow_make(const struct phases *phases, double length,
+struct liquid_flow liquid_flow_make(const struct occupancy *occupancy, double length,
                                     struct menisci menisci);
 
-// THROAT has emptied, and PHASES have followed.
-void liquid_flow_follow(struct liquid_flow *flow, const struct phases *phases,
+// THROAT has emptied, and OCCUPANCY have followed.
+void liquid_flow_follow(struct liquid_flow *flow, const struct occupancy *occupancy,
                         int throat);
 
 // Finds which throats lose liquid, or gain it (a negative rate), when each evaporates
@@ -58,13 +58,13 @@ void liquid_flow_follow(struct liquid_flow *flow, const struct phases *phases,
 // throats by themselves are left out: in them nothing flows.
 //
 // STATUS_NOT_CONVERGED if menisci are not found or the balance does not close.
-enum status liquid_flow_find(struct liquid_flow *flow, const struct phases *phases,
-                             const double *charge, struct loss *loss, int *n_loss,
-                             struct reason *reason);
+enum status liquid_flow_find(struct liquid_flow *flow,
+                             const struct occupancy *occupancy, const double *charge,
+                             struct loss *loss, int *n_loss, struct reason *reason);
 
 // What is remembered from call to call only to be faster is not any more: the next
 // goes on from the menisci alone.
-void liquid_flow_forget(struct liquid_flow *flow, const struct phases *phases);
+void liquid_flow_forget(struct liquid_flow *flow, const struct occupancy *occupancy);
 
 // From now on vapour follows the pressure of menisci that stay.
 void liquid_flow_respond(struct liquid_flow *flow);

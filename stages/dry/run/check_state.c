@@ -93,45 +93,45 @@ static bool menisci_fit(const struct clusters *clusters)
     return fits;
 }
 
-// ---- phases ------------------------------------------------------------------------
+// ---- occupancy ---------------------------------------------------------------------
 
 // Liquid is counted where it is.
-static bool liquid_fits(const struct phases *phases)
+static bool liquid_fits(const struct occupancy *occupancy)
 {
-    const struct network *network = phases->network;
+    const struct network *network = occupancy->network;
     int *beside = NEW_ARRAY(int, network->n_node), n_full = 0;
     bool fits = true;
     for (int t = 0; t < network->n_throat; t++) {
-        if (phases->clusters.of_throat[t] < 0) continue;
+        if (occupancy->clusters.of_throat[t] < 0) continue;
         fits &= network->throat_kind[t] == THROAT_NETWORK;
         n_full++;
         for (int end = 0; end < 2; end++)
             beside[network->throat_nodes[t][end]]++;
     }
     for (int i = 0; i < network->n_node; i++)
-        fits &= beside[i] == phases->liquid_beside[i];
+        fits &= beside[i] == occupancy->liquid_beside[i];
     free(beside);
-    return fits && n_full == phases->n_full;
+    return fits && n_full == occupancy->n_full;
 }
 
 // Wet nodes are listed once each, have liquid, and menisci in its throats.
-static bool wet_nodes_fit(const struct phases *phases)
+static bool wet_nodes_fit(const struct occupancy *occupancy)
 {
-    const struct clusters *clusters = &phases->clusters;
-    const struct incidence *incidence = &phases->incidence;
+    const struct clusters *clusters = &occupancy->clusters;
+    const struct incidence *incidence = &occupancy->incidence;
     int placed = 0;
-    for (int i = 0; i < phases->network->n_node; i++)
-        placed += phases->wet_place[i] >= 0;
-    for (int w = 0; w < phases->n_wet; w++) {
-        const int node = phases->wet[w];
-        if (phases->wet_place[node] != w || phases->liquid_beside[node] == 0)
+    for (int i = 0; i < occupancy->network->n_node; i++)
+        placed += occupancy->wet_place[i] >= 0;
+    for (int w = 0; w < occupancy->n_wet; w++) {
+        const int node = occupancy->wet[w];
+        if (occupancy->wet_place[node] != w || occupancy->liquid_beside[node] == 0)
             return false;
         for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
             if (clusters->of_throat[incidence->throat[k]] >= 0 &&
                 !clusters->meniscus[incidence->throat[k]])
                 return false;
     }
-    return placed == phases->n_wet;
+    return placed == occupancy->n_wet;
 }
 
 // ---- timers ------------------------------------------------------------------------
@@ -140,7 +140,7 @@ static bool wet_nodes_fit(const struct phases *phases)
 // or it is listed once as unused.
 static bool owners_fit(const struct emptying_times *times)
 {
-    const struct phases *phases = times->phases;
+    const struct occupancy *occupancy = times->occupancy;
     int running = 0, unused = 0;
     for (int k = 0; k < times->n; k++) {
         const int owner = times->owner[k], throat = times->throat[k];
@@ -151,7 +151,7 @@ static bool owners_fit(const struct emptying_times *times)
         }
         running++;
         if (times->timer[owner] != k || throat < 0 || times->shares[k] == 0 ||
-            phases->clusters.of_throat[throat] < 0 ||
+            occupancy->clusters.of_throat[throat] < 0 ||
             reservoir_of(times, throat) != owner)
             return false;
     }
@@ -182,10 +182,10 @@ static bool losing_fit(const struct emptying_times *times)
 // Each share and its place at a node point at each other, and timers count them.
 static bool shares_fit(const struct emptying_times *times)
 {
-    const struct incidence *incidence = &times->phases->incidence;
+    const struct incidence *incidence = &times->occupancy->incidence;
     int *count = NEW_ARRAY(int, times->n), placed = 0;
     bool fits = true;
-    for (int k = 0; k < 2 * times->phases->network->n_throat; k++)
+    for (int k = 0; k < 2 * times->occupancy->network->n_throat; k++)
         placed += times->share_place[k] >= 0;
     for (int k = 0; k < times->n_share; k++) {
         const struct evaporation_share *share = &times->share[k];
@@ -241,12 +241,12 @@ static bool history_fits(const struct recorder *recorder)
 // says of all whether they are; else they have no liquid any more.
 static bool ended_fit(const struct run *run, bool flagged)
 {
-    const int n_throat = run->phases.network->n_throat;
+    const int n_throat = run->occupancy.network->n_throat;
     bool *seen = NEW_ARRAY(bool, n_throat), fits = true;
     for (int k = 0; k < run->n_ended; k++) {
         const int throat = run->ended[k];
         fits &=
-            !seen[throat] && (flagged || run->phases.clusters.of_throat[throat] < 0);
+            !seen[throat] && (flagged || run->occupancy.clusters.of_throat[throat] < 0);
         seen[throat] = true;
     }
     for (int t = 0; t < n_throat && flagged; t++)
@@ -260,7 +260,7 @@ static bool losses_fit(const struct run *run)
 {
     for (int k = 0; k < run->losses.n; k++) {
         const int throat = run->losses.loss[k].throat;
-        if (run->phases.clusters.of_throat[throat] < 0 ||
+        if (run->occupancy.clusters.of_throat[throat] < 0 ||
             (k > 0 && run->losses.loss[k - 1].throat >= throat))
             return false;
     }
@@ -269,13 +269,13 @@ static bool losses_fit(const struct run *run)
 
 bool run_fits(const struct run *run)
 {
-    const struct phases *phases = &run->phases;
-    const struct clusters *clusters = &phases->clusters;
+    const struct occupancy *occupancy = &run->occupancy;
+    const struct clusters *clusters = &occupancy->clusters;
     const bool has_timers =
         run->conditions->liquid != LIQUID_VISCOUS && !run->conditions->kelvin;
     return identities_fit(clusters) && pieces_fit(clusters) && menisci_fit(clusters) &&
-           liquid_fits(phases) && wet_nodes_fit(phases) &&
-           star_mesh_fits(&phases->vapour.mesh) && ended_fit(run, !has_timers) &&
+           liquid_fits(occupancy) && wet_nodes_fit(occupancy) &&
+           star_mesh_fits(&occupancy->vapour.mesh) && ended_fit(run, !has_timers) &&
            losses_fit(run) && history_fits(&run->recorder) &&
            (!has_timers || (owners_fit(&run->times) && losing_fit(&run->times) &&
                             shares_fit(&run->times)));

@@ -24,7 +24,7 @@ static void note_first_period(struct run *run)
 
 static void begin(struct run *run)
 {
-    run->n_at_start = run->phases.n_full;
+    run->n_at_start = run->occupancy.n_full;
     run->first_rate = rate_now(run);
     note_breakthrough(run);
     record_state(run);
@@ -47,7 +47,7 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
         note_first_period(run);
         if (progress && progress->report)
             progress->report(progress->context,
-                             1 - (double)run->phases.n_full / run->n_at_start);
+                             1 - (double)run->occupancy.n_full / run->n_at_start);
         if (!status) keep_if_due(run, progress ? progress->keeper : NULL);
     }
     return status;
@@ -56,33 +56,33 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
 static void summarise(const struct run *run, struct drying_history *history)
 {
     history->boundary_layer_thickness = run->scale.boundary_layer * run->scale.length;
-    history->boundary_layers = run->phases.layer.layers;
-    history->initial_liquid = run->phases.initial_liquid * run->scale.mass;
+    history->boundary_layers = run->occupancy.layer.layers;
+    history->initial_liquid = run->occupancy.initial_liquid * run->scale.mass;
     history->evaporated = compensated_value(run->evaporated) * run->scale.mass;
-    history->vapour_residual = fmax(run->imbalance, run->curved.residual);
+    history->vapour_residual = fmax(run->imbalance, run->kelvin.residual);
     history->liquid_residual = run->flow.residual;
     history->flow_solutions = run->flow.solutions;
     history->flow_rounds = run->flow.rounds;
     if (run->conditions->stop_saturation > 0)
-        stop_history(history, run->phases.network, run->conditions->stop_saturation);
+        stop_history(history, run->occupancy.network, run->conditions->stop_saturation);
 }
 
 // Takes the liquid that is not there at the start.
 static enum status start(struct run *run, struct reason *reason)
 {
     const struct drying_conditions *conditions = run->conditions;
-    struct phases *phases = &run->phases;
-    const int n = phases->network->n_throat;
+    struct occupancy *occupancy = &run->occupancy;
+    const int n = occupancy->network->n_throat;
     if (!conditions->start && conditions->start_saturation == 1) return STATUS_OK;
     double *invaded = NEW_ARRAY(double, n);
     const double *left = conditions->start ? conditions->start : invaded;
     enum status status = STATUS_OK;
     if (!conditions->start)
-        status = invaded_saturations(phases, conditions->start_saturation,
+        status = invaded_saturations(occupancy, conditions->start_saturation,
                                      conditions->start_trapping, invaded, reason);
-    if (!status) start_from(phases, left);
+    if (!status) start_from(occupancy, left);
     for (int t = 0; !status && t < n; t++)
-        if (phases->volume[t] > 0 && left[t] < 1)
+        if (occupancy->volume[t] > 0 && left[t] < 1)
             recorder_add_change(&run->recorder, t, left[t]);
     free(invaded);
     return status;
@@ -91,26 +91,27 @@ static enum status start(struct run *run, struct reason *reason)
 // What the liquid needs, and the first step.
 static void prepare(struct run *run)
 {
-    const struct network *network = run->phases.network;
+    const struct network *network = run->occupancy.network;
     const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
-    const bool is_curved = run->conditions->kelvin;
+    const bool has_kelvin = run->conditions->kelvin;
     if (is_viscous)
         run->flow =
-            liquid_flow_make(&run->phases, run->scale.length,
+            liquid_flow_make(&run->occupancy, run->scale.length,
                              menisci_make(network, run->conditions, &run->scale));
-    if (is_curved) run->curved = curved_make(&run->phases, run->conditions);
-    if (is_viscous && is_curved) run->both = curved_flow_make(&run->curved, &run->flow);
-    if (is_viscous || is_curved)
+    if (has_kelvin) run->kelvin = kelvin_menisci_make(&run->occupancy, run->conditions);
+    if (is_viscous && has_kelvin)
+        run->both = kelvin_viscous_make(&run->kelvin, &run->flow);
+    if (is_viscous || has_kelvin)
         run->losses = losses_make(network->n_throat);
     else
-        run->times = emptying_times_make(&run->phases,
+        run->times = emptying_times_make(&run->occupancy,
                                          run->conditions->liquid == LIQUID_IMMOBILE);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, network->n_throat);
     run->is_ended = NEW_ARRAY(bool, network->n_throat);
     run->saturation = NEW_ARRAY(double, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
-        run->saturation[t] = phases_saturation(&run->phases, t);
+        run->saturation[t] = occupancy_saturation(&run->occupancy, t);
 }
 
 // How easily gas enters each throat against gravity. The caller frees it.
@@ -125,8 +126,8 @@ static double *find_ease(const struct network *network,
     return ease;
 }
 
-static enum status make_phases(const struct network *network, struct run *run,
-                               struct reason *reason)
+static enum status make_occupancy(const struct network *network, struct run *run,
+                                  struct reason *reason)
 {
     const struct drying_conditions *conditions = run->conditions;
     struct boundary_layer layer;
@@ -142,13 +143,14 @@ static enum status make_phases(const struct network *network, struct run *run,
     double *ease = conditions->gravity != 0
                        ? find_ease(network, conditions, &run->scale)
                        : NULL; // by radius
-    const struct phases_form form = {.length = run->scale.length,
-                                     .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
-                                     .ease = ease,
-                                     .knudsen_radius = knudsen_radius(conditions),
-                                     .vapour_tolerance = conditions->vapour_tolerance};
-    status = phases_make(network, conditions->open_walls, &form, layer, &run->phases,
-                         reason);
+    const struct occupancy_form form = {
+        .length = run->scale.length,
+        .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
+        .ease = ease,
+        .knudsen_radius = knudsen_radius(conditions),
+        .vapour_tolerance = conditions->vapour_tolerance};
+    status = occupancy_make(network, conditions->open_walls, &form, layer,
+                            &run->occupancy, reason);
     free(ease);
     return status;
 }
@@ -164,7 +166,7 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
     enum status status = start(run, reason);
     if (status) return status;
     prepare(run);
-    status = run->conditions->kelvin ? find_curved_losses(run, reason) : STATUS_OK;
+    status = run->conditions->kelvin ? find_kelvin_losses(run, reason) : STATUS_OK;
     if (status) return status;
     if (!goes_on(run))
         return refuse(reason, STATUS_BAD_DATA,
@@ -180,13 +182,13 @@ static void free_run(struct run *run)
 {
     liquid_flow_free(&run->flow);
     losses_free(&run->losses);
-    curved_flow_free(&run->both);
-    curved_free(&run->curved);
+    kelvin_viscous_free(&run->both);
+    kelvin_menisci_free(&run->kelvin);
     emptying_times_free(&run->times);
     free(run->ended);
     free(run->is_ended);
     free(run->saturation);
-    phases_free(&run->phases);
+    occupancy_free(&run->occupancy);
 }
 
 enum status dry_network(const struct network *network,
@@ -206,7 +208,7 @@ enum status dry_network(const struct network *network,
     struct run run = {.conditions = conditions,
                       .scale = drying_scale(network, conditions),
                       .recorder = recorder_make(history)};
-    status = make_phases(network, &run, reason);
+    status = make_occupancy(network, &run, reason);
     const struct keeper *keeper = progress ? progress->keeper : NULL;
     if (!status && conditions->vapour_tolerance > 0 && keeper &&
         (keeper->due || keeper->begin))

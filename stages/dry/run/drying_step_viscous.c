@@ -16,8 +16,8 @@ static double time_to_first(const struct run *run)
     double shortest = INFINITY;
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
-        const double volume = run->phases.volume[loss->throat];
-        const double left = compensated_value(run->phases.liquid[loss->throat]);
+        const double volume = run->occupancy.volume[loss->throat];
+        const double left = compensated_value(run->occupancy.liquid[loss->throat]);
         shortest = fmin(shortest, loss->rate > 0 ? left / loss->rate
                                                  : (volume - left) / -loss->rate);
         if (run->conditions->liquid == LIQUID_VISCOUS)
@@ -29,32 +29,32 @@ static double time_to_first(const struct run *run)
 
 // THROAT loses AMOUNT, or all it has if that is all but TIE of its volume: then it ties
 // with the first. Likewise one that fills.
-static void lose(struct phases *phases, int throat, double amount)
+static void lose(struct occupancy *occupancy, int throat, double amount)
 {
-    struct compensated *liquid = &phases->liquid[throat];
+    struct compensated *liquid = &occupancy->liquid[throat];
     const double before = compensated_value(*liquid);
-    const double volume = phases->volume[throat];
+    const double volume = occupancy->volume[throat];
     if (amount < 0 && before - amount > volume * (1 - TIE)) {
         *liquid = (struct compensated){.value = volume};
-        compensated_add(&phases->total_liquid, volume - before);
+        compensated_add(&occupancy->total_liquid, volume - before);
     } else if (before - amount > TIE * volume) {
         compensated_add(liquid, -amount);
-        compensated_add(&phases->total_liquid, -amount);
+        compensated_add(&occupancy->total_liquid, -amount);
     } else {
         *liquid = (struct compensated){0};
-        compensated_add(&phases->total_liquid, -before);
+        compensated_add(&occupancy->total_liquid, -before);
     }
 }
 
 // Time passes until the first throat has emptied.
 static void advance(struct run *run, double duration)
 {
-    struct phases *phases = &run->phases;
+    struct occupancy *occupancy = &run->occupancy;
     compensated_add(&run->time, duration);
     compensated_add(&run->evaporated, rate_now(run) * duration);
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
-        lose(phases, loss->throat, loss->rate * duration);
+        lose(occupancy, loss->throat, loss->rate * duration);
         if (!run->is_ended[loss->throat]) run->ended[run->n_ended++] = loss->throat;
         run->is_ended[loss->throat] = true;
     }
@@ -66,7 +66,7 @@ static void record_changes(struct run *run)
     sort_ended(run);
     for (int k = 0; k < run->n_ended; k++) {
         const int throat = run->ended[k];
-        const double saturation = phases_saturation(&run->phases, throat);
+        const double saturation = occupancy_saturation(&run->occupancy, throat);
         run->is_ended[throat] = false;
         if (saturation == run->saturation[throat]) continue; // too little to show
         recorder_add_change(&run->recorder, throat, saturation);
@@ -77,10 +77,10 @@ static void record_changes(struct run *run)
 
 static void note_refills(struct run *run, double time)
 {
-    const struct phases *phases = &run->phases;
+    const struct occupancy *occupancy = &run->occupancy;
     for (int k = 0; k < run->losses.n; k++) {
         const struct loss *loss = &run->losses.loss[k];
-        if (loss->rate < 0 && phases_saturation(phases, loss->throat) == 1)
+        if (loss->rate < 0 && occupancy_saturation(occupancy, loss->throat) == 1)
             recorder_add_event(&run->recorder, time, loss->throat, EVENT_REFILLED);
     }
 }
@@ -88,17 +88,17 @@ static void note_refills(struct run *run, double time)
 // Gas fills what has emptied [K 3.4.2, step 6].
 static void empty_throats(struct run *run)
 {
-    struct phases *phases = &run->phases;
+    struct occupancy *occupancy = &run->occupancy;
     const double time = compensated_value(run->time) * run->scale.time;
     note_refills(run, time);
     for (int k = 0; k < run->losses.n; k++) {
         const int throat = run->losses.loss[k].throat;
-        if (phases->liquid[throat].value != 0) continue;
+        if (occupancy->liquid[throat].value != 0) continue;
         if (run->conditions->kelvin)
-            curved_empty_throat(&run->curved, phases, throat);
+            kelvin_menisci_empty_throat(&run->kelvin, occupancy, throat);
         else
-            phases_empty_throat(phases, throat);
-        if (run->flow.solver) liquid_flow_follow(&run->flow, phases, throat);
+            occupancy_empty_throat(occupancy, throat);
+        if (run->flow.solver) liquid_flow_follow(&run->flow, occupancy, throat);
         recorder_add_event(&run->recorder, time, throat, EVENT_EMPTIED);
     }
     note_breakthrough(run);
@@ -120,7 +120,7 @@ void record_losses(struct run *run)
 static void keep_pressures_once(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
-    const size_t n = (size_t)run->phases.network->n_node;
+    const size_t n = (size_t)run->occupancy.network->n_node;
     if (!history->pressure)
         history->pressure = NEW_ARRAY(double, n *(size_t)run->conditions->n_snapshot);
     double *pressure = history->pressure + n * (size_t)history->n_pressure++;
@@ -139,25 +139,25 @@ enum status note_idle(struct run *run, bool idle, struct reason *reason)
 {
     run->n_idle = idle ? run->n_idle + 1 : 0;
     const double most =
-        100.0 * (run->phases.n_full + 10) / run->conditions->saturation_step;
+        100.0 * (run->occupancy.n_full + 10) / run->conditions->saturation_step;
     if (run->n_idle < most) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "throats refilled %d times over, and none has emptied, with %d still "
                   "wet (a smaller saturation_step may help)",
-                  run->n_idle, run->phases.n_full);
+                  run->n_idle, run->occupancy.n_full);
 }
 
 enum status drying_step_viscous(struct run *run, struct reason *reason)
 {
-    struct phases *phases = &run->phases;
+    struct occupancy *occupancy = &run->occupancy;
     run->flow.wants_pressures = snapshot_is_due(run);
-    enum status status = losses_find(&run->losses, phases, &run->flow, reason);
+    enum status status = losses_find(&run->losses, occupancy, &run->flow, reason);
     if (status) return status;
     keep_pressures(run);
     if (run->losses.n == 0) return refuse_standstill(run, reason);
-    const int n_before = phases->n_full;
+    const int n_before = occupancy->n_full;
     carry_out_losses(run);
     run->n_flow_step++;
     record_losses(run);
-    return note_idle(run, phases->n_full == n_before, reason);
+    return note_idle(run, occupancy->n_full == n_before, reason);
 }

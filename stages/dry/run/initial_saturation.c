@@ -17,25 +17,25 @@ static const double LEAST_REST = 1e-12;
 // walls.
 enum { INLET = 1, OUTLET = 2 };
 
-static uint8_t *ways_in_and_out(const struct phases *phases)
+static uint8_t *ways_in_and_out(const struct occupancy *occupancy)
 {
-    const struct network *network = phases->network;
+    const struct network *network = occupancy->network;
     uint8_t *ways = NEW_ARRAY(uint8_t, network->n_node);
     for (int i = 0; i < network->n_node; i++)
-        ways[i] = network->node_walls[i] & phases->far_walls ? OUTLET : 0;
-    for (int i = 0; i < phases->layer.n_exposed; i++)
-        ways[phases->layer.exposed[i]] |= INLET;
+        ways[i] = network->node_walls[i] & occupancy->far_walls ? OUTLET : 0;
+    for (int i = 0; i < occupancy->layer.n_exposed; i++)
+        ways[occupancy->layer.exposed[i]] |= INLET;
     return ways;
 }
 
-static enum status find_invasion(const struct phases *phases, bool trapping,
+static enum status find_invasion(const struct occupancy *occupancy, bool trapping,
                                  struct invasion *invasion, struct reason *reason)
 {
-    struct network network = *phases->network;
+    struct network network = *occupancy->network;
     double *ease = NEW_ARRAY(double, network.n_throat);
     for (int t = 0; t < network.n_throat; t++)
-        ease[t] = -phases->clusters.rank[t];
-    network.node_walls = ways_in_and_out(phases);
+        ease[t] = -occupancy->clusters.rank[t];
+    network.node_walls = ways_in_and_out(occupancy);
     const struct invasion_conditions conditions = {
         .ease = ease, .inlet = INLET, .outlet = OUTLET, .trapping = trapping};
     enum status status = invade(&network, &conditions, invasion, reason);
@@ -48,23 +48,23 @@ static enum status find_invasion(const struct phases *phases, bool trapping,
     return status;
 }
 
-enum status invaded_saturations(const struct phases *phases, double saturation,
+enum status invaded_saturations(const struct occupancy *occupancy, double saturation,
                                 bool trapping, double *left, struct reason *reason)
 {
     struct invasion invasion;
-    enum status status = find_invasion(phases, trapping, &invasion, reason);
+    enum status status = find_invasion(occupancy, trapping, &invasion, reason);
     if (status) return status;
-    for (int t = 0; t < phases->network->n_throat; t++)
-        left[t] = phases->volume[t] > 0;
-    struct compensated excess = {.value = (1 - saturation) * phases->capacity};
+    for (int t = 0; t < occupancy->network->n_throat; t++)
+        left[t] = occupancy->volume[t] > 0;
+    struct compensated excess = {.value = (1 - saturation) * occupancy->capacity};
     for (int k = 0; k < invasion.n && compensated_value(excess) > 0; k++) {
         const int throat = invasion.throat[k];
-        const double volume = phases->volume[throat];
+        const double volume = occupancy->volume[throat];
         left[throat] = fmax(0, 1 - compensated_value(excess) / volume);
         compensated_add(&excess, -volume);
     }
     invasion_free(&invasion);
-    const double rest = compensated_value(excess) / phases->capacity;
+    const double rest = compensated_value(excess) / occupancy->capacity;
     if (rest > LEAST_REST)
         status = refuse(reason, STATUS_BAD_DATA,
                         "start_saturation: must be above %.6g, which gas cuts off "
@@ -98,18 +98,18 @@ double *recorded_saturations(const struct network *network,
 
 // --- either ------------------------------------------------------------------------
 
-void start_from(struct phases *phases, const double *start)
+void start_from(struct occupancy *occupancy, const double *start)
 {
     struct compensated total = {0};
-    for (int t = 0; t < phases->network->n_throat; t++) {
-        if (!(phases->volume[t] > 0)) continue;
+    for (int t = 0; t < occupancy->network->n_throat; t++) {
+        if (!(occupancy->volume[t] > 0)) continue;
         if (start[t] == 0) {
-            phases_empty_throat(phases, t);
+            occupancy_empty_throat(occupancy, t);
             continue;
         }
-        phases->liquid[t].value = start[t] * phases->volume[t];
-        compensated_add(&total, phases->liquid[t].value);
+        occupancy->liquid[t].value = start[t] * occupancy->volume[t];
+        compensated_add(&total, occupancy->liquid[t].value);
     }
-    phases->total_liquid = total;
-    phases->initial_liquid = compensated_value(total);
+    occupancy->total_liquid = total;
+    occupancy->initial_liquid = compensated_value(total);
 }

@@ -11,10 +11,10 @@
 // those it touches, until the liquid is SATURATION of all; the last throat only in
 // part. With TRAPPING liquid leaves only through the closed walls opposite the open
 // ones, and what gas has cut off from them stays (network/invasion.h); else it leaves
-// all the same (a film leads it away). PHASES is full.
+// all the same (a film leads it away). OCCUPANCY is full.
 //
 // STATUS_BAD_DATA with trapping: no throat reaches such a wall; more stays.
-enum status invaded_saturations(const struct phases *phases, double saturation,
+enum status invaded_saturations(const struct occupancy *occupancy, double saturation,
                                 bool trapping, double *left, struct reason *reason);
 
 // The state of a run when the liquid was SATURATION of all, between two steps linear in
@@ -22,7 +22,7 @@ enum status invaded_saturations(const struct phases *phases, double saturation,
 double *recorded_saturations(const struct network *network,
                              const struct drying_record *record, double saturation);
 
-// Takes from full PHASES what is not in START (n_throat, each from 0 to 1).
-void start_from(struct phases *phases, const double *start);
+// Takes from full OCCUPANCY what is not in START (n_throat, each from 0 to 1).
+void start_from(struct occupancy *occupancy, const double *start);
 
 #endif

@@ -13,7 +13,7 @@ static void pressures_state(struct run *run, struct checkpoint_stream *stream)
 {
     struct drying_history *history = run->recorder.history;
     stream_integer(stream, &history->n_pressure, 0, run->conditions->n_snapshot);
-    const int64_t n_node = run->phases.network->n_node;
+    const int64_t n_node = run->occupancy.network->n_node;
     if (stream->restoring && history->n_pressure > 0)
         history->pressure =
             NEW_ARRAY(double, n_node *(int64_t)run->conditions->n_snapshot);
@@ -23,7 +23,7 @@ static void pressures_state(struct run *run, struct checkpoint_stream *stream)
 static void flow_state(struct run *run, struct checkpoint_stream *stream)
 {
     struct liquid_flow *flow = &run->flow;
-    stream_flags(stream, flow->moving, run->phases.network->n_throat);
+    stream_flags(stream, flow->moving, run->occupancy.network->n_throat);
     stream_numbers(stream, &flow->residual, 1);
     stream_long(stream, &flow->rounds);
     stream_long(stream, &flow->solutions);
@@ -32,7 +32,7 @@ static void flow_state(struct run *run, struct checkpoint_stream *stream)
 
 static void steps_state(struct run *run, struct checkpoint_stream *stream)
 {
-    const int n_throat = run->phases.network->n_throat;
+    const int n_throat = run->occupancy.network->n_throat;
     stream_numbers(stream, &run->step_saturation, 1);
     stream_sums(stream, &run->step_time, 1);
     stream_sums(stream, &run->step_evaporated, 1);
@@ -62,19 +62,19 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
     stream_sums(stream, &run->evaporated, 1);
     stream_numbers(stream, &run->imbalance, 1);
     stream_numbers(stream, &run->first_rate, 1);
-    stream_integer(stream, &run->n_at_start, 0, run->phases.network->n_throat);
+    stream_integer(stream, &run->n_at_start, 0, run->occupancy.network->n_throat);
     stream_long(stream, &run->n_flow_step);
-    recorder_state(&run->recorder, run->phases.network->n_throat, stream);
-    phases_state(&run->phases, stream);
+    recorder_state(&run->recorder, run->occupancy.network->n_throat, stream);
+    occupancy_state(&run->occupancy, stream);
     steps_state(run, stream);
-    const int n_throat = run->phases.network->n_throat;
+    const int n_throat = run->occupancy.network->n_throat;
     const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
     if (run->conditions->kelvin) {
-        curved_state(&run->curved, run->phases.network, stream);
+        kelvin_menisci_state(&run->kelvin, run->occupancy.network, stream);
         losses_state(&run->losses, n_throat, stream);
     }
     if (is_viscous) flow_state(run, stream);
-    if (is_viscous && run->conditions->kelvin) curved_flow_state(&run->both, stream);
+    if (is_viscous && run->conditions->kelvin) kelvin_viscous_state(&run->both, stream);
     if (!is_viscous && !run->conditions->kelvin)
         emptying_times_state(&run->times, stream);
 }
@@ -86,8 +86,8 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
     if (run->conditions->liquid == LIQUID_VISCOUS)
-        liquid_flow_forget(&run->flow, &run->phases);
-    if (run->conditions->kelvin) curved_forget(&run->curved);
+        liquid_flow_forget(&run->flow, &run->occupancy);
+    if (run->conditions->kelvin) kelvin_menisci_forget(&run->kelvin);
     if (!is_due(keeper)) return;
     struct checkpoint_stream stream = stream_to_keep();
     run_state(run, &stream);
@@ -106,6 +106,6 @@ enum status go_on_from(struct run *run, const struct kept_state *kept,
         return refuse(reason, STATUS_BAD_DATA,
                       "/stage: is not the state of a drying of this network");
     if (run->conditions->liquid == LIQUID_VISCOUS)
-        liquid_flow_forget(&run->flow, &run->phases);
+        liquid_flow_forget(&run->flow, &run->occupancy);
     return STATUS_OK;
 }

@@ -10,21 +10,21 @@
 // From 1 at the start to exactly 0 at the end.
 double network_saturation(const struct run *run)
 {
-    if (run->phases.n_full == 0) return 0;
-    const double liquid = compensated_value(run->phases.total_liquid);
-    return fmin(1, fmax(0, liquid / run->phases.capacity));
+    if (run->occupancy.n_full == 0) return 0;
+    const double liquid = compensated_value(run->occupancy.total_liquid);
+    return fmin(1, fmax(0, liquid / run->occupancy.capacity));
 }
 
 double rate_now(const struct run *run)
 {
-    if (run->phases.n_full == 0) return 0;
-    return run->conditions->kelvin ? run->curved.rate
-                                   : vapour_rate(&run->phases.vapour);
+    if (run->occupancy.n_full == 0) return 0;
+    return run->conditions->kelvin ? run->kelvin.rate
+                                   : vapour_rate(&run->occupancy.vapour);
 }
 
 bool goes_on(const struct run *run)
 {
-    return run->phases.n_full > 0 &&
+    return run->occupancy.n_full > 0 &&
            network_saturation(run) > run->conditions->stop_saturation;
 }
 
@@ -62,7 +62,7 @@ void record_state(struct run *run)
 {
     recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
                       network_saturation(run), rate_now(run) * run->scale.rate,
-                      run->phases.clusters.count);
+                      run->occupancy.clusters.count);
     run->n_skipped = 0;
     run->step_saturation = network_saturation(run);
     run->step_time = run->time;
@@ -72,7 +72,7 @@ void record_state(struct run *run)
 void note_breakthrough(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
-    if (run->phases.breakthrough && history->breakthrough_saturation == 0)
+    if (run->occupancy.breakthrough && history->breakthrough_saturation == 0)
         history->breakthrough_saturation = network_saturation(run);
 }
 
@@ -81,5 +81,5 @@ enum status refuse_standstill(const struct run *run, struct reason *reason)
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "nothing evaporates any more with %d throats still wet (rates too "
                   "small for the arithmetic)",
-                  run->phases.n_full);
+                  run->occupancy.n_full);
 }

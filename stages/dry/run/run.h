@@ -15,14 +15,14 @@
 struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
-    struct phases phases;
-    struct emptying_times times; // of liquid without viscosity, or immobile
-    struct liquid_flow flow;     // of viscous liquid
-    struct curved curved;        // of menisci with vapour pressures of their own
-    struct curved_flow both;     // of the last two
-    struct losses losses;        // of the last three
-    int n_idle;                  // viscous: steps since a throat has emptied
-    int64_t n_flow_step;         // viscous, curved: steps so far, recorded or not
+    struct occupancy occupancy;
+    struct emptying_times times;  // of liquid without viscosity, or immobile
+    struct liquid_flow flow;      // of viscous liquid
+    struct kelvin_menisci kelvin; // of menisci with vapour pressures of their own
+    struct kelvin_viscous both;   // of the last two
+    struct losses losses;         // of the last three
+    int n_idle;                   // viscous: steps since a throat has emptied
+    int64_t n_flow_step;          // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
     double first_rate;                   // scaled
@@ -69,7 +69,7 @@ void note_breakthrough(struct run *run);
 void carry_out_losses(struct run *run);
 
 // With menisci that have vapour pressures of their own: finds the losses of now.
-enum status find_curved_losses(struct run *run, struct reason *reason);
+enum status find_kelvin_losses(struct run *run, struct reason *reason);
 
 // Keeps the pressures of viscous liquid as often as they are due.
 void keep_pressures(struct run *run);
