@@ -15,7 +15,7 @@ def at(name):
 
 
 def cost(*command):
-    """Processor seconds of user and system, and MiB at most; what it prints is lost."""
+    """CPU seconds of user and system, and MiB at most; what it prints is lost."""
     silent = [(os.POSIX_SPAWN_OPEN, stream, os.devnull, os.O_WRONLY, 0) for stream in (1, 2)]
     process = os.posix_spawnp(command[0], command, environment, file_actions=silent)
     _, status, usage = os.wait4(process, 0)
