@@ -56,7 +56,7 @@ set yrange [0:1]
 set size noratio
 dy = 22 / (rows * high + 44.0)
 word = "'liquid throat' 'auxiliary throat' 'column, lateral link' 'node with a column'"
-colour = "#0a4a96 #777777 #9cc7e8 #d6201c"
+colour = blue . " " . grey . " #9cc7e8 " . red
 do for [i = 1:4] {
     at = 0.04 + 0.24 * (i - 1)
     if (i < 4) { set arrow from at, 1 - dy to at + 0.03, 1 - dy nohead linewidth 2 linecolor rgb word(colour, i) }

@@ -9,6 +9,10 @@ inspect=$bin/inspect
 tables=$(mktemp -d) # for what is drawn
 trap 'rm -rf "$tables"' EXIT
 
+colour() { # NAME, as style.gp has it
+    sed -n "s/^$1 = \"\(#[0-9a-f]*\)\"$/\1/p" "$here/style.gp"
+}
+
 usage() { # ARGUMENTS that the program takes
     echo "Usage: pipelines/${0##*/} $1" >&2
     exit 64

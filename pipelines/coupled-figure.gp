@@ -2,7 +2,6 @@
 # Variable: courses, two files a sample: a column of panels for each.
 set terminal @svg "Helvetica,15" size 1600,980
 set multiplot
-grey = "#999999"
 set border 3 linecolor "#555555"
 set xtics nomirror out scale 0.6 textcolor black
 set ytics nomirror out scale 0.6 textcolor black

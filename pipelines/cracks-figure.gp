@@ -3,11 +3,10 @@
 set terminal @svg "Helvetica,15" size 1000,760
 set multiplot
 @axes
-array colour[6] = ["#0a4a96", "#d6201c", "#3a8a3a", "#b36b00", "#7a3a8a", "#777777"]
 table(name, k) = sprintf("%s/%s-%d", tables, name, k)
 rows(name, k) = int(system("grep -c . " . table(name, k) . " || true"))
 title(k) = system(sprintf("sed -n %dp %s/titles", k, tables))
-of(k) = colour[(k - 1) % 6 + 1]
+of(k) = series[(k - 1) % 6 + 1]
 left(column) = 0.085 + 0.5 * column
 panel = "set lmargin at screen left(c); set rmargin at screen left(c) + 0.395; \
     set tmargin at screen 0.945 - 0.5 * r; set bmargin at screen 0.59 - 0.5 * r; \
@@ -24,7 +23,7 @@ plot for [k = 1:n] table("saturation", k) using 1:3 with lines linewidth 2 linec
 
 c = 1; r = 0; heading = "Cracks in slices, from bottom to top"
 @panel
-set xlabel "height" offset 0,0.4
+set xlabel "height over that of the box" offset 0,0.4
 set xrange [0:1]
 plot for [k = 1:n] table("height", k) using 1:3 with linespoints linewidth 2 pointtype 7 pointsize 0.5 linecolor rgb of(k), \
     for [k = 1:n] table("height", k) using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 0.5 dashtype (6, 4) linecolor rgb of(k)

@@ -4,11 +4,10 @@
 set terminal @svg "Helvetica,15" size 1260,440
 set multiplot layout 1,3
 @axes
-pale = "#7fa4cf"; rose = "#eda29f"
-set xrange [0:1]; set xtics 0.2; set xlabel "saturation"
+set xrange [1:0]; set xtics 0.2; set xlabel "saturation"
 
 set title "capillary pressure, MPa"
-set yrange [0:*]; set key top right
+set yrange [0:*]; set key top left
 plot tables . "/pressure-free" using 1:($2 / 1e6) with steps linewidth 1.8 linecolor rgb blue title "none trapped", \
     tables . "/pressure-trapping" using 1:($2 / 1e6) with steps linewidth 1.4 linecolor rgb pale title "trapping"
 

@@ -3,7 +3,6 @@
 set terminal @svg "Helvetica,15" size 1000,760
 set multiplot layout 2,2
 @axes
-pale = "#a9c1dd"
 file(name) = tables . "/" . name
 
 set title "Nine spheres: permeability [C Fig. 10]"

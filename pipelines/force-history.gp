@@ -8,13 +8,12 @@ set xrange [1:0]
 set xlabel "saturation" offset 0,0.4
 set xzeroaxis linetype 1 linecolor "#888888" linewidth 1
 name = "inviscid immobile"
-array colour[2] = ["#0a4a96", "#d6201c"]
 left(c) = 0.07 + 0.5 * c
 panel = "set lmargin at screen left(c); set rmargin at screen left(c) + 0.4; \
     set tmargin at screen 0.88; set bmargin at screen 0.17; \
     set label 1 heading at screen left(c), screen 0.94 left textcolor '#222222'; \
     plot for [k = 0:1] sprintf('%s/force-%d', tables, k) using 1:(1e9 * $2) with linespoints pointtype 7 pointsize 0.4 \
-        linewidth 1.6 linecolor rgb colour[k + 1] title word(name, k + 1)"
+        linewidth 1.6 linecolor rgb (k ? immobile : inviscid) title word(name, k + 1)"
 c = 0; heading = "Normal force of the contact, nN"
 set yrange [*:*]
 set key top right samplen 2 textcolor "#222222"

@@ -5,7 +5,7 @@ set terminal @svg "Helvetica,14" size 70 + 3 * wide, total
 set multiplot
 liquid = "inviscid viscous immobile"
 level = "0.9 0.7 0.5 0.3"
-array colour[3] = ["#0a4a96", "#d6201c", "#3a8a3a"]
+array colour[3] = [inviscid, viscous, immobile]
 
 left(c) = (75.0 + wide * c) / (70 + 3 * wide)
 right(c) = (25.0 + wide * (c + 1)) / (70 + 3 * wide)
@@ -35,7 +35,7 @@ do for [c = 0:2] {
                 center rotate by 90 textcolor '#222222'
         } else { unset label 2 }
         set object 1 rectangle from xlow, zlow to xhigh, zhigh fillcolor "#f4f4f4" fillstyle solid 1 border linecolor "#bbbbbb" behind
-        plot sprintf("%s/state-%d-%d", tables, c, r + 1) using 1:2:3:4 with vectors nohead linewidth 0.9 linecolor "#0a4a96"
+        plot sprintf("%s/state-%d-%d", tables, c, r + 1) using 1:2:3:4 with vectors nohead linewidth 0.9 linecolor rgb blue
     }
 }
 unset object 1
@@ -50,7 +50,7 @@ set yrange [0:1]
 set xtics 0.2
 set ytics 0.2
 r = 4
-set xlabel "depth" offset 0,0.5
+set xlabel "depth over that of the network" offset 0,0.5
 do for [c = 0:2] {
     @panel
     if (c == 0) { set ylabel "saturation of slices" offset 0.5,0 } else { set ylabel " " offset 0.5,0 }
@@ -59,7 +59,8 @@ do for [c = 0:2] {
 
 # --- rates --------------------------------------------------------------------------------
 r = 5
-set key at graph 0.02, 0.98 left top samplen 2 textcolor "#222222"
+set xrange [1:0]
+set key at graph 0.98, 0.98 right top samplen 2 textcolor "#222222"
 set xlabel "saturation of the network" offset 0,0.5
 do for [c = 0:1] {
     @panel

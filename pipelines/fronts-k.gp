@@ -5,7 +5,6 @@ across = 75 + 4 * wide; total = 40.0 + 5 * high + 2 * chart
 set terminal @svg "Helvetica,14" size across, total
 set multiplot
 level = "0.9 0.7 0.5 0.3"
-array colour[5] = ["#0a4a96", "#d6201c", "#3a8a3a", "#8a4fb0", "#c07a00"]
 
 # --- the five layers: their wet throats -----------------------------------------------------
 unset key
@@ -22,12 +21,12 @@ set object 1 rectangle from xlow, zlow to xhigh, zhigh fillcolor "#f4f4f4" fills
 do for [c = 0:3] {
     set label 1 "S = " . word(level, c + 1) at screen (60.0 + wide * (c + 0.5)) / across, screen 1 - 20 / total center textcolor '#222222'
     do for [r = 0:4] {
-        set label 2 "" . (r + 1) at screen 25.0 / across, screen 1 - (40 + high * (r + 0.5)) / total center textcolor rgb colour[r + 1]
+        set label 2 "" . (r + 1) at screen 25.0 / across, screen 1 - (40 + high * (r + 0.5)) / total center textcolor rgb series[r + 1]
         set lmargin at screen (60.0 + wide * (c + 0.5) - 0.5 * high) / across
         set rmargin at screen (60.0 + wide * (c + 0.5) + 0.5 * high) / across
         set tmargin at screen 1 - (40.0 + high * r + 3) / total
         set bmargin at screen 1 - (40.0 + high * (r + 1) - 3) / total
-        plot sprintf("%s/state-%d-%d", tables, r, c + 1) using 1:2:3:4 with vectors nohead linewidth 0.7 linecolor "#0a4a96"
+        plot sprintf("%s/state-%d-%d", tables, r, c + 1) using 1:2:3:4 with vectors nohead linewidth 0.7 linecolor rgb blue
     }
 }
 unset object 1
@@ -49,21 +48,23 @@ do for [r = 0:1] {
     set title (r == 0 ? "the layers above" : "1220 grains in 3D") offset 0,-0.5 textcolor "#222222"
     set xlabel "saturation of the network" offset 0,0.5
     set ylabel "rate / first rate" offset 0.5,0
-    set key at graph 0.02, 0.98 left top samplen 2 textcolor "#222222"
+    set xrange [1:0]
+    set key at graph 0.98, 0.98 right top samplen 2 textcolor "#222222"
     if (r == 0) {
-        plot for [k = 0:4] sprintf("%s/rate-%d", tables, k) using 1:2 with lines linewidth 1.4 linecolor rgb colour[k + 1] title "" . (k + 1)
+        plot for [k = 0:4] sprintf("%s/rate-%d", tables, k) using 1:2 with lines linewidth 1.4 linecolor rgb series[k + 1] title "" . (k + 1)
     } else {
-        set key at graph 0.98, 0.08 right bottom
-        plot tables . "/rate-5" using 1:2 with lines linewidth 1.6 linecolor rgb "#d6201c" title "water, no friction", \
-            tables . "/rate-6" using 1:2 with lines linewidth 1.6 linecolor rgb "#0a4a96" title "water, friction 0.5", \
-            tables . "/rate-7" using 1:2 with lines linewidth 1.6 linecolor rgb "#999999" title "the same, inviscid"
+        set key at graph 0.02, 0.08 left bottom
+        plot tables . "/rate-5" using 1:2 with lines linewidth 1.6 linecolor rgb red title "water, no friction", \
+            tables . "/rate-6" using 1:2 with lines linewidth 1.6 linecolor rgb blue title "water, friction 0.5", \
+            tables . "/rate-7" using 1:2 with lines linewidth 1.6 linecolor rgb grey title "the same, inviscid"
     }
     c = 1
     @place
     unset key
+    set xrange [0:1]
     set title (r == 0 ? "mean of the five" : "water, friction 0.5") offset 0,-0.5 textcolor "#222222"
-    set xlabel "depth" offset 0,0.5
+    set xlabel "depth over that of the network" offset 0,0.5
     set ylabel "saturation of slices" offset 0.5,0
-    plot for [k = 2:10] tables . (r == 0 ? "/mean-profile" : "/grains-profile") using 1:k with lines linewidth 1.4 linecolor rgb "#0a4a96"
+    plot for [k = 2:10] tables . (r == 0 ? "/mean-profile" : "/grains-profile") using 1:k with lines linewidth 1.4 linecolor rgb blue
 }
 unset multiplot

@@ -37,7 +37,7 @@ do for [c = 0:1] {
     arrows = sprintf("%s/arrows-%d", tables, c ? 2 : 0)
     plot arrows using 1:2:3 with circles fillcolor "#e9e4da", \
         tables . "/throats" using 1:2:3:4:(c && $5 > 0 ? $5 : level) with vectors nohead linewidth 2 linecolor palette, \
-        arrows using 1:2:($4 / longest):($5 / longest) with vectors head size 0.16,25 filled linewidth 1.2 linecolor "#d6201c"
+        arrows using 1:2:($4 / longest):($5 / longest) with vectors head size 0.16,25 filled linewidth 1.2 linecolor rgb red
 }
 unset label 1
 unset colorbox
@@ -45,7 +45,7 @@ set size noratio
 
 # --- loads ----------------------------------------------------------------------------
 @axes
-array colour[3] = ["#666666", "#e08a00", "#0a4a96"]
+array colour[3] = [grey, sky, blue]
 array name[3] = ["uniform", "clusters", "field"]
 set tmargin at screen (low - 26.0) / total
 set bmargin at screen 72.0 / total

@@ -11,13 +11,13 @@ unset key
 slice = tables . "/slice"
 cracks = tables . "/cracks"
 set style fill solid 1 noborder
-set title "a slice: broken in tension (blue), in shear (yellow)" textcolor "#222222"
+set title "a slice: broken in tension (black), in shear (amber)" textcolor "#222222"
 plot slice using 1:2:3 with circles linecolor rgb "#dddddd", \
-    cracks using 1:2:3:($5 == 0 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb "#0a2a7a", \
-    cracks using 1:2:3:($5 == 1 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb "#e0b000"
+    cracks using 1:2:3:($5 == 0 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb tension, \
+    cracks using 1:2:3:($5 == 1 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb shear
 set title "from above: all that broke" textcolor "#222222"
-set palette defined (0 "#0a2a7a", 0.5 "#c0407a", 1 "#f0b000")
-set cbrange [0:1]
+set palette defined (0 wet_to_dry(1), 1 wet_to_dry(0))
+set cbrange [1:0]
 set colorbox horizontal user origin screen 0.6, 0.07 size screen 0.3, 0.02
 set cbtics 0.25
 set label 1 "saturation at which it broke" at screen 0.75, 0.115 center textcolor "#222222"

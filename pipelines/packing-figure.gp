@@ -9,7 +9,6 @@ set style fill solid 1 noborder
 
 table(name) = tables . "/" . name
 rows(name) = int(system("grep -c . " . table(name) . " || true"))
-pale = "#a9c1dd"
 left(column) = 0.085 + 0.5 * column
 panel = "set lmargin at screen left(c); set rmargin at screen left(c) + 0.395; \
     set tmargin at screen 0.945 - 0.5 * r; set bmargin at screen 0.59 - 0.5 * r; \

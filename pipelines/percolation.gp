@@ -4,7 +4,6 @@
 set terminal @svg "Helvetica,15" size 1260,440
 set multiplot layout 1,3
 @axes
-pale = "#7fa4cf"
 file(name) = tables . "/" . name . ".tsv"
 set errorbars 0.6
 set style line 1 linewidth 1.5 pointtype 7 pointsize 0.5 linecolor rgb blue

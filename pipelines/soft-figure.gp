@@ -4,7 +4,7 @@ set terminal @svg "Helvetica,15" size 1000,960
 set multiplot
 unset key
 
-# --- contact forces in the middle row: black pushes, red pulls --------------------------
+# --- contact forces in the middle row, grains where they are: black pushes, red pulls ---
 most = 0
 do for [k = 1:3] {
     stats sprintf("%s/forces-%d", tables, k) using (abs($5)) nooutput
@@ -22,6 +22,8 @@ set size ratio -1
 unset border
 unset tics
 left(c) = 0.02 + 0.5 * c
+set label 2 sprintf("Grains where they are, not exaggerated. Contact forces: black pushes, red pulls; widest: %.3g µN", 1e6 * most) \
+    at screen 0.5, screen 0.405 center textcolor rgb grey
 heading = "'before' 'all liquid, no pore empty' 'half of the liquid' 'dry'"
 do for [k = 0:3] {
     c = k % 2; r = k / 2
@@ -32,6 +34,7 @@ do for [k = 0:3] {
         sprintf("%s/forces-%d", tables, k) using 1:2:3:4:(style($5)) with vectors arrowstyle variable
 }
 unset label 1
+unset label 2
 set size noratio
 
 # --- strain -------------------------------------------------------------------------------
@@ -50,7 +53,7 @@ set yrange [*:*]
 set key right top samplen 2 textcolor rgb black
 plot tables . "/strain" using 1:(100 * $2) with lines linewidth 2.5 linecolor rgb black title "volume", \
     "" using 1:(-100 * $3) with lines linewidth 2 linecolor rgb blue title "x", \
-    "" using 1:(-100 * $4) with lines linewidth 2 linecolor rgb green title "y", \
+    "" using 1:(-100 * $4) with lines linewidth 2 linecolor rgb sky title "y", \
     "" using 1:(-100 * $5) with lines linewidth 2 linecolor rgb red title "z"
 unset key
 
@@ -60,6 +63,6 @@ set xrange [*:*]
 set logscale xy
 set format xy "10^{%T}"
 set xlabel "largest shrinkage of the volume" offset 0,0.4
-plot tables . "/left" using 1:($1 * $1) with lines dashtype (6, 4) linewidth 1.5 linecolor rgb "#777777", \
+plot tables . "/left" using 1:($1 * $1) with lines dashtype (6, 4) linewidth 1.5 linecolor rgb grey, \
     "" using 1:2 with linespoints linewidth 2 pointtype 7 pointsize 0.6 linecolor rgb blue
 unset multiplot

@@ -9,19 +9,20 @@ set xtics 0.4
 set xrange [0.25:2.15]
 set yrange [0:*]
 set key top right samplen 1 spacing 1.1 font ",13" textcolor "#222222"
-blue = 0x0a4a96; red = 0xd6201c; black = 0x222222
 array heading[5] = ["first period, shear", "first period, normal", "second period, shear", \
     "second period, normal", "all"]
-series(liquid, k) = sprintf("%s/%s-%d", tables, liquid, k)
+column_of(liquid, k) = sprintf("%s/%s-%d", tables, liquid, k)
 
 do for [k = 1:5] {
     set title heading[k] offset 0,-0.4 font ",15" textcolor black
     if (k == 3) { set xlabel "strength of the bonds, 10^4 N/m^2" offset 0,0.2 } else { unset xlabel }
-    plot series("inviscid", k) using 1:2:3 with errorlines linecolor rgb blue linewidth 2 \
+    plot column_of("inviscid", k) using 1:2:3 with errorlines linecolor rgb inviscid linewidth 2 \
             pointtype 7 pointsize 0.6 title "inviscid", \
-         series("immobile", k) using ($1 + 0.06):2:3 with yerrorbars linecolor rgb red linewidth 2 \
+         column_of("immobile", k) using ($1 + 0.06):2:3 with yerrorbars linecolor rgb immobile linewidth 2 \
             pointtype 5 pointsize 0.6 title "immobile", \
-         series("K", k) using ($1 + 0.06 * $3):2:($3 > 0 ? red : black) with points linecolor rgb variable \
+         column_of("K", k) using ($3 > 0 ? $1 + 0.06 : NaN):2 with points linecolor rgb immobile \
+            linewidth 1.6 pointtype 8 pointsize 1 notitle, \
+         column_of("K", k) using ($3 > 0 ? NaN : $1):2 with points linecolor rgb black \
             linewidth 1.6 pointtype 8 pointsize 1 notitle, \
          NaN with points linecolor rgb black linewidth 1.6 pointtype 8 pointsize 1 title "K"
     unset key

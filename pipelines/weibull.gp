@@ -13,11 +13,11 @@ curve(name) = tables . "/" . name
 do for [panel = 0:1] {
     mean = 2 + 2 * panel
     set title (panel ? "broken in the first period" : "bonds broken, of 625") offset 0,-0.5
-    plot curve("inviscid-weibull") using 1:mean:mean + 1 with errorlines linecolor rgb blue \
+    plot curve("inviscid-weibull") using 1:mean:mean + 1 with errorlines linecolor rgb inviscid \
             linewidth 2 pointtype 7 pointsize 0.7 title "inviscid, Weibull", \
          curve("inviscid-normal") using ($1 + 0.006):mean:mean + 1 with errorlines linecolor rgb grey \
             linewidth 2 pointtype 5 pointsize 0.7 title "inviscid, normal", \
-         curve("immobile-weibull") using ($1 - 0.006):mean:mean + 1 with errorlines linecolor rgb red \
+         curve("immobile-weibull") using ($1 - 0.006):mean:mean + 1 with errorlines linecolor rgb immobile \
             linewidth 2 pointtype 9 pointsize 0.8 title "immobile, Weibull"
     unset key
 }
