@@ -209,7 +209,7 @@ static double mean_throat_length(const struct network *network)
 // ln((p_g - p_inf) / (p_g - p_sat)): the fall of -ln(1 - p_v/p_g) from the wet nodes to
 // the drying air. This form keeps its digits from p_sat just above p_inf to p_sat just
 // below p_g.
-static double potential_fall(const struct drying_conditions *conditions)
+static double potential_drop(const struct drying_conditions *conditions)
 {
     return log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
                  (conditions->gas_pressure - conditions->saturation_pressure));
@@ -224,7 +224,7 @@ struct drying_scale drying_scale(const struct network *network,
     struct drying_scale scale = {
         .length = length,
         .mass = conditions->liquid_density * (length * length * length),
-        .rate = conditions->diffusivity * vapour_density * potential_fall(conditions) *
+        .rate = conditions->diffusivity * vapour_density * potential_drop(conditions) *
                 length, // [K 3.9]
         .boundary_layer = conditions->diffusivity / conditions->mass_transfer / length};
     scale.time = scale.mass / scale.rate;

@@ -247,12 +247,12 @@ static double find_throughput(const struct balance *balance,
     return sum;
 }
 
-static double imbalance(const double *lack, int n)
+static double imbalance(const double *residual, int n)
 {
     double largest = 0, sum = 0;
     for (int i = 0; i < n; i++) {
-        largest = fmax(largest, fabs(lack[i]));
-        sum += lack[i];
+        largest = fmax(largest, fabs(residual[i]));
+        sum += residual[i];
     }
     return fmax(largest, fabs(sum));
 }
@@ -269,23 +269,23 @@ static void reorder(const struct balance *balance, struct pressures *pressures,
 }
 
 // Until the balances close, or rounding ends it. The first correction is nearly the
-// whole solution. X, GIVEN and what they LACK are in the order of the matrix.
+// whole solution. X, GIVEN and what they RESIDUAL are in the order of the matrix.
 static enum status correct(const struct balance *balance, const struct solving *solving,
                            struct linear_solver *solver, const double *given,
-                           struct compensated *x, double *lack,
+                           struct compensated *x, double *residual,
                            struct pressures *pressures, struct reason *reason)
 {
     const double tolerance = solving->tolerance;
     double best = INFINITY, reduction = first_reduction;
     for (int round = 0; round < CORRECTIONS; round++) {
-        const enum status status = linear_correct(solver, given, x, lack, reduction,
+        const enum status status = linear_correct(solver, given, x, residual, reduction,
                                                   &pressures->iterations, reason);
         if (status) return status;
         if (!(pressures->imbalance < settled)) {
             reorder(balance, pressures, x, true);
             pressures->throughput = find_throughput(balance, pressures);
         }
-        const double absolute = imbalance(lack, balance->matrix.n);
+        const double absolute = imbalance(residual, balance->matrix.n);
         const double left = absolute > 0 ? absolute / pressures->throughput : 0;
         pressures->imbalance = left;
         if (left < 0.1 * tolerance || (left < tolerance && left > 0.5 * best)) break;
@@ -301,22 +301,23 @@ static enum status close_balances(const struct balance *balance,
 {
     const struct matrix *matrix = &balance->matrix;
     struct compensated *x = NEW_ARRAY(struct compensated, matrix->n_all);
-    double *lack = NEW_ARRAY(double, matrix->n);
+    double *residual = NEW_ARRAY(double, matrix->n);
     double *given = NEW_ARRAY(double, matrix->n_all);
     for (int i = 0; i < matrix->n_all; i++)
         given[balance->unknown[i]] = balance->given[i];
     reorder(balance, pressures, x, false);
-    matrix_lack(matrix, given, x, lack);
+    matrix_residual(matrix, given, x, residual);
     pressures->imbalance = INFINITY;
     struct linear_solver solver;
     enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
     pressures->direct = solver.cholesky;
     if (!status)
-        status = correct(balance, solving, &solver, given, x, lack, pressures, reason);
+        status =
+            correct(balance, solving, &solver, given, x, residual, pressures, reason);
     reorder(balance, pressures, x, true);
     linear_solver_free(&solver);
     free(x);
-    free(lack);
+    free(residual);
     free(given);
     if (status || pressures->imbalance <= solving->tolerance) return status;
     return refuse(reason, STATUS_NOT_CONVERGED,

@@ -232,18 +232,18 @@ static enum status find_multipliers(struct throats *throats, struct vector *mult
         problem.work[k] = NEW_ARRAY(double, n);
     balance(throats, 1, multiplier);
     sum_up(throats, 1, residual);
-    const double aim = 1e-15 * sqrt(pulls_squared(throats));
+    const double tolerance = 1e-15 * sqrt(pulls_squared(throats));
     const int count =
-        conjugate_gradients(&problem, &residual->x, &multiplier->x, aim, most);
+        conjugate_gradients(&problem, &residual->x, &multiplier->x, tolerance, most);
     const double left = sqrt(sum_of_products(&residual->x, &residual->x, n));
     for (int k = 0; k < 3; k++)
         free(problem.work[k]);
     free(residual);
-    if (left <= 10 * aim) return STATUS_OK;
+    if (left <= 10 * tolerance) return STATUS_OK;
     return refuse(
         reason, STATUS_NOT_CONVERGED,
         "the balance of the throats' pulls: %g of %g left after %d iterations", left,
-        aim, count);
+        tolerance, count);
 }
 
 // --- pulls -------------------------------------------------------------------------

@@ -72,18 +72,18 @@ enum status entry_make(const struct network *network, enum invasion_rule rule,
     const bool throats = rule == INVADE_THROATS;
     entry->n = throats ? network->n_throat : network->n_node;
     entry->pressure = NEW_ARRAY(double, entry->n);
-    entry->ease = NEW_ARRAY(double, entry->n);
+    entry->entry_priority = NEW_ARRAY(double, entry->n);
     double *height = NEW_ARRAY(double, entry->n);
     if (throats)
-        measure_throats(network, entry->ease, height);
+        measure_throats(network, entry->entry_priority, height);
     else
-        measure_nodes(network, entry->ease, height);
+        measure_nodes(network, entry->entry_priority, height);
     const double tension =
         2 * conditions->surface_tension * cos(conditions->contact_angle * (M_PI / 180));
     const double weight = conditions->liquid_density * conditions->gravity;
     for (int i = 0; i < entry->n; i++) {
-        entry->pressure[i] = tension / entry->ease[i] - weight * height[i];
-        if (weight != 0) entry->ease[i] = -entry->pressure[i];
+        entry->pressure[i] = tension / entry->entry_priority[i] - weight * height[i];
+        if (weight != 0) entry->entry_priority[i] = -entry->pressure[i];
     }
     free(height);
     return STATUS_OK;
@@ -92,6 +92,6 @@ enum status entry_make(const struct network *network, enum invasion_rule rule,
 void entry_free(struct entry *entry)
 {
     free(entry->pressure);
-    free(entry->ease);
+    free(entry->entry_priority);
     *entry = (struct entry){0};
 }

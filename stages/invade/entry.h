@@ -16,7 +16,8 @@ struct entry_conditions {
 struct entry {
     int n;            // throats, or nodes
     double *pressure; // (n) Pa, of the gas above that of the liquid at the box's floor
-    double *ease;     // (n) for invade: radii without gravity, so that equal ones tie
+    double *
+        entry_priority; // (n) for invade: radii without gravity, so that equal ones tie
 };
 
 // The pressure is 2 sigma cos(theta) / r - rho g z with z above the floor of the box:

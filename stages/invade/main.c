@@ -239,7 +239,7 @@ int main(int argc, char **argv)
     struct invasion invasion = {0};
     enum status status =
         entry_make(&network, conditions->rule, &parameters.entry, &entry, &reason);
-    conditions->ease = entry.ease;
+    conditions->entry_priority = entry.entry_priority;
     if (!status) status = invade(&network, conditions, &invasion, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     struct outcome outcome =

@@ -93,9 +93,9 @@ static double flow_of(int n_link, const struct link *link, const struct compensa
 {
     struct compensated sum = {0};
     for (int k = 0; k < n_link; k++) {
-        const double fall =
+        const double drop =
             compensated_difference(x[link[k].site[0]], x[link[k].site[1]]);
-        compensated_add(&sum, link[k].conductance * fall * fall);
+        compensated_add(&sum, link[k].conductance * drop * drop);
     }
     return compensated_value(sum);
 }
@@ -114,23 +114,24 @@ static enum status iterate(int n, int n_link, const struct link *link,
                            double *conductance, struct reason *reason)
 {
     struct compensated *x = NEW_ARRAY(struct compensated, n + 2);
-    double *lack = NEW_ARRAY(double, n);
+    double *residual = NEW_ARRAY(double, n);
     x[n + 1].value = 1; // at the inlet
     struct matrix matrix = matrix_of_links(n, n + 2, n_link, link);
     struct linear_solver solver;
     enum status status = linear_solver_make(&matrix, SOLVER_AUTO, &solver, reason);
-    matrix_lack(&matrix, NULL, x, lack);
+    matrix_residual(&matrix, NULL, x, residual);
     bool closed = false;
     for (int round = 0, iterations = 0; !status && !closed && round < MOST_ROUNDS;
          round++) {
-        status = linear_correct(&solver, NULL, x, lack, REDUCTION, &iterations, reason);
+        status =
+            linear_correct(&solver, NULL, x, residual, REDUCTION, &iterations, reason);
         *conductance = flow_of(n_link, link, x);
-        closed = sum_of_sizes(lack, n) <= TOLERANCE * *conductance;
+        closed = sum_of_sizes(residual, n) <= TOLERANCE * *conductance;
     }
     linear_solver_free(&solver);
     matrix_free(&matrix);
     free(x);
-    free(lack);
+    free(residual);
     return status || closed ? status : STATUS_NOT_CONVERGED;
 }
 

@@ -40,10 +40,10 @@ static uint64_t stream(uint64_t seed, int run)
     return state * 0xd1342543de82ef95u;
 }
 
-static void random_ease(double *ease, int n, uint64_t *state)
+static void random_ease(double *entry_priority, int n, uint64_t *state)
 {
     for (int i = 0; i < n; i++)
-        ease[i] = next_random(state);
+        entry_priority[i] = next_random(state);
 }
 
 static struct invasion invaded(const struct network *network,
@@ -120,17 +120,18 @@ static struct network voronoi(int size, uint64_t *state)
     return network;
 }
 
-static double crossing(const struct network *network, double *ease, uint64_t *state)
+static double crossing(const struct network *network, double *entry_priority,
+                       uint64_t *state)
 {
-    random_ease(ease, network->n_throat, state);
+    random_ease(entry_priority, network->n_throat, state);
     struct invasion invasion =
-        invaded(network, &(struct invasion_conditions){.ease = ease,
+        invaded(network, &(struct invasion_conditions){.entry_priority = entry_priority,
                                                        .inlet = INLET,
                                                        .outlet = OUTLET,
                                                        .until_breakthrough = true});
     double hardest = 1;
     for (int k = 0; k < invasion.n; k++)
-        hardest = fmin(hardest, ease[invasion.throat[k]]);
+        hardest = fmin(hardest, entry_priority[invasion.throat[k]]);
     invasion_free(&invasion);
     return 1 - hardest;
 }
@@ -141,11 +142,12 @@ static void threshold(const char *kind, int size, int run, uint64_t seed)
     const bool is_voronoi = strcmp(kind, "voronoi") == 0;
     const int n[3] = {size, strcmp(kind, "cubic") ? 1 : size, size + 1};
     struct network network = is_voronoi ? voronoi(size, &state) : lattice(n);
-    double *ease = NEW_ARRAY(double, network.n_throat);
+    double *entry_priority = NEW_ARRAY(double, network.n_throat);
     for (int draw = is_voronoi ? DRAWS : 1; draw > 0; draw--)
-        printf("%.9f%c", crossing(&network, ease, &state), draw > 1 ? ' ' : '\n');
+        printf("%.9f%c", crossing(&network, entry_priority, &state),
+               draw > 1 ? ' ' : '\n');
     network_free(&network);
-    free(ease);
+    free(entry_priority);
 }
 
 // --- mass --------------------------------------------------------------------------
@@ -158,12 +160,12 @@ static void mass(int dimensions, enum invasion_rule rule, int size, int run,
     const int layer = n[0] * n[1];
     struct network network = lattice(n);
     const int count = rule == INVADE_THROATS ? network.n_throat : network.n_node;
-    double *ease = NEW_ARRAY(double, count);
-    random_ease(ease, count, &state);
+    double *entry_priority = NEW_ARRAY(double, count);
+    random_ease(entry_priority, count, &state);
     for (int trapping = 0; trapping < 2; trapping++) {
         struct invasion invasion = invaded(
             &network, &(struct invasion_conditions){.rule = rule,
-                                                    .ease = ease,
+                                                    .entry_priority = entry_priority,
                                                     .inlet = INLET,
                                                     .outlet = OUTLET,
                                                     .trapping = trapping,
@@ -178,7 +180,7 @@ static void mass(int dimensions, enum invasion_rule rule, int size, int run,
         invasion_free(&invasion);
     }
     network_free(&network);
-    free(ease);
+    free(entry_priority);
 }
 
 // --- front -------------------------------------------------------------------------
@@ -209,11 +211,11 @@ static void find_front(const struct network *network, const bool *gas, uint8_t *
 
 // Marks where gas comes without entering anything harder than LEVEL. Returns whether it
 // stops before it has crossed.
-static bool fill_to_level(const struct invasion *invasion, const double *ease,
+static bool fill_to_level(const struct invasion *invasion, const double *entry_priority,
                           double level, bool *gas)
 {
     int k = 0;
-    for (; k < invasion->n && ease[invasion->throat[k]] >= level; k++)
+    for (; k < invasion->n && entry_priority[invasion->throat[k]] >= level; k++)
         if (invasion->node[k] >= 0) gas[invasion->node[k]] = true;
     return k < invasion->n;
 }
@@ -228,20 +230,21 @@ static void front(int dimensions, double gradient, int run, uint64_t seed)
     const int layer = n[0] * n[1];
     const double middle = reach - 0.5;
     struct network network = lattice(n);
-    double *ease = NEW_ARRAY(double, network.n_throat);
+    double *entry_priority = NEW_ARRAY(double, network.n_throat);
     for (int t = 0; t < network.n_throat; t++) {
         const int32_t *ends = network.throat_nodes[t];
-        ease[t] = next_random(&state) +
-                  gradient * ((ends[0] / layer + ends[1] / layer) / 2.0 - middle);
+        entry_priority[t] =
+            next_random(&state) +
+            gradient * ((ends[0] / layer + ends[1] / layer) / 2.0 - middle);
     }
-    struct invasion invasion =
-        invaded(&network, &(struct invasion_conditions){.ease = ease,
-                                                        .inlet = INLET,
-                                                        .outlet = OUTLET,
-                                                        .until_breakthrough = true});
+    struct invasion invasion = invaded(
+        &network, &(struct invasion_conditions){.entry_priority = entry_priority,
+                                                .inlet = INLET,
+                                                .outlet = OUTLET,
+                                                .until_breakthrough = true});
     bool *gas = NEW_ARRAY(bool, network.n_node);
     uint8_t *reached = NEW_ARRAY(uint8_t, network.n_node);
-    if (!fill_to_level(&invasion, ease, 1 - critical[dimensions - 2], gas))
+    if (!fill_to_level(&invasion, entry_priority, 1 - critical[dimensions - 2], gas))
         fprintf(stderr, "percolation_study: front %g: run %d is cut off\n", gradient,
                 run);
     find_front(&network, gas, reached);
@@ -264,7 +267,7 @@ static void front(int dimensions, double gradient, int run, uint64_t seed)
            sqrt(squares / n_front - mean * mean));
     invasion_free(&invasion);
     network_free(&network);
-    free(ease);
+    free(entry_priority);
     free(gas);
     free(reached);
 }

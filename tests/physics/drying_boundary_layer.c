@@ -230,7 +230,7 @@ static void drop_faces(struct network *network, int wall, const bool *drop)
     network->n_face = n;
 }
 
-// Where something is cut out, the open face is what the wall's faces cover.
+// Where something is cut out, the open surface is what the wall's faces cover.
 static void test_holes_have_no_area(void **state)
 {
     (void)state;
@@ -488,7 +488,7 @@ static void test_last_columns_part_the_others(void **state)
     struct network network = lattice_network(EDGE, EDGE, 1, spacing);
     struct boundary_layer layer = make(&network, 5, &(struct boundary_form){0});
     assert_int_equal(layer.n_exposed, COLUMNS);
-    int *order = column_order(&network, &layer);
+    int *order = nested_dissection_order(&network, &layer);
     int place[COLUMNS], parent[COLUMNS];
     for (int i = 0; i < COLUMNS; i++) {
         place[i] = -1;

@@ -36,7 +36,8 @@ static struct network renumbered(const struct network *old, int n[3],
     return new;
 }
 
-static void compare_steps(const struct drying_history *a, const struct drying_history *b)
+static void compare_steps(const struct drying_history *a,
+                          const struct drying_history *b)
 {
     assert_int_equal(a->n_step, b->n_step);
     for (int k = 0; k < a->n_step; k++) {
@@ -264,18 +265,20 @@ static void check_drying_is_invasion(double gravity)
     conditions.surface_tension = 0.07;
     struct drying_history history = dry_and_check(&network, &conditions);
 
-    double *ease = NEW_ARRAY(double, network.n_throat);
+    double *entry_priority = NEW_ARRAY(double, network.n_throat);
     for (int t = 0; t < network.n_throat; t++) {
         const int32_t *node = network.throat_nodes[t];
-        ease[t] =
+        entry_priority[t] =
             conditions.liquid_density * gravity / 2 *
                 (network.node_position[node[0]].z + network.node_position[node[1]].z) -
             2 * conditions.surface_tension / network.throat_radius[t];
     }
     struct invasion invasion;
     struct reason reason;
-    const struct invasion_conditions rule = {
-        .ease = ease, .inlet = WALL_Z_UPPER, .outlet = WALL_Z_LOWER, .trapping = true};
+    const struct invasion_conditions rule = {.entry_priority = entry_priority,
+                                             .inlet = WALL_Z_UPPER,
+                                             .outlet = WALL_Z_LOWER,
+                                             .trapping = true};
     assert_int_equal(invade(&network, &rule, &invasion, &reason), 0);
 
     struct incidence incidence = network_incidence(&network);
@@ -294,7 +297,7 @@ static void check_drying_is_invasion(double gravity)
     assert_int_equal(n, invasion.breakthrough);
     assert_true(n > history.n_event / 10);
     free(gas);
-    free(ease);
+    free(entry_priority);
     clusters_free(&clusters);
     incidence_free(&incidence);
     invasion_free(&invasion);

@@ -69,7 +69,7 @@ static void test_tubes_in_series(void **state)
     }
 }
 
-// Resistance of the layer over PART of the open face, and of a throat.
+// Resistance of the layer over PART of the open surface, and of a throat.
 static double layer_resistance(const struct drying_conditions *conditions, double part)
 {
     return conditions->diffusivity / conditions->mass_transfer /

@@ -39,7 +39,7 @@ static void evaporation(long double matrix[SITES + 1][SITES + 1], const bool *fr
         flow[i] = left[i][AIR];
 }
 
-static void link_random(struct star_mesh *mesh,
+static void link_random(struct kron_fronts *mesh,
                         long double matrix[SITES + 1][SITES + 1], double decades,
                         uint64_t *seed)
 {
@@ -47,11 +47,11 @@ static void link_random(struct star_mesh *mesh,
     const int b = (a + 1 + (int)(next_random(seed) * (SITES - 1))) % SITES;
     const double conductance = pow(10, decades * (next_random(seed) - 0.5));
     if (next_random(seed) < 0.05) {
-        star_mesh_link_air(mesh, a, conductance);
+        kron_fronts_link_air(mesh, a, conductance);
         matrix[a][AIR] += conductance;
         matrix[AIR][a] += conductance;
     } else {
-        star_mesh_link(mesh, a, b, conductance);
+        kron_fronts_link(mesh, a, b, conductance);
         matrix[a][b] += conductance;
         matrix[b][a] += conductance;
     }
@@ -63,7 +63,7 @@ static void check_elimination(double decades, uint64_t seed)
     for (int i = 0; i <= SITES; i++)
         for (int j = 0; j <= SITES; j++)
             matrix[i][j] = 0;
-    struct star_mesh mesh = star_mesh_make(SITES, false);
+    struct kron_fronts mesh = kron_fronts_make(SITES, false);
     for (int k = 0; k < LINKS; k++)
         link_random(&mesh, matrix, decades, &seed);
     bool free_site[SITES] = {false};
@@ -72,21 +72,22 @@ static void check_elimination(double decades, uint64_t seed)
         while (free_site[site])
             site = (site + 1) % SITES;
         free_site[site] = true;
-        star_mesh_eliminate(&mesh, site);
+        kron_fronts_eliminate(&mesh, site);
         if (n % 8 != 0) continue;
         long double flow[SITES], sum = 0;
         evaporation(matrix, free_site, flow);
         for (int i = 0; i < SITES; i++) {
             sum += flow[i];
             if (free_site[i])
-                assert_true(mesh.air[i] == 0);
+                assert_true(mesh.air_conductance[i] == 0);
             else
-                assert_true(fabsl(mesh.air[i] - flow[i]) <= 1e-14L * flow[i]);
+                assert_true(fabsl(mesh.air_conductance[i] - flow[i]) <=
+                            1e-14L * flow[i]);
         }
         const double all = compensated_value(mesh.all_air);
         assert_true(fabsl(all - sum) <= 1e-14L * sum);
     }
-    star_mesh_free(&mesh);
+    kron_fronts_free(&mesh);
 }
 
 static void test_every_digit_over_twelve_decades(void **state)
@@ -107,41 +108,43 @@ static void test_every_digit_where_conductances_are_alike(void **state)
 static void test_shut_in_is_exactly_zero(void **state)
 {
     (void)state;
-    struct star_mesh mesh = star_mesh_make(4, false);
-    star_mesh_link(&mesh, 0, 1, 1);
-    star_mesh_link(&mesh, 1, 2, 1);
-    star_mesh_link_air(&mesh, 3, 1);
-    star_mesh_link(&mesh, 2, 3, 1);
-    star_mesh_eliminate(&mesh, 1);
-    assert_true(mesh.air[0] == 0 && mesh.air[2] == 0 && mesh.air[3] == 1);
-    star_mesh_eliminate(&mesh, 3);
-    assert_true(mesh.air[0] == 0 && mesh.air[2] == 0.5);
-    star_mesh_eliminate(&mesh, 2);
-    assert_true(fabs(mesh.air[0] - 0.25) < 1e-16); // three links and the air in series
-    star_mesh_free(&mesh);
+    struct kron_fronts mesh = kron_fronts_make(4, false);
+    kron_fronts_link(&mesh, 0, 1, 1);
+    kron_fronts_link(&mesh, 1, 2, 1);
+    kron_fronts_link_air(&mesh, 3, 1);
+    kron_fronts_link(&mesh, 2, 3, 1);
+    kron_fronts_eliminate(&mesh, 1);
+    assert_true(mesh.air_conductance[0] == 0 && mesh.air_conductance[2] == 0 &&
+                mesh.air_conductance[3] == 1);
+    kron_fronts_eliminate(&mesh, 3);
+    assert_true(mesh.air_conductance[0] == 0 && mesh.air_conductance[2] == 0.5);
+    kron_fronts_eliminate(&mesh, 2);
+    assert_true(fabs(mesh.air_conductance[0] - 0.25) <
+                1e-16); // three links and the air in series
+    kron_fronts_free(&mesh);
 }
 
 enum { ROWS = 1101, SOURCES = 61 }; // as many wait, and are not added before
 
 // A large triangle for which products of random rows wait, all between 0 and 1.
-static struct triangle wait_for_products(bool is_rounded, double row[SOURCES][ROWS],
-                                         const double *factor)
+static struct dense_front wait_for_products(bool is_rounded, double row[SOURCES][ROWS],
+                                            const double *factor)
 {
-    struct triangle triangle = {0};
+    struct dense_front dense = {0};
     for (int i = 0; i < ROWS; i++) {
-        triangle_add_row(&triangle, i);
+        dense_front_add_row(&dense, i);
         for (int j = 0; j < i; j++)
-            triangle_set(&triangle, i, j, 1.0 / (i + j));
+            dense_front_set(&dense, i, j, 1.0 / (i + j));
     }
-    triangle_enlarge(&triangle, ROWS, is_rounded);
+    dense_front_enlarge(&dense, ROWS, is_rounded);
     for (int k = 0; k < SOURCES; k++)
-        triangle_add_products(&triangle, ROWS, factor[k], row[k]);
-    return triangle;
+        dense_front_add_products(&dense, ROWS, factor[k], row[k]);
+    return dense;
 }
 
 struct kernels {
-    triangle_pass *pass;
-    triangle_gather *gather;
+    dense_front_pass *pass;
+    dense_front_gather *gather;
 };
 
 // By narrow vectors and by wide ones.
@@ -157,12 +160,12 @@ static void check_kernels(const struct kernels kernels[2], bool is_rounded,
             row[k][i] = next_random(&seed);
         factor[k] = next_random(&seed);
     }
-    struct triangle triangle[2];
+    struct dense_front dense[2];
     for (int wide = 0; wide < 2; wide++) {
-        triangle[wide] = wait_for_products(is_rounded, row, factor);
-        assert_int_equal(triangle[wide].n_waiting, SOURCES);
-        kernels[wide].gather(&triangle[wide], ROWS, factor, gathered[wide]);
-        kernels[wide].pass(&triangle[wide], ROWS);
+        dense[wide] = wait_for_products(is_rounded, row, factor);
+        assert_int_equal(dense[wide].n_waiting, SOURCES);
+        kernels[wide].gather(&dense[wide], ROWS, factor, gathered[wide]);
+        kernels[wide].pass(&dense[wide], ROWS);
     }
     for (int i = 0; i < ROWS; i++) {
         double sum = 0;
@@ -176,12 +179,12 @@ static void check_kernels(const struct kernels kernels[2], bool is_rounded,
             double sum = 1.0 / (i + j);
             for (int k = 0; k < SOURCES; k++)
                 sum += factor[k] * row[k][i] * row[k][j];
-            const double entry = triangle_entry(&triangle[0], i, j);
-            assert_true(entry == triangle_entry(&triangle[1], i, j));
+            const double entry = dense_front_entry(&dense[0], i, j);
+            assert_true(entry == dense_front_entry(&dense[1], i, j));
             assert_true(fabs(entry / sum - 1) < tolerance);
         }
-    triangle_free(&triangle[0]);
-    triangle_free(&triangle[1]);
+    dense_front_free(&dense[0]);
+    dense_front_free(&dense[1]);
 }
 
 // Large fronts are updated by narrow vectors or wide ones: the same digits, and near
@@ -190,12 +193,14 @@ static void test_width_of_vectors_does_not_matter(void **state)
 {
     (void)state;
     check_kernels(
-        (struct kernels[]){{triangle_pass_narrow_double, triangle_gather_narrow_double},
-                           {triangle_pass_wide_double, triangle_gather_wide_double}},
+        (struct kernels[]){
+            {dense_front_pass_avx2_double, dense_front_gather_avx2_double},
+            {dense_front_pass_avx512_double, dense_front_gather_avx512_double}},
         false, 1e-14);
     check_kernels(
-        (struct kernels[]){{triangle_pass_narrow_float, triangle_gather_narrow_float},
-                           {triangle_pass_wide_float, triangle_gather_wide_float}},
+        (struct kernels[]){
+            {dense_front_pass_avx2_float, dense_front_gather_avx2_float},
+            {dense_front_pass_avx512_float, dense_front_gather_avx512_float}},
         true, 1e-6);
 }
 

@@ -167,13 +167,13 @@ static void test_tube_half_empty(void **state)
     const double r = 0.2 * spacing, section = M_PI * r * r;
     const double layer =
         conditions.diffusivity / conditions.mass_transfer / (spacing * spacing);
-    const double fall =
+    const double drop =
         log(1 / (1 - 2339e-5)) * 1e5 * conditions.molar_mass / (GAS_CONSTANT * 293.15);
     assert_int_equal(history.n_event, 4);
     double time = 0;
     for (int k = 0; k < 4; k++) {
         const double resistance = layer + (2 + k) * spacing / section;
-        const double rate = conditions.diffusivity * fall / resistance;
+        const double rate = conditions.diffusivity * drop / resistance;
         assert_true(fabs(history.rate[k] / rate - 1) < 1e-12);
         time +=
             section * spacing * (k == 0 ? 0.5 : 1) * conditions.liquid_density / rate;

@@ -34,7 +34,7 @@ static void check_chain(double spread, enum liquid_limit liquid)
     const struct drying_conditions conditions = kharaghani_conditions(liquid);
     struct drying_history history = dry_and_check(&network, &conditions);
 
-    const double fall = log1p(2339 / (1e5 - 2339.0)) * conditions.diffusivity * 1e5 *
+    const double drop = log1p(2339 / (1e5 - 2339.0)) * conditions.diffusivity * 1e5 *
                         conditions.molar_mass / (GAS_CONSTANT * 293.15);
     double resistance =
         conditions.diffusivity / conditions.mass_transfer / (spacing * spacing);
@@ -43,10 +43,10 @@ static void check_chain(double spread, enum liquid_limit liquid)
         const int throat = lattice_throat(&network, 4 * (n - 1 - k), 2);
         const double radius = network.throat_radius[throat];
         assert_int_equal(history.event_throat[k], throat);
-        assert_true(fabs(history.rate[k] * resistance / fall - 1) < 1e-12);
+        assert_true(fabs(history.rate[k] * resistance / drop - 1) < 1e-12);
         assert_int_equal(history.clusters[k], 1);
         time += throat_volume(&network, throat) * conditions.liquid_density *
-                resistance / fall;
+                resistance / drop;
         assert_true(fabs(history.time[k + 1] / time - 1) < 1e-12);
         resistance += spacing / (M_PI * radius * radius);
     }

@@ -108,12 +108,14 @@ static int easiest(const struct state *state)
 {
     const bool throats = state->conditions->rule == INVADE_THROATS;
     const int n = throats ? state->network->n_throat : state->network->n_node;
-    const double *ease = state->conditions->ease ? state->conditions->ease
-                                                 : state->network->throat_radius;
+    const double *entry_priority = state->conditions->entry_priority
+                                       ? state->conditions->entry_priority
+                                       : state->network->throat_radius;
     int best = -1;
     for (int e = 0; e < n; e++)
-        if ((best < 0 || ease[e] > ease[best] ||
-             (ease[e] == ease[best] && is_before(state, e, best))) &&
+        if ((best < 0 || entry_priority[e] > entry_priority[best] ||
+             (entry_priority[e] == entry_priority[best] &&
+              is_before(state, e, best))) &&
             may_enter(state, e))
             best = e;
     return best;
@@ -162,18 +164,18 @@ static void check_against_rule(const struct network *network,
 static void check_all(const struct network *network, int different, uint64_t *seed)
 {
     const int n = network->n_throat + network->n_node;
-    double *ease = NEW_ARRAY(double, n);
+    double *entry_priority = NEW_ARRAY(double, n);
     for (int i = 0; i < n; i++)
-        ease[i] = (int)(next_random(seed) * different);
+        entry_priority[i] = (int)(next_random(seed) * different);
     for (int way = 0; way < 8; way++)
         check_against_rule(network, &(struct invasion_conditions){
                                         .rule = way & 1 ? INVADE_NODES : INVADE_THROATS,
-                                        .ease = ease,
+                                        .entry_priority = entry_priority,
                                         .inlet = WALL_Z_UPPER,
                                         .outlet = WALL_Z_LOWER,
                                         .trapping = way & 2,
                                         .until_breakthrough = way & 4});
-    free(ease);
+    free(entry_priority);
 }
 
 static void test_lattices(void **state)
@@ -356,7 +358,7 @@ static void test_cubic_threshold(void **state)
 
 // --- whatever the numbers ----------------------------------------------------------
 
-// Of all values EASE (of throats, or nodes) only so many are DIFFERENT.
+// Of all values ENTRY_PRIORITY (of throats, or nodes) only so many are DIFFERENT.
 static void check_renumbered(enum invasion_rule rule, int different)
 {
     uint64_t seed = 31;
@@ -364,9 +366,9 @@ static void check_renumbered(enum invasion_rule rule, int different)
     int *node = shuffled(one.n_node, &seed), *throat = shuffled(one.n_throat, &seed);
     const bool throats = rule == INVADE_THROATS;
     const int n = throats ? one.n_throat : one.n_node;
-    double *ease[2] = {NEW_ARRAY(double, n), NEW_ARRAY(double, n)};
+    double *entry_priority[2] = {NEW_ARRAY(double, n), NEW_ARRAY(double, n)};
     for (int i = 0; i < n; i++)
-        ease[1][throats ? throat[i] : node[i]] = ease[0][i] =
+        entry_priority[1][throats ? throat[i] : node[i]] = entry_priority[0][i] =
             floor(different * next_random(&seed));
     for (int i = 0; i < one.n_node; i++) {
         two.node_walls[node[i]] = one.node_walls[i];
@@ -378,14 +380,14 @@ static void check_renumbered(enum invasion_rule rule, int different)
     }
     for (int trapping = 0; trapping < 2; trapping++) {
         struct invasion_conditions conditions = {.rule = rule,
-                                                 .ease = ease[0],
+                                                 .entry_priority = entry_priority[0],
                                                  .inlet = WALL_X_LOWER,
                                                  .outlet = WALL_X_UPPER,
                                                  .trapping = trapping};
         struct invasion first, second;
         struct reason reason;
         assert_int_equal(invade(&one, &conditions, &first, &reason), 0);
-        conditions.ease = ease[1];
+        conditions.entry_priority = entry_priority[1];
         assert_int_equal(invade(&two, &conditions, &second, &reason), 0);
         assert_int_equal(first.n, second.n);
         assert_int_equal(first.breakthrough, second.breakthrough);
@@ -397,8 +399,8 @@ static void check_renumbered(enum invasion_rule rule, int different)
         invasion_free(&first);
         invasion_free(&second);
     }
-    free(ease[0]);
-    free(ease[1]);
+    free(entry_priority[0]);
+    free(entry_priority[1]);
     free(node);
     free(throat);
     network_free(&one);

@@ -20,7 +20,7 @@ enum { EDGE = 6, NODES = EDGE * EDGE * EDGE, ENDS = 4, BITS = 600 };
 struct sample {
     int n_link;
     struct graph_link link[4 * NODES]; // nodes, then ends
-    double taken[NODES];
+    double extracted[NODES];
     double level[ENDS];
 };
 
@@ -47,7 +47,7 @@ static struct sample make_sample(double decades, uint64_t seed)
         if (x > 0) add_link(&sample, i, i - 1, decades, &state);
         if (y > 0) add_link(&sample, i, i - EDGE, decades, &state);
         if (z > 0) add_link(&sample, i, i - EDGE * EDGE, decades, &state);
-        if (uniform(&state) < 0.2) sample.taken[i] = uniform(&state);
+        if (uniform(&state) < 0.2) sample.extracted[i] = uniform(&state);
     }
     for (int e = 0; e < ENDS; e++) {
         add_link(&sample, (e * 71 + 5) % NODES, NODES + e, decades, &state);
@@ -63,7 +63,7 @@ static mpfr_t matrix[NODES][NODES], right[NODES];
 static void assemble(const struct sample *sample)
 {
     for (int i = 0; i < NODES; i++) {
-        mpfr_set_d(right[i], -sample->taken[i], MPFR_RNDN);
+        mpfr_set_d(right[i], -sample->extracted[i], MPFR_RNDN);
         for (int j = 0; j < NODES; j++)
             mpfr_set_d(matrix[i][j], 0, MPFR_RNDN);
     }
@@ -123,14 +123,14 @@ static void solve_exactly(const struct sample *sample, double *potential, double
     }
     assemble(sample);
     eliminate_exactly();
-    mpfr_t fall;
-    mpfr_init2(fall, BITS);
+    mpfr_t drop;
+    mpfr_init2(drop, BITS);
     for (int k = 0; k < sample->n_link; k++) {
         const struct graph_link link = sample->link[k];
         if (link.b < NODES) continue;
-        mpfr_sub_d(fall, right[link.a], sample->level[link.b - NODES], MPFR_RNDN);
-        mpfr_mul_d(fall, fall, link.conductance, MPFR_RNDN);
-        flow[link.b - NODES] = mpfr_get_d(fall, MPFR_RNDN);
+        mpfr_sub_d(drop, right[link.a], sample->level[link.b - NODES], MPFR_RNDN);
+        mpfr_mul_d(drop, drop, link.conductance, MPFR_RNDN);
+        flow[link.b - NODES] = mpfr_get_d(drop, MPFR_RNDN);
     }
     for (int i = 0; i < NODES; i++) {
         potential[i] = mpfr_get_d(right[i], MPFR_RNDN);
@@ -138,7 +138,7 @@ static void solve_exactly(const struct sample *sample, double *potential, double
         for (int j = 0; j < NODES; j++)
             mpfr_clear(matrix[i][j]);
     }
-    mpfr_clear(fall);
+    mpfr_clear(drop);
 }
 
 // --- ours ----------------------------------------------------------------------------
@@ -149,8 +149,8 @@ static double fall_between(const void *context, int b, int a)
     return sample->level[b] - sample->level[a];
 }
 
-static void solve_by_elimination(const struct sample *sample, double *potential,
-                                 double *flow)
+static void solve_cluster_elimination(const struct sample *sample, double *potential,
+                                      double *flow)
 {
     struct kron kron = {0};
     kron_begin(&kron, NODES, ENDS);
@@ -158,7 +158,7 @@ static void solve_by_elimination(const struct sample *sample, double *potential,
         kron_link(&kron, sample->link[k].a, sample->link[k].b,
                   sample->link[k].conductance);
     for (int i = 0; i < NODES; i++)
-        kron_take(&kron, i, sample->taken[i]);
+        kron_extract(&kron, i, sample->extracted[i]);
     kron_eliminate(&kron);
     double value[NODES + ENDS];
     for (int e = 0; e < ENDS; e++) {
@@ -172,7 +172,7 @@ static void solve_by_elimination(const struct sample *sample, double *potential,
 }
 
 // Twice: as it is, and with half of the links changed before and back again.
-static void solve_by_graph(const struct sample *sample, double *flow)
+static void solve_cluster_cholesky(const struct sample *sample, double *flow)
 {
     cholmod_common common;
     plain_cholmod_start(&common);
@@ -183,30 +183,30 @@ static void solve_by_graph(const struct sample *sample, double *flow)
         link[k] = sample->link[k];
         if (k % 2) link[k].conductance = 0.5;
     }
-    struct liquid_graph *graph =
-        liquid_graph_make(&common, NODES, sample->n_link - ENDS, link, row, entry);
+    struct cluster_laplacian *graph =
+        cluster_laplacian_make(&common, NODES, sample->n_link - ENDS, link, row, entry);
     for (int i = 0; i < NODES; i++)
-        graph->source[row[i]] = -sample->taken[i];
+        graph->source[row[i]] = -sample->extracted[i];
     for (int e = 0; e < ENDS; e++) {
         const struct graph_link *to_end = &sample->link[sample->n_link - ENDS + e];
         arm[e] =
             (struct graph_arm){row[to_end->a], to_end->conductance, sample->level[e]};
     }
-    liquid_graph_set_arms(graph, ENDS, arm);
-    liquid_graph_lack(graph);
-    assert_true(liquid_graph_correct(graph, 1e-10));
+    cluster_laplacian_set_arms(graph, ENDS, arm);
+    cluster_laplacian_residual(graph);
+    assert_true(cluster_laplacian_correct(graph, 1e-10));
     for (int k = 0; k < sample->n_link - ENDS; k++)
-        liquid_graph_set(graph, entry[k], sample->link[k].conductance);
+        cluster_laplacian_set(graph, entry[k], sample->link[k].conductance);
     for (int round = 0; round < 10; round++) {
-        if (liquid_graph_lack(graph) < 1e-15) break;
-        assert_true(liquid_graph_correct(graph, 1e-15));
+        if (cluster_laplacian_residual(graph) < 1e-15) break;
+        assert_true(cluster_laplacian_correct(graph, 1e-15));
     }
     for (int e = 0; e < ENDS; e++) {
         const struct compensated level = {.value = arm[e].level};
         flow[e] = arm[e].conductance *
                   compensated_difference(graph->potential[arm[e].a], level);
     }
-    liquid_graph_free(graph);
+    cluster_laplacian_free(graph);
     cholmod_finish(&common);
 }
 
@@ -228,7 +228,7 @@ static void test_elimination_keeps_its_digits(void **state)
         const struct sample sample = make_sample(decades, 3u + (unsigned)decades);
         double exact[NODES], potential[NODES], exact_flow[ENDS], flow[ENDS];
         solve_exactly(&sample, exact, exact_flow);
-        solve_by_elimination(&sample, potential, flow);
+        solve_cluster_elimination(&sample, potential, flow);
         for (int i = 0; i < NODES; i++)
             assert_true(fabs(potential[i] / exact[i] - 1) < 2e-14);
         const double largest = largest_of(exact_flow, ENDS);
@@ -243,8 +243,8 @@ static void test_graph_finds_the_same(void **state)
     for (int decades = 0; decades <= 12; decades += 4) {
         const struct sample sample = make_sample(decades, 7u + (unsigned)decades);
         double potential[NODES], exact_flow[ENDS], flow[ENDS];
-        solve_by_elimination(&sample, potential, exact_flow);
-        solve_by_graph(&sample, flow);
+        solve_cluster_elimination(&sample, potential, exact_flow);
+        solve_cluster_cholesky(&sample, flow);
         const double largest = largest_of(exact_flow, ENDS);
         for (int e = 0; e < ENDS; e++)
             assert_true(fabs(flow[e] - exact_flow[e]) < 1e-13 * largest);

@@ -34,7 +34,7 @@ static struct result invaded(const struct network *network, unsigned inlet,
                                 &(struct entry_conditions){tension, 0, 1000, 0}, &entry,
                                 &result.reason),
                      0);
-    conditions.ease = entry.ease;
+    conditions.entry_priority = entry.entry_priority;
     assert_int_equal(invade(network, &conditions, &result.invasion, &result.reason), 0);
     result.outcome =
         outcome_make(network, &conditions, &result.invasion, entry.pressure);

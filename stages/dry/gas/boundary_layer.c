@@ -53,7 +53,7 @@ static bool same_spot(const struct spot *s, const struct spot *t)
 }
 
 // Takes off the marks of nodes right behind another.
-static void keep_outermost(const struct open_face *face, int n_marked, bool *foot)
+static void keep_outermost(const struct open_surface *face, int n_marked, bool *foot)
 {
     const struct network *network = face->network;
     const struct planar size = face->region.rectangle.size;
@@ -74,7 +74,7 @@ static void keep_outermost(const struct open_face *face, int n_marked, bool *foo
     free(spot);
 }
 
-static enum status find_feet(const struct open_face *face, enum boundary_feet feet,
+static enum status find_feet(const struct open_surface *face, enum boundary_feet feet,
                              struct boundary_layer *layer, struct reason *reason)
 {
     static const char *const names[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
@@ -123,7 +123,7 @@ static enum status choose_layers(double thickness, int layers, int n_node,
     return STATUS_OK;
 }
 
-static struct planar_cells cells_of(const struct open_face *face,
+static struct planar_cells cells_of(const struct open_surface *face,
                                     const struct boundary_layer *layer)
 {
     struct planar *place = NEW_ARRAY(struct planar, layer->n_exposed);
@@ -150,7 +150,7 @@ static int drop_empty(const double *area, struct boundary_layer *layer)
     return before - kept;
 }
 
-static void find_areas(const struct open_face *face, bool lateral,
+static void find_areas(const struct open_surface *face, bool lateral,
                        struct boundary_layer *layer)
 {
     struct planar_cells cells = cells_of(face, layer);
@@ -194,13 +194,13 @@ enum status boundary_layer_make(const struct network *network, int wall, double 
             "/domain/periodic: the open wall cannot be on an axis along which "
             "the box repeats");
 
-    struct open_face face = open_face_of(network, wall, length);
+    struct open_surface face = open_surface_of(network, wall, length);
     enum status status = find_feet(&face, form->feet, layer, reason);
     if (!status)
         status = choose_layers(thickness, form->lumped ? 1 : form->layers,
                                network->n_node, layer, reason);
     if (!status) find_areas(&face, !form->lumped, layer);
-    open_face_free(&face);
+    open_surface_free(&face);
     layer->wall = NEW_ARRAY(uint8_t, layer->n_exposed);
     memset(layer->wall, wall, (size_t)layer->n_exposed);
     return status;

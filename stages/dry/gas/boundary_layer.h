@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boundary layer above the open face, as a network of its own [K 3.3.5, 3.7]: nodes
-// of the surface are extended into the gas by straight columns, level by level up to
-// the drying air, and neighbouring columns exchange vapour sideways.
+// The boundary layer above the open surface, as a network of its own [K 3.3.5, 3.7]:
+// nodes of the surface are extended into the gas by straight columns, level by level up
+// to the drying air, and neighbouring columns exchange vapour sideways.
 //
 // Exchange areas (K Fig. 3.44) are those of a finite-volume scheme: seen along the
-// columns, each has the part of the open face that is nearest to it, and two that share
-// an edge exchange through it, square to the line between them. The areas sum to the
-// face whatever the network; on the cubic lattice they are K's L^2, and half of it for
-// links along the surface.
+// columns, each has the part of the open surface that is nearest to it, and two that
+// share an edge exchange through it, square to the line between them. The areas sum to
+// the face whatever the network; on the cubic lattice they are K's L^2, and half of it
+// for links along the surface.
 #ifndef CRAQUELURE_BOUNDARY_LAYER_H
 #define CRAQUELURE_BOUNDARY_LAYER_H
 
@@ -38,7 +38,7 @@ struct boundary_layer {
     int *exposed;  // (n_exposed) nodes of the network with a column, ascending on each
                    // wall; on the edge of two walls one for each
     uint8_t *wall; // (n_exposed) 0..5
-    double *area;  // (n_exposed) exchange area; they sum to the area of the open face
+    double *area; // (n_exposed) exchange area; they sum to the area of the open surface
 
     int n_lateral;
     int (*lateral)[2]; // (n_lateral) links along a level, as indices into exposed
@@ -55,7 +55,7 @@ void boundary_feet_mark(const struct network *network, int wall,
                         enum boundary_feet feet, bool *foot);
 
 // Only nodes with a throat of kind THROAT_NETWORK have columns; of several that lie one
-// behind the other, the outermost. The open face is the rectangle that these throats
+// behind the other, the outermost. The open surface is the rectangle that these throats
 // span: the wall itself, where cells are cut by it. It repeats where the box does;
 // along an axis without extent it is as wide as the box (a layer of grains). THICKNESS
 // is in units of LENGTH (m).

@@ -110,7 +110,8 @@ static void dissect(struct dissection *dissection, int begin, int end)
     dissect(dissection, n_near, n_parting);
 }
 
-int *column_order(const struct network *network, const struct boundary_layer *layer)
+int *nested_dissection_order(const struct network *network,
+                             const struct boundary_layer *layer)
 {
     const int n = layer->n_exposed;
     struct dissection dissection = {.position = network->node_position,

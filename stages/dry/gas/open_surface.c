@@ -33,7 +33,7 @@ static void find_span(const struct network *network, int axis, double *lower,
     *size = whole ? box : most - least;
 }
 
-static struct planar place_of(const struct open_face *face, struct vector at)
+static struct planar place_of(const struct open_surface *face, struct vector at)
 {
     return (struct planar){
         (component(at, lateral_axis(face->wall, 0)) - face->corner.x) / face->unit,
@@ -46,7 +46,7 @@ static double within(double x, double size, bool periodic)
     return periodic ? x - size * floor(x / size) : fmin(fmax(x, 0), size);
 }
 
-struct planar place_on_face(const struct open_face *face, int node)
+struct planar place_on_face(const struct open_surface *face, int node)
 {
     const struct rectangle *whole = &face->region.rectangle;
     const struct planar at = place_of(face, face->network->node_position[node]);
@@ -69,7 +69,7 @@ struct edges {
     double area; // of the faces
 };
 
-static void add_edges(const struct open_face *face, int f, struct edges *edges)
+static void add_edges(const struct open_surface *face, int f, struct edges *edges)
 {
     const struct network *network = face->network;
     const int64_t begin = network->face_offset[f], end = network->face_offset[f + 1];
@@ -140,7 +140,7 @@ static void keep_sides(const struct edges *edges, struct planar_region *region)
 }
 
 // Leaves the region the whole rectangle where the faces cover it, or there are none.
-static void find_sides(struct open_face *face)
+static void find_sides(struct open_surface *face)
 {
     const struct network *network = face->network;
     const struct planar size = face->region.rectangle.size;
@@ -155,9 +155,10 @@ static void find_sides(struct open_face *face)
     free(edges.edge);
 }
 
-struct open_face open_face_of(const struct network *network, int wall, double unit)
+struct open_surface open_surface_of(const struct network *network, int wall,
+                                    double unit)
 {
-    struct open_face face = {.network = network, .wall = wall, .unit = unit};
+    struct open_surface face = {.network = network, .wall = wall, .unit = unit};
     const uint8_t *periodic = network->packing.periodic;
     struct planar size;
     find_span(network, lateral_axis(wall, 0), &face.corner.x, &size.x);
@@ -171,7 +172,7 @@ struct open_face open_face_of(const struct network *network, int wall, double un
     return face;
 }
 
-void open_face_free(struct open_face *face)
+void open_surface_free(struct open_surface *face)
 {
     planar_region_free(&face->region);
 }

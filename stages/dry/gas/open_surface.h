@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The side of the body that is open to the air, seen along the columns of the boundary
 // layer.
-#ifndef CRAQUELURE_OPEN_FACE_H
-#define CRAQUELURE_OPEN_FACE_H
+#ifndef CRAQUELURE_OPEN_SURFACE_H
+#define CRAQUELURE_OPEN_SURFACE_H
 
 #include "network/network.h"
 #include "planar_region.h"
 
-struct open_face {
+struct open_surface {
     const struct network *network;
     int wall;
     double unit;          // m
@@ -18,12 +18,13 @@ struct open_face {
 // What the faces in WALL cover; where there are none (a layer of grains, cells left
 // out, networks from elsewhere) the rectangle that the throats span. It repeats where
 // the box does; along an axis without extent it is as wide as the box. Lengths are in
-// units of UNIT (m). Keeps NETWORK. The caller frees it with open_face_free.
-struct open_face open_face_of(const struct network *network, int wall, double unit);
+// units of UNIT (m). Keeps NETWORK. The caller frees it with open_surface_free.
+struct open_surface open_surface_of(const struct network *network, int wall,
+                                    double unit);
 
 // Where NODE is on the face; its edge, for a node beyond.
-struct planar place_on_face(const struct open_face *face, int node);
+struct planar place_on_face(const struct open_surface *face, int node);
 
-void open_face_free(struct open_face *face);
+void open_surface_free(struct open_surface *face);
 
 #endif

@@ -25,55 +25,55 @@ static int level_site(const struct boundary_layer *layer, int n_node, int level,
 }
 
 // Along level LEVEL, and to the next.
-static void link_level(struct star_mesh *mesh, const struct boundary_layer *layer,
+static void link_level(struct kron_fronts *mesh, const struct boundary_layer *layer,
                        int n_node, int level)
 {
     for (int i = 0; level + 1 < layer->layers && i < layer->n_exposed; i++)
-        star_mesh_link(mesh, level_site(layer, n_node, level, i),
-                       level_site(layer, n_node, level + 1, i),
-                       layer->area[i] / layer->spacing);
+        kron_fronts_link(mesh, level_site(layer, n_node, level, i),
+                         level_site(layer, n_node, level + 1, i),
+                         layer->area[i] / layer->spacing);
     // Half a cell stands on the surface [K 3.3.5].
     const double height = level == 0 ? 0.5 : 1;
     for (int k = 0; k < layer->n_lateral; k++)
-        star_mesh_link(mesh, level_site(layer, n_node, level, layer->lateral[k][0]),
-                       level_site(layer, n_node, level, layer->lateral[k][1]),
-                       height * layer->lateral_conductance[k]);
+        kron_fronts_link(mesh, level_site(layer, n_node, level, layer->lateral[k][0]),
+                         level_site(layer, n_node, level, layer->lateral[k][1]),
+                         height * layer->lateral_conductance[k]);
 }
 
 // From the air down: each level is eliminated when the one below is linked to it.
-static void add_by_levels(struct star_mesh *mesh, const struct boundary_layer *layer,
+static void add_by_levels(struct kron_fronts *mesh, const struct boundary_layer *layer,
                           int n_node)
 {
     for (int level = layer->layers - 1; level >= 0; level--) {
         link_level(mesh, layer, n_node, level);
         for (int i = 0; level + 1 < layer->layers && i < layer->n_exposed; i++)
-            star_mesh_eliminate(mesh, level_site(layer, n_node, level + 1, i));
+            kron_fronts_eliminate(mesh, level_site(layer, n_node, level + 1, i));
     }
 }
 
-static void add_by_columns(struct star_mesh *mesh, const struct network *network,
+static void add_by_columns(struct kron_fronts *mesh, const struct network *network,
                            const struct boundary_layer *layer)
 {
     for (int level = 0; level < layer->layers; level++)
         link_level(mesh, layer, network->n_node, level);
-    int *order = column_order(network, layer);
+    int *order = nested_dissection_order(network, layer);
     for (int k = 0; k < layer->n_exposed; k++)
         for (int level = layer->layers - 1; level > 0; level--)
-            star_mesh_eliminate(mesh,
-                                level_site(layer, network->n_node, level, order[k]));
+            kron_fronts_eliminate(mesh,
+                                  level_site(layer, network->n_node, level, order[k]));
     free(order);
 }
 
 // Only its feet remain. What is linked at once while it is eliminated is a level, or
 // the columns that part it in two, about twice the root of their number: whichever is
 // less.
-static void add_boundary_layer(struct star_mesh *mesh, const struct network *network,
+static void add_boundary_layer(struct kron_fronts *mesh, const struct network *network,
                                const struct boundary_layer *layer)
 {
     const int n_node = network->n_node, top = layer->layers - 1;
     for (int i = 0; i < layer->n_exposed; i++)
-        star_mesh_link_air(mesh, level_site(layer, n_node, top, i),
-                           layer->area[i] / layer->spacing);
+        kron_fronts_link_air(mesh, level_site(layer, n_node, top, i),
+                             layer->area[i] / layer->spacing);
     if (2 * sqrt(layer->n_exposed) * layer->layers < layer->n_exposed)
         add_by_columns(mesh, network, layer);
     else
@@ -91,14 +91,14 @@ struct vapour vapour_make(const struct network *network, double length,
         if (network->throat_kind[t] == THROAT_NETWORK)
             vapour.conductance[t] =
                 throat_conductance(network, t, length, knudsen_radius);
-    vapour.mesh = star_mesh_make(vapour.n_site, tolerance > 0);
+    vapour.mesh = kron_fronts_make(vapour.n_site, tolerance > 0);
     add_boundary_layer(&vapour.mesh, network, layer);
     return vapour;
 }
 
 void vapour_free(struct vapour *vapour)
 {
-    star_mesh_free(&vapour->mesh);
+    kron_fronts_free(&vapour->mesh);
     free(vapour->conductance);
     *vapour = (struct vapour){0};
 }
@@ -107,12 +107,12 @@ void vapour_free(struct vapour *vapour)
 
 void vapour_open_throat(struct vapour *vapour, int throat, int a, int b)
 {
-    star_mesh_link(&vapour->mesh, a, b, vapour->conductance[throat]);
+    kron_fronts_link(&vapour->mesh, a, b, vapour->conductance[throat]);
 }
 
 void vapour_dry_node(struct vapour *vapour, int node)
 {
-    star_mesh_eliminate(&vapour->mesh, node);
+    kron_fronts_eliminate(&vapour->mesh, node);
 }
 
 double vapour_rate(const struct vapour *vapour)
@@ -122,5 +122,5 @@ double vapour_rate(const struct vapour *vapour)
 
 double vapour_evaporation(const struct vapour *vapour, int node)
 {
-    return vapour->mesh.air[node];
+    return vapour->mesh.air_conductance[node];
 }

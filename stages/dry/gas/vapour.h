@@ -18,7 +18,7 @@ struct vapour {
     // Sites are the network's nodes, then the boundary layer's nodes level by level.
     int n_site;
     double *conductance; // (n_throat) area over length
-    struct star_mesh mesh;
+    struct kron_fronts mesh;
 };
 
 // For a network that is full of liquid, under LAYER; with a TOLERANCE above 0 links on

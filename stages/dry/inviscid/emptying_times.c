@@ -111,10 +111,10 @@ static void renew_dirty(struct emptying_times *times)
 // ALL_CHANGED: what each node evaporates.
 static void set_rates(struct emptying_times *times, bool all_changed)
 {
-    struct star_mesh *mesh = &times->occupancy->vapour.mesh;
-    for (int k = 0; k < mesh->n_linked; k++)
-        share_by_node(times, mesh->linked[k]);
-    mesh->n_linked = 0;
+    struct kron_fronts *mesh = &times->occupancy->vapour.mesh;
+    for (int k = 0; k < mesh->n_reached_air; k++)
+        share_by_node(times, mesh->reached_air[k]);
+    mesh->n_reached_air = 0;
     const bool all = all_changed || evaporation_shares_lack_digits(times);
     if (all) {
         advance_all(times);
@@ -160,7 +160,7 @@ struct emptying_times emptying_times_make(struct occupancy *occupancy, bool by_t
     }
     for (int k = 0; k < occupancy->n_wet; k++)
         share_by_node(&times, occupancy->wet[k]);
-    occupancy->vapour.mesh.n_linked = 0;
+    occupancy->vapour.mesh.n_reached_air = 0;
     set_rates(&times, true);
     return times;
 }

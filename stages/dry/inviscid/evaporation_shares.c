@@ -30,7 +30,7 @@ static int timer_of(struct emptying_times *times, int owner)
 static double amount_of(const struct emptying_times *times,
                         const struct evaporation_share *share)
 {
-    return share->part * times->occupancy->vapour.mesh.air[share->node];
+    return share->part * times->occupancy->vapour.mesh.air_conductance[share->node];
 }
 
 static void add_to_sum(struct emptying_times *times, int k, double amount)

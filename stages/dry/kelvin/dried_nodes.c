@@ -49,13 +49,14 @@ static void add_link(struct dried_nodes *dried, int site, double conductance)
 }
 
 // With all its links but that to SITE's neighbour BUT, which is returned.
-static double note_node(struct dried_nodes *dried, const struct star_mesh *mesh,
+static double note_node(struct dried_nodes *dried, const struct kron_fronts *mesh,
                         int site, int but)
 {
     GROW_ARRAY(dried->node, dried->n_node, dried->node_capacity);
     struct dried_node *node = &dried->node[dried->n_node++];
-    *node = (struct dried_node){.begin = dried->n_link, .total = mesh->air[site]};
-    const int n = star_mesh_list_links(mesh, site, dried->other, dried->conductance);
+    *node = (struct dried_node){.begin = dried->n_link,
+                                .total = mesh->air_conductance[site]};
+    const int n = kron_fronts_list_links(mesh, site, dried->other, dried->conductance);
     double to_but = 0;
     for (int i = 0; i < n; i++) {
         const int other = dried->other[i];
@@ -93,9 +94,9 @@ static void note_dried(struct dried_nodes *dried, struct occupancy *occupancy,
     const bool dries[2] = {occupancy->liquid_beside[end[0]] == 1,
                            occupancy->liquid_beside[end[1]] == 1};
     if (!dries[0] && !dries[1]) return;
-    struct star_mesh *mesh = &occupancy->vapour.mesh;
-    star_mesh_bring_up_to_date(mesh, end[0]);
-    star_mesh_bring_up_to_date(mesh, end[1]);
+    struct kron_fronts *mesh = &occupancy->vapour.mesh;
+    kron_fronts_bring_up_to_date(mesh, end[0]);
+    kron_fronts_bring_up_to_date(mesh, end[1]);
     const int one = dries[0] ? end[0] : end[1], other = dries[0] ? end[1] : end[0];
     const double between =
         note_node(dried, mesh, one, other) + occupancy->vapour.conductance[throat];

@@ -30,16 +30,16 @@ static void find_levels(struct kelvin_menisci *kelvin,
 
 void kelvin_find_gains(struct kelvin_menisci *kelvin, const struct occupancy *occupancy)
 {
-    const struct star_mesh *mesh = &occupancy->vapour.mesh;
+    const struct kron_fronts *mesh = &occupancy->vapour.mesh;
     struct compensated rate = {0};
     find_levels(kelvin, occupancy);
     for (int k = 0; k < occupancy->n_wet; k++) {
         const int node = occupancy->wet[k];
-        kelvin->flow[node] = mesh->air[node] * (1 - kelvin->level[node]);
-        if (mesh->air[node] > 0) compensated_add(&rate, kelvin->flow[node]);
+        kelvin->flow[node] = mesh->air_conductance[node] * (1 - kelvin->level[node]);
+        if (mesh->air_conductance[node] > 0) compensated_add(&rate, kelvin->flow[node]);
     }
     kelvin->rate = compensated_value(rate);
-    star_mesh_add_flows(mesh, kelvin->level, kelvin->flow);
+    kron_fronts_add_flows(mesh, kelvin->level, kelvin->flow);
     memset(kelvin->gain, 0, (size_t)kelvin->n * sizeof *kelvin->gain);
     for (int k = 0; k < occupancy->n_wet; k++)
         share_flow(kelvin, k, kelvin->flow[occupancy->wet[k]], kelvin->gain);

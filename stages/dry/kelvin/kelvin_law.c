@@ -12,7 +12,7 @@ struct kelvin_law kelvin_law(const struct drying_conditions *conditions)
     return (struct kelvin_law){
         .over_flat = over_flat,
         .saturation = conditions->saturation_pressure,
-        .fall =
+        .drop =
             log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
                   over_flat),
         .exponent = tension / (conditions->liquid_density * heat),
@@ -24,18 +24,18 @@ struct kelvin_law kelvin_law(const struct drying_conditions *conditions)
 // This form keeps its digits for wide throats.
 double kelvin_potential(const struct kelvin_law *law, double exponent)
 {
-    return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->fall;
+    return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->drop;
 }
 
 double kelvin_slope(const struct kelvin_law *law, double exponent)
 {
     const double gas = law->over_flat - law->saturation * expm1(-exponent);
-    return law->saturation * exp(-exponent) / gas / law->fall;
+    return law->saturation * exp(-exponent) / gas / law->drop;
 }
 
 double kelvin_exponent_at(const struct kelvin_law *law, double potential)
 {
-    return -log1p(-expm1(potential * law->fall) * law->over_flat / law->saturation);
+    return -log1p(-expm1(potential * law->drop) * law->over_flat / law->saturation);
 }
 
 double kelvin_least_exponent(const struct kelvin_law *law)

@@ -10,7 +10,7 @@
 
 struct kelvin_law {
     double over_flat, saturation; // p_g - p_sat, p_sat, Pa
-    double fall;                  // of -ln(1 - p_v/p_g) from flat menisci to the air
+    double drop;                  // of -ln(1 - p_v/p_g) from flat menisci to the air
     double exponent;              // of a throat 1 m in radius
     double of_pressure;           // of 1 Pa
     double steepness;             // rise of the exponent a metre upwards, 1/m

@@ -23,14 +23,14 @@ static const double ENOUGH = 1e-6;
 
 static void find_outside(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    struct star_mesh *mesh = &occupancy->vapour.mesh;
+    struct kron_fronts *mesh = &occupancy->vapour.mesh;
     const int n_site = occupancy->vapour.n_site;
     int *other = NEW_ARRAY(int, n_site);
     double *link = NEW_ARRAY(double, n_site);
-    star_mesh_list_fronts(mesh);
+    kron_fronts_list(mesh);
     for (int i = 0; i < n_site; i++) {
-        kelvin->outside[i] = mesh->air[i];
-        const int n = star_mesh_list_links(mesh, i, other, link);
+        kelvin->outside[i] = mesh->air_conductance[i];
+        const int n = kron_fronts_list_links(mesh, i, other, link);
         for (int k = 0; k < n; k++) {
             kelvin->outside[i] += link[other[k]];
             link[other[k]] = 0;
@@ -227,7 +227,7 @@ static void begin_anew(struct kelvin_menisci *kelvin, struct occupancy *occupanc
     const int n_emptied = kelvin->listed_at - occupancy->n_full;
     kelvin->listed_at = occupancy->n_full;
     kelvin_list_bodies(kelvin, occupancy);
-    star_mesh_list_fronts(&occupancy->vapour.mesh);
+    kron_fronts_list(&occupancy->vapour.mesh);
     equilibrated_follow(kelvin->equilibrated, kelvin, occupancy, n_emptied);
     kelvin_find_reaches(kelvin, occupancy);
     kelvin_raise_nodes(kelvin, occupancy);

@@ -55,10 +55,10 @@ struct links {
 static void find_degrees(const struct occupancy *occupancy, struct links *links, int k,
                          double *all, double *apart)
 {
-    const struct star_mesh *mesh = &occupancy->vapour.mesh;
+    const struct kron_fronts *mesh = &occupancy->vapour.mesh;
     const int node = occupancy->wet[k];
-    const int n = star_mesh_list_links(mesh, node, links->other, links->link);
-    *all = *apart = mesh->air[node];
+    const int n = kron_fronts_list_links(mesh, node, links->other, links->link);
+    *all = *apart = mesh->air_conductance[node];
     for (int i = 0; i < n; i++) {
         const int other = links->other[i];
         *all += links->link[other];
@@ -67,7 +67,7 @@ static void find_degrees(const struct occupancy *occupancy, struct links *links,
     }
 }
 
-static void add_falls(struct kelvin_viscous *both, const struct occupancy *occupancy,
+static void add_drops(struct kelvin_viscous *both, const struct occupancy *occupancy,
                       struct links *links, const int *place)
 {
     const struct kelvin_menisci *kelvin = both->kelvin;
@@ -85,7 +85,7 @@ static void add_falls(struct kelvin_viscous *both, const struct occupancy *occup
     }
 }
 
-void find_falls(struct kelvin_viscous *both, const struct occupancy *occupancy)
+void find_drops(struct kelvin_viscous *both, const struct occupancy *occupancy)
 {
     const struct kelvin_menisci *kelvin = both->kelvin;
     const int n_site = occupancy->vapour.n_site;
@@ -99,7 +99,7 @@ void find_falls(struct kelvin_viscous *both, const struct occupancy *occupancy)
     }
     for (int k = 0; k < occupancy->n_wet; k++)
         links.group[occupancy->wet[k]] = group_of(kelvin, occupancy, k);
-    add_falls(both, occupancy, &links, place);
+    add_drops(both, occupancy, &links, place);
     free(links.group);
     free(links.other);
     free(links.link);

@@ -10,7 +10,7 @@
 int throat_of(const struct kelvin_viscous *both, int k);
 
 // Fills LUMPED and SINGLE for the menisci as they are listed.
-void find_falls(struct kelvin_viscous *both, const struct occupancy *occupancy);
+void find_drops(struct kelvin_viscous *both, const struct occupancy *occupancy);
 
 // Of the flow, at the exponents of now: where liquid flows easily menisci rise and fall
 // with their cluster, else alone.

@@ -395,7 +395,7 @@ enum status kelvin_viscous_find(struct kelvin_viscous *both,
     kelvin_menisci_begin(both->kelvin, occupancy);
     list_menisci(both, occupancy);
     begin_lone(both, occupancy);
-    find_falls(both, occupancy);
+    find_drops(both, occupancy);
     for (int round = 0; round < MOST_REVISIONS; round++) {
         const bool at_once = round < REVISIONS_AT_ONCE;
         const enum status status = find_both(both, occupancy, at_once, losses, reason);

@@ -70,10 +70,10 @@ static void add_shares(struct schur_rows *rows, const struct kelvin_menisci *kel
 static void add_node(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
                      const struct occupancy *occupancy, int body, struct at_node at)
 {
-    const struct star_mesh *mesh = &occupancy->vapour.mesh;
+    const struct kron_fronts *mesh = &occupancy->vapour.mesh;
     const int node = occupancy->wet[at.k];
-    const int n = star_mesh_list_links(mesh, node, rows->other, rows->link);
-    double sum = mesh->air[node] * at.part;
+    const int n = kron_fronts_list_links(mesh, node, rows->other, rows->link);
+    double sum = mesh->air_conductance[node] * at.part;
     for (int i = 0; i < n; i++) {
         const int l = occupancy->wet_place[rows->other[i]];
         const double link = rows->link[rows->other[i]];

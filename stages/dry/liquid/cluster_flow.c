@@ -23,13 +23,13 @@ enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
     struct flow_solver *solver = flow->solver;
     double error = INFINITY;
     list_ends(flow, piece);
-    struct liquid_graph *graph = find_graph(flow, piece);
-    if (graph) error = solve_by_graph(flow, piece, graph);
+    struct cluster_laplacian *graph = find_graph(flow, piece);
+    if (graph) error = solve_cluster_cholesky(flow, piece, graph);
     if (graph && !(error < FLOW_TOLERANCE)) {
         free_graph(solver, &solver->cluster[piece->cluster]);
         list_nodes(flow, piece);
     }
-    if (!(error < FLOW_TOLERANCE)) error = solve_by_elimination(flow, piece);
+    if (!(error < FLOW_TOLERANCE)) error = solve_cluster_elimination(flow, piece);
     if (!(error < FLOW_TOLERANCE))
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "the liquid's balance closes to %.3g of its largest flow only, "

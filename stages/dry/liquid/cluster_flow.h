@@ -16,11 +16,12 @@ enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
 
 // Either way: movers and nodes are listed; returns the error of the balances, of the
 // largest flow.
-double solve_by_elimination(struct liquid_flow *flow, struct piece *piece);
-double solve_by_graph(struct liquid_flow *flow, struct piece *piece,
-                      struct liquid_graph *graph);
+double solve_cluster_elimination(struct liquid_flow *flow, struct piece *piece);
+double solve_cluster_cholesky(struct liquid_flow *flow, struct piece *piece,
+                              struct cluster_laplacian *graph);
 
 // The cluster's graph; NULL if it is too small for one: then its nodes are listed.
-struct liquid_graph *find_graph(struct liquid_flow *flow, const struct piece *piece);
+struct cluster_laplacian *find_graph(struct liquid_flow *flow,
+                                     const struct piece *piece);
 
 #endif

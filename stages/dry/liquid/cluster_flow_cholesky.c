@@ -42,7 +42,7 @@ static bool make_graph(struct liquid_flow *flow, const struct piece *piece)
         solver->site[solver->node[k]] = -1;
     int *row = NEW_ARRAY(int, n), *entry = NEW_ARRAY(int, n_link);
     memory->graph =
-        liquid_graph_make(&solver->common, n, n_link, solver->link, row, entry);
+        cluster_laplacian_make(&solver->common, n, n_link, solver->link, row, entry);
     if (memory->graph) {
         memory->node = NEW_ARRAY(int, n);
         for (int k = 0; k < n; k++) {
@@ -61,11 +61,12 @@ static bool make_graph(struct liquid_flow *flow, const struct piece *piece)
     return memory->graph;
 }
 
-struct liquid_graph *find_graph(struct liquid_flow *flow, const struct piece *piece)
+struct cluster_laplacian *find_graph(struct liquid_flow *flow,
+                                     const struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
     struct cluster_memory *memory = &solver->cluster[piece->cluster];
-    const struct liquid_graph *old = memory->graph;
+    const struct cluster_laplacian *old = memory->graph;
     if (old && old->n_left <= MOST_LEFT * old->n) return memory->graph;
     free_graph(solver, memory);
     list_nodes(flow, piece);
@@ -88,7 +89,7 @@ static void change_reference(struct liquid_flow *flow, const struct piece *piece
 
 // What menisci take that stay, and the arms to those that move or respond.
 static void describe_menisci(struct liquid_flow *flow, const struct piece *piece,
-                             struct liquid_graph *graph)
+                             struct cluster_laplacian *graph)
 {
     struct flow_solver *solver = flow->solver;
     int n_arm = 0;
@@ -99,8 +100,8 @@ static void describe_menisci(struct liquid_flow *flow, const struct piece *piece
         int end[2];
         const int n = liquid_ends(flow, t, end);
         if (solver->entry[t] >= 0 && n == 2)
-            liquid_graph_set(graph, solver->entry[t],
-                             flow->moving[t] ? 0 : flow->conductance[t]);
+            cluster_laplacian_set(graph, solver->entry[t],
+                                  flow->moving[t] ? 0 : flow->conductance[t]);
         for (int e = 0; e < n; e++) {
             const int row = solver->row[end[e]];
             if (flow->moving[t])
@@ -108,7 +109,7 @@ static void describe_menisci(struct liquid_flow *flow, const struct piece *piece
                     row, meniscus_arm(flow, t, n),
                     menisci_potential(&flow->menisci, t, piece->reference)};
             else
-                graph->source[row] -= taken_from_end(flow, t, n);
+                graph->source[row] -= extracted_from_end(flow, t, n);
         }
     }
     for (int k = solver->n_mover; k < solver->n_end; k++) {
@@ -119,18 +120,19 @@ static void describe_menisci(struct liquid_flow *flow, const struct piece *piece
                 (struct graph_arm){solver->row[end[e]], response_arm(flow, t, n),
                                    end_potential(flow, t, piece->reference)};
     }
-    liquid_graph_set_arms(graph, n_arm, solver->arm);
+    cluster_laplacian_set_arms(graph, n_arm, solver->arm);
 }
 
 // Movers, what responds, and arms come in one order.
-static void collect_inflow(struct liquid_flow *flow, const struct liquid_graph *graph)
+static void collect_inflow(struct liquid_flow *flow,
+                           const struct cluster_laplacian *graph)
 {
     struct flow_solver *solver = flow->solver;
     const struct graph_arm *arm = graph->arm;
     for (int k = 0; k < solver->n_end; k++) {
         int end[2];
         const int throat = solver->mover[k], n = liquid_ends(flow, throat, end);
-        double sum = k < solver->n_mover ? 0 : n * taken_from_end(flow, throat, n);
+        double sum = k < solver->n_mover ? 0 : n * extracted_from_end(flow, throat, n);
         for (int e = 0; e < n; e++, arm++) {
             const struct compensated level = {.value = arm->level};
             sum += arm->conductance *
@@ -143,22 +145,22 @@ static void collect_inflow(struct liquid_flow *flow, const struct liquid_graph *
 // What the worst balance lacks, of the largest flow; 0 where nothing flows, as between
 // menisci that are all alike.
 static double graph_error(struct liquid_flow *flow, struct piece *piece,
-                          struct liquid_graph *graph)
+                          struct cluster_laplacian *graph)
 {
-    const double lack = liquid_graph_lack(graph);
+    const double residual = cluster_laplacian_residual(graph);
     collect_inflow(flow, graph);
     piece->flow = flow_scale(flow, piece);
-    return lack > 0 ? lack / piece->flow : 0;
+    return residual > 0 ? residual / piece->flow : 0;
 }
 
-double solve_by_graph(struct liquid_flow *flow, struct piece *piece,
-                      struct liquid_graph *graph)
+double solve_cluster_cholesky(struct liquid_flow *flow, struct piece *piece,
+                              struct cluster_laplacian *graph)
 {
     change_reference(flow, piece);
     describe_menisci(flow, piece, graph);
     double error = graph_error(flow, piece, graph);
-    for (int k = 0; k < REFINEMENTS && !(error <= FLOW_AIM); k++) {
-        const bool good = liquid_graph_correct(graph, FLOW_AIM * piece->flow);
+    for (int k = 0; k < REFINEMENTS && !(error <= FLOW_TARGET); k++) {
+        const bool good = cluster_laplacian_correct(graph, FLOW_TARGET * piece->flow);
         error = graph_error(flow, piece, graph);
         if (!good) break;
     }

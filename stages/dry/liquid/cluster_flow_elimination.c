@@ -9,13 +9,13 @@ static double excess_of(const struct liquid_flow *flow, int throat)
     return flow->moving[throat] ? 0 : flow->excess[throat];
 }
 
-static double fall_between_ends(const void *context, int b, int a)
+static double drop_between_ends(const void *context, int b, int a)
 {
     const struct liquid_flow *flow = context;
     const int to = flow->solver->mover[a], from = flow->solver->mover[b];
-    const double fall = menisci_potential(&flow->menisci, from, to);
-    if (a < flow->solver->n_mover && b < flow->solver->n_mover) return fall;
-    return fall + (excess_of(flow, from) - excess_of(flow, to));
+    const double drop = menisci_potential(&flow->menisci, from, to);
+    if (a < flow->solver->n_mover && b < flow->solver->n_mover) return drop;
+    return drop + (excess_of(flow, from) - excess_of(flow, to));
 }
 
 static void link_throat(struct liquid_flow *flow, int throat)
@@ -24,7 +24,8 @@ static void link_throat(struct liquid_flow *flow, int throat)
     int end[2];
     const int n = liquid_ends(flow, throat, end);
     for (int e = 0; e < n; e++)
-        kron_take(&solver->kron, solver->site[end[e]], taken_from_end(flow, throat, n));
+        kron_extract(&solver->kron, solver->site[end[e]],
+                     extracted_from_end(flow, throat, n));
     if (n == 2)
         kron_link(&solver->kron, solver->site[end[0]], solver->site[end[1]],
                   flow->conductance[throat]);
@@ -50,9 +51,9 @@ static double find_inflow(struct liquid_flow *flow, const struct piece *piece)
         const int throat = solver->mover[k];
         int end[2];
         const int n = liquid_ends(flow, throat, end);
-        solver->inflow[throat] = kron_flow(&solver->kron, k, fall_between_ends, flow);
+        solver->inflow[throat] = kron_flow(&solver->kron, k, drop_between_ends, flow);
         if (k >= solver->n_mover)
-            solver->inflow[throat] += n * taken_from_end(flow, throat, n);
+            solver->inflow[throat] += n * extracted_from_end(flow, throat, n);
         sum += solver->inflow[throat] - solver->charge[throat];
     }
     return fabs(sum);
@@ -78,7 +79,7 @@ static void keep_potentials(struct liquid_flow *flow, const struct piece *piece)
 }
 
 // The nodes are listed. Returns the error of the balance.
-double solve_by_elimination(struct liquid_flow *flow, struct piece *piece)
+double solve_cluster_elimination(struct liquid_flow *flow, struct piece *piece)
 {
     struct flow_solver *solver = flow->solver;
     kron_begin(&solver->kron, solver->n_node, solver->n_end);
@@ -92,8 +93,8 @@ double solve_by_elimination(struct liquid_flow *flow, struct piece *piece)
     for (int k = 0; k < solver->n_node; k++)
         solver->site[solver->node[k]] = -1;
     kron_eliminate(&solver->kron);
-    const double lack = find_inflow(flow, piece);
+    const double residual = find_inflow(flow, piece);
     keep_potentials(flow, piece);
     piece->flow = flow_scale(flow, piece);
-    return lack > 0 ? lack / piece->flow : 0;
+    return residual > 0 ? residual / piece->flow : 0;
 }

@@ -13,23 +13,23 @@ enum { MOST_STEPS = 30 };
 
 // --- the rows ------------------------------------------------------------------------
 
-static void allocate_rows(struct liquid_graph *graph, int n, int n_link)
+static void allocate_rows(struct cluster_laplacian *graph, int n, int n_link)
 {
-    *graph = (struct liquid_graph){.n = n,
-                                   .present = NEW_ARRAY(double, n),
-                                   .offset = NEW_ARRAY(int, n + 2),
-                                   .column = NEW_ARRAY(int, 2 * n_link),
-                                   .mirror = NEW_ARRAY(int, 2 * n_link),
-                                   .conductance = NEW_ARRAY(double, 2 * n_link),
-                                   .ground = NEW_ARRAY(double, n),
-                                   .potential = NEW_ARRAY(struct compensated, n),
-                                   .source = NEW_ARRAY(double, n),
-                                   .lack = NEW_ARRAY(double, n)};
+    *graph = (struct cluster_laplacian){.n = n,
+                                        .present = NEW_ARRAY(double, n),
+                                        .offset = NEW_ARRAY(int, n + 2),
+                                        .column = NEW_ARRAY(int, 2 * n_link),
+                                        .mirror = NEW_ARRAY(int, 2 * n_link),
+                                        .conductance = NEW_ARRAY(double, 2 * n_link),
+                                        .ground = NEW_ARRAY(double, n),
+                                        .potential = NEW_ARRAY(struct compensated, n),
+                                        .source = NEW_ARRAY(double, n),
+                                        .residual = NEW_ARRAY(double, n)};
     for (int i = 0; i < n; i++)
         graph->present[i] = 1;
 }
 
-static void fill_rows(struct liquid_graph *graph, int n_link,
+static void fill_rows(struct cluster_laplacian *graph, int n_link,
                       const struct graph_link *link, const int *row, int *entry)
 {
     for (int k = 0; k < n_link; k++) {
@@ -50,22 +50,23 @@ static void fill_rows(struct liquid_graph *graph, int n_link,
     }
 }
 
-struct liquid_graph *liquid_graph_make(cholmod_common *common, int n, int n_link,
-                                       const struct graph_link *link, int *row,
-                                       int *entry)
+struct cluster_laplacian *cluster_laplacian_make(cholmod_common *common, int n,
+                                                 int n_link,
+                                                 const struct graph_link *link,
+                                                 int *row, int *entry)
 {
-    if (!graph_factor_order(common, n, n_link, link, row)) return NULL;
-    struct liquid_graph *graph = NEW_ARRAY(struct liquid_graph, 1);
+    if (!updated_cholesky_order(common, n, n_link, link, row)) return NULL;
+    struct cluster_laplacian *graph = NEW_ARRAY(struct cluster_laplacian, 1);
     allocate_rows(graph, n, n_link);
     fill_rows(graph, n_link, link, row, entry);
-    graph->factor = graph_factor_make(common, graph);
+    graph->factor = updated_cholesky_make(common, graph);
     return graph;
 }
 
-void liquid_graph_free(struct liquid_graph *graph)
+void cluster_laplacian_free(struct cluster_laplacian *graph)
 {
     if (!graph) return;
-    graph_factor_free(graph->factor);
+    updated_cholesky_free(graph->factor);
     free(graph->present);
     free(graph->offset);
     free(graph->column);
@@ -74,34 +75,35 @@ void liquid_graph_free(struct liquid_graph *graph)
     free(graph->ground);
     free(graph->potential);
     free(graph->source);
-    free(graph->lack);
+    free(graph->residual);
     free(graph);
 }
 
 // --- changes -------------------------------------------------------------------------
 
-void liquid_graph_set(struct liquid_graph *graph, int entry, double conductance)
+void cluster_laplacian_set(struct cluster_laplacian *graph, int entry,
+                           double conductance)
 {
     if (graph->conductance[entry] == conductance) return;
     graph->conductance[entry] = graph->conductance[graph->mirror[entry]] = conductance;
-    graph_factor_note(graph->factor, entry);
+    updated_cholesky_note(graph->factor, entry);
 }
 
-void liquid_graph_leave(struct liquid_graph *graph, int row)
+void cluster_laplacian_leave(struct cluster_laplacian *graph, int row)
 {
     graph->n_left += graph->present[row] != 0;
     graph->present[row] = 0;
 }
 
-void liquid_graph_cut(struct liquid_graph *graph, int row)
+void cluster_laplacian_cut(struct cluster_laplacian *graph, int row)
 {
-    liquid_graph_leave(graph, row);
+    cluster_laplacian_leave(graph, row);
     for (int k = graph->offset[row]; k < graph->offset[row + 1]; k++)
-        liquid_graph_set(graph, k, 0);
+        cluster_laplacian_set(graph, k, 0);
 }
 
-void liquid_graph_set_arms(struct liquid_graph *graph, int n_arm,
-                           const struct graph_arm *arm)
+void cluster_laplacian_set_arms(struct cluster_laplacian *graph, int n_arm,
+                                const struct graph_arm *arm)
 {
     for (int k = 0; k < graph->n; k++)
         graph->ground[k] = 0;
@@ -113,34 +115,34 @@ void liquid_graph_set_arms(struct liquid_graph *graph, int n_arm,
 
 // --- the balances --------------------------------------------------------------------
 
-double liquid_graph_lack(struct liquid_graph *graph)
+double cluster_laplacian_residual(struct cluster_laplacian *graph)
 {
     const struct compensated *potential = graph->potential;
-    double *lack = graph->lack;
+    double *residual = graph->residual;
     for (int i = 0; i < graph->n; i++) {
         double sum = 0;
         for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
             sum += graph->conductance[k] *
                    compensated_difference(potential[graph->column[k]], potential[i]);
-        lack[i] = graph->present[i] != 0 ? graph->source[i] + sum : 0;
+        residual[i] = graph->present[i] != 0 ? graph->source[i] + sum : 0;
     }
     for (int k = 0; k < graph->n_arm; k++) {
         const struct graph_arm *arm = &graph->arm[k];
         const struct compensated level = {.value = arm->level};
-        lack[arm->a] +=
+        residual[arm->a] +=
             arm->conductance * compensated_difference(level, potential[arm->a]);
     }
     double largest = 0, sum = 0;
     for (int i = 0; i < graph->n; i++) {
-        if (fabs(lack[i]) > largest) largest = fabs(lack[i]);
-        sum += lack[i];
+        if (fabs(residual[i]) > largest) largest = fabs(residual[i]);
+        sum += residual[i];
     }
     return isfinite(sum) ? largest : INFINITY;
 }
 
 static void multiply(void *context, const double *x, double *image)
 {
-    const struct liquid_graph *graph = context;
+    const struct cluster_laplacian *graph = context;
     for (int i = 0; i < graph->n; i++) {
         double sum = graph->ground[i] * x[i];
         for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
@@ -151,40 +153,41 @@ static void multiply(void *context, const double *x, double *image)
 
 static void precondition(void *context, const double *residual, double *z)
 {
-    const struct liquid_graph *graph = context;
-    graph_factor_solve(graph->factor, residual, z);
+    const struct cluster_laplacian *graph = context;
+    updated_cholesky_solve(graph->factor, residual, z);
     for (int i = 0; i < graph->n; i++)
         z[i] *= graph->present[i];
 }
 
 // Raises all potentials alike until what the balances lack adds up to nothing. Mostly a
 // cluster rises or falls nearly as one, and the rest is found with more digits then.
-static void level_potentials(struct liquid_graph *graph)
+static void level_potentials(struct cluster_laplacian *graph)
 {
-    double lack = 0, ground = 0;
+    double residual = 0, ground = 0;
     for (int i = 0; i < graph->n; i++) {
-        lack += graph->lack[i];
+        residual += graph->residual[i];
         ground += graph->present[i] * graph->ground[i];
     }
     if (!(ground > 0)) return;
-    const double rise = lack / ground;
+    const double rise = residual / ground;
     for (int i = 0; i < graph->n; i++) {
         compensated_add(&graph->potential[i], rise);
-        graph->lack[i] -= graph->present[i] * graph->ground[i] * rise;
+        graph->residual[i] -= graph->present[i] * graph->ground[i] * rise;
     }
 }
 
-bool liquid_graph_correct(struct liquid_graph *graph, double aim)
+bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance)
 {
-    if (!graph_factor_follow(graph->factor, graph)) return false;
+    if (!updated_cholesky_follow(graph->factor, graph)) return false;
     level_potentials(graph);
-    double **room = graph_factor_room(graph->factor);
+    double **room = updated_cholesky_room(graph->factor);
     const struct linear_problem problem = {
         graph->n, graph, multiply, precondition, {room[0], room[1], room[2]}};
     double *correction = room[3];
-    conjugate_gradients(&problem, graph->lack, correction, aim, MOST_STEPS);
-    if (!(sqrt(sum_of_products(graph->lack, graph->lack, graph->n)) <= aim))
-        graph_factor_forget(graph->factor);
+    conjugate_gradients(&problem, graph->residual, correction, tolerance, MOST_STEPS);
+    if (!(sqrt(sum_of_products(graph->residual, graph->residual, graph->n)) <=
+          tolerance))
+        updated_cholesky_forget(graph->factor);
     for (int i = 0; i < graph->n; i++)
         compensated_add(&graph->potential[i], correction[i]);
     return true;

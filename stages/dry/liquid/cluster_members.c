@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-static void reserve(struct throat_lists *lists, int cluster)
+static void reserve(struct cluster_members *lists, int cluster)
 {
     const int before = lists->capacity;
     while (lists->capacity <= cluster)
@@ -15,7 +15,7 @@ static void reserve(struct throat_lists *lists, int cluster)
             lists->first[c][l] = -1;
 }
 
-static void take_out(struct throat_lists *lists, int throat)
+static void take_out(struct cluster_members *lists, int throat)
 {
     const int next = lists->next[throat], before = lists->before[throat];
     if (next >= 0) lists->before[next] = before;
@@ -25,7 +25,7 @@ static void take_out(struct throat_lists *lists, int throat)
         lists->first[lists->cluster[throat]][lists->of_throat[throat]] = next;
 }
 
-static void put_first(struct throat_lists *lists, int throat, int cluster, int list)
+static void put_first(struct cluster_members *lists, int throat, int cluster, int list)
 {
     reserve(lists, cluster);
     int *first = &lists->first[cluster][list];
@@ -37,8 +37,8 @@ static void put_first(struct throat_lists *lists, int throat, int cluster, int l
     *first = throat;
 }
 
-void throat_lists_follow(struct throat_lists *lists, const struct clusters *clusters,
-                         int throat)
+void cluster_members_follow(struct cluster_members *lists,
+                            const struct clusters *clusters, int throat)
 {
     const int cluster = clusters->of_throat[throat];
     const int list = clusters->meniscus[throat] ? LIST_MENISCI : LIST_INSIDE;
@@ -49,25 +49,26 @@ void throat_lists_follow(struct throat_lists *lists, const struct clusters *clus
     if (cluster >= 0) put_first(lists, throat, cluster, list);
 }
 
-struct throat_lists throat_lists_make(const struct clusters *clusters, int n_throat)
+struct cluster_members cluster_members_make(const struct clusters *clusters,
+                                            int n_throat)
 {
-    struct throat_lists lists = {.cluster = NEW_ARRAY(int, n_throat),
-                                 .next = NEW_ARRAY(int, n_throat),
-                                 .before = NEW_ARRAY(int, n_throat),
-                                 .of_throat = NEW_ARRAY(int, n_throat)};
+    struct cluster_members lists = {.cluster = NEW_ARRAY(int, n_throat),
+                                    .next = NEW_ARRAY(int, n_throat),
+                                    .before = NEW_ARRAY(int, n_throat),
+                                    .of_throat = NEW_ARRAY(int, n_throat)};
     for (int t = n_throat - 1; t >= 0; t--) {
         lists.cluster[t] = -1;
-        throat_lists_follow(&lists, clusters, t);
+        cluster_members_follow(&lists, clusters, t);
     }
     return lists;
 }
 
-void throat_lists_free(struct throat_lists *lists)
+void cluster_members_free(struct cluster_members *lists)
 {
     free(lists->cluster);
     free(lists->next);
     free(lists->before);
     free(lists->of_throat);
     free(lists->first);
-    *lists = (struct throat_lists){0};
+    *lists = (struct cluster_members){0};
 }

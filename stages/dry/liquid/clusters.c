@@ -232,10 +232,10 @@ int clusters_invasion_throat(struct clusters *clusters, int cluster)
     return -1;
 }
 
-static void rank_throats(struct clusters *clusters, const double *ease)
+static void rank_throats(struct clusters *clusters, const double *entry_priority)
 {
     const int n = clusters->network->n_throat;
-    order_throats(clusters->network, ease, clusters->throat_at_rank);
+    order_throats(clusters->network, entry_priority, clusters->throat_at_rank);
     for (int k = 0; k < n; k++)
         clusters->rank[clusters->throat_at_rank[k]] = k;
 }
@@ -269,8 +269,8 @@ static void find_clusters(struct clusters *clusters)
 }
 
 struct clusters clusters_make(const struct network *network,
-                              const struct incidence *incidence, const double *ease,
-                              bool gas_parts)
+                              const struct incidence *incidence,
+                              const double *entry_priority, bool gas_parts)
 {
     struct clusters clusters = {.network = network,
                                 .incidence = incidence,
@@ -283,7 +283,7 @@ struct clusters clusters_make(const struct network *network,
                                 .found_by = NEW_ARRAY(int, network->n_throat)};
     for (int i = 0; i < network->n_node; i++)
         clusters.joins[i] = true;
-    rank_throats(&clusters, ease);
+    rank_throats(&clusters, entry_priority);
     find_clusters(&clusters);
     return clusters;
 }

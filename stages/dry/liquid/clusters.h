@@ -48,11 +48,11 @@ struct clusters {
 };
 
 // All throats of kind THROAT_NETWORK hold liquid, all nodes join, no menisci yet. Gas
-// enters throats as order_throats says for EASE (n_throat; NULL: their radii). Keeps
-// NETWORK and INCIDENCE, which must live as long. O(n log n).
+// enters throats as order_throats says for ENTRY_PRIORITY (n_throat; NULL: their
+// radii). Keeps NETWORK and INCIDENCE, which must live as long. O(n log n).
 struct clusters clusters_make(const struct network *network,
-                              const struct incidence *incidence, const double *ease,
-                              bool gas_parts);
+                              const struct incidence *incidence,
+                              const double *entry_priority, bool gas_parts);
 
 // Gas has come to NODE from outside: its liquid throats have menisci there, and the
 // liquid is connected through it as before.

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 // Of the flow that a response would make of all of a potential: what rounding leaves is
-// FLOW_AIM of this.
+// FLOW_TARGET of this.
 static const double ROUNDED = 1e-2;
 
 // --- one throat, one cluster ---------------------------------------------------------
@@ -52,7 +52,7 @@ double response_arm(const struct liquid_flow *flow, int throat, int n)
     return flow->response[throat] / n * through_arm(flow, throat, n);
 }
 
-double taken_from_end(const struct liquid_flow *flow, int throat, int n)
+double extracted_from_end(const struct liquid_flow *flow, int throat, int n)
 {
     return flow->solver->charge[throat] / n * through_arm(flow, throat, n);
 }
@@ -65,7 +65,7 @@ double end_potential(const struct liquid_flow *flow, int throat, int reference)
 
 double node_potential(const struct flow_solver *solver, int cluster, int node)
 {
-    const struct liquid_graph *graph = solver->cluster[cluster].graph;
+    const struct cluster_laplacian *graph = solver->cluster[cluster].graph;
     return compensated_value(graph ? graph->potential[solver->row[node]]
                                    : solver->potential[node]);
 }
@@ -73,7 +73,7 @@ double node_potential(const struct flow_solver *solver, int cluster, int node)
 int first_throat(const struct flow_solver *solver, const struct piece *piece,
                  enum throat_list list)
 {
-    return throat_lists_first(&solver->lists, piece->cluster, list);
+    return cluster_members_first(&solver->lists, piece->cluster, list);
 }
 
 static void add_node(struct flow_solver *solver, int node)
@@ -103,13 +103,13 @@ void list_nodes(struct liquid_flow *flow, const struct piece *piece)
 
 void free_graph(struct flow_solver *solver, struct cluster_memory *memory)
 {
-    struct liquid_graph *graph = memory->graph;
+    struct cluster_laplacian *graph = memory->graph;
     for (int k = 0; graph && k < graph->n; k++) {
         if (graph->present[k] == 0) continue;
         solver->potential[memory->node[k]] = graph->potential[k];
         solver->row[memory->node[k]] = -1;
     }
-    liquid_graph_free(graph);
+    cluster_laplacian_free(graph);
     free(memory->node);
     memory->graph = NULL;
     memory->node = NULL;
@@ -130,7 +130,7 @@ static void cut_node(struct flow_solver *solver, struct cluster_memory *memory,
                      int node)
 {
     if (solver->row[node] < 0) return;
-    liquid_graph_cut(memory->graph, solver->row[node]);
+    cluster_laplacian_cut(memory->graph, solver->row[node]);
     solver->row[node] = -1;
 }
 
@@ -143,7 +143,7 @@ static void part_with(struct flow_solver *solver, const struct network *network,
         const int node = network->throat_nodes[throat][end], row = solver->row[node];
         if (row < 0) continue;
         solver->potential[node] = memory->graph->potential[row];
-        liquid_graph_leave(memory->graph, row);
+        cluster_laplacian_leave(memory->graph, row);
         solver->row[node] = -1;
     }
 }
@@ -159,11 +159,11 @@ void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occu
     const int32_t *node = occupancy->network->throat_nodes[throat];
     for (int end = 0; end < 2; end++)
         cut_node(solver, memory, node[end]);
-    throat_lists_follow(&solver->lists, clusters, throat);
+    cluster_members_follow(&solver->lists, clusters, throat);
     for (int k = 0; k < clusters->n_moved; k++) {
         const int moved = clusters->moved[k];
         part_with(solver, occupancy->network, memory, moved);
-        throat_lists_follow(&solver->lists, clusters, moved);
+        cluster_members_follow(&solver->lists, clusters, moved);
         solver->cluster[clusters->of_throat[moved]] =
             (struct cluster_memory){.reference = memory->reference,
                                     .resistance = memory->resistance,
@@ -172,7 +172,7 @@ void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occu
     for (int end = 0; end < 2; end++)
         for (int k = incidence->offset[node[end]]; k < incidence->offset[node[end] + 1];
              k++)
-            throat_lists_follow(&solver->lists, clusters, incidence->throat[k]);
+            cluster_members_follow(&solver->lists, clusters, incidence->throat[k]);
     if (clusters->size[old] > 0) return;
     free_graph(solver, memory);
     *memory = (struct cluster_memory){.reference = -1};
@@ -185,9 +185,9 @@ void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occu
         solver->cluster[c] = (struct cluster_memory){.reference = -1};
     }
     reserve(solver, occupancy->clusters.n_id);
-    throat_lists_free(&solver->lists);
+    cluster_members_free(&solver->lists);
     solver->lists =
-        throat_lists_make(&occupancy->clusters, occupancy->network->n_throat);
+        cluster_members_make(&occupancy->clusters, occupancy->network->n_throat);
 }
 
 struct flow_solver *flow_solver_make(const struct occupancy *occupancy)
@@ -196,7 +196,7 @@ struct flow_solver *flow_solver_make(const struct occupancy *occupancy)
               n_throat = occupancy->network->n_throat;
     struct flow_solver *solver = NEW_ARRAY(struct flow_solver, 1);
     *solver = (struct flow_solver){
-        .lists = throat_lists_make(&occupancy->clusters, n_throat),
+        .lists = cluster_members_make(&occupancy->clusters, n_throat),
         .row = NEW_ARRAY(int, n_node),
         .entry = NEW_ARRAY(int, n_throat),
         .potential = NEW_ARRAY(struct compensated, n_node),
@@ -222,7 +222,7 @@ void flow_solver_free(struct flow_solver *solver)
     for (int c = 0; c < solver->capacity; c++)
         free_graph(solver, &solver->cluster[c]);
     cholmod_finish(&solver->common);
-    throat_lists_free(&solver->lists);
+    cluster_members_free(&solver->lists);
     kron_free(&solver->kron);
     free(solver->cluster);
     free(solver->row);

@@ -11,12 +11,12 @@
 
 // Error of a node's balance that is aimed at, relative to the largest flow in its
 // cluster.
-static const double FLOW_AIM = 5e-13;
+static const double FLOW_TARGET = 5e-13;
 
 // What is known of a cluster from before.
 struct cluster_memory {
-    struct liquid_graph *graph; // NULL: none
-    int *node;                  // (graph->n) of its rows
+    struct cluster_laplacian *graph; // NULL: none
+    int *node;                       // (graph->n) of its rows
     int reference;     // potentials are above that at which gas enters this throat, -1:
                        // there are none
     double resistance; // at least that of all its throats one after the other,
@@ -27,7 +27,7 @@ struct flow_solver {
     const struct occupancy *occupancy;
     const double *charge;
     cholmod_common common;
-    struct throat_lists lists;
+    struct cluster_members lists;
     int capacity;
     struct cluster_memory *cluster; // (capacity) by identity
     struct kron kron;
@@ -85,7 +85,7 @@ double meniscus_arm(const struct liquid_flow *flow, int throat, int n);
 // The same where the vapour responds, up to where the meniscus would evaporate CHARGE;
 // what is taken from each of its N liquid ends; potential there.
 double response_arm(const struct liquid_flow *flow, int throat, int n);
-double taken_from_end(const struct liquid_flow *flow, int throat, int n);
+double extracted_from_end(const struct liquid_flow *flow, int throat, int n);
 double end_potential(const struct liquid_flow *flow, int throat, int reference);
 
 // Of NODE in CLUSTER.

@@ -62,11 +62,12 @@ double menisci_weight(const struct menisci *menisci, int throat, int node)
     return menisci->weight * (menisci->height[throat] - height_of_node(menisci, node));
 }
 
-void menisci_ease(const struct menisci *menisci, double *ease)
+void menisci_entry_priority(const struct menisci *menisci, double *entry_priority)
 {
     for (int t = 0; t < menisci->network->n_throat; t++)
-        ease[t] = (menisci->height ? menisci->weight * menisci->height[t] : 0) -
-                  menisci->tension / menisci->radius[t];
+        entry_priority[t] =
+            (menisci->height ? menisci->weight * menisci->height[t] : 0) -
+            menisci->tension / menisci->radius[t];
 }
 
 void menisci_free(struct menisci *menisci)

@@ -33,8 +33,9 @@ double menisci_potential(const struct menisci *menisci, int throat, int referenc
 // Pressure at NODE, above that at the middle of THROAT, of liquid at rest.
 double menisci_weight(const struct menisci *menisci, int throat, int node);
 
-// EASE (n_throat): the potentials at which gas enters the throats, for clusters_make.
-void menisci_ease(const struct menisci *menisci, double *ease);
+// ENTRY_PRIORITY (n_throat): the potentials at which gas enters the throats, for
+// clusters_make.
+void menisci_entry_priority(const struct menisci *menisci, double *entry_priority);
 
 void menisci_free(struct menisci *menisci);
 

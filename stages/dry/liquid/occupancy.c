@@ -84,8 +84,8 @@ enum status occupancy_make(const struct network *network, unsigned open_walls,
     fill_throats(occupancy, form->length);
     occupancy->vapour = vapour_make(network, form->length, form->knudsen_radius,
                                     &occupancy->layer, form->vapour_tolerance);
-    occupancy->clusters =
-        clusters_make(network, &occupancy->incidence, form->ease, form->gas_parts);
+    occupancy->clusters = clusters_make(network, &occupancy->incidence,
+                                        form->entry_priority, form->gas_parts);
     return expose_surface(occupancy, reason);
 }
 
@@ -146,6 +146,6 @@ void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stre
     stream_integers(stream, occupancy->wet, occupancy->n_wet, 0, n_node - 1);
     stream_integers(stream, occupancy->wet_place, n_node, -1, occupancy->n_wet - 1);
     stream_flags(stream, &occupancy->breakthrough, 1);
-    star_mesh_state(&occupancy->vapour.mesh, stream);
+    kron_fronts_state(&occupancy->vapour.mesh, stream);
     clusters_state(&occupancy->clusters, stream);
 }

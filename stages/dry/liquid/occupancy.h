@@ -33,11 +33,11 @@ struct occupancy {
 };
 
 struct occupancy_form {
-    double length;           // m, the unit
-    bool gas_parts;          // as in struct clusters
-    const double *ease;      // (n_throat) as clusters_make takes it
-    double knudsen_radius;   // m, as vapour_make takes it
-    double vapour_tolerance; // likewise
+    double length;                // m, the unit
+    bool gas_parts;               // as in struct clusters
+    const double *entry_priority; // (n_throat) as clusters_make takes it
+    double knudsen_radius;        // m, as vapour_make takes it
+    double vapour_tolerance;      // likewise
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and

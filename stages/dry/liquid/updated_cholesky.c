@@ -21,7 +21,7 @@ static const double ARM_CHANGE = 0.1;
 // definite without links.
 static const double GROUND = 1e-13;
 
-struct graph_factor {
+struct updated_cholesky {
     cholmod_common *common;
     cholmod_factor *factor; // NULL: to be made
     int n;
@@ -34,8 +34,8 @@ struct graph_factor {
 
 // --- from scratch --------------------------------------------------------------------
 
-bool graph_factor_order(cholmod_common *common, int n, int n_link,
-                        const struct graph_link *link, int *row)
+bool updated_cholesky_order(cholmod_common *common, int n, int n_link,
+                            const struct graph_link *link, int *row)
 {
     cholmod_triplet *entries = new_entries(common, n, (size_t)n + (size_t)n_link);
     if (!entries) return false;
@@ -55,8 +55,8 @@ bool graph_factor_order(cholmod_common *common, int n, int n_link,
 
 // Lower triangle. Links that conduct nothing now keep their place in the pattern, for
 // they may later.
-static cholmod_sparse *assemble(struct graph_factor *factor,
-                                const struct liquid_graph *graph)
+static cholmod_sparse *assemble(struct updated_cholesky *factor,
+                                const struct cluster_laplacian *graph)
 {
     cholmod_triplet *entries =
         new_entries(factor->common, factor->n,
@@ -77,7 +77,8 @@ static cholmod_sparse *assemble(struct graph_factor *factor,
     return take_matrix(factor->common, entries);
 }
 
-static bool factorise(struct graph_factor *factor, const struct liquid_graph *graph)
+static bool factorise(struct updated_cholesky *factor,
+                      const struct cluster_laplacian *graph)
 {
     cholmod_common *common = factor->common;
     const int ordering = common->method[0].ordering, postorder = common->postorder;
@@ -97,22 +98,22 @@ static bool factorise(struct graph_factor *factor, const struct liquid_graph *gr
     return good;
 }
 
-struct graph_factor *graph_factor_make(cholmod_common *common,
-                                       const struct liquid_graph *graph)
+struct updated_cholesky *updated_cholesky_make(cholmod_common *common,
+                                               const struct cluster_laplacian *graph)
 {
-    struct graph_factor *factor = NEW_ARRAY(struct graph_factor, 1);
-    *factor =
-        (struct graph_factor){.common = common,
-                              .n = graph->n,
-                              .conductance = NEW_ARRAY(double, graph->offset[graph->n]),
-                              .ground = NEW_ARRAY(double, graph->n),
-                              .work = NEW_ARRAY(double, graph->n)};
+    struct updated_cholesky *factor = NEW_ARRAY(struct updated_cholesky, 1);
+    *factor = (struct updated_cholesky){.common = common,
+                                        .n = graph->n,
+                                        .conductance =
+                                            NEW_ARRAY(double, graph->offset[graph->n]),
+                                        .ground = NEW_ARRAY(double, graph->n),
+                                        .work = NEW_ARRAY(double, graph->n)};
     for (int k = 0; k < ROOM; k++)
         factor->room[k] = NEW_ARRAY(double, graph->n);
     return factor;
 }
 
-void graph_factor_free(struct graph_factor *factor)
+void updated_cholesky_free(struct updated_cholesky *factor)
 {
     if (!factor) return;
     cholmod_free_factor(&factor->factor, factor->common);
@@ -125,12 +126,12 @@ void graph_factor_free(struct graph_factor *factor)
     free(factor);
 }
 
-void graph_factor_forget(struct graph_factor *factor)
+void updated_cholesky_forget(struct updated_cholesky *factor)
 {
     cholmod_free_factor(&factor->factor, factor->common);
 }
 
-double **graph_factor_room(struct graph_factor *factor)
+double **updated_cholesky_room(struct updated_cholesky *factor)
 {
     return factor->room;
 }
@@ -142,14 +143,14 @@ struct rank_one {
     double change;
 };
 
-void graph_factor_note(struct graph_factor *factor, int entry)
+void updated_cholesky_note(struct updated_cholesky *factor, int entry)
 {
     GROW_ARRAY(factor->noted, factor->n_noted, factor->capacity);
     factor->noted[factor->n_noted++] = entry;
 }
 
 // Adds or takes the N changes in CHANGE that have the sign of UP.
-static bool change_rank(struct graph_factor *factor, const struct rank_one *change,
+static bool change_rank(struct updated_cholesky *factor, const struct rank_one *change,
                         int n, bool up)
 {
     cholmod_sparse *columns =
@@ -179,8 +180,8 @@ static bool change_rank(struct graph_factor *factor, const struct rank_one *chan
 }
 
 // Returns how many there are; more than MOST_CHANGES if not all found room.
-static int link_changes(struct graph_factor *factor, const struct liquid_graph *graph,
-                        struct rank_one *change)
+static int link_changes(struct updated_cholesky *factor,
+                        const struct cluster_laplacian *graph, struct rank_one *change)
 {
     int n = 0;
     for (int k = 0; k < factor->n_noted; k++) {
@@ -197,7 +198,8 @@ static int link_changes(struct graph_factor *factor, const struct liquid_graph *
     return n;
 }
 
-static int ground_changes(struct graph_factor *factor, const struct liquid_graph *graph,
+static int ground_changes(struct updated_cholesky *factor,
+                          const struct cluster_laplacian *graph,
                           struct rank_one *change, int n)
 {
     const double least = graph->n_arm > FEW_ARMS ? ARM_CHANGE : 0;
@@ -213,7 +215,8 @@ static int ground_changes(struct graph_factor *factor, const struct liquid_graph
     return n;
 }
 
-bool graph_factor_follow(struct graph_factor *factor, const struct liquid_graph *graph)
+bool updated_cholesky_follow(struct updated_cholesky *factor,
+                             const struct cluster_laplacian *graph)
 {
     if (!factor->factor) return factorise(factor, graph);
     struct rank_one change[MOST_CHANGES];
@@ -226,7 +229,8 @@ bool graph_factor_follow(struct graph_factor *factor, const struct liquid_graph 
     return factorise(factor, graph);
 }
 
-void graph_factor_solve(const struct graph_factor *factor, const double *b, double *x)
+void updated_cholesky_solve(const struct updated_cholesky *factor, const double *b,
+                            double *x)
 {
     memcpy(x, b, (size_t)factor->n * sizeof *x);
     plain_solve(factor->factor, x, factor->work);

@@ -3,35 +3,37 @@
 //
 // It is meant to precondition: small errors pile up in it, and arms are followed only
 // roughly.
-#ifndef CRAQUELURE_GRAPH_FACTOR_H
-#define CRAQUELURE_GRAPH_FACTOR_H
+#ifndef CRAQUELURE_UPDATED_CHOLESKY_H
+#define CRAQUELURE_UPDATED_CHOLESKY_H
 
 #include "cluster_laplacian.h"
 
 // The order in which to eliminate the N nodes of a graph: ROW (n) of each. False if
 // memory ran out.
-bool graph_factor_order(cholmod_common *common, int n, int n_link,
-                        const struct graph_link *link, int *row);
+bool updated_cholesky_order(cholmod_common *common, int n, int n_link,
+                            const struct graph_link *link, int *row);
 
 // Not factorised yet, of a graph whose rows come in that order. The caller frees it
-// with graph_factor_free.
-struct graph_factor *graph_factor_make(cholmod_common *common,
-                                       const struct liquid_graph *graph);
-void graph_factor_free(struct graph_factor *factor);
+// with updated_cholesky_free.
+struct updated_cholesky *updated_cholesky_make(cholmod_common *common,
+                                               const struct cluster_laplacian *graph);
+void updated_cholesky_free(struct updated_cholesky *factor);
 
 // The link at ENTRY has changed.
-void graph_factor_note(struct graph_factor *factor, int entry);
+void updated_cholesky_note(struct updated_cholesky *factor, int entry);
 
 // Follows what has changed. False if there is no factor.
-bool graph_factor_follow(struct graph_factor *factor, const struct liquid_graph *graph);
+bool updated_cholesky_follow(struct updated_cholesky *factor,
+                             const struct cluster_laplacian *graph);
 
 // Next time it is made from scratch.
-void graph_factor_forget(struct graph_factor *factor);
+void updated_cholesky_forget(struct updated_cholesky *factor);
 
 // X (n) for the right side B (n).
-void graph_factor_solve(const struct graph_factor *factor, const double *b, double *x);
+void updated_cholesky_solve(const struct updated_cholesky *factor, const double *b,
+                            double *x);
 
 // Four arrays (n) for who solves with it.
-double **graph_factor_room(struct graph_factor *factor);
+double **updated_cholesky_room(struct updated_cholesky *factor);
 
 #endif

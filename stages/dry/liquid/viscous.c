@@ -70,7 +70,7 @@ void liquid_flow_respond(struct liquid_flow *flow)
 
 static int first_meniscus(const struct liquid_flow *flow, const struct piece *piece)
 {
-    return throat_lists_first(&flow->solver->lists, piece->cluster, LIST_MENISCI);
+    return cluster_members_first(&flow->solver->lists, piece->cluster, LIST_MENISCI);
 }
 
 static int next_throat(const struct liquid_flow *flow, int throat)
@@ -112,7 +112,7 @@ static bool must_stop(const struct liquid_flow *flow, const struct piece *piece,
 {
     return is_full(flow, throat) &&
            flow->solver->charge[throat] - flow->solver->inflow[throat] <
-               -FLOW_AIM * piece->flow;
+               -FLOW_TARGET * piece->flow;
 }
 
 // Menisci as they were, those in throats partly empty, and if that is none, that which
@@ -151,8 +151,8 @@ static int revise_menisci(struct liquid_flow *flow, const struct piece *piece,
     }
     for (int t = first_meniscus(flow, piece); most > 0 && t >= 0;
          t = next_throat(flow, t)) {
-        const double lack = flow->moving[t] ? 0 : shortfall(flow, piece, t);
-        if (!(lack > 0 && lack >= beginners * most)) continue;
+        const double residual = flow->moving[t] ? 0 : shortfall(flow, piece, t);
+        if (!(residual > 0 && residual >= beginners * most)) continue;
         flow->moving[t] = true;
         n++;
     }
@@ -253,7 +253,7 @@ static double resistance_of(struct liquid_flow *flow, const struct piece *piece)
     memory->size = piece->n_throat;
     memory->resistance = 0;
     for (enum throat_list l = 0; l < LISTS; l++)
-        for (int t = throat_lists_first(&solver->lists, piece->cluster, l); t >= 0;
+        for (int t = cluster_members_first(&solver->lists, piece->cluster, l); t >= 0;
              t = next_throat(flow, t))
             memory->resistance += flow->resistance[t];
     return memory->resistance;

@@ -275,7 +275,7 @@ bool run_fits(const struct run *run)
         run->conditions->liquid != LIQUID_VISCOUS && !run->conditions->kelvin;
     return identities_fit(clusters) && pieces_fit(clusters) && menisci_fit(clusters) &&
            liquid_fits(occupancy) && wet_nodes_fit(occupancy) &&
-           star_mesh_fits(&occupancy->vapour.mesh) && ended_fit(run, !has_timers) &&
+           kron_fronts_fit(&occupancy->vapour.mesh) && ended_fit(run, !has_timers) &&
            losses_fit(run) && history_fits(&run->recorder) &&
            (!has_timers || (owners_fit(&run->times) && losing_fit(&run->times) &&
                             shares_fit(&run->times)));

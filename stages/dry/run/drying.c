@@ -64,7 +64,8 @@ static void summarise(const struct run *run, struct drying_history *history)
     history->flow_solutions = run->flow.solutions;
     history->flow_rounds = run->flow.rounds;
     if (run->conditions->stop_saturation > 0)
-        stop_history(history, run->occupancy.network, run->conditions->stop_saturation);
+        truncate_history(history, run->occupancy.network,
+                         run->conditions->stop_saturation);
 }
 
 // Takes the liquid that is not there at the start.
@@ -115,15 +116,15 @@ static void prepare(struct run *run)
 }
 
 // How easily gas enters each throat against gravity. The caller frees it.
-static double *find_ease(const struct network *network,
-                         const struct drying_conditions *conditions,
-                         const struct drying_scale *scale)
+static double *find_entry_priority(const struct network *network,
+                                   const struct drying_conditions *conditions,
+                                   const struct drying_scale *scale)
 {
     struct menisci menisci = menisci_make(network, conditions, scale);
-    double *ease = NEW_ARRAY(double, network->n_throat);
-    menisci_ease(&menisci, ease);
+    double *entry_priority = NEW_ARRAY(double, network->n_throat);
+    menisci_entry_priority(&menisci, entry_priority);
     menisci_free(&menisci);
-    return ease;
+    return entry_priority;
 }
 
 static enum status make_occupancy(const struct network *network, struct run *run,
@@ -140,18 +141,18 @@ static enum status make_occupancy(const struct network *network, struct run *run
         boundary_layer_free(&layer);
         return status;
     }
-    double *ease = conditions->gravity != 0
-                       ? find_ease(network, conditions, &run->scale)
-                       : NULL; // by radius
+    double *entry_priority = conditions->gravity != 0
+                                 ? find_entry_priority(network, conditions, &run->scale)
+                                 : NULL; // by radius
     const struct occupancy_form form = {
         .length = run->scale.length,
         .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
-        .ease = ease,
+        .entry_priority = entry_priority,
         .knudsen_radius = knudsen_radius(conditions),
         .vapour_tolerance = conditions->vapour_tolerance};
     status = occupancy_make(network, conditions->open_walls, &form, layer,
                             &run->occupancy, reason);
-    free(ease);
+    free(entry_priority);
     return status;
 }
 

@@ -32,19 +32,21 @@ static enum status find_invasion(const struct occupancy *occupancy, bool trappin
                                  struct invasion *invasion, struct reason *reason)
 {
     struct network network = *occupancy->network;
-    double *ease = NEW_ARRAY(double, network.n_throat);
+    double *entry_priority = NEW_ARRAY(double, network.n_throat);
     for (int t = 0; t < network.n_throat; t++)
-        ease[t] = -occupancy->clusters.rank[t];
+        entry_priority[t] = -occupancy->clusters.rank[t];
     network.node_walls = ways_in_and_out(occupancy);
-    const struct invasion_conditions conditions = {
-        .ease = ease, .inlet = INLET, .outlet = OUTLET, .trapping = trapping};
+    const struct invasion_conditions conditions = {.entry_priority = entry_priority,
+                                                   .inlet = INLET,
+                                                   .outlet = OUTLET,
+                                                   .trapping = trapping};
     enum status status = invade(&network, &conditions, invasion, reason);
     if (status && trapping)
         status = refuse(reason, STATUS_BAD_DATA,
                         "start_trapping: no throat reaches a closed wall opposite an "
                         "open one, through which liquid could leave");
     free(network.node_walls);
-    free(ease);
+    free(entry_priority);
     return status;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A network that holds less liquid at the start than it could.
-#ifndef CRAQUELURE_START_H
-#define CRAQUELURE_START_H
+#ifndef CRAQUELURE_INITIAL_SATURATION_H
+#define CRAQUELURE_INITIAL_SATURATION_H
 
 #include "dry/liquid/occupancy.h"
 #include "network/drying_record.h"

@@ -24,8 +24,8 @@ static void cut_changes(struct drying_history *history, const struct network *ne
     free(now);
 }
 
-void stop_history(struct drying_history *history, const struct network *network,
-                  double saturation)
+void truncate_history(struct drying_history *history, const struct network *network,
+                      double saturation)
 {
     const int last = history->n_step - 1;
     const double before = history->saturation[last - 1];

@@ -8,7 +8,7 @@
 // Ends HISTORY of NETWORK at SATURATION, which its last step alone has passed: that
 // step becomes the moment at which the saturation, linear in time as that of every
 // throat, was just that.
-void stop_history(struct drying_history *history, const struct network *network,
-                  double saturation);
+void truncate_history(struct drying_history *history, const struct network *network,
+                      double saturation);
 
 #endif

@@ -3,8 +3,8 @@
 // S. Sachdeva, Approximate Gaussian elimination for Laplacians, FOCS 2016; as in Gao,
 // Kyng, Spielman, Robust and practical solution of Laplacian equations by approximate
 // elimination, 2023).
-#ifndef CRAQUELURE_SAMPLED_FACTOR_H
-#define CRAQUELURE_SAMPLED_FACTOR_H
+#ifndef CRAQUELURE_APPROXIMATE_CHOLESKY_H
+#define CRAQUELURE_APPROXIMATE_CHOLESKY_H
 
 #include "conductance_matrix.h"
 

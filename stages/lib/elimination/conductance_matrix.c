@@ -51,8 +51,8 @@ void matrix_multiply(const struct matrix *matrix, const double *x, double *resul
     }
 }
 
-void matrix_lack(const struct matrix *matrix, const double *given,
-                 const struct compensated *x, double *lack)
+void matrix_residual(const struct matrix *matrix, const double *given,
+                     const struct compensated *x, double *residual)
 {
 #pragma omp parallel for schedule(static) if (matrix->n > 20000)
     for (int i = 0; i < matrix->n; i++) {
@@ -60,6 +60,6 @@ void matrix_lack(const struct matrix *matrix, const double *given,
         for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
             sum +=
                 matrix->value[k] * compensated_difference(x[matrix->column[k]], x[i]);
-        lack[i] = sum;
+        residual[i] = sum;
     }
 }

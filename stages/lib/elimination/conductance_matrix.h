@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The balances of a network of conductances: a symmetric positive definite M-matrix.
-#ifndef CRAQUELURE_MATRIX_H
-#define CRAQUELURE_MATRIX_H
+#ifndef CRAQUELURE_CONDUCTANCE_MATRIX_H
+#define CRAQUELURE_CONDUCTANCE_MATRIX_H
 
 #include "basics/compensated.h"
 
@@ -26,10 +26,10 @@ struct matrix matrix_of_links(int n, int n_all, int n_link, const struct link *l
 void matrix_free(struct matrix *matrix);
 
 // What the balances of X (n_all) lack where each site is GIVEN (n; NULL: nothing) from
-// outside, into LACK (n): of differences, so that nothing is lost where X is all but
-// even.
-void matrix_lack(const struct matrix *matrix, const double *given,
-                 const struct compensated *x, double *lack);
+// outside, into RESIDUAL (n): of differences, so that nothing is lost where X is all
+// but even.
+void matrix_residual(const struct matrix *matrix, const double *given,
+                     const struct compensated *x, double *residual);
 
 // RESULT = MATRIX X; both (n), 0 at given places.
 void matrix_multiply(const struct matrix *matrix, const double *x, double *result);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Symmetric matrices without their diagonals, of numbers from 0 on, that gain products
 // of rows with themselves.
-#ifndef CRAQUELURE_TRIANGLE_H
-#define CRAQUELURE_TRIANGLE_H
+#ifndef CRAQUELURE_DENSE_FRONT_H
+#define CRAQUELURE_DENSE_FRONT_H
 
 #include "checkpoint/stream.h"
 
@@ -17,7 +17,7 @@ enum { MOST_SOURCES = 64, PANEL = 48, BLOCK_BYTES = 576 };
 //
 // What a large one gains waits until there is much, and then passes over the entries
 // once for all.
-struct triangle {
+struct dense_front {
     bool is_large;
     bool is_rounded; // large: floats
     size_t capacity; // entries
@@ -29,63 +29,64 @@ struct triangle {
 };
 
 // Where row I begins.
-static inline size_t triangle_row(const struct triangle *triangle, int i)
+static inline size_t dense_front_row(const struct dense_front *dense, int i)
 {
     const size_t row = (size_t)i, panel = row / PANEL;
-    if (!triangle->is_large) return row * (row - (row > 0)) / 2;
+    if (!dense->is_large) return row * (row - (row > 0)) / 2;
     return (PANEL * panel / 2 + row % PANEL) * PANEL * (panel + 1);
 }
 
 // Without what waits.
-static inline double triangle_entry(const struct triangle *triangle, int i, int j)
+static inline double dense_front_entry(const struct dense_front *dense, int i, int j)
 {
-    const size_t at = triangle_row(triangle, i) + (size_t)j;
-    return triangle->is_rounded ? (double)((float *)triangle->entry)[at]
-                                : ((double *)triangle->entry)[at];
+    const size_t at = dense_front_row(dense, i) + (size_t)j;
+    return dense->is_rounded ? (double)((float *)dense->entry)[at]
+                             : ((double *)dense->entry)[at];
 }
 
-static inline void triangle_set(struct triangle *triangle, int i, int j, double x)
+static inline void dense_front_set(struct dense_front *dense, int i, int j, double x)
 {
-    const size_t at = triangle_row(triangle, i) + (size_t)j;
-    if (triangle->is_rounded)
-        ((float *)triangle->entry)[at] = (float)x;
+    const size_t at = dense_front_row(dense, i) + (size_t)j;
+    if (dense->is_rounded)
+        ((float *)dense->entry)[at] = (float)x;
     else
-        ((double *)triangle->entry)[at] = x;
+        ((double *)dense->entry)[at] = x;
 }
 
 // Of N rows before: one more, of zeros.
-void triangle_add_row(struct triangle *triangle, int n);
+void dense_front_add_row(struct dense_front *dense, int n);
 
 // Entries P of all N rows, and row P; 0 at P itself.
-void triangle_take(const struct triangle *triangle, int n, int p, double *row);
+void dense_front_take(const struct dense_front *dense, int n, int p, double *row);
 
 // Row and column P become those of the last of N rows, which goes.
-void triangle_remove(struct triangle *triangle, int n, int p);
+void dense_front_remove(struct dense_front *dense, int n, int p);
 
 // From small to large.
-void triangle_enlarge(struct triangle *triangle, int n, bool is_rounded);
+void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded);
 
 // Adds FACTOR ROW[i] ROW[j] to each entry of N rows.
-void triangle_add_products(struct triangle *triangle, int n, double factor,
-                           const double *row);
+void dense_front_add_products(struct dense_front *dense, int n, double factor,
+                              const double *row);
 
 // Nothing waits any more.
-void triangle_bring_up_to_date(struct triangle *triangle, int n);
+void dense_front_bring_up_to_date(struct dense_front *dense, int n);
 
 // Of N rows, none of them rounded.
-void triangle_state(struct triangle *triangle, int n, struct checkpoint_stream *stream);
+void dense_front_state(struct dense_front *dense, int n,
+                       struct checkpoint_stream *stream);
 
-void triangle_free(struct triangle *triangle);
+void dense_front_free(struct dense_front *dense);
 
 // What it chooses from if the triangle is large, by its entries and the processor,
 // whose vectors make no difference to the digits: all that waits is added to the
 // entries; WEIGHT (n_waiting) times what waits is added to ROW (n).
-typedef void triangle_pass(struct triangle *triangle, int n);
-typedef void triangle_gather(const struct triangle *triangle, int n,
-                             const double *weight, double *row);
-triangle_pass triangle_pass_narrow_double, triangle_pass_wide_double;
-triangle_pass triangle_pass_narrow_float, triangle_pass_wide_float;
-triangle_gather triangle_gather_narrow_double, triangle_gather_wide_double;
-triangle_gather triangle_gather_narrow_float, triangle_gather_wide_float;
+typedef void dense_front_pass(struct dense_front *dense, int n);
+typedef void dense_front_gather(const struct dense_front *dense, int n,
+                                const double *weight, double *row);
+dense_front_pass dense_front_pass_avx2_double, dense_front_pass_avx512_double;
+dense_front_pass dense_front_pass_avx2_float, dense_front_pass_avx512_float;
+dense_front_gather dense_front_gather_avx2_double, dense_front_gather_avx512_double;
+dense_front_gather dense_front_gather_avx2_float, dense_front_gather_avx512_float;
 
 #endif

@@ -3,6 +3,6 @@
 #define BYTES 32
 #define TILE_ROWS 4
 #define VECTORS 2
-#define PASS triangle_pass_narrow_double
-#define GATHER triangle_gather_narrow_double
+#define PASS dense_front_pass_avx2_double
+#define GATHER dense_front_gather_avx2_double
 #include "dense_front_kernel.h"

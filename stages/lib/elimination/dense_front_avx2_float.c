@@ -3,6 +3,6 @@
 #define BYTES 32
 #define TILE_ROWS 4
 #define VECTORS 2
-#define PASS triangle_pass_narrow_float
-#define GATHER triangle_gather_narrow_float
+#define PASS dense_front_pass_avx2_float
+#define GATHER dense_front_gather_avx2_float
 #include "dense_front_kernel.h"

@@ -7,6 +7,6 @@
 #define BYTES 64
 #define TILE_ROWS 8
 #define VECTORS 3
-#define PASS triangle_pass_wide_double
-#define GATHER triangle_gather_wide_double
+#define PASS dense_front_pass_avx512_double
+#define GATHER dense_front_gather_avx512_double
 #include "dense_front_kernel.h"

@@ -7,6 +7,6 @@
 #define BYTES 64
 #define TILE_ROWS 8
 #define VECTORS 3
-#define PASS triangle_pass_wide_float
-#define GATHER triangle_gather_wide_float
+#define PASS dense_front_pass_avx512_float
+#define GATHER dense_front_gather_avx512_float
 #include "dense_front_kernel.h"

@@ -41,9 +41,9 @@ static inline lanes fused(lanes a, lanes b, lanes c)
 #endif
 }
 
-static const NUMBER *waiting_block(const struct triangle *triangle, int first)
+static const NUMBER *waiting_block(const struct dense_front *dense, int first)
 {
-    return (const NUMBER *)triangle->waiting + (size_t)first * MOST_SOURCES;
+    return (const NUMBER *)dense->waiting + (size_t)first * MOST_SOURCES;
 }
 
 struct tile {
@@ -76,18 +76,18 @@ static inline void add_to_tile(const struct tile *tile, int column, int n_waitin
 }
 
 // Rows BEGIN..END-1, columns FIRST..FIRST+BLOCK-1. WEIGHT: (rows, n_waiting) by tiles.
-static void add_to_block(const struct triangle *triangle, int begin, int end, int first,
+static void add_to_block(const struct dense_front *dense, int begin, int end, int first,
                          const NUMBER *weight)
 {
-    NUMBER *entry = triangle->entry;
-    const NUMBER *waiting = waiting_block(triangle, first);
-    const int n_waiting = triangle->n_waiting;
+    NUMBER *entry = dense->entry;
+    const NUMBER *waiting = waiting_block(dense, first);
+    const int n_waiting = dense->n_waiting;
     for (int i = begin > first ? begin : first; i < end; i += TILE_ROWS) {
         struct tile tile = {.weight = weight + (size_t)(i - begin) * (size_t)n_waiting};
         const NUMBER *next[TILE_ROWS];
         for (int r = 0; r < TILE_ROWS; r++) {
-            tile.row[r] = entry + triangle_row(triangle, i + r);
-            next[r] = entry + triangle_row(triangle, i + r + TILE_ROWS);
+            tile.row[r] = entry + dense_front_row(dense, i + r);
+            next[r] = entry + dense_front_row(dense, i + r + TILE_ROWS);
         }
         const int width = (i / PANEL + 1) * PANEL;
         const int last = width < first + BLOCK ? width : first + BLOCK;
@@ -101,39 +101,39 @@ static void add_to_block(const struct triangle *triangle, int begin, int end, in
 }
 
 // Of all that wait, times their factors: of rows BEGIN..END-1, by tiles.
-static void pack_weights(const struct triangle *triangle, int begin, int end,
+static void pack_weights(const struct dense_front *dense, int begin, int end,
                          NUMBER *weight)
 {
     for (int i = begin; i < end; i += TILE_ROWS) {
-        const NUMBER *waiting = waiting_block(triangle, i / BLOCK * BLOCK) + i % BLOCK;
-        for (int k = 0; k < triangle->n_waiting; k++)
+        const NUMBER *waiting = waiting_block(dense, i / BLOCK * BLOCK) + i % BLOCK;
+        for (int k = 0; k < dense->n_waiting; k++)
             for (int r = 0; r < TILE_ROWS; r++)
-                *weight++ = (NUMBER)triangle->factor[k] * waiting[k * BLOCK + r];
+                *weight++ = (NUMBER)dense->factor[k] * waiting[k * BLOCK + r];
     }
 }
 
 // As many rows at once as their weights stay in the second cache.
-void PASS(struct triangle *triangle, int n)
+void PASS(struct dense_front *dense, int n)
 {
     enum { ROWS = 4 * BLOCK };
     NUMBER *weight = allocate_uncleared((size_t)ROWS * MOST_SOURCES, sizeof *weight);
     for (int begin = 0; begin < n; begin += ROWS) {
         const int end = n < begin + ROWS ? n : begin + ROWS;
-        pack_weights(triangle, begin, end, weight);
+        pack_weights(dense, begin, end, weight);
         for (int first = 0; first < end; first += BLOCK)
-            add_to_block(triangle, begin, end, first, weight);
+            add_to_block(dense, begin, end, first, weight);
     }
     free(weight);
 }
 
-void GATHER(const struct triangle *triangle, int n, const double *weight, double *row)
+void GATHER(const struct dense_front *dense, int n, const double *weight, double *row)
 {
     for (int first = 0; first < n; first += BLOCK) {
-        const NUMBER *waiting = waiting_block(triangle, first);
+        const NUMBER *waiting = waiting_block(dense, first);
         for (int column = 0; column < BLOCK && first + column < n;
              column += 3 * LANES) {
             lanes sum[3] = {0};
-            for (int k = 0; k < triangle->n_waiting; k++) {
+            for (int k = 0; k < dense->n_waiting; k++) {
                 lanes part[3];
                 memcpy(part, waiting + k * BLOCK + column, sizeof part);
                 const lanes times = (NUMBER)weight[k] - (lanes){0};

@@ -2,8 +2,8 @@
 // A network of throats whose pores are taken out one after the other. Each pore holds
 // its throats in a row, and what is left is moved together now and then: close in
 // space, close in memory.
-#ifndef CRAQUELURE_SHRINKING_GRAPH_H
-#define CRAQUELURE_SHRINKING_GRAPH_H
+#ifndef CRAQUELURE_ELIMINATION_GRAPH_H
+#define CRAQUELURE_ELIMINATION_GRAPH_H
 
 #include "conductance_matrix.h"
 

@@ -25,7 +25,7 @@ void kron_begin(struct kron *kron, int n_node, int n_end)
         kron->capacity = n + n / 2;
         const size_t size = (size_t)kron->capacity;
         kron->row = reallocate(kron->row, size, sizeof *kron->row);
-        kron->taken = reallocate(kron->taken, size, sizeof *kron->taken);
+        kron->extracted = reallocate(kron->extracted, size, sizeof *kron->extracted);
         kron->place = reallocate(kron->place, size, sizeof *kron->place);
         kron->order = reallocate(kron->order, size, sizeof *kron->order);
         for (int i = before; i < kron->capacity; i++) {
@@ -35,7 +35,7 @@ void kron_begin(struct kron *kron, int n_node, int n_end)
     }
     for (int i = 0; i < n; i++) {
         kron->row[i].n = 0;
-        kron->taken[i] = 0;
+        kron->extracted[i] = 0;
     }
 }
 
@@ -44,7 +44,7 @@ void kron_free(struct kron *kron)
     for (int i = 0; i < kron->capacity; i++)
         free(kron->row[i].link);
     free(kron->row);
-    free(kron->taken);
+    free(kron->extracted);
     free(kron->place);
     free(kron->order);
     *kron = (struct kron){0};
@@ -76,9 +76,9 @@ void kron_link(struct kron *kron, int a, int b, double conductance)
     add(&kron->row[b], a, conductance);
 }
 
-void kron_take(struct kron *kron, int site, double rate)
+void kron_extract(struct kron *kron, int site, double rate)
 {
-    kron->taken[site] += rate;
+    kron->extracted[site] += rate;
 }
 
 // --- elimination ---------------------------------------------------------------------
@@ -126,7 +126,7 @@ static void eliminate(struct kron *kron, int node)
     for (int j = 0; j < star->n; j++) {
         const double share = star->link[j].conductance / sum;
         forget(&kron->row[star->link[j].site], node);
-        kron->taken[star->link[j].site] += share * kron->taken[node];
+        kron->extracted[star->link[j].site] += share * kron->extracted[node];
         join_mesh(kron, star, j, share);
     }
 }
@@ -151,13 +151,13 @@ void kron_eliminate(struct kron *kron)
 // --- what comes of it ----------------------------------------------------------------
 
 double kron_flow(const struct kron *kron, int a,
-                 double (*fall)(const void *context, int b, int a), const void *context)
+                 double (*drop)(const void *context, int b, int a), const void *context)
 {
     const struct kron_row *row = &kron->row[kron->n_node + a];
-    double flow = -kron->taken[kron->n_node + a];
+    double flow = -kron->extracted[kron->n_node + a];
     for (int k = 0; k < row->n; k++)
         flow += row->link[k].conductance *
-                fall(context, row->link[k].site - kron->n_node, a);
+                drop(context, row->link[k].site - kron->n_node, a);
     return flow;
 }
 
@@ -166,7 +166,7 @@ void kron_potentials(const struct kron *kron, double *potential)
     for (int k = kron->n_node - 1; k >= 0; k--) {
         const int node = kron->order[k];
         const struct kron_row *row = &kron->row[node];
-        double sum = -kron->taken[node];
+        double sum = -kron->extracted[node];
         for (int l = 0; l < row->n; l++)
             sum += row->link[l].conductance * potential[row->link[l].site];
         potential[node] = sum / all_conductances(row);

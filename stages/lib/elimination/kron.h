@@ -19,7 +19,7 @@ struct kron {
         n_end; // sites 0..n_node-1 are nodes, the next n_end are of given potential
     int capacity;
     struct kron_row *row; // (capacity)
-    double *taken;        // (capacity) from each site, what it inherits included
+    double *extracted;    // (capacity) from each site, what it inherits included
     int *place;           // (capacity) workspace
     int *order;           // (n_node) as eliminated
 };
@@ -30,15 +30,15 @@ void kron_begin(struct kron *kron, int n_node, int n_end);
 // Adds to the conductance between two sites, above 0; to what is taken from one, 0 or
 // more.
 void kron_link(struct kron *kron, int a, int b, double conductance);
-void kron_take(struct kron *kron, int site, double rate);
+void kron_extract(struct kron *kron, int site, double rate);
 
 // Eliminates all nodes, those of few neighbours first. Each must have a way to an end.
 void kron_eliminate(struct kron *kron);
 
-// What flows out of the network at end A (counted from 0), where FALL(CONTEXT, B, A) is
+// What flows out of the network at end A (counted from 0), where DROP(CONTEXT, B, A) is
 // the potential of end B less that of A. Once eliminated.
 double kron_flow(const struct kron *kron, int a,
-                 double (*fall)(const void *context, int b, int a),
+                 double (*drop)(const void *context, int b, int a),
                  const void *context);
 
 // POTENTIAL (n_node + n_end): given at the ends, of one sign, negative or 0; found at

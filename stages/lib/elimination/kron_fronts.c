@@ -11,15 +11,15 @@
 // The triangle of a front that has been larger than this is a large one.
 enum { LARGE_FRONT = 96 };
 
-struct star_mesh star_mesh_make(int n_site, bool is_rounded)
+struct kron_fronts kron_fronts_make(int n_site, bool is_rounded)
 {
-    struct star_mesh mesh = {.n_site = n_site,
-                             .is_rounded = is_rounded,
-                             .air = NEW_ARRAY(double, n_site),
-                             .first = NEW_ARRAY(int, n_site),
-                             .linked = NEW_ARRAY(int, n_site),
-                             .unused_membership = -1,
-                             .unused_front = -1};
+    struct kron_fronts mesh = {.n_site = n_site,
+                               .is_rounded = is_rounded,
+                               .air_conductance = NEW_ARRAY(double, n_site),
+                               .first = NEW_ARRAY(int, n_site),
+                               .reached_air = NEW_ARRAY(int, n_site),
+                               .unused_membership = -1,
+                               .unused_front = -1};
     for (int i = 0; i < n_site; i++)
         mesh.first[i] = -1;
     return mesh;
@@ -28,29 +28,29 @@ struct star_mesh star_mesh_make(int n_site, bool is_rounded)
 static void empty_front(struct front *front)
 {
     free(front->site);
-    triangle_free(&front->triangle);
+    dense_front_free(&front->dense);
     *front = (struct front){0};
 }
 
-void star_mesh_free(struct star_mesh *mesh)
+void kron_fronts_free(struct kron_fronts *mesh)
 {
     for (int f = 0; f < mesh->n_front; f++)
         empty_front(&mesh->front[f]);
-    free(mesh->air);
+    free(mesh->air_conductance);
     free(mesh->first);
     free(mesh->membership);
     free(mesh->front);
-    free(mesh->linked);
+    free(mesh->reached_air);
     free(mesh->place);
     free(mesh->row);
     free(mesh->pair);
     free(mesh->wide);
-    *mesh = (struct star_mesh){0};
+    *mesh = (struct kron_fronts){0};
 }
 
 // --- who is on which front ---------------------------------------------------------
 
-static int new_front(struct star_mesh *mesh)
+static int new_front(struct kron_fronts *mesh)
 {
     const int front = mesh->unused_front;
     if (front >= 0) {
@@ -63,7 +63,7 @@ static int new_front(struct star_mesh *mesh)
     return mesh->n_front++;
 }
 
-static void end_front(struct star_mesh *mesh, int front)
+static void end_front(struct kron_fronts *mesh, int front)
 {
     empty_front(&mesh->front[front]);
     mesh->front[front].next_unused = mesh->unused_front;
@@ -71,7 +71,7 @@ static void end_front(struct star_mesh *mesh, int front)
 }
 
 // Of SITE on FRONT, -1 if it is not on it.
-static int membership_of(const struct star_mesh *mesh, int site, int front)
+static int membership_of(const struct kron_fronts *mesh, int site, int front)
 {
     int membership = mesh->first[site];
     while (membership >= 0 && mesh->membership[membership].front != front)
@@ -79,7 +79,7 @@ static int membership_of(const struct star_mesh *mesh, int site, int front)
     return membership;
 }
 
-static void join(struct star_mesh *mesh, int site, int front, int place)
+static void join(struct kron_fronts *mesh, int site, int front, int place)
 {
     int membership = mesh->unused_membership;
     if (membership >= 0) {
@@ -92,7 +92,7 @@ static void join(struct star_mesh *mesh, int site, int front, int place)
     mesh->first[site] = membership;
 }
 
-static void leave(struct star_mesh *mesh, int site, int front)
+static void leave(struct kron_fronts *mesh, int site, int front)
 {
     int *link = &mesh->first[site];
     while (mesh->membership[*link].front != front)
@@ -104,7 +104,7 @@ static void leave(struct star_mesh *mesh, int site, int front)
 }
 
 // SITE comes last on the front, without links.
-static void add_member(struct star_mesh *mesh, int front_index, int site)
+static void add_member(struct kron_fronts *mesh, int front_index, int site)
 {
     struct front *front = &mesh->front[front_index];
     join(mesh, site, front_index, front->n);
@@ -113,53 +113,54 @@ static void add_member(struct star_mesh *mesh, int front_index, int site)
         front->site =
             reallocate(front->site, (size_t)front->capacity, sizeof *front->site);
     }
-    triangle_add_row(&front->triangle, front->n);
+    dense_front_add_row(&front->dense, front->n);
     front->site[front->n++] = site;
 }
 
 // The last member takes the place of member P.
-static void remove_member(struct star_mesh *mesh, int front_index, int p)
+static void remove_member(struct kron_fronts *mesh, int front_index, int p)
 {
     struct front *front = &mesh->front[front_index];
     leave(mesh, front->site[p], front_index);
-    triangle_remove(&front->triangle, front->n, p);
+    dense_front_remove(&front->dense, front->n, p);
     const int last = --front->n;
     if (p == last) return;
     front->site[p] = front->site[last];
     mesh->membership[membership_of(mesh, front->site[p], front_index)].place = p;
 }
 
-void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance)
+void kron_fronts_link(struct kron_fronts *mesh, int a, int b, double conductance)
 {
     const int front = new_front(mesh);
     add_member(mesh, front, a);
     add_member(mesh, front, b);
-    triangle_set(&mesh->front[front].triangle, 1, 0, conductance);
+    dense_front_set(&mesh->front[front].dense, 1, 0, conductance);
 }
 
-static void add_air(struct star_mesh *mesh, int site, double conductance)
+static void add_air(struct kron_fronts *mesh, int site, double conductance)
 {
     if (!(conductance > 0)) return;
-    if (mesh->air[site] == 0) mesh->linked[mesh->n_linked++] = site;
-    mesh->air[site] += conductance;
+    if (mesh->air_conductance[site] == 0)
+        mesh->reached_air[mesh->n_reached_air++] = site;
+    mesh->air_conductance[site] += conductance;
 }
 
-static void sum_air(struct star_mesh *mesh)
+static void sum_air(struct kron_fronts *mesh)
 {
     mesh->all_air = (struct compensated){0};
     for (int i = 0; i < mesh->n_site; i++)
-        compensated_add(&mesh->all_air, mesh->air[i]);
+        compensated_add(&mesh->all_air, mesh->air_conductance[i]);
     mesh->summed_air = compensated_value(mesh->all_air);
 }
 
 // Digits are lost only when little is left of a large sum: then it is summed anew.
-static void lower_air(struct star_mesh *mesh, double fall)
+static void lower_air(struct kron_fronts *mesh, double drop)
 {
-    compensated_add(&mesh->all_air, -fall);
+    compensated_add(&mesh->all_air, -drop);
     if (compensated_value(mesh->all_air) < 0.5 * mesh->summed_air) sum_air(mesh);
 }
 
-void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
+void kron_fronts_link_air(struct kron_fronts *mesh, int site, double conductance)
 {
     add_air(mesh, site, conductance);
     compensated_add(&mesh->all_air, conductance);
@@ -169,7 +170,7 @@ void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance)
 // --- elimination -------------------------------------------------------------------
 
 // The members of front OTHER become members of BASE.
-static void find_places(struct star_mesh *mesh, int base_index, int other_index)
+static void find_places(struct kron_fronts *mesh, int base_index, int other_index)
 {
     while (mesh->place_capacity < mesh->front[other_index].n)
         GROW_ARRAY(mesh->place, mesh->place_capacity, mesh->place_capacity);
@@ -183,26 +184,26 @@ static void find_places(struct star_mesh *mesh, int base_index, int other_index)
     }
 }
 
-static void merge(struct star_mesh *mesh, int base_index, int other_index)
+static void merge(struct kron_fronts *mesh, int base_index, int other_index)
 {
     find_places(mesh, base_index, other_index);
     struct front *base = &mesh->front[base_index], *other = &mesh->front[other_index];
-    triangle_bring_up_to_date(&other->triangle, other->n);
+    dense_front_bring_up_to_date(&other->dense, other->n);
     for (int i = 1; i < other->n; i++) {
         const int p = mesh->place[i];
         for (int j = 0; j < i; j++) {
             const int q = mesh->place[j];
             const int high = p > q ? p : q, low = p > q ? q : p;
-            triangle_set(&base->triangle, high, low,
-                         triangle_entry(&base->triangle, high, low) +
-                             triangle_entry(&other->triangle, i, j));
+            dense_front_set(&base->dense, high, low,
+                            dense_front_entry(&base->dense, high, low) +
+                                dense_front_entry(&other->dense, i, j));
         }
     }
     end_front(mesh, other_index);
 }
 
 // All fronts that SITE is on, as one: the largest with what the others add.
-static int merge_fronts(struct star_mesh *mesh, int site)
+static int merge_fronts(struct kron_fronts *mesh, int site)
 {
     int largest = -1;
     for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
@@ -219,13 +220,13 @@ static int merge_fronts(struct star_mesh *mesh, int site)
 }
 
 // Out of the front, into mesh->row: the links of SITE with those that stay.
-static void take_out(struct star_mesh *mesh, int front_index, int site)
+static void take_out(struct kron_fronts *mesh, int front_index, int site)
 {
     struct front *front = &mesh->front[front_index];
     while (mesh->row_capacity < front->n)
         GROW_ARRAY(mesh->row, mesh->row_capacity, mesh->row_capacity);
     const int place = mesh->membership[membership_of(mesh, site, front_index)].place;
-    triangle_take(&front->triangle, front->n, place, mesh->row);
+    dense_front_take(&front->dense, front->n, place, mesh->row);
     remove_member(mesh, front_index, place);
     mesh->row[place] = mesh->row[front->n];
 }
@@ -246,16 +247,16 @@ static double sum_of(const double *row, int n)
 }
 
 // What flowed to the eliminated site flows on into the air.
-static void raise_air(struct star_mesh *mesh, const struct front *front, double share)
+static void raise_air(struct kron_fronts *mesh, const struct front *front, double share)
 {
     for (int i = 0; i < front->n; i++)
         add_air(mesh, front->site[i], mesh->row[i] * share);
 }
 
-void star_mesh_eliminate(struct star_mesh *mesh, int site)
+void kron_fronts_eliminate(struct kron_fronts *mesh, int site)
 {
-    const double air = mesh->air[site];
-    mesh->air[site] = 0;
+    const double air = mesh->air_conductance[site];
+    mesh->air_conductance[site] = 0;
     const int front_index = merge_fronts(mesh, site);
     if (front_index < 0) {
         lower_air(mesh, air);
@@ -265,9 +266,9 @@ void star_mesh_eliminate(struct star_mesh *mesh, int site)
     struct front *front = &mesh->front[front_index];
     const double total = air + sum_of(mesh->row, front->n);
     if (total > 0) {
-        triangle_add_products(&front->triangle, front->n, 1 / total, mesh->row);
-        if (!front->triangle.is_large && front->n > LARGE_FRONT)
-            triangle_enlarge(&front->triangle, front->n, mesh->is_rounded);
+        dense_front_add_products(&front->dense, front->n, 1 / total, mesh->row);
+        if (!front->dense.is_large && front->n > LARGE_FRONT)
+            dense_front_enlarge(&front->dense, front->n, mesh->is_rounded);
         if (air > 0) raise_air(mesh, front, air / total);
     }
     if (air > 0) lower_air(mesh, air * (air / total));
@@ -290,10 +291,10 @@ static void front_state(struct front *front, int n_site, int n_front,
         front->site = NEW_ARRAY(int, front->n);
     }
     stream_integers(stream, front->site, front->n, 0, n_site - 1);
-    triangle_state(&front->triangle, front->n, stream);
+    dense_front_state(&front->dense, front->n, stream);
 }
 
-static void fronts_state(struct star_mesh *mesh, struct checkpoint_stream *stream)
+static void fronts_state(struct kron_fronts *mesh, struct checkpoint_stream *stream)
 {
     int64_t n = mesh->n_front;
     if (stream->restoring)
@@ -309,7 +310,8 @@ static void fronts_state(struct star_mesh *mesh, struct checkpoint_stream *strea
         front_state(&mesh->front[f], mesh->n_site, mesh->n_front, stream);
 }
 
-static void memberships_state(struct star_mesh *mesh, struct checkpoint_stream *stream)
+static void memberships_state(struct kron_fronts *mesh,
+                              struct checkpoint_stream *stream)
 {
     int64_t n = mesh->n_membership;
     mesh->membership =
@@ -324,9 +326,9 @@ static void memberships_state(struct star_mesh *mesh, struct checkpoint_stream *
     }
 }
 
-void star_mesh_state(struct star_mesh *mesh, struct checkpoint_stream *stream)
+void kron_fronts_state(struct kron_fronts *mesh, struct checkpoint_stream *stream)
 {
-    stream_numbers(stream, mesh->air, mesh->n_site);
+    stream_numbers(stream, mesh->air_conductance, mesh->n_site);
     stream_sums(stream, &mesh->all_air, 1);
     stream_numbers(stream, &mesh->summed_air, 1);
     fronts_state(mesh, stream);

@@ -10,8 +10,8 @@
 // such a front is kept as a dense triangle. A site may be on several fronts, which
 // become one when it is eliminated (the multifrontal method, in an order that is given
 // as it goes).
-#ifndef CRAQUELURE_STAR_MESH_H
-#define CRAQUELURE_STAR_MESH_H
+#ifndef CRAQUELURE_KRON_FRONTS_H
+#define CRAQUELURE_KRON_FRONTS_H
 
 #include "basics/compensated.h"
 #include "checkpoint/stream.h"
@@ -21,10 +21,10 @@
 struct front;
 struct membership; // a site's place on a front
 
-struct star_mesh {
+struct kron_fronts {
     int n_site;
     bool is_rounded;            // links on large fronts are floats
-    double *air;                // (n_site) conductance to the air
+    double *air_conductance;    // (n_site) conductance to the air
     struct compensated all_air; // its sum
     double summed_air;          // the sum when all were last added up
     int *first;                 // (n_site) its memberships, -1: none
@@ -34,10 +34,10 @@ struct star_mesh {
     struct front *front;
     int n_front, front_capacity, unused_front;
 
-    // Sites that have come to have a conductance to the air since N_LINKED was last set
-    // to 0; some may have been eliminated.
-    int n_linked;
-    int *linked; // (n_linked)
+    // Sites that have come to have a conductance to the air since N_REACHED_AIR was
+    // last set to 0; some may have been eliminated.
+    int n_reached_air;
+    int *reached_air; // (n_reached_air)
 
     double *row; // of the site that is eliminated
     int *place;  // on a front, of the members of one that joins it
@@ -51,37 +51,37 @@ struct star_mesh {
 };
 
 // No links yet. ROUNDED: links on large fronts are kept as floats.
-struct star_mesh star_mesh_make(int n_site, bool is_rounded);
+struct kron_fronts kron_fronts_make(int n_site, bool is_rounded);
 
 // Adds to the conductance between A and B, of which none has been eliminated, or
 // between SITE and the air.
-void star_mesh_link(struct star_mesh *mesh, int a, int b, double conductance);
-void star_mesh_link_air(struct star_mesh *mesh, int site, double conductance);
+void kron_fronts_link(struct kron_fronts *mesh, int a, int b, double conductance);
+void kron_fronts_link_air(struct kron_fronts *mesh, int site, double conductance);
 
 // SITE leaves the mesh. O(n^2) for a front of n sites.
-void star_mesh_eliminate(struct star_mesh *mesh, int site);
+void kron_fronts_eliminate(struct kron_fronts *mesh, int site);
 
-// Does what eliminations have left to do at SITE; before star_mesh_list_links.
-void star_mesh_bring_up_to_date(struct star_mesh *mesh, int site);
+// Does what eliminations have left to do at SITE; before kron_fronts_list_links.
+void kron_fronts_bring_up_to_date(struct kron_fronts *mesh, int site);
 
-// Does that everywhere, and lists all links; before star_mesh_add_flows.
-void star_mesh_list_fronts(struct star_mesh *mesh);
+// Does that everywhere, and lists all links; before kron_fronts_add_flows.
+void kron_fronts_list(struct kron_fronts *mesh);
 
 // Adds to FLOW (n_site) what flows to each site from the others when sites are at LEVEL
 // (n_site). Not where links are floats.
-void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
-                         double *flow);
+void kron_fronts_add_flows(const struct kron_fronts *mesh, const double *level,
+                           double *flow);
 
 // Lists in OTHER the sites that SITE is linked with, and in LINK (n_site), which is 0
 // before, the conductances at their places. Returns how many there are.
-int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
-                         double *link);
+int kron_fronts_list_links(const struct kron_fronts *mesh, int site, int *other,
+                           double *link);
 
-void star_mesh_state(struct star_mesh *mesh, struct checkpoint_stream *stream);
+void kron_fronts_state(struct kron_fronts *mesh, struct checkpoint_stream *stream);
 
 // Of a state that was read: whether fronts and memberships agree.
-bool star_mesh_fits(const struct star_mesh *mesh);
+bool kron_fronts_fit(const struct kron_fronts *mesh);
 
-void star_mesh_free(struct star_mesh *mesh);
+void kron_fronts_free(struct kron_fronts *mesh);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 // Each is for a place of its own on a front that holds its site there.
-static bool memberships_fit(const struct star_mesh *mesh, bool *is_used)
+static bool memberships_fit(const struct kron_fronts *mesh, bool *is_used)
 {
     int used = 0, places = 0;
     for (int site = 0; site < mesh->n_site; site++)
@@ -29,7 +29,7 @@ static bool memberships_fit(const struct star_mesh *mesh, bool *is_used)
 }
 
 // No place is held twice: as many memberships are on fronts as there are places.
-static bool places_fit(const struct star_mesh *mesh)
+static bool places_fit(const struct kron_fronts *mesh)
 {
     int *held = NEW_ARRAY(int, mesh->n_front);
     bool fits = true;
@@ -44,7 +44,7 @@ static bool places_fit(const struct star_mesh *mesh)
 
 // Those that are not used are listed once each, and have no sites; others have two or
 // more.
-static bool fronts_fit(const struct star_mesh *mesh)
+static bool fronts_fit(const struct kron_fronts *mesh)
 {
     int empty = 0, listed = 0;
     for (int f = 0; f < mesh->n_front; f++) {
@@ -57,10 +57,10 @@ static bool fronts_fit(const struct star_mesh *mesh)
     return listed == empty;
 }
 
-bool star_mesh_fits(const struct star_mesh *mesh)
+bool kron_fronts_fit(const struct kron_fronts *mesh)
 {
     for (int i = 0; i < mesh->n_site; i++)
-        if (!(mesh->air[i] >= 0)) return false;
+        if (!(mesh->air_conductance[i] >= 0)) return false;
     if (!fronts_fit(mesh)) return false;
     bool *is_used = NEW_ARRAY(bool, mesh->n_membership);
     const bool fits = memberships_fit(mesh, is_used) && places_fit(mesh);

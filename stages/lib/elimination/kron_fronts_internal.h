@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a star mesh is made of; for star_mesh*.c only.
-#ifndef CRAQUELURE_STAR_MESH_FRONTS_H
-#define CRAQUELURE_STAR_MESH_FRONTS_H
+// What a star mesh is made of; for kron_fronts*.c only.
+#ifndef CRAQUELURE_KRON_FRONTS_INTERNAL_H
+#define CRAQUELURE_KRON_FRONTS_INTERNAL_H
 
 #include "dense_front.h"
 
@@ -13,7 +13,7 @@ struct membership {
 struct front {
     int n, capacity;
     int *site;                // (n)
-    struct triangle triangle; // of their links
+    struct dense_front dense; // of their links
     int next_unused;
 };
 

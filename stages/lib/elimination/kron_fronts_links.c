@@ -7,16 +7,16 @@
 
 #include <stdlib.h>
 
-void star_mesh_bring_up_to_date(struct star_mesh *mesh, int site)
+void kron_fronts_bring_up_to_date(struct kron_fronts *mesh, int site)
 {
     for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
         struct front *front = &mesh->front[mesh->membership[k].front];
-        triangle_bring_up_to_date(&front->triangle, front->n);
+        dense_front_bring_up_to_date(&front->dense, front->n);
     }
 }
 
 // Fronts of two sites come as pairs: most are, and far apart in memory.
-void star_mesh_list_fronts(struct star_mesh *mesh)
+void kron_fronts_list(struct kron_fronts *mesh)
 {
     mesh->n_pair = mesh->n_wide = mesh->widest = 0;
     for (int f = 0; f < mesh->n_front; f++) {
@@ -24,9 +24,9 @@ void star_mesh_list_fronts(struct star_mesh *mesh)
         if (front->n == 2) {
             GROW_ARRAY(mesh->pair, mesh->n_pair, mesh->pair_capacity);
             mesh->pair[mesh->n_pair++] = (struct pair){
-                front->site[0], front->site[1], triangle_entry(&front->triangle, 1, 0)};
+                front->site[0], front->site[1], dense_front_entry(&front->dense, 1, 0)};
         } else if (front->n > 2) {
-            triangle_bring_up_to_date(&front->triangle, front->n);
+            dense_front_bring_up_to_date(&front->dense, front->n);
             GROW_ARRAY(mesh->wide, mesh->n_wide, mesh->wide_capacity);
             mesh->wide[mesh->n_wide++] = f;
             if (front->n > mesh->widest) mesh->widest = front->n;
@@ -69,15 +69,15 @@ static void add_front_flows(const struct front *front, const double *level,
         gain[i] = 0;
     }
     for (int i = 1; i < n; i++)
-        gain[i] += add_row_flows((const double *)front->triangle.entry +
-                                     triangle_row(&front->triangle, i),
+        gain[i] += add_row_flows((const double *)front->dense.entry +
+                                     dense_front_row(&front->dense, i),
                                  i, here, here[i], gain);
     for (int i = 0; i < n; i++)
         flow[front->site[i]] += gain[i];
 }
 
-void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
-                         double *flow)
+void kron_fronts_add_flows(const struct kron_fronts *mesh, const double *level,
+                           double *flow)
 {
     for (int p = 0; p < mesh->n_pair; p++) {
         const struct pair *pair = &mesh->pair[p];
@@ -91,8 +91,8 @@ void star_mesh_add_flows(const struct star_mesh *mesh, const double *level,
     free(room);
 }
 
-int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
-                         double *link)
+int kron_fronts_list_links(const struct kron_fronts *mesh, int site, int *other,
+                           double *link)
 {
     int n = 0;
     for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
@@ -102,7 +102,7 @@ int star_mesh_list_links(const struct star_mesh *mesh, int site, int *other,
             if (i == p) continue;
             const int at = front->site[i];
             const double more =
-                triangle_entry(&front->triangle, i > p ? i : p, i > p ? p : i);
+                dense_front_entry(&front->dense, i > p ? i : p, i > p ? p : i);
             if (link[at] == 0 && more > 0) other[n++] = at;
             link[at] += more;
         }

@@ -100,10 +100,10 @@ static void sort_tied(const struct ruler *ruler, int *order, int n)
 }
 
 static void put_in_order(const struct network *network, bool throats, int n,
-                         const double *ease, int *order)
+                         const double *entry_priority, int *order)
 {
     bool *same = NEW_ARRAY(bool, n);
-    rank_descending(ease, n, order, same);
+    rank_descending(entry_priority, n, order, same);
     struct ruler ruler = {0}; // made when something ties
     for (int k = 0; k < n;) {
         const bool *tie = memchr(same + k, true, (size_t)(n - k));
@@ -117,13 +117,15 @@ static void put_in_order(const struct network *network, bool throats, int n,
     free(same);
 }
 
-void order_throats(const struct network *network, const double *ease, int *order)
+void order_throats(const struct network *network, const double *entry_priority,
+                   int *order)
 {
-    put_in_order(network, true, network->n_throat, ease ? ease : network->throat_radius,
-                 order);
+    put_in_order(network, true, network->n_throat,
+                 entry_priority ? entry_priority : network->throat_radius, order);
 }
 
-void order_nodes(const struct network *network, const double *ease, int *order)
+void order_nodes(const struct network *network, const double *entry_priority,
+                 int *order)
 {
-    put_in_order(network, false, network->n_node, ease, order);
+    put_in_order(network, false, network->n_node, entry_priority, order);
 }

@@ -7,15 +7,18 @@
 
 #include "network/network.h"
 
-// ORDER (n_throat): throats by falling EASE (n_throat; NULL: by radius). Of those that
-// are equal to 12 digits first the shorter, then that which holds less, then that whose
-// middle is higher (as any gravity would have it), lower along x, lower along y; at
-// last that with the lowest number, which tells apart only throats that lie in each
-// other. Lengths and places count as equal that differ by less than about 1e-9 of the
-// network's extent, volumes by as much of the largest.
-void order_throats(const struct network *network, const double *ease, int *order);
+// ORDER (n_throat): throats by falling ENTRY_PRIORITY (n_throat; NULL: by radius). Of
+// those that are equal to 12 digits first the shorter, then that which holds less, then
+// that whose middle is higher (as any gravity would have it), lower along x, lower
+// along y; at last that with the lowest number, which tells apart only throats that lie
+// in each other. Lengths and places count as equal that differ by less than about 1e-9
+// of the network's extent, volumes by as much of the largest.
+void order_throats(const struct network *network, const double *entry_priority,
+                   int *order);
 
-// The same for nodes, by falling EASE (n_node); of equals the higher, and so on.
-void order_nodes(const struct network *network, const double *ease, int *order);
+// The same for nodes, by falling ENTRY_PRIORITY (n_node); of equals the higher, and so
+// on.
+void order_nodes(const struct network *network, const double *entry_priority,
+                 int *order);
 
 #endif

@@ -92,9 +92,9 @@ static struct front front_make(const struct network *network,
                           .gas = NEW_ARRAY(bool, network->n_node),
                           .queue = rank_queue_make(n)};
     if (throats)
-        order_throats(network, conditions->ease, front.order);
+        order_throats(network, conditions->entry_priority, front.order);
     else
-        order_nodes(network, conditions->ease, front.order);
+        order_nodes(network, conditions->entry_priority, front.order);
     for (int k = 0; k < n; k++)
         front.rank[front.order[k]] = k;
     link_nodes(&front);

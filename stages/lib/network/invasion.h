@@ -19,7 +19,7 @@ struct invasion_conditions {
     enum invasion_rule rule;
     // (n_throat, or n_node) What is larger is entered first, of equals as
     // network/entry_order.h says. NULL: the radii of the throats.
-    const double *ease;
+    const double *entry_priority;
     unsigned inlet, outlet; // bits of enum wall
     // Liquid leaves only through the outlet: what gas has cut off from it stays.
     bool trapping;

@@ -41,7 +41,7 @@ double sum_of_products(const double *x, const double *y, int n)
 }
 
 int resume_conjugate_gradients(const struct linear_problem *problem, double *residual,
-                               double *x, double aim, int most)
+                               double *x, double tolerance, int most)
 {
     const int n = problem->n;
     double *z = problem->work[0], *p = problem->work[1], *image = problem->work[2];
@@ -49,7 +49,8 @@ int resume_conjugate_gradients(const struct linear_problem *problem, double *res
     int iteration = 0;
     for (int i = 0; i < n; i++)
         x[i] = 0;
-    while (iteration < most && sqrt(sum_of_products(residual, residual, n)) > aim) {
+    while (iteration < most &&
+           sqrt(sum_of_products(residual, residual, n)) > tolerance) {
         problem->precondition(problem->context, residual, z);
         const double overlap = curvature > 0 ? sum_of_products(z, image, n) / curvature
                                              : 0; // along the last p
@@ -71,9 +72,9 @@ int resume_conjugate_gradients(const struct linear_problem *problem, double *res
 }
 
 int conjugate_gradients(const struct linear_problem *problem, double *residual,
-                        double *x, double aim, int most)
+                        double *x, double tolerance, int most)
 {
     for (int i = 0; i < problem->n; i++)
         problem->work[1][i] = problem->work[2][i] = 0;
-    return resume_conjugate_gradients(problem, residual, x, aim, most);
+    return resume_conjugate_gradients(problem, residual, x, tolerance, most);
 }

@@ -13,16 +13,16 @@ struct linear_problem {
 };
 
 // Solves from X = 0 until the norm of what RESIDUAL (n) lacks, first the right side, is
-// AIM or less, or after MOST iterations, or when the preconditioner proves not positive
-// definite. RESIDUAL comes back as it follows from step to step. Returns how many
-// iterations were done. The same digits for any number of threads.
+// TOLERANCE or less, or after MOST iterations, or when the preconditioner proves not
+// positive definite. RESIDUAL comes back as it follows from step to step. Returns how
+// many iterations were done. The same digits for any number of threads.
 int conjugate_gradients(const struct linear_problem *problem, double *residual,
-                        double *x, double aim, int most);
+                        double *x, double tolerance, int most);
 
 // The same for what is still lacking after an earlier call with the same work, in any
 // unit: goes on from its last direction, nearly as if it had not been interrupted.
 int resume_conjugate_gradients(const struct linear_problem *problem, double *residual,
-                               double *x, double aim, int most);
+                               double *x, double tolerance, int most);
 
 // A sum in blocks of fixed length: the same for any number of threads.
 double sum_of_products(const double *x, const double *y, int n);

@@ -70,17 +70,17 @@ static int iterate(struct linear_solver *linear, const double *b, double *x,
 }
 
 enum status linear_correct(struct linear_solver *linear, const double *given,
-                           struct compensated *x, double *lack, double reduction,
+                           struct compensated *x, double *residual, double reduction,
                            int *iterations, struct reason *reason)
 {
     const int n = linear->matrix->n;
     if (linear->factor)
-        *iterations += iterate(linear, lack, linear->correction, reduction);
-    else if (!cholesky_solve(linear->cholesky, lack, linear->correction))
+        *iterations += iterate(linear, residual, linear->correction, reduction);
+    else if (!cholesky_solve(linear->cholesky, residual, linear->correction))
         return refuse(reason, STATUS_INTERNAL,
                       "out of memory in the balances of %d pores", n);
     for (int i = 0; i < n; i++)
         compensated_add(&x[i], linear->correction[i]);
-    matrix_lack(linear->matrix, given, x, lack);
+    matrix_residual(linear->matrix, given, x, residual);
     return STATUS_OK;
 }

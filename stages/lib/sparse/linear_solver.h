@@ -24,12 +24,12 @@ enum status linear_solver_make(const struct matrix *matrix, enum solver solver,
                                struct linear_solver *linear, struct reason *reason);
 void linear_solver_free(struct linear_solver *linear);
 
-// Corrects X (n_all) by what the balances LACK (n), as matrix_lack found with GIVEN,
-// and finds anew what they lack. Conjugate gradients take it down to REDUCTION of that
-// of no correction, or as far as they come, and add to ITERATIONS; after the first call
-// they go on from their last direction. STATUS_INTERNAL: no memory.
+// Corrects X (n_all) by what the balances RESIDUAL (n), as matrix_residual found with
+// GIVEN, and finds anew what they lack. Conjugate gradients take it down to REDUCTION
+// of that of no correction, or as far as they come, and add to ITERATIONS; after the
+// first call they go on from their last direction. STATUS_INTERNAL: no memory.
 enum status linear_correct(struct linear_solver *linear, const double *given,
-                           struct compensated *x, double *lack, double reduction,
+                           struct compensated *x, double *residual, double reduction,
                            int *iterations, struct reason *reason);
 
 #endif
