@@ -15,8 +15,8 @@ struct options {
 
 static const struct argp_option option_table[] = {
     {"tolerance", 't', "T", 0,
-     "Largest difference, of the largest value of a dataset, or of a number that "
-     "stands alone, of 1 where that has no unit and is less [0]; whole numbers must be "
+     "Largest difference, relative to the largest value of a dataset, or to a single "
+     "number (to 1 if that has no unit and is smaller) [0]; whole numbers must be "
      "equal",
      0},
     {"quiet", 'q', NULL, 0, "Only the exit status", 0},
@@ -90,13 +90,11 @@ int main(int argc, char **argv)
         .options = option_table,
         .parser = parse_option,
         .args_doc = "ARTIFACT ARTIFACT",
-        .doc =
-            "artdiff -- in what two artifacts differ, with a tolerance\v"
-            "A line for each dataset or number that does. What programs and parameters "
-            "made them is not compared: for every byte use cmp.\n\n"
-            "Exit status:\n"
-            "  0 none does; 1 some do; 64 command line; 65 bad input;\n"
-            "  66 no such input; 70 our fault; 74 failed I/O"};
+        .doc = "artdiff -- how two artifacts differ, with a tolerance\vA line for each "
+               "dataset or number that differs. Programs and parameters that made them "
+               "are not compared: for every byte use cmp.\n\nExit status:\n  0 none "
+               "does; 1 some do; 64 command line; 65 bad input;\n  66 no such input; "
+               "70 internal error; 74 failed I/O"};
     parse_command_line(&argp, argc, argv, &options);
 
     char *lines = NULL;

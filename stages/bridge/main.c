@@ -48,7 +48,7 @@ static const struct parameter table[] = {
     {"separations", PARAMETER_LIST, "m", "[]", AT(separations),
      .text = "separations to use in place of points, from and to"},
     {"profile", PARAMETER_INTEGER, "1", "0", AT(profile), BETWEEN(0, 100000),
-     .text = "places on the meridian of each exact bridge; 0: none"},
+     .text = "points on the meridian of each exact bridge; 0: none"},
     {0}};
 
 static const struct stage stage = {

@@ -20,11 +20,12 @@ struct check_parameters {
 
 static const struct parameter table[] = {
     {"touching_gap", PARAMETER_NUMBER, "1", "1e-6", AT(touching_gap), BETWEEN(0, 1),
-     .text = "surfaces this close touch, of the sum of the two radii"},
+     .text = "largest gap between touching surfaces, over the sum of the two radii"},
     {"frame", PARAMETER_INTEGER, "1", "-1", AT(frame), BETWEEN(-1, 1e12),
      .text = "of a LAMMPS dump, from 0; -1: the last"},
     {"density", PARAMETER_NUMBER, "kg m-3", "2500", AT(material.density), ABOVE(0),
-     .text = "of the grains; this and what follows: for what is suggested"},
+     .text =
+         "of the grains; this and the following parameters are for the suggestions"},
     {"grain_modulus", PARAMETER_NUMBER, "Pa", "6e10", AT(material.grain_modulus),
      ABOVE(0), .text = "Young's modulus of the grains; default: glass"},
     {"bond_modulus", PARAMETER_NUMBER, "Pa", "4e8", AT(material.bond_modulus), ABOVE(0),
@@ -40,14 +41,15 @@ static const struct parameter table[] = {
 static const struct stage stage = {
     .name = "check",
     .version = STAGE_VERSION,
-    .summary = "check -- are these grains what one thinks? units, overlaps, box, bonds",
-    .reads = "packing, or what holds one, or text or a dump as pack imports them",
+    .summary = "check -- are these grains what you think? units, overlaps, box, bonds",
+    .reads =
+        "packing, or any artifact with one, or text or a dump as pack imports them",
     .writes = "check",
     .most_inputs = 1,
     .parameters = table,
-    .notes = "Without -o it says in text what it found, the worst first; with -o FILE "
-             "(or -) it writes JSON. Status 1 when something is wrong: that pack "
-             "refuses, or that is hardly meant.",
+    .notes = "Without -o it prints its findings as text, the worst first; with -o FILE "
+             "(or -) it writes JSON. Status 1: something is wrong, which pack refuses "
+             "or which is hardly intended.",
     .tells = true};
 
 // The defaults of dem-replay are those of grains of 500 nm.

@@ -21,20 +21,21 @@ static const struct parameter table[] = {
      .text = "horizontal slices of equal thickness in the profile, from the bottom up; "
              "a bond on the border of two counts half in each"},
     {"intervals", PARAMETER_INTEGER, "1", "10", AT(intervals), BETWEEN(1, 10000),
-     .text = "equal parts of the saturation, and of the drying time, that cracks are "
-             "counted in"},
+     .text = "number of equal intervals of the saturation, and of the drying time, in "
+             "which cracks are counted"},
     {"confidence", PARAMETER_NUMBER, "1", "0.95", AT(confidence),
      BETWEEN(0.5, 0.999999),
      .text = "of the intervals around the means of several runs"},
     {"first_group", PARAMETER_INTEGER, "1", "0", AT(first_group), BETWEEN(0, 1000000),
-     .text = "the first so many runs are tested against the others; 0: no test"},
+     .text = "number of runs, from the first, that are tested against the others; 0: "
+             "no test"},
     {"paired", PARAMETER_BOOLEAN, "1", "false", AT(paired),
-     .text = "runs of the two groups belong together, the first of one and the first "
-             "of the other and so on, as of one aggregate that dries in two ways: "
-             "their differences are tested too"},
+     .text = "the two groups are paired, the first of one with the first of the other "
+             "and so on, as for aggregates that each dry in two ways: their "
+             "differences are tested too"},
     {"same_bonds", PARAMETER_BOOLEAN, "1", "true", AT(same_bonds),
-     .text = "all runs must have as many bonds as the first; false: runs of other "
-             "packings"},
+     .text = "all runs must have as many bonds as the first; false: they may have "
+             "other packings"},
     {0}};
 
 static const struct stage stage = {
@@ -45,9 +46,9 @@ static const struct stage stage = {
     .writes = "crackstats",
     .most_inputs = 1000000,
     .parameters = table,
-    .notes = "A drying among the inputs is that of the response before it: then the "
-             "cracks are set against the liquid of their slices. Intervals are of the mean "
-             "over the runs that are given; one run has none: repeat it over seeds."};
+    .notes = "A drying among the inputs belongs to the response before it: then cracks "
+             "are compared with the liquid of their slices. Intervals are of the mean "
+             "over the given runs; one run has none: repeat it over seeds."};
 
 // The inputs, and which is next.
 struct reading {

@@ -29,11 +29,11 @@ struct deform_parameters {
 static const struct parameter table[] = {
     {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
      offsetof(struct deform_parameters, clearance), .choices = "segment|line|beside",
-     .text = "clearance that radii go with, as in tessellate"},
+     .text = "clearance that radii scale with, as in tessellate"},
     {"on_change", PARAMETER_CHOICE, "1", "\"refuse\"",
      offsetof(struct deform_parameters, on_change), .choices = "refuse|keep",
-     .text = "where moved grains have another diagram: nothing is written (exit status "
-             "1), or the network stays as it is connected"},
+     .text = "if moved grains have another diagram: refuse writes nothing (exit status "
+             "1), keep leaves the network connected as it is"},
     {"radii", PARAMETER_CHOICE, "1", "\"anew\"",
      offsetof(struct deform_parameters, radii), .choices = "anew|carried",
      .text = "of the third input: as they are there, or drawn ones: each that of the "
@@ -51,11 +51,10 @@ static const struct stage stage = {
     .writes = "network",
     .most_inputs = 3,
     .parameters = table,
-    .notes =
-        "Inputs: a drying, whose liquid at its end goes along, or a network; the "
-        "response of the same grains, whose last snapshot says where they are now; "
-        "and, where they have another diagram by then, their network as it was "
-        "tessellated anew, onto which the liquid is carried."};
+    .notes = "Inputs: a drying, whose final liquid is kept, or a network; the response "
+             "of the same grains, whose last snapshot says where they are now; and, if "
+             "these have another diagram, their network tessellated again, which takes "
+             "the liquid over."};
 
 // ---- what is asked for --------------------------------------------------------------
 
@@ -185,7 +184,7 @@ static void check_moved(const struct network *network, const char *path)
                 throat_volume(network, t) <= largest;
     if (!fits)
         die(STATUS_BAD_DATA,
-            "%s: /snapshots/displacement: no numbers hold the network of these grains",
+            "%s: /snapshots/displacement: the network of these grains overflows",
             input_name(path));
 }
 
@@ -193,7 +192,7 @@ static void refuse_change(int changed, int n_node, const char *path)
 {
     die(STATUS_NO,
         "%s: the grains have another diagram now, at %d of %d nodes: tessellate them "
-        "anew (write=packing), or on_change=keep",
+        "again (write=packing), or on_change=keep",
         input_name(path), changed, n_node);
 }
 

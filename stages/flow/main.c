@@ -32,10 +32,10 @@ static const struct parameter table[] = {
     {"along", PARAMETER_CHOICE, "1", "\"z\"", AT(imposed.along),
      .choices = "x|y|z|none",
      .text = "direction in which the pressure falls, from the lower to the upper wall "
-             "or, where the box repeats, from box to box; none: only what pressure and "
-             "flux say"},
+             "or, in a periodic box, from box to box; none: only pressure and flux "
+             "drive the flow"},
     {"pressure_drop", PARAMETER_NUMBER, "Pa", "1", AT(imposed.drop),
-     .text = "how far it falls over the box"},
+     .text = "pressure drop over the box"},
     WALL("pressure.x_lower", pressure, "Pa", 0, "piezometric pressure at the wall -x"),
     WALL("pressure.x_upper", pressure, "Pa", 1, "at the wall +x"),
     WALL("pressure.y_lower", pressure, "Pa", 2, "at the wall -y"),
@@ -43,7 +43,7 @@ static const struct parameter table[] = {
     WALL("pressure.z_lower", pressure, "Pa", 4, "at the wall -z"),
     WALL("pressure.z_upper", pressure, "Pa", 5, "at the wall +z"),
     WALL("flux.x_lower", flux, "m3 s-1", 0,
-         "into the box through the wall -x, at one pressure all over it"),
+         "flux into the box through the wall -x, at a uniform pressure on it"),
     WALL("flux.x_upper", flux, "m3 s-1", 1, "through the wall +x"),
     WALL("flux.y_lower", flux, "m3 s-1", 2, "through the wall -y"),
     WALL("flux.y_upper", flux, "m3 s-1", 3, "through the wall +y"),
@@ -69,28 +69,28 @@ static const struct parameter table[] = {
     {"gravity", PARAMETER_POINT, "m s-2", "[0,0,0]", AT(gravity),
      .text = "acceleration, for buoyancy"},
     {"strain_rate", PARAMETER_POINT, "s-1", "[0,0,0]", AT(strain_rate),
-     .text = "of the box along x, y, z: walls move so, and so do grains that have no "
+     .text = "of the box along x, y, z: walls move accordingly, and grains without "
              "/particles/velocity"},
     {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", AT(tensor),
      .text = "from three more flows, along x, y and z"},
     {"stokes_drag", PARAMETER_BOOLEAN, "1", "false", AT(stokes),
-     .text = "small grains that float in a pore get Stokes' drag too; the grains "
-             "around them lose what they get"},
+     .text = "small grains that float in a pore get Stokes' drag as well; the grains "
+             "around them lose that force"},
     {"pore_stress", PARAMETER_BOOLEAN, "1", "false", AT(stress),
      .text = "pressure and viscous stress, averaged over each pore and over the fluid; "
              "nothing may move"},
     {"solver", PARAMETER_CHOICE, "1", "\"auto\"", AT(solver),
      .choices = "auto|cholesky|iteration",
-     .text = "of the pressures: Cholesky's factor, or conjugate gradients with a "
-             "sampled factor; auto: the faster"},
+     .text = "of the pressures: Cholesky's factor, or conjugate gradients with an "
+             "approximate factor; auto: the faster"},
     {"tolerance", PARAMETER_NUMBER, "1", "1e-12", AT(tolerance), BETWEEN(1e-14, 0.1),
-     .text = "on what does not flow out of a pore that flows in, and on the sum over "
-             "all, of the flux"},
+     .text = "largest error of the balance of a pore, and of the sum over all pores, "
+             "relative to the flux"},
     {"write", PARAMETER_CHOICE, "1", "\"flow\"", AT(product), .choices = "flow|forces",
      .text = "all of the flow, or the total force on every grain for dem-replay"},
     {"steps", PARAMETER_INTEGER, "1", "11", AT(steps), BETWEEN(2, 1e6),
-     .text = "write=forces: in how many times, a second apart, the forces grow from "
-             "nothing"},
+     .text = "write=forces: number of times, a second apart, over which the forces "
+             "grow from 0"},
     {0}};
 
 static const struct stage stage = {

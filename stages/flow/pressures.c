@@ -176,11 +176,10 @@ static enum status find_pockets(struct balance *balance, struct pressures *press
         pressures->n_pocket++;
         balance->known[i] = 1;
         if (fabs(sum[i]) > 1e-10 * size[i])
-            status =
-                refuse(reason, STATUS_BAD_DATA,
-                       "what flows into a pocket of pores with no way out does not "
-                       "leave it: %.3g of %.3g is left over",
-                       sum[i], size[i]);
+            status = refuse(reason, STATUS_BAD_DATA,
+                            "the flow into a closed pocket of pores does not balance: "
+                            "%.3g of %.3g remains",
+                            sum[i], size[i]);
     }
     for (int i = 0; i < n; i++)
         pocket[i] = way_out[pocket[i]] ? -1 : pocket[i];

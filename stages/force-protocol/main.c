@@ -41,19 +41,20 @@ static const struct parameter table[] = {
      .text = "factor on the physical force; K's own was chosen and is not given"},
     {"form", PARAMETER_CHOICE, "1", "\"solid-angle\"", AT(form),
      .choices = "solid-angle|faces|centres|arcs",
-     .text = "what the liquid of a throat pulls with: its suction on the part of the "
-             "grain that faces it; that and the pull of the menisci, so that grains "
-             "pull each other in pairs; K's plain sums: towards the middles of the "
-             "throats [K 5.1], or in a layer over the arcs of a circle [K 3.20]"},
+     .text =
+         "how the liquid of a throat pulls a grain: by its suction on the part of the "
+         "grain that faces it; by that and the pull of the menisci (faces), so that "
+         "grains pull each other in pairs; by K's plain sums: towards the middles of "
+         "the throats [K 5.1], or in a layer over the arcs of a circle [K 3.20]"},
     {"balanced", PARAMETER_BOOLEAN, "1", "true", AT(balanced),
-     .text = "change the pulls of the form as little as it takes for each throat alone "
-             "to leave the grains around it in balance, forces and moments; nothing "
-             "changes on cubic lattices"},
+     .text = "change the pulls of the form as little as possible so that each throat "
+             "alone leaves the grains around it in balance, forces and moments; "
+             "nothing changes on cubic lattices"},
     {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", AT(suction),
      .choices = "uniform|clusters|field",
-     .text = "suction of the liquid: that of a throat of mean radius everywhere; of "
-             "each connected piece of liquid by its widest meniscus; or the pressures "
-             "of viscous liquid, from the snapshots of the drying (dry.snapshots)"},
+     .text = "suction of the liquid: uniform, that of a throat of mean radius; in each "
+             "cluster that of its widest meniscus; or the field of viscous liquid, "
+             "from the snapshots of the drying (dry.snapshots)"},
     {"open_surface", PARAMETER_CHOICE, "1", "\"idle\"", AT(open_surface),
      .choices = "idle|pulls",
      .text = "throats that lie in the open wall: their liquid has its menisci over the "
@@ -61,24 +62,24 @@ static const struct parameter table[] = {
              "its open top as well), or it pulls like any other"},
     {"gravity", PARAMETER_NUMBER_OR_NULL, "m s-2", "null", AT(gravity), AT_LEAST(0),
      .text = "towards -z: the grains around each throat carry its liquid, and with "
-             "pressure=clusters the suction grows with height; null: as the drying had "
-             "it (dry.gravity); 0: the liquid weighs nothing"},
+             "pressure=clusters the suction grows with height; null: that of the "
+             "drying (dry.gravity); 0: the liquid weighs nothing"},
     {"steps", PARAMETER_INTEGER, "1", "550", AT(steps), BETWEEN(2, 1e7),
      .text =
          "uniform times from the start to the end of drying, both included [K 5.2]"},
     {"largest_change", PARAMETER_NUMBER, "1", "0", AT(largest_change), BETWEEN(0, 1),
-     .text = "0: uniform times; else as few times as it takes for no force on a grain "
-             "to change by more than this from one to the next, of the largest force"},
+     .text = "0: uniform times; else the fewest times between which no force on a "
+             "grain changes by more than this share of the largest force"},
     {"most_bytes", PARAMETER_NUMBER, "1", "4e9", AT(most_bytes), ABOVE(0),
-     .text = "largest forces to write, 24 bytes a grain and time: more are refused at "
-             "once"},
+     .text = "most bytes of forces to write, 24 per grain and time; more are refused "
+             "at once"},
     {"rings.left", PARAMETER_CHOICE, "1", "\"none\"", AT(rings),
      .choices = "none|volume|suction",
      .text = "liquid that stays at contacts as throats empty: none, a given volume, or "
              "as much as is in equilibrium with liquid in a throat of mean radius"},
     {"rings.volume", PARAMETER_NUMBER, "1", "1e-3", AT(ring_volume), BETWEEN(1e-9, 1),
-     .text =
-         "volume: of one ring, of the cube of the effective radius 2 R1 R2/(R1 + R2)"},
+     .text = "left=volume: volume of a ring over the cube of the effective radius 2 R1 "
+             "R2/(R1 + R2)"},
     {0}};
 
 static const struct stage stage = {

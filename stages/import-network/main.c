@@ -32,8 +32,8 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table,
     .transcribes = true,
-    .notes = "What `inspect --openpnm` wrote comes back as it was; other files give a "
-             "network without grains and faces, and those of statoil always do."};
+    .notes = "A file of `inspect --openpnm` comes back as it was; other files, and all "
+             "those of statoil, give a network without grains and faces."};
 
 // Reads a file and notes its digest. The caller frees the bytes.
 static struct bytes read_input(const char *path, const char *schema, json_t *inputs)

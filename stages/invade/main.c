@@ -29,11 +29,11 @@ enum { UNTIL_END, UNTIL_BREAKTHROUGH };
 
 static const struct parameter table[] = {
     {"rule", PARAMETER_CHOICE, "1", "\"throats\"", AT(rule), .choices = "throats|nodes",
-     .text = "what holds gas up: throats by their radii (drainage), or nodes, as wide "
-             "as their widest throat"},
+     .text = "what gas must enter: throats by their radii (drainage), or nodes, as "
+             "wide as their widest throat"},
     {"trapping", PARAMETER_BOOLEAN, "1", "true", AT(invasion.trapping),
-     .text =
-         "liquid leaves only through the outlet: what gas has cut off from it stays"},
+     .text = "liquid leaves only through the outlet; liquid that gas has cut off from "
+             "it stays"},
     {"until", PARAMETER_CHOICE, "1", "\"end\"", AT(until),
      .choices = "end|breakthrough",
      .text =
@@ -43,8 +43,8 @@ static const struct parameter table[] = {
     {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", AT(invasion.outlet),
      .choices = WALLS, .text = "walls through which liquid leaves"},
     {"transport", PARAMETER_BOOLEAN, "1", "false", AT(transport),
-     .text = "find how well gas and liquid flow, and diffuse, from inlet to outlet at "
-             "saturations of 1, 0.9, 0.8, ... (relative permeability, effective "
+     .text = "compute how well gas and liquid flow, and diffuse, from inlet to outlet "
+             "at saturations of 1, 0.9, 0.8, ... (relative permeability, effective "
              "diffusivity)"},
     {"imposed_empty", PARAMETER_CHOICES, "1", "[]", AT(imposed_empty),
      .choices = WALLS "|outer|inner",

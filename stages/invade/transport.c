@@ -170,8 +170,8 @@ static enum status find_conductance(struct passage *passage, double *conductance
     free(link);
     if (status != STATUS_NOT_CONVERGED) return status;
     return refuse(reason, status,
-                  "transport: the balances of %d nodes cannot be closed to %g of what "
-                  "passes, conductances are too far apart (throats of more even radii, "
+                  "transport: the balances of %d nodes cannot be closed to %g of the "
+                  "flow, conductances are too far apart (throats of more even radii, "
                   "or fewer than %d nodes, would do)",
                   n, TOLERANCE, MOST_ELIMINATED);
 }

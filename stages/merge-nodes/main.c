@@ -22,13 +22,13 @@ static const struct parameter table[] = {
     {"measure", PARAMETER_CHOICE, "1", "\"grain_radius\"",
      offsetof(struct merge_parameters, measure),
      .choices = "grain_radius|mean_length|absolute|fraction",
-     .text = "what the threshold counts: mean grain radii, mean throat lengths, "
-             "metres, or the share of throats to remove; the last two of the network "
-             "before any merging"},
+     .text = "unit of the threshold: mean grain radii, mean throat lengths, metres, or "
+             "the share of throats to remove; mean length and share are those before "
+             "any merging"},
     {"threshold", PARAMETER_NUMBER, "1", "1e-6",
      offsetof(struct merge_parameters, threshold), AT_LEAST(0),
      .text = "throats shorter than this go, the shortest first; the default removes "
-             "only those that a degenerate packing makes"},
+             "only those of degenerate packings"},
     {"volumes", PARAMETER_CHOICE, "1", "\"as_given\"",
      offsetof(struct merge_parameters, volumes), .choices = "as_given|conserved",
      .text = "as_given: where throats have volumes (/throats/volume) their sum stays, "

@@ -27,7 +27,7 @@ static const struct stage stage = {
         "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
         "packing.h5. With deposition, radius_expansion, domain_contraction and "
         "explosive_repulsion the same, for grains to begin from.",
-    .reports = "Write there, as JSON, what is said of the packing",
+    .reports = "Write the report of the packing there, as JSON",
     .checkpoints = true};
 
 static bool moves_grains(int method)

@@ -12,7 +12,7 @@ const struct parameter pack_table[] = {
              "close packing, or the triangular layer where dimensions=2; honeycomb: "
              "layers of hexagonal rings in x and z, one on the other, whose network "
              "has 8 throats a node [K Fig. 2.3]); poisson: random points, grains may "
-             "overlap; random_sequential: random points, refused where grains would "
+             "overlap; random_sequential: random points, rejected where grains would "
              "overlap; inward_spiral: a layer of grains from the walls inwards, each "
              "touching two others [K 3.1.2]; by moving grains [K 3.1.1]: deposition by "
              "gravity, radius_expansion and domain_contraction from loose points, "
@@ -26,7 +26,7 @@ const struct parameter pack_table[] = {
              "used where upper or domain.shape says what to fill"},
     {"count", PARAMETER_INTEGER, "1", "null", AT(count), BETWEEN(1, 1e8),
      .text = "how many grains; null: until no more fit (random_sequential: in the "
-             "order drawn), or, where grains move, as many as the box takes at the "
+             "order drawn), or, where grains move, as many as fit the box at the "
              "porosity expected"},
     {"radius", PARAMETER_NUMBER, "m", "250e-9", AT(sizes.radius), ABOVE(0),
      .text = "grain radius; mean of normal and lognormal sizes before their ends are "
@@ -122,8 +122,8 @@ const struct parameter pack_table[] = {
      BETWEEN(0, 2), .text = "ratio of the contacts' dashpots [K 4.28]"},
     {"dynamics.local_damping", PARAMETER_NUMBER, "1", "0.3", AT(dynamics.local_damping),
      BETWEEN(0, 0.9),
-     .text = "share by which forces weaken that push a grain the way it moves, so that "
-             "all comes to rest"},
+     .text = "share by which forces are reduced that push a grain along its motion, so "
+             "that all comes to rest"},
     {"dynamics.gravity", PARAMETER_NUMBER, "m/s2", "9.81", AT(dynamics.gravity),
      ABOVE(0), .text = "downwards along z, in deposition"},
     {"dynamics.time_step_safety", PARAMETER_NUMBER, "1", "0.1", AT(dynamics.safety),
@@ -132,9 +132,10 @@ const struct parameter pack_table[] = {
      BETWEEN(1e-12, 1), .text = "unbalanced ratio at rest [K 4.20]"},
     {"dynamics.most_cycles", PARAMETER_INTEGER, "1", "3000000",
      AT(dynamics.most_cycles), BETWEEN(1, 1e12),
-     .text = "gives up after as many time steps"},
+     .text = "gives up after this many time steps"},
     {"most_trials", PARAMETER_INTEGER, "1", "100000", AT(most_trials), BETWEEN(1, 1e12),
-     .text = "random_sequential gives up after as many places in a row for one grain"},
+     .text =
+         "random_sequential gives up after this many failed attempts for one grain"},
     {"densify", PARAMETER_BOOLEAN, "1", "false", AT(densify),
      .text = "inward_spiral: fill voids with grains that touch three others, down to "
              "sizes.smallest"},
@@ -144,23 +145,22 @@ const struct parameter pack_table[] = {
              "come last, without bonds, and the box ends on them"},
     {"extra_side", PARAMETER_CHOICE, "1", "\"+z\"", AT(extra_side),
      .choices = "-x|+x|-y|+y|-z|+z",
-     .text = "flat side of the box that the extra layer is at"},
+     .text = "flat side of the box where the extra layer lies"},
     {"frame", PARAMETER_INTEGER, "1", "-1", AT(frame), BETWEEN(-1, 1e12),
      .text = "of an imported LAMMPS dump, from 0; -1: the last"},
     {"import.scale", PARAMETER_NUMBER, "m", "1", AT(import_scale), ABOVE(0),
      .text = "length of a unit of INPUT: 1e-3 where it is in millimetres, 1e-6 in "
              "micrometres"},
     {"import.diameters", PARAMETER_BOOLEAN, "1", "false", AT(import_diameters),
-     .text = "INPUT has diameters where radii are read"},
+     .text = "INPUT has diameters in place of radii"},
     {"check", PARAMETER_CHOICE, "1", "\"refuse\"", AT(check),
      .choices = "refuse|warn|none",
-     .text =
-         "refuse: grains in one place or wholly outside the box, or with more volume "
-         "than it, end with status 65, and what looks like a slip is said (not of "
-         "poisson); warn: both are said; none: not looked at"},
+     .text = "refuse: grains in one place or wholly outside the box, or with more "
+             "volume than it, end with status 65, and likely mistakes are reported "
+             "(not for poisson); warn: both are reported; none: no check"},
     {"bonds", PARAMETER_CHOICE, "1", "\"touching\"", AT(bonds),
      .choices = "none|touching|keep",
      .text = "which grains are bonded; keep: as an imported packing.h5 says"},
     {"touching_gap", PARAMETER_NUMBER, "1", "1e-6", AT(touching_gap), BETWEEN(0, 1),
-     .text = "surfaces this close touch, of the sum of the two radii"},
+     .text = "largest gap between touching surfaces, over the sum of the two radii"},
     {0}};

@@ -33,11 +33,11 @@ static enum status check_layer(const struct packing *packing, struct reason *rea
     const double thickness = packing->upper.y - packing->lower.y;
     if (packing->periodic[1])
         return refuse(reason, STATUS_BAD_DATA,
-                      "/domain/periodic: row 1: dimensions=2 wants walls along y");
+                      "/domain/periodic: row 1: dimensions=2 needs walls along y");
     for (int i = 0; i < packing->n_particle; i++)
         if (fabs(packing->position[i].y - middle) > 1e-9 * thickness)
             return refuse(reason, STATUS_BAD_DATA,
-                          "/particles/position: row %d: dimensions=2 wants all centres "
+                          "/particles/position: row %d: dimensions=2 needs all centres "
                           "half way between the walls y, at %g m, got %g m",
                           i, middle, packing->position[i].y);
     return STATUS_OK;

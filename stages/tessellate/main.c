@@ -25,21 +25,20 @@ static const struct parameter table[] = {
     {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
      offsetof(struct tessellate_parameters, clearance),
      .choices = "segment|line|beside",
-     .text =
-         "least clearance between throat and grains: from the throat itself to any "
-         "grain, from the infinite line through it to the grains beside it [K 3.7], "
-         "or from the throat to the grains beside it (all the same for grains of one "
-         "size, but for lines)"},
+     .text = "least clearance between throat and grains: from the throat itself to any "
+             "grain, from the infinite line through it to the grains beside it [K "
+             "3.7], or from the throat to the grains beside it (for grains of one size "
+             "all but line agree)"},
     {"throat_volume", PARAMETER_CHOICE, "1", "\"cylinder\"",
      offsetof(struct tessellate_parameters, volume), .choices = "cylinder|void",
      .text = "what a throat holds: the cylinder of its radius and length [K 3.3.4], or "
-             "its share of the void between the grains (/throats/volume), the sum of "
-             "which is exact"},
+             "its share of the void between the grains (/throats/volume); these shares "
+             "sum exactly to the void"},
     {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"",
      offsetof(struct tessellate_parameters, boundary), .choices = "truncate|eliminate",
-     .text = "what becomes of cells that do not end inside the walls, of the box or of "
-             "a cylinder, ring or sphere: cut by them, or left out, as unbounded ones "
-             "are in K"},
+     .text = "cells that cross the walls of the box or of a cylinder, ring or sphere: "
+             "truncate cuts them there; eliminate leaves them out, as K does with "
+             "unbounded cells"},
     {"dimensions", PARAMETER_INTEGER, "1", "3",
      offsetof(struct tessellate_parameters, dimensions), BETWEEN(2, 3),
      .text = "2: the network of one layer of grains, in a plane between it and the "

@@ -19,7 +19,7 @@ BIN = os.environ["BIN"]
 COUNT = int(os.environ.get("FUZZ", 300))
 KEEP = os.environ.get("FUZZ_KEEP")
 MOST_SECONDS = 10
-# Done, unstable, bad data; never our own fault, and nothing else can be wrong here.
+# Done, unstable, bad data; never an internal error, and nothing else can be wrong here.
 ALLOWED = {0, 3, 65}
 
 # With sanitizers in the programs (make SANITIZE=1): what they find ends a program by a

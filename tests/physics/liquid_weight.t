@@ -148,6 +148,6 @@ with scratch() as folder:
     run("dry", "-q", "--set", f"liquid_density={RHO}", "--set", 'open=["+x"]', at("repeats"), "-o", at("drying"))
     said = subprocess.run([f"{BIN}/force-protocol", "--set", "gravity=9.81", at("drying"), "-o", at("forces")],
                           capture_output=True, text=True)
-    ok(said.returncode == 65 and "force-protocol.gravity: must be 0 in a box that repeats along z" in said.stderr,
+    ok(said.returncode == 65 and "force-protocol.gravity: must be 0 in a box that is periodic along z" in said.stderr,
        "no gravity along a side that repeats", said.stderr)
 done()

@@ -186,7 +186,7 @@ with scratch() as folder:
     pack([3, 3, 4], "periodic=[false,false,true]")
     forces(force)
     made = tried()
-    ok(made.returncode == 65 and "must be 0 in a box that repeats along z" in made.stderr,
+    ok(made.returncode == 65 and "must be 0 in a box that is periodic along z" in made.stderr,
        "no gravity along a side that repeats", made.stderr)
 
     # ---- Bond numbers -------------------------------------------------------------------

@@ -174,7 +174,7 @@ static void check_same(const struct artifact *artifact, const char *what,
     if (!theirs || strcmp(theirs, ours))
         die(STATUS_BAD_DATA,
             "%s: is of another run: its %s differ%s from this call's; name another "
-            "file, or remove it to begin anew",
+            "file, or remove it to start again",
             artifact->path, what, what[strlen(what) - 1] == 's' ? "" : "s");
     free(theirs);
 }

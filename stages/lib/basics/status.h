@@ -13,7 +13,7 @@ enum status {
     STATUS_USAGE = 64,         // wrong command line
     STATUS_BAD_DATA = 65,      // bad input or parameters
     STATUS_NO_INPUT = 66,      // no such input
-    STATUS_INTERNAL = 70,      // our own fault, out of memory
+    STATUS_INTERNAL = 70,      // internal error, out of memory
     STATUS_CANNOT_CREATE = 73, // output cannot be created
     STATUS_IO = 74             // reading or writing failed
 };

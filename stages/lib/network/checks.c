@@ -19,5 +19,6 @@ enum status check_gravity(const struct network *network, double gravity,
 {
     if (gravity == 0 || !network->packing.periodic[2]) return STATUS_OK;
     return refuse(reason, STATUS_BAD_DATA,
-                  "gravity: must be 0 in a box that repeats along z, is %g", gravity);
+                  "gravity: must be 0 in a box that is periodic along z, is %g",
+                  gravity);
 }

@@ -41,7 +41,7 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE", 0, "Write there; '-', or nothing: standard output", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to use [1]; results do not depend on it",
      0},
-    {"quiet", 'q', NULL, 0, "Say nothing but errors", 0},
+    {"quiet", 'q', NULL, 0, "Print only errors", 0},
     {"progress", KEY_PROGRESS, "WHEN", 0, "Progress bar: auto, always or never [auto]",
      0},
     {"schema", KEY_SCHEMA, NULL, 0, "Print the JSON Schema of the parameters", 1},
@@ -169,7 +169,7 @@ static char *help_filter(int key, const char *text, void *input)
                     "\nExit status:\n"
                     "  0 done; 1 the answer is no; 3 not converged, or unstable;\n"
                     "  64 command line; 65 bad input or parameters; 66 no such input;\n"
-                    "  70 our fault; 73 cannot create; 74 failed I/O");
+                    "  70 internal error; 73 cannot create; 74 failed I/O");
     fclose(stream);
     return help;
 }
@@ -299,8 +299,8 @@ static void list_options(const struct stage *stage, struct argp_option *list)
         end = add_option(end, "report", KEY_REPORT, "FILE", stage->reports);
     if (!stage->checkpoints) return;
     end = add_option(end, "checkpoint", KEY_CHECKPOINT, "FILE",
-                     "Keep the state there now and then, and when stopped by SIGTERM, "
-                     "SIGINT or SIGHUP; go on from it if it is there; remove it at the "
+                     "Keep the state there regularly, and when stopped by SIGTERM, "
+                     "SIGINT or SIGHUP; resume from it if it exists; remove it at the "
                      "end. Results do not depend on it");
     add_option(end, "checkpoint-every", KEY_EVERY, "SECONDS",
                "Time between two checkpoints [600]");
