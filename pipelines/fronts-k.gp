@@ -53,7 +53,6 @@ do for [r = 0:1] {
     if (r == 0) {
         plot for [k = 0:4] sprintf("%s/rate-%d", tables, k) using 1:2 with lines linewidth 1.4 linecolor rgb series[k + 1] title "" . (k + 1)
     } else {
-        set key at graph 0.02, 0.08 left bottom
         plot tables . "/rate-5" using 1:2 with lines linewidth 1.6 linecolor rgb red title "water, no friction", \
             tables . "/rate-6" using 1:2 with lines linewidth 1.6 linecolor rgb blue title "water, friction 0.5", \
             tables . "/rate-7" using 1:2 with lines linewidth 1.6 linecolor rgb grey title "the same, inviscid"
