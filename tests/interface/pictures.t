@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Pictures say what they show: cracks have one colour each wherever they are drawn, with a legend;
+# the demo's ends when all is dry; saturations run from 1 to 0; none needs red told from green.
+import glob
+import json
+import os
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, "tests")
+from tap import SCENE, done, ok, read, run, scratch
+
+SMALL = {"pack": ["counts=[3,3,5]"], "force-protocol": ["steps=40"],
+         "dem-replay": ["engine=explicit", "cycles=60", "tolerance=null", "bond.normal_strength=9e3",
+                        "bond.shear_strength=5e3"]}
+
+
+def stage(name, *files, sets=()):
+    words = [word for key in [*SMALL.get(name, []), *sets] for word in ("--set", key)]
+    run(name, "-q", "-p", SCENE, *words, *files[:-1], "-o", files[-1])
+
+
+def draw(program, *words):
+    drawn = subprocess.run([f"pipelines/{program}", *words], capture_output=True, text=True)
+    ok(drawn.returncode == 0, f"{program} {len(words)}", drawn.stderr)
+    return read(words[-1]).decode()
+
+
+def colours(text):
+    """All of TEXT, as (red, green, blue), whichever way they are written."""
+    return {tuple(bytes.fromhex(c)) for c in re.findall(r"#([0-9a-fA-F]{6})", text)} | {
+        tuple(map(int, c)) for c in re.findall(r"rgb\( *(\d+), *(\d+), *(\d+)\)", text)}
+
+
+def modes(response):
+    mode = json.loads(run("inspect", "-d", "/cracks/mode", response))
+    return f"{mode.count(0)} in tension, {mode.count(1)} in shear"
+
+
+palette = dict(re.findall(r'^([a-z]+) = "(#[0-9a-f]{6})"$', read("pipelines/style.gp").decode(), re.M))
+cracks = colours(palette["tension"] + palette["shear"])
+ok(len(set(palette.values())) == len(palette) > 5, "style.gp has each colour once", palette)
+
+with scratch() as folder:
+    at = lambda *names: os.path.join(folder, *names)
+    stage("pack", at("packing"))
+    stage("tessellate", at("packing"), at("tessellation"))
+    stage("merge-nodes", at("tessellation"), at("network"))
+    for limit in "inviscid", "immobile":
+        os.mkdir(at(limit))
+        stage("dry", at("network"), at(limit, "drying.h5"), sets=[f"liquid={limit}"])
+        stage("force-protocol", at(limit, "drying.h5"), at(limit, "forces.h5"))
+        stage("dem-replay", at(limit, "forces.h5"), at(limit, "response.h5"))
+    counts = [modes(at(limit, "response.h5")) for limit in ("inviscid", "immobile")]
+    ok(re.match("[1-9].*, [1-9]", counts[0]) and counts[0] != counts[1], "cracks of both modes", counts)
+
+    first = at("inviscid", "response.h5")
+    drawn = [draw("picture", folder, at("picture.svg")),
+             draw("crack-patterns", f"wet={first}@0.5", f"dry={first}", at("patterns.svg")),
+             draw("crack-patterns", first, at("pattern.svg"))]
+    for name, svg in zip(("picture", "patterns", "pattern"), drawn):
+        ok(cracks <= colours(svg), f"{name}: cracks have the colours of style.gp", cracks - colours(svg))
+        ok("broken in tension" in svg and "broken in shear" in svg, f"{name}: a legend says which is which")
+    ok(re.findall(r">dry</tspan>[^\n]*\n[^\n]*>broken: ([^<]*)<", drawn[0]) == counts,
+       "the last panel of each limit is dry and has all cracks")
+
+# ---- the scripts --------------------------------------------------------------------
+old = colours("#0a2a7a #ffc20e #e0b000")
+wrong = {"colours of their own for cracks": [], "red beside green": [], "saturations not from 1 to 0": []}
+for script in sorted(glob.glob("pipelines/*")):
+    text = read(script).decode()
+    here = colours(text)
+    red = any(c[0] > 120 and c[0] > 1.5 * max(c[1:]) for c in here)
+    green = any(c[1] > 1.4 * max(c[0], c[2]) for c in here)
+    against = [not script.endswith("style.gp") and here & (cracks | old), red and green,
+               re.search(r'xlabel "(network )?saturation', text) and "xrange [1:0]" not in text]
+    for which, is_so in zip(wrong.values(), against):
+        if is_so:
+            which.append(script)
+for what, scripts in wrong.items():
+    ok(not scripts, f"scripts have no {what}", scripts)
+done()
