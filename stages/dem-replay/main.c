@@ -24,7 +24,7 @@ static const struct stage stage = {
     .most_inputs = 2,
     .parameters = replay_table,
     .notes = "A second input is the response of an earlier replay with keep_state, "
-             "which this one goes on from: its grains, where they lie, what has "
+             "from which this one continues: its grains, where they lie, what has "
              "broken. Displacements count from where its grains began.",
     .checkpoints = true};
 

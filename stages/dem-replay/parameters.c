@@ -20,12 +20,12 @@ const struct parameter replay_table[] = {
     {"damping_ratio", PARAMETER_NUMBER, "1", "0", AT(settings.material.damping_ratio),
      AT_LEAST(0), .text = "of the dashpots at contacts, of critical [K 4.28]"},
     {"tensile_damping", PARAMETER_BOOLEAN, "1", "true", AT(settings.tensile_damping),
-     .text = "dashpots may pull grains that part; false: the normal force of a contact "
-             "without a bond is never below 0 [G 3]"},
+     .text = "dashpots may pull grains that separate; false: the normal force of a "
+             "contact without a bond is never below 0 [G 3]"},
     {"local_damping", PARAMETER_NUMBER, "1", "0.7", AT(settings.material.local_damping),
      BETWEEN(0, 0.99),
-     .text = "share of the net force on a grain taken off while it moves its way, "
-             "added while it moves against it; for statics"},
+     .text = "share of the net force on a grain that is subtracted while the grain "
+             "moves along it, added while it moves against it; for statics"},
     {"normal_stiffness", PARAMETER_NUMBER, "N m-1", "3e4",
      AT(settings.material.normal_stiffness), AT_LEAST(0),
      .text = "of a grain; two in series make a contact [K 4.22]"},
@@ -59,8 +59,8 @@ const struct parameter replay_table[] = {
          "largest gap that a bond spans, of the sum of the two radii; for by=distance"},
     {"bond.strength.distribution", PARAMETER_CHOICE, "1", "\"one\"", AT(strength_law),
      .choices = "one|normal|weibull",
-     .text = "of the strengths of bonds about those above, one number a bond for "
-             "tension and shear; normal: cut off at 0"},
+     .text = "distribution of the strengths around those above, one number per bond "
+             "for tension and shear; normal: cut off at 0"},
     {"bond.strength.variation", PARAMETER_NUMBER, "1", "0.2", AT(scatter.variation),
      BETWEEN(0, 1), .text = "normal: standard deviation over mean, before the cut"},
     {"bond.strength.modulus", PARAMETER_NUMBER, "1", "5", AT(scatter.modulus),
@@ -77,10 +77,10 @@ const struct parameter replay_table[] = {
      .text = "tension or shear force that breaks a contact bond; null: none does"},
     {"prestress", PARAMETER_BOOLEAN, "1", "false", AT(prestress),
      .text = "overlaps of the packing push from the start; false: grains lie at rest, "
-             "and what they come closer pushes"},
+             "and only further approach pushes"},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", AT(support),
      .choices = "free|fixed|wall",
-     .text = "free: net force and moment are taken off; fixed: the grains of held "
+     .text = "free: net force and moment are removed; fixed: the grains of held "
              "neither move nor turn; wall: a rigid wall at the lower z side"},
     {"held.walls", PARAMETER_CHOICES, "1", "[\"-z\"]", AT(held.walls),
      .choices = "-x|+x|-y|+y|-z|+z",
@@ -98,44 +98,43 @@ const struct parameter replay_table[] = {
          "fragment, where none is held) keep their load and fly, or lose it"},
     {"engine", PARAMETER_CHOICE, "1", "\"auto\"", AT(engine),
      .choices = "explicit|quasi-static|auto",
-     .text = "auto: quasi-static without friction, where it is by far faster, else "
+     .text = "auto: quasi-static without friction, where it is far faster, else "
              "explicit; explicit: cycles of discrete elements [K 4]; quasi-static: "
-             "equilibrium "
-             "itself, bonds breaking one by one"},
+             "equilibrium itself, bonds breaking one by one"},
     {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8",
      AT(settings.equilibrium_tolerance), ABOVE(0),
-     .text = "largest force or moment left on a grain, of the largest load"},
+     .text = "largest residual force or moment on a grain, over the largest load"},
     {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "40",
      AT(settings.most_iterations), BETWEEN(1, 1e9),
      .text = "steps in time, slowed by dashpots, where equilibrium is not found at "
-             "once; what still moves then goes on under the next load"},
+             "once; grains that still move then go on under the next load"},
     {"quasi_static.rolling_stiffness", PARAMETER_NUMBER, "1", "1e-3",
      AT(settings.rolling), BETWEEN(0, 1),
-     .text = "contact bonds: what resists rolling and twist, of the shear stiffness "
-             "times the arms of both grains; 0: nothing, and grains that turn like "
-             "gears are not held"},
+     .text = "contact bonds: resistance to rolling and torsion, over the shear "
+             "stiffness times the arms of both grains; 0: none, and grains that turn "
+             "like gears are not held"},
     {"quasi_static.large_displacements", PARAMETER_BOOLEAN, "1", "false",
      AT(settings.large_displacements),
      .text = "grains may move and turn far: equilibrium on the geometry as it is; "
              "false: directions are those of the packing, displacements small"},
     {"quasi_static.increment", PARAMETER_NUMBER, "1", "0.02", AT(settings.increment),
      BETWEEN(1e-6, 0.1),
-     .text =
-         "with large displacements: how far a grain or a contact turns at a time, in "
-         "rad, or grains come closer, in mean radii; the error falls with its square"},
+     .text = "with large displacements: largest rotation of a grain or a contact in "
+             "one increment, in rad, or approach of two grains, in mean radii; the "
+             "error falls with its square"},
     {"bridges.volume", PARAMETER_NUMBER, "m3", "0", AT(settings.liquid.volume),
      AT_LEAST(0),
      .text = "of a liquid bridge between each two grains that touch [G 2], or with "
              "shared on each grain; 0: none"},
     {"bridges.shared", PARAMETER_BOOLEAN, "1", "false", AT(settings.liquid.shared),
-     .text = "each grain parts its liquid evenly among its bridges"},
+     .text = "each grain divides its liquid evenly among its bridges"},
     {"bridges.surface_tension", PARAMETER_NUMBER, "N m-1", "null",
      AT(bridge_liquid.surface_tension), ABOVE(0), .shared = true,
-     .text = "of their liquid; null: that of the forces, or where they tell none that "
-             "of water at 293.15 K"},
+     .text = "of their liquid; null: that of the forces or, if they have none, that of "
+             "water at 293.15 K"},
     {"bridges.contact_angle", PARAMETER_NUMBER, "degree", "null",
      AT(bridge_liquid.contact_angle), BETWEEN(0, 170), .shared = true,
-     .text = "of their liquid; null: that of the forces, or where they tell none 0"},
+     .text = "of their liquid; null: that of the forces or, if they have none, 0"},
     {"bridges.model", PARAMETER_CHOICE, "1", "\"table\"", AT(bridge_model),
      .choices = BRIDGE_MODEL_CHOICES,
      .text = "of their force; table: the exact solution, interpolated; the others are "
@@ -160,8 +159,8 @@ const struct parameter replay_table[] = {
              "0: it comes at once"},
     {"tolerance", PARAMETER_NUMBER_OR_NULL, "1", "1e-3", AT(settings.tolerance),
      ABOVE(0),
-     .text = "then go on until the unbalanced ratio [K 4.20] is below this; null: go "
-             "on at once"},
+     .text = "then continue until the unbalanced ratio [K 4.20] is below this; null: "
+             "do not"},
     {"most_cycles", PARAMETER_INTEGER, "1", "10000", AT(settings.most_cycles),
      BETWEEN(1, 1e12),
      .text = "more time steps than this at one step of the forces: it is unsettled"},
@@ -174,9 +173,9 @@ const struct parameter replay_table[] = {
      .text = "saturations at which displacements and contact forces are kept, highest "
              "first"},
     {"keep_state", PARAMETER_BOOLEAN, "1", "false", AT(settings.keep_state),
-     .text = "the end goes into the output as well, with a snapshot, for another "
-             "replay to go on from; of equilibria all loads so far, from which that "
-             "finds them once more"},
+     .text = "write the final state as well, with a snapshot, for another replay to "
+             "continue from; for equilibria all loads so far, from which that replay "
+             "finds them again"},
     {0}};
 
 static void check_snapshots(const struct number_list *snapshots)

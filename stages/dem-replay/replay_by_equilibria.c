@@ -25,8 +25,8 @@ static enum status check(const struct replay_settings *settings, struct reason *
 {
     if (settings->liquid.volume > 0)
         return refuse(reason, STATUS_BAD_DATA,
-                      "dem-replay.bridges.volume: equilibria know no liquid "
-                      "bridges, engine=explicit does");
+                      "dem-replay.bridges.volume: equilibria have no liquid bridges, "
+                      "engine=explicit has");
     return STATUS_OK;
 }
 

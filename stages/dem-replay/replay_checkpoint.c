@@ -247,7 +247,7 @@ static enum status restore_snapshots(struct response *response,
     const size_t n = (size_t)packing->n_particle, n_bond = (size_t)packing->n_bond;
     if (count > most)
         return refuse(reader->reason, STATUS_BAD_DATA,
-                      "snapshot_step: is longer than asked for");
+                      "snapshot_step: is longer than the parameters say");
     const int64_t numbers = 3 * count * packing->n_particle;
     const int32_t *step =
         read_array(reader, "snapshot_step", DEM_INT32, count, 0, load->n_time - 1);

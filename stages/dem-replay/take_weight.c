@@ -33,7 +33,7 @@ static double choose_gravity(const struct replay_parameters *parameters,
             gravity);
     if (gravity > 0 && packing->periodic[2])
         die(STATUS_BAD_DATA,
-            "dem-replay.gravity: must be 0 in a box that repeats along z, is %g",
+            "dem-replay.gravity: must be 0 in a box that is periodic along z, is %g",
             gravity);
     return is_free ? 0 : gravity;
 }
@@ -75,10 +75,9 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
     static const double matters = 0.05, settled = 1e-4;
     const double most = fmax(weight->numbers.grain, weight->numbers.body);
     if (weight->gravity == 0 && most >= matters)
-        report(
-            "gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 in "
-            "dry, or in force-protocol and here, takes weight along",
-            weight->numbers.grain < most ? "the body" : "a grain", most);
+        report("gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 "
+               "in dry, or in force-protocol and here, adds it",
+               weight->numbers.grain < most ? "the body" : "a grain", most);
     const double of_liquid = weight->gravity_of_liquid;
     if (weight->gravity > 0 && of_liquid > 0 && weight->gravity != of_liquid)
         report("gravity = %g m/s2 for the grains, but %g for the liquid in the forces",

@@ -36,7 +36,7 @@ static enum status check_menisci(const struct drying_conditions *conditions,
     if (!(conditions->contact_angle >= 0 && conditions->contact_angle < 90))
         return refuse(reason, STATUS_BAD_DATA,
                       "contact_angle: must be from 0 to below 90 degrees, is %g: gas "
-                      "would enter without being sucked in",
+                      "would enter without suction",
                       conditions->contact_angle);
     if (!(conditions->gravity >= 0) || !isfinite(conditions->gravity))
         return refuse(reason, STATUS_BAD_DATA, "gravity: must not be below 0, is %g",

@@ -26,13 +26,13 @@ const struct parameter dry_table[] = {
     {"gravity", PARAMETER_NUMBER, "m s-2", "0", AT(conditions.gravity), AT_LEAST(0),
      .text = "towards -z: liquid higher up gives way to gas more easily; 0: none"},
     {"knudsen", PARAMETER_BOOLEAN, "1", "false", AT(conditions.knudsen),
-     .text = "vapour is held up by the walls of narrow throats too: 1/D + 1/D_K, D_K = "
-             "(2/3) r sqrt(8 R T / (pi M))"},
+     .text = "walls of narrow throats slow vapour too: 1/D + 1/D_K, D_K = (2/3) r "
+             "sqrt(8 R T / (pi M))"},
     {"kelvin", PARAMETER_BOOLEAN, "1", "false", AT(conditions.kelvin),
      .text =
-         "curved menisci have less vapour, p_sat exp(-p_c M / (rho R T)), p_c = 2 "
-         "surface_tension cos(contact_angle) / r of each throat (immobile), of a "
-         "cluster's widest meniscus (inviscid), or as the flow makes it (viscous); "
+         "curved menisci have a lower vapour pressure, p_sat exp(-p_c M / (rho R T)), "
+         "p_c = 2 surface_tension cos(contact_angle) / r of each throat (immobile), of "
+         "a cluster's widest meniscus (inviscid), or as the flow makes it (viscous); "
          "vapour also goes from wide throats to narrow ones, and may condense there"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
@@ -82,24 +82,25 @@ const struct parameter dry_table[] = {
      .text = "nodes it stands on: all of the surface, or those where throats of an "
              "auxiliary layer of grains begin (pack.extra_layer) [K 3.3.5]"},
     {"boundary_layer.layers", PARAMETER_INTEGER, "1", "0", AT(layers),
-     BETWEEN(0, 10000), .text = "layers of nodes in it; 0: spaced as throats are long"},
+     BETWEEN(0, 10000),
+     .text = "layers of nodes in it; 0: as far apart as throats are long"},
     {"start_saturation", PARAMETER_NUMBER, "1", "1", AT(conditions.start_saturation),
      BETWEEN(1e-9, 1),
-     .text = "liquid at the start, of the throats' volume: what is left when gas has "
-             "come in through the open walls, always into the throat it enters most "
-             "easily; where INPUT is a drying, its state when it had as much; of no "
-             "effect where INPUT says how full its throats are"},
+     .text = "liquid at the start, over the throats' volume: the rest after gas has "
+             "entered through the open walls, always into the easiest throat; if INPUT "
+             "is a drying, its state at that saturation; no effect if INPUT says how "
+             "full its throats are"},
     {"start_trapping", PARAMETER_BOOLEAN, "1", "false", AT(conditions.start_trapping),
      .text =
-         "as gas comes in for start_saturation, liquid leaves only through the closed "
-         "walls opposite the open ones: what gas has cut off from them stays"},
+         "while gas enters for start_saturation, liquid leaves only through the closed "
+         "walls opposite the open ones; liquid that gas has cut off from them stays"},
     {"stop_saturation", PARAMETER_NUMBER, "1", "0", AT(conditions.stop_saturation),
      BETWEEN(0, 0.999999), .text = "liquid at the end, of the throats' volume; 0: dry"},
     {"vapour_tolerance", PARAMETER_NUMBER, "1", "0", AT(conditions.vapour_tolerance),
      BETWEEN(0, 0.5),
-     .text = "largest error of what wet nodes evaporate, all errors added up, over the "
-             "rate, 1e-6 or more: links between the nodes of large fronts are kept to "
-             "seven digits; 0: exact"},
+     .text =
+         "largest sum of the errors of evaporation, over the rate, 1e-6 or more: links "
+         "between the nodes of large fronts are kept to seven digits; 0: exact"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),
      .text = "fall of the saturation from one recorded step to the next; 0: every "
@@ -110,8 +111,8 @@ const struct parameter dry_table[] = {
              "the pressures of viscous liquid"},
     {"snapshot_interval", PARAMETER_NUMBER, "1", "0", AT(snapshot_interval),
      BETWEEN(0, 1),
-     .text = "in place of snapshots: the fall of the saturation, from 1, from one to "
-             "the next, at least 1e-4; 0: as listed"},
+     .text = "instead of snapshots: fall of the saturation between two, from 1 on, at "
+             "least 1e-4; 0: as listed"},
     {"first_period_rate", PARAMETER_NUMBER, "1", "0.9",
      AT(conditions.first_period_rate_fraction), BETWEEN(0.01, 0.999),
      .text = "the first drying period ends when the rate falls below this share of its "

@@ -189,10 +189,9 @@ enum status boundary_layer_make(const struct network *network, int wall, double 
 {
     *layer = (struct boundary_layer){0};
     if (network->packing.periodic[wall / 2])
-        return refuse(
-            reason, STATUS_BAD_DATA,
-            "/domain/periodic: the open wall cannot be on an axis along which "
-            "the box repeats");
+        return refuse(reason, STATUS_BAD_DATA,
+                      "/domain/periodic: the open wall cannot be on an axis along "
+                      "which the box is periodic");
 
     struct open_surface face = open_surface_of(network, wall, length);
     enum status status = find_feet(&face, form->feet, layer, reason);

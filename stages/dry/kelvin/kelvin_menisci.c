@@ -260,9 +260,9 @@ enum status kelvin_menisci_end(struct kelvin_menisci *kelvin,
     }
     if (kelvin->residual <= ENOUGH) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "kelvin: what %d menisci evaporate is %.3g off what goes into the "
-                  "air, of that; needed is %g; the widest are driven by %.2g of what "
-                  "flat ones would be",
+                  "kelvin: the evaporation of %d menisci differs from the flow into "
+                  "the air by %.3g of that; needed is %g; the widest are driven by "
+                  "%.2g of what flat ones would be",
                   kelvin->n, kelvin->residual, ENOUGH, kelvin_drive(kelvin));
 }
 

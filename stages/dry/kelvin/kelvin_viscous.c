@@ -294,7 +294,7 @@ static enum status add_step(struct kelvin_viscous *both, const int *which,
     gsl_vector_free(step);
     if (good) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "kelvin: the pressures of %d menisci hang on nothing", both->n);
+                  "kelvin: nothing determines the pressures of %d menisci", both->n);
 }
 
 // Newton's: where hardly anything flows, menisci of one node may share what it has in
@@ -353,12 +353,11 @@ static enum status find_both(struct kelvin_viscous *both,
             status = newton_step(both, occupancy, losses, reason);
         if (status) return status;
     }
-    return refuse(
-        reason, STATUS_NOT_CONVERGED,
-        "kelvin: what %d menisci evaporate is %.3g off what flows to them, of "
-        "the rate into the air; the widest are driven by %.2g of what flat "
-        "ones would be",
-        both->n, apart / kelvin->rate, kelvin_drive(kelvin));
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "kelvin: the evaporation of %d menisci differs from the flow to them "
+                  "by %.3g of the rate into the air; the widest are driven by %.2g of "
+                  "what flat ones would be",
+                  both->n, apart / kelvin->rate, kelvin_drive(kelvin));
 }
 
 // A full throat that loses no more than the rate is agreed to loses nothing.

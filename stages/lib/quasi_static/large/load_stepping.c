@@ -123,13 +123,12 @@ static enum status refuse_long(struct quasi_static *qs, const struct load_path *
     qs->large->load_factor = 1;
     roll_back_state(qs);
     update_residual(qs);
-    return refuse(
-        reason, STATUS_NOT_CONVERGED,
-        "no end of the way to equilibrium: %.6f of what this load changes is "
-        "balanced after as many increments and steps in time as %.0f easy "
-        "ones, grain %d is furthest from it (more steps of the load, a larger "
-        "quasi_static.increment, or engine=explicit)",
-        balanced(path), qs->large->work_limit, grain_of_largest_residual(qs));
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "equilibrium is not reached: %.6f of what this load changes is "
+                  "balanced after as many increments and steps in time as %.0f easy "
+                  "ones, grain %d is furthest from it (more steps of the load, a "
+                  "larger quasi_static.increment, or engine=explicit)",
+                  balanced(path), qs->large->work_limit, grain_of_largest_residual(qs));
 }
 
 // What moves goes on under the next load. It counts once under a load, also where bonds
