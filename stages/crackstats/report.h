@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_CRACKSTATS_REPORT_H
 #define CRAQUELURE_CRACKSTATS_REPORT_H
 
-#include "study.h"
+#include "ensemble.h"
 
 #include <jansson.h>
 

@@ -6,9 +6,9 @@
 #include "basics/compensated.h"
 #include "basics/memory.h"
 #include "basics/status.h"
-#include "carry.h"
 #include "geometry/neighbours.h"
 #include "liquid.h"
+#include "map_radii.h"
 #include "move.h"
 #include "throats.h"
 

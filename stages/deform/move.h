@@ -6,15 +6,15 @@
 #ifndef CRAQUELURE_MOVE_H
 #define CRAQUELURE_MOVE_H
 
-#include "surroundings.h"
+#include "neighbour_grains.h"
 
 // The walls of the box go with the grains beside them: along each axis without
 // repetition what takes the mean places of the grains within a diameter of either wall
 // to where these grains are now, linear in between and beyond, takes the walls to
 // theirs. A body that grains lie in or around goes with the grains within a diameter of
 // its surface: where it is round by the shift, turn and stretch that take them best to
-// where they are now, along each other axis by shift and stretch, both by least squares.
-// Boxes do not turn.
+// where they are now, along each other axis by shift and stretch, both by least
+// squares. Boxes do not turn.
 void move_box(const struct packing *before, struct packing *after);
 
 // Every node stays on the walls it is on, and keeps the differences of the powers it

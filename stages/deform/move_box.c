@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "basics/memory.h"
 #include "move.h"
-#include "turn.h"
+#include "rotation.h"
 
 #include <stdlib.h>
 #include <string.h>

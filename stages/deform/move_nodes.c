@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "basics/memory.h"
+#include "domain_sides.h"
 #include "move.h"
-#include "sides.h"
-#include "turn.h"
+#include "rotation.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>

@@ -4,8 +4,8 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "conditions.h"
+#include "pore_volume_rate.h"
 #include "small_grains.h"
-#include "swept.h"
 #include "write_flow.h"
 
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_BALANCE_H
 #define CRAQUELURE_BALANCE_H
 
-#include "patches.h"
+#include "solid_angle_patches.h"
 
 // The pulls of FORM, changed as little as it takes (least squares) for each throat
 // alone to leave the grains around it in balance, forces and moments, while grains that

@@ -9,7 +9,7 @@
 #include "liquid_weight.h"
 
 #include "basics/memory.h"
-#include "geometry/sphere_cone.h"
+#include "geometry/tetra_ball_volume.h"
 #include "network/void_volume.h"
 
 #include <math.h>

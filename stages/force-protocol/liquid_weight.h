@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_LIQUID_WEIGHT_H
 #define CRAQUELURE_LIQUID_WEIGHT_H
 
-#include "patches.h"
 #include "protocol.h"
+#include "solid_angle_patches.h"
 
 // The share of each grain in the liquid of a throat, as a pull towards -z; those of one
 // throat sum to 1. By the void of its cell beside the throat, as find_void_volumes

@@ -8,9 +8,9 @@
 #include "basics/status.h"
 #include "liquid_weight.h"
 #include "network/checks.h"
+#include "pendular_rings.h"
 #include "protocol.h"
 #include "read_record.h"
-#include "rings.h"
 #include "times.h"
 
 #include <omp.h>

@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_PROTOCOL_H
 #define CRAQUELURE_PROTOCOL_H
 
-#include "action.h"
+#include "throat_loads.h"
 
 // Everything that the forces of one run follow from.
 struct process {

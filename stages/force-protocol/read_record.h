@@ -4,7 +4,7 @@
 #define CRAQUELURE_READ_RECORD_H
 
 #include "artifacts/artifact.h"
-#include "filling.h"
+#include "liquid_loads.h"
 
 // What INPUT, a drying of NETWORK, says happened, with the pressures of its snapshots
 // if FIELD; ends the program when there are none. The caller frees it.

@@ -5,7 +5,7 @@
 #include "basics/memory.h"
 #include "cut.h"
 #include "reduce.h"
-#include "surface.h"
+#include "surface_marks.h"
 
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 #include "assemble.h"
 
 #include "basics/memory.h"
-#include "rows.h"
+#include "sort_rows.h"
 
 #include <omp.h>
 #include <stdlib.h>

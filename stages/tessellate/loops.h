@@ -4,7 +4,7 @@
 #define CRAQUELURE_LOOPS_H
 
 #include "network/network.h"
-#include "rows.h"
+#include "sort_rows.h"
 
 // A node, in the repetition of the box that the first grain of the face sees it in.
 struct corner {

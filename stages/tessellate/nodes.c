@@ -4,7 +4,7 @@
 #include "basics/memory.h"
 #include "cell_groups.h"
 #include "geometry/exact.h"
-#include "rows.h"
+#include "sort_rows.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

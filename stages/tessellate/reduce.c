@@ -2,7 +2,7 @@
 #include "reduce.h"
 
 #include "basics/memory.h"
-#include "surface.h"
+#include "surface_marks.h"
 #include "throats_beside.h"
 
 #include <stdlib.h>

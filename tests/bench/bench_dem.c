@@ -22,10 +22,10 @@
 // Counted from pair_*.h and grains.c: operations, a fused one as two, and the
 // bytes that stream through, written ones twice. What a pair reads of its grains and
 // adds to their sums (2 x 224 bytes) stays in a cache near by and is not among them.
-// Every pair takes a root and a quotient (parallel bonds: neither; Hertz: four roots and
-// a quotient more), counted as one operation each. Half of the instructions
-// of the pair sweep are not arithmetic but fetch records and bring them from rows into
-// lanes and back, so no kind can come near the peak.
+// Every pair takes a root and a quotient (parallel bonds: neither; Hertz: four roots
+// and a quotient more), counted as one operation each. Half of the instructions of the
+// pair sweep are not arithmetic but fetch records and bring them from rows into lanes
+// and back, so no kind can come near the peak.
 struct cost {
     double flops, bytes;
 };
@@ -301,7 +301,7 @@ int main(int argc, char **argv)
         struct packing packing = cubic_lattice(size[s][0], size[s][1], size[s][2]);
         for (int w = 0; w < 1 + has_wide; w++) {
             struct dem *dem = build(&packing, threads);
-            dem->sweep = (w ? pair_sweeps_wide : pair_sweeps_narrow)[dem->features];
+            dem->sweep = (w ? pair_sweeps_avx512 : pair_sweeps_avx2)[dem->features];
             const double rate = particle_steps(dem, 5);
             const struct cost step = cost_of_step(dem);
             char name[32];

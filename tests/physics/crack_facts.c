@@ -2,7 +2,7 @@
 // What crackstats counts in runs made by hand: facts, classes and sums over runs, the
 // liquid of slices over time, and the correlation with it by its definition.
 #include "crack_lattice.h"
-#include "crackstats/study.h"
+#include "crackstats/ensemble.h"
 
 #include <gsl/gsl_rng.h>
 

@@ -70,20 +70,20 @@ static void test_a_row_is_a_row_of_springs(void **state)
     assert_true(fabs(displacement_of(dem, N - 1).x / expected - 1) < 1e-6);
     dem_free(dem);
 
-    const struct equilibrium_setup still = {.packing = &packing,
-                                            .fixed = fixed,
-                                            .unstressed = true,
-                                            .material = setup.material,
-                                            .bond = setup.bond,
-                                            .tolerance = 1e-10,
-                                            .most_iterations = 40};
-    struct equilibrium *equilibrium = make_equilibrium(&still);
+    const struct quasi_static_setup still = {.packing = &packing,
+                                             .fixed = fixed,
+                                             .unstressed = true,
+                                             .material = setup.material,
+                                             .bond = setup.bond,
+                                             .tolerance = 1e-10,
+                                             .most_iterations = 40};
+    struct quasi_static *equilibrium = make_equilibrium(&still);
     const struct vector force[N] = {[N - 1] = {-f, 0, 0}};
     struct vector moved[N];
     next_equilibrium(equilibrium, force);
-    equilibrium_displacements(equilibrium, moved);
+    quasi_static_displacements(equilibrium, moved);
     assert_true(fabs(moved[N - 1].x / expected - 1) < 1e-9);
-    equilibrium_free(equilibrium);
+    quasi_static_free(equilibrium);
     packing_free(&packing);
 }
 

@@ -3,7 +3,7 @@
 // and the width of the processor's registers.
 #include "dem_scene.h"
 
-#include "basics/wide_vectors.h"
+#include "basics/cpu_features.h"
 
 enum { SIDE = 4, N = SIDE * SIDE * SIDE };
 
@@ -77,7 +77,7 @@ static void test_width_makes_no_difference(void **state)
     for (int k = 0; k < 2; k++) {
         dem[k] = loaded(&setup, force);
         const unsigned features = dem[k]->features;
-        dem[k]->sweep = k ? pair_sweeps_wide[features] : pair_sweeps_narrow[features];
+        dem[k]->sweep = k ? pair_sweeps_avx512[features] : pair_sweeps_avx2[features];
         run(dem[k], 3000);
     }
     assert_in_range(cracks_of(dem[0]), 1, packing.n_bond);
@@ -250,7 +250,7 @@ int main(void)
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads_make_no_difference),
-        UNIT_TEST_WHERE(has_wide_vectors(), "no wide vectors here",
+        UNIT_TEST_WHERE(has_avx512(), "no wide vectors here",
                         test_width_makes_no_difference),
         cmocka_unit_test(test_scale_makes_no_difference),
         cmocka_unit_test(test_rotation_turns_the_result),

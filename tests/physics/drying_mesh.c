@@ -6,8 +6,8 @@
 #include "elimination/kron_fronts.h"
 #include "support_lattice.h"
 
+#include "basics/cpu_features.h"
 #include "basics/memory.h"
-#include "basics/wide_vectors.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

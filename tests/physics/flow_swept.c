@@ -3,7 +3,7 @@
 // less the sectors of grains in them, measured a little before and a little after.
 #include "../test.h"
 #include "flow/facet.h"
-#include "flow/swept.h"
+#include "flow/pore_volume_rate.h"
 #include "geometry/solid_angle.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "basics/memory.h"
 #include "bridges/bridges.h"
 #include "force-protocol/balance.h"
-#include "force-protocol/rings.h"
+#include "force-protocol/pendular_rings.h"
 #include "force_scene.h"
 #include "tessellate/diagram.h"
 

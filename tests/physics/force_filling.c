@@ -2,7 +2,7 @@
 // The liquid as force-protocol follows it, beside the drying it comes from.
 #include "../test.h"
 #include "basics/memory.h"
-#include "force-protocol/filling.h"
+#include "force-protocol/liquid_loads.h"
 #include "support_lattice.h"
 
 #include <stdlib.h>

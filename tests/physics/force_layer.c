@@ -2,7 +2,7 @@
 // What each throat of a layer does to its grain, in closed form: one grain, anywhere in
 // a box of its own.
 #include "../test.h"
-#include "force-protocol/patches.h"
+#include "force-protocol/solid_angle_patches.h"
 #include "tessellate/diagram.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "basics/memory.h"
 #include "bridges/bridges.h"
 #include "force-protocol/auxiliary.h"
-#include "force-protocol/rings.h"
+#include "force-protocol/pendular_rings.h"
 #include "force-protocol/times.h"
 #include "support_lattice.h"
 

@@ -4,7 +4,7 @@
 #define CRAQUELURE_TEST_FORCE_SCENE_H
 
 #include "../test.h"
-#include "force-protocol/patches.h"
+#include "force-protocol/solid_angle_patches.h"
 #include "support_lattice.h"
 
 // Sums of the absolute errors of what should vanish.

@@ -2,7 +2,7 @@
 // Where throats lie beside grains: in diagrams of unequal grains, in walls, flat and
 // round, in boxes that repeat and below auxiliary grains, with all cells and without
 // those that walls would cut.
-#include "force-protocol/rings.h"
+#include "force-protocol/pendular_rings.h"
 #include "wedge_scene.h"
 
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include "dry/liquid/cluster_laplacian.h"
 
 #include "basics/memory.h"
-#include "sparse/plain_cholmod.h"
+#include "sparse/cholmod_serial.h"
 
 #include <mpfr.h>
 

@@ -6,7 +6,7 @@
 #include "geometry/fabric.h"
 #include "geometry/neighbours.h"
 #include "geometry/radial_distribution.h"
-#include "geometry/sphere_cut.h"
+#include "geometry/sphere_box_volume.h"
 #include "support_lattice.h"
 
 #include <gsl/gsl_integration.h>

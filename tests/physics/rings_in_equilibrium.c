@@ -3,7 +3,7 @@
 // where none is, no bridge of any volume has as much.
 #include "../test.h"
 #include "bridges/bridges.h"
-#include "force-protocol/rings.h"
+#include "force-protocol/pendular_rings.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tetrahedra less a ball about one corner, against boxes cut by spheres in closed form,
 // and against themselves.
-#include "geometry/sphere_cone.h"
 #include "../test.h"
-#include "geometry/sphere_cut.h"
+#include "geometry/sphere_box_volume.h"
+#include "geometry/tetra_ball_volume.h"
 #include "support_lattice.h"
 
 #include <stdlib.h>

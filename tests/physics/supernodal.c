@@ -3,7 +3,7 @@
 #include "sparse/supernodal.h"
 #include "../test.h"
 #include "basics/memory.h"
-#include "sparse/dense_system.h"
+#include "sparse/dense_lu.h"
 #include "sparse/vector_kernels.h"
 
 #include <math.h>
@@ -93,13 +93,14 @@ static void halves_make_the_same_products(void **state)
     assert_true(supernodal_factor(factor, s->value));
     const int index[2][6] = {{3, 77, 500, 3, 77, 500}, {78, 3, 700, 78, 3, 700}};
     const double value[2][6] = {{1, 2, -1, 0.5, 0, 3}, {-1, 1, 2, 4, 0.1, 0}};
-    struct halves halves[2];
+    struct forward_solves solves[2];
     for (int k = 0; k < 2; k++)
-        supernodal_halves(factor, 1, &(int){2}, 3, index[k], value[k], &halves[k]);
+        supernodal_forward_solves(factor, 1, &(int){2}, 3, index[k], value[k],
+                                  &solves[k]);
     for (int k = 0; k < 16; k++) {
         const int a = k / 8, b = k / 4 % 2, i = k / 2 % 2, j = k % 2;
         double product[4], x[N] = {0}, expected = 0;
-        halves_product(factor, &halves[a], &halves[b], product);
+        forward_solves_product(factor, &solves[a], &solves[b], product);
         for (int m = 0; m < 3; m++)
             x[index[b][m]] = value[b][3 * j + m];
         solve(factor, x);
@@ -111,7 +112,7 @@ static void halves_make_the_same_products(void **state)
     for (int m = 0; m < 3; m++)
         x[index[1][m]] = value[1][m];
     supernodal_forward(factor, x, half);
-    halves_apply(factor, &halves[1], half, product);
+    forward_solves_apply(factor, &solves[1], half, product);
     supernodal_backward(factor, half, other);
     for (int k = 0; k < 2; k++) {
         double expected = 0;
@@ -119,11 +120,11 @@ static void halves_make_the_same_products(void **state)
             expected += value[1][3 * k + m] * other[index[1][m]];
         assert_true(fabs(product[k] - expected) < 1e-13);
     }
-    halves_take_off(factor, &halves[1], (double[]){1, 0}, half);
+    forward_solves_subtract(factor, &solves[1], (double[]){1, 0}, half);
     for (int i = 0; i < N; i++)
         assert_true(fabs(half[i]) < 1e-13); // all of it
-    halves_free(&halves[0]);
-    halves_free(&halves[1]);
+    forward_solves_free(&solves[0]);
+    forward_solves_free(&solves[1]);
     supernodal_free(factor);
     free(s);
 }
@@ -180,15 +181,15 @@ static void vectors_of_any_width(void **state)
 {
     (void)state;
     enum { M = 51, COLUMNS = 13, K = 17 };
-    double a[M * K + 8], sum[2][LANES][LANES] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
+    double a[M * K + 8], sum[2][BATCH][BATCH] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
     double d[2][M * M] = {{0}};
     double work[M * PACKED];
     double matrix[2][M * M];
     int order[2][M];
     for (int k = 0; k < M * K + 8; k++)
         a[k] = sin(k * k);
-    const struct vector_kernels *const both[] = {&vector_kernels_narrow,
-                                                 &vector_kernels_wide};
+    const struct vector_kernels *const both[] = {&vector_kernels_avx2,
+                                                 &vector_kernels_avx512};
     for (int wide = 0; wide < 2; wide++) {
         both[wide]->multiply_transposed(M, COLUMNS, K, a, M, a + 5, M, c[wide], M,
                                         false, work);
@@ -226,8 +227,7 @@ int main(void)
         cmocka_unit_test(answers_are_those_of_the_matrix),
         cmocka_unit_test(halves_make_the_same_products),
         cmocka_unit_test(a_pivot_of_rounding_stays_a_number),
-        UNIT_TEST_WHERE(has_wide_vectors(), "no wide vectors here",
-                        vectors_of_any_width),
+        UNIT_TEST_WHERE(has_avx512(), "no wide vectors here", vectors_of_any_width),
         cmocka_unit_test(dense_systems)};
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

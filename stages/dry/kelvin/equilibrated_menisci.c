@@ -5,8 +5,8 @@
 #include "dried_nodes.h"
 #include "kelvin_evaporation.h"
 #include "schur_rows.h"
-#include "sparse/plain_cholmod.h"
-#include "sparse/plain_solve.h"
+#include "sparse/cholmod_serial.h"
+#include "sparse/cholmod_solve_serial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,15 +31,15 @@ struct equilibrated_menisci {
     cholmod_common common;
     cholmod_factor *factor; // L D L' of all rows, those of bodies that are not
                             // equilibrated being of the identity; NULL: to be made
-    int n_followed;    // throats that have emptied since it was made
-    bool has_followed; // rows have come or gone
-    int n_slot, room;  // rows in use, of how many
-    int *owner;        // (n_slot) throat or cluster
-    int *slot;         // (n_throat) by throat or cluster, -1: none
-    bool *has;         // (n_throat) likewise: its row is in the factor
-    int *row;          // (room) in the factor, by slot
-    double *root;      // (room) over which entries are taken, by slot
-    double *x, *work;  // (room)
+    int n_followed;         // throats that have emptied since it was made
+    bool has_followed;      // rows have come or gone
+    int n_slot, room;       // rows in use, of how many
+    int *owner;             // (n_slot) throat or cluster
+    int *slot;              // (n_throat) by throat or cluster, -1: none
+    bool *has;              // (n_throat) likewise: its row is in the factor
+    int *row;               // (room) in the factor, by slot
+    double *root;           // (room) over which entries are taken, by slot
+    double *x, *work;       // (room)
     struct schur_rows rows;
     struct dried_nodes dried;
 };
@@ -68,7 +68,7 @@ struct equilibrated_menisci *equilibrated_make(int n_throat, int n_site, bool by
         .dried = dried_nodes_make(n_throat, n_site, by_throat)};
     for (int t = 0; t < n_throat; t++)
         equilibrated->slot[t] = -1;
-    plain_cholmod_start(&equilibrated->common);
+    cholmod_serial_start(&equilibrated->common);
     equilibrated->common.dbound = STAY;
     return equilibrated;
 }
@@ -376,7 +376,7 @@ static void correct(struct equilibrated_menisci *equilibrated,
             equilibrated->x[equilibrated->row[slot]] =
                 kelvin->gain[a] / equilibrated->root[slot];
     }
-    plain_solve(equilibrated->factor, equilibrated->x, equilibrated->work);
+    cholmod_solve_serial(equilibrated->factor, equilibrated->x, equilibrated->work);
     for (int a = 0; a < kelvin->n; a++) {
         const int slot = slot_of(equilibrated, kelvin, a);
         if (kelvin->zero_flux[a])

@@ -212,7 +212,7 @@ struct flow_solver *flow_solver_make(const struct occupancy *occupancy)
     for (int t = 0; t < n_throat; t++)
         solver->entry[t] = -1;
     reserve(solver, occupancy->clusters.n_id);
-    plain_cholmod_start(&solver->common);
+    cholmod_serial_start(&solver->common);
     return solver;
 }
 

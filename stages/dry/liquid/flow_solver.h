@@ -6,7 +6,7 @@
 #include "cluster_laplacian.h"
 #include "cluster_members.h"
 #include "elimination/kron.h"
-#include "sparse/plain_cholmod.h"
+#include "sparse/cholmod_serial.h"
 #include "viscous.h"
 
 // Error of a node's balance that is aimed at, relative to the largest flow in its

@@ -2,8 +2,8 @@
 #include "updated_cholesky.h"
 
 #include "basics/memory.h"
-#include "sparse/plain_cholmod.h"
-#include "sparse/plain_solve.h"
+#include "sparse/cholmod_serial.h"
+#include "sparse/cholmod_solve_serial.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -233,5 +233,5 @@ void updated_cholesky_solve(const struct updated_cholesky *factor, const double 
                             double *x)
 {
     memcpy(x, b, (size_t)factor->n * sizeof *x);
-    plain_solve(factor->factor, x, factor->work);
+    cholmod_solve_serial(factor->factor, x, factor->work);
 }

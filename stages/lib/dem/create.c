@@ -2,8 +2,8 @@
 // From a packing and materials in SI to an engine in its own units.
 #include "dem/engine.h"
 
+#include "basics/cpu_features.h"
 #include "basics/memory.h"
-#include "basics/wide_vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -369,8 +369,7 @@ static enum status check_time_step(const struct dem *dem, const struct dem_setup
 
 static pair_sweep *choose_sweep(unsigned features)
 {
-    return has_wide_vectors() ? pair_sweeps_wide[features]
-                              : pair_sweeps_narrow[features];
+    return has_avx512() ? pair_sweeps_avx512[features] : pair_sweeps_avx2[features];
 }
 
 static enum status build(struct dem *dem, const struct dem_setup *setup,

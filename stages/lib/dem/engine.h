@@ -103,12 +103,12 @@ typedef int pair_sweep(const struct dem *dem, int begin, int end);
 // The sets of features that can occur: bonds always turn, contact bonds are linear.
 #define EACH_SET(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(9) DO(13)
 #define EACH_PARALLEL_BOND_SET(DO) DO(17) DO(19) DO(21) DO(23)
-#define DECLARE(features) pair_sweep sweep_narrow_##features, sweep_wide_##features;
+#define DECLARE(features) pair_sweep sweep_avx2_##features, sweep_avx512_##features;
 EACH_SET(DECLARE)
 EACH_PARALLEL_BOND_SET(DECLARE)
 #undef DECLARE
-extern pair_sweep *const pair_sweeps_narrow[FEATURE_SETS];
-extern pair_sweep *const pair_sweeps_wide[FEATURE_SETS];
+extern pair_sweep *const pair_sweeps_avx2[FEATURE_SETS];
+extern pair_sweep *const pair_sweeps_avx512[FEATURE_SETS];
 
 struct dem {
     struct units unit;

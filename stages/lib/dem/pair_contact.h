@@ -15,7 +15,7 @@
 // A Hertz contact that unloads forgets shear force as its shear stiffness falls, F^s
 // times sqrt(U / U_old): with the incremental law alone a loop of loading would give
 // energy out of nothing (Elata & Berryman 1996). U_old = U + V^n dt, by leapfrog.
-#include "dem/pair_meet.h"
+#include "dem/pair_kinematics.h"
 
 // The numbers of a contact as they are at its overlap.
 struct law {

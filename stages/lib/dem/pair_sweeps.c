@@ -2,10 +2,10 @@
 // The compiled pair sweeps by what a scene needs.
 #include "dem/engine.h"
 
-#define NARROW(features) [features] = sweep_narrow_##features,
-#define WIDE(features) [features] = sweep_wide_##features,
+#define AVX2(features) [features] = sweep_avx2_##features,
+#define AVX512(features) [features] = sweep_avx512_##features,
 
-pair_sweep *const pair_sweeps_narrow[FEATURE_SETS] = {
-    EACH_SET(NARROW) EACH_PARALLEL_BOND_SET(NARROW)};
-pair_sweep *const pair_sweeps_wide[FEATURE_SETS] = {EACH_SET(WIDE)
-                                                        EACH_PARALLEL_BOND_SET(WIDE)};
+pair_sweep *const pair_sweeps_avx2[FEATURE_SETS] = {EACH_SET(AVX2)
+                                                        EACH_PARALLEL_BOND_SET(AVX2)};
+pair_sweep *const pair_sweeps_avx512[FEATURE_SETS] = {
+    EACH_SET(AVX512) EACH_PARALLEL_BOND_SET(AVX512)};

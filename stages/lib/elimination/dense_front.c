@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dense_front.h"
 
+#include "basics/cpu_features.h"
 #include "basics/memory.h"
-#include "basics/wide_vectors.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -134,7 +134,7 @@ void dense_front_bring_up_to_date(struct dense_front *dense, int n)
     dense_front_pass *const pass[2][2] = {
         {dense_front_pass_avx2_double, dense_front_pass_avx512_double},
         {dense_front_pass_avx2_float, dense_front_pass_avx512_float}};
-    pass[dense->is_rounded][has_wide_vectors()](dense, n);
+    pass[dense->is_rounded][has_avx512()](dense, n);
     dense->n_waiting = 0;
 }
 
@@ -148,7 +148,7 @@ static void gather_waiting(const struct dense_front *dense, int n, int p, double
     dense_front_gather *const gather[2][2] = {
         {dense_front_gather_avx2_double, dense_front_gather_avx512_double},
         {dense_front_gather_avx2_float, dense_front_gather_avx512_float}};
-    gather[dense->is_rounded][has_wide_vectors()](dense, n, weight, row);
+    gather[dense->is_rounded][has_avx512()](dense, n, weight, row);
 }
 
 // --- rows --------------------------------------------------------------------------

@@ -4,7 +4,7 @@
 #ifndef CRAQUELURE_INSERTION_H
 #define CRAQUELURE_INSERTION_H
 
-#include "geometry/live_cell.h"
+#include "geometry/insertion_cell.h"
 
 #include <float.h>
 

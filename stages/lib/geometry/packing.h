@@ -4,7 +4,7 @@
 #ifndef CRAQUELURE_PACKING_H
 #define CRAQUELURE_PACKING_H
 
-#include "geometry/body.h"
+#include "geometry/domain_shape.h"
 #include "geometry/image.h"
 #include "geometry/vector.h"
 

@@ -2,7 +2,7 @@
 #include "geometry/porosity.h"
 
 #include "geometry/neighbours.h"
-#include "geometry/sphere_cut.h"
+#include "geometry/sphere_box_volume.h"
 
 // What is cut into slices: a sphere, or the lens of a pair of them.
 struct piece {

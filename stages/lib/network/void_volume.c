@@ -2,7 +2,7 @@
 #include "network/void_volume.h"
 
 #include "basics/memory.h"
-#include "geometry/sphere_cone.h"
+#include "geometry/tetra_ball_volume.h"
 
 #include <stdlib.h>
 

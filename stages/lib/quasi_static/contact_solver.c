@@ -10,7 +10,7 @@
 #include "contact_solver_internal.h"
 
 #include "basics/memory.h"
-#include "sparse/dense_system.h"
+#include "sparse/dense_lu.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_
 void contact_solver_clear(struct contact_solver *c)
 {
     for (int k = 0; k < c->n_group; k++)
-        halves_free(&c->group[k].halves);
+        forward_solves_free(&c->group[k].solves);
     c->n_group = c->n_active = c->count = c->n_acting = c->n_factored = 0;
     c->work = 0;
     for (int j = 0; j < c->n_pair; j++)
@@ -115,11 +115,11 @@ static void grow(struct contact_solver *c)
 static void fill_between(struct contact_solver *c, const struct row_group *a,
                          const struct row_group *b)
 {
-    double product[LANES * LANES];
-    stiffness_product(c->stiffness, &a->halves, &b->halves, product);
-    for (int i = 0; i < a->halves.columns; i++)
-        for (int j = 0; j < b->halves.columns; j++) {
-            const double compliance = product[i * b->halves.columns + j];
+    double product[BATCH * BATCH];
+    stiffness_product(c->stiffness, &a->solves, &b->solves, product);
+    for (int i = 0; i < a->solves.columns; i++)
+        for (int j = 0; j < b->solves.columns; j++) {
+            const double compliance = product[i * b->solves.columns + j];
             const int row = a->first + i, column = b->first + j;
             compliance_of(c, row)[column] = compliance_of(c, column)[row] = compliance;
         }
@@ -130,9 +130,9 @@ static void fill_compliance(struct contact_solver *c, int first)
 {
     for (int k = first; k < c->n_group; k++) {
         const struct row_group *new = &c->group[k];
-        const double columns = new->halves.columns;
-        c->work += new->halves.work +
-                   columns *new->halves.size *(new->first + new->halves.columns);
+        const double columns = new->solves.columns;
+        c->work += new->solves.work +
+                   columns *new->solves.size *(new->first + new->solves.columns);
     }
     for (int k = 0; k < c->n_group; k++)
         for (int l = k > first ? k : first; l < c->n_group; l++)
@@ -151,18 +151,19 @@ static struct active_pair *activate(struct contact_solver *c, int pair)
 
 // Groups of rows that go through the factor together, the first GROUPS of them full.
 struct batch {
-    int groups, first[HALVES], count[HALVES];
-    struct unit_load load[HALVES][LANES];
+    int groups, first[MOST_SOLVES], count[MOST_SOLVES];
+    struct unit_load load[MOST_SOLVES][BATCH];
 };
 
 static void add_batch(struct contact_solver *c, struct batch *batch)
 {
     const int before = c->n_group;
-    struct halves halves[HALVES];
-    stiffness_halves(c->stiffness, batch->groups, batch->count, batch->load, halves);
+    struct forward_solves solves[MOST_SOLVES];
+    stiffness_forward_solves(c->stiffness, batch->groups, batch->count, batch->load,
+                             solves);
     for (int g = 0; g < batch->groups; g++) {
         GROW_ARRAY(c->group, c->n_group, c->group_capacity);
-        c->group[c->n_group++] = (struct row_group){batch->first[g], halves[g]};
+        c->group[c->n_group++] = (struct row_group){batch->first[g], solves[g]};
     }
     fill_compliance(c, before);
     *batch = (struct batch){0};
@@ -180,7 +181,7 @@ static void add_row(struct contact_solver *c, struct batch *batch,
     c->active_of_row[c->count] = c->active_of[active->pair];
     c->component_of_row[c->count] = active->count;
     active->row[active->count++] = c->count++;
-    if (batch->count[group] == LANES) batch->groups++;
+    if (batch->count[group] == BATCH) batch->groups++;
 }
 
 bool contact_solver_add(struct contact_solver *c, int count,
@@ -192,7 +193,7 @@ bool contact_solver_add(struct contact_solver *c, int count,
         struct active_pair *active = activate(c, new[k].pair);
         while (active->count < new[k].count && (fits = c->count < MOST)) {
             add_row(c, &batch, active);
-            if (batch.groups == HALVES) add_batch(c, &batch);
+            if (batch.groups == MOST_SOLVES) add_batch(c, &batch);
         }
     }
     if (batch.count[batch.groups] > 0) batch.groups++;
@@ -216,7 +217,7 @@ static void begin(struct contact_solver *c, bool is_guessed)
         active->is_new = false;
     }
     for (int k = 0; k < c->n_group; k++)
-        stiffness_deformation(c->stiffness, &c->group[k].halves,
+        stiffness_deformation(c->stiffness, &c->group[k].solves,
                               c->free_deformation + c->group[k].first);
 }
 
@@ -259,10 +260,10 @@ void contact_solver_subtract(const struct contact_solver *c, double compliance_f
 {
     for (int k = 0; k < c->n_group; k++) {
         const struct row_group *group = &c->group[k];
-        double load[LANES];
-        for (int l = 0; l < group->halves.columns; l++)
+        double load[BATCH];
+        for (int l = 0; l < group->solves.columns; l++)
             load[l] = compliance_factor * c->excess[group->first + l];
-        stiffness_subtract(c->stiffness, &group->halves, load);
+        stiffness_subtract(c->stiffness, &group->solves, load);
     }
     for (int e = 0; e < c->n_active; e++) {
         const struct active_pair *active = &c->active[e];

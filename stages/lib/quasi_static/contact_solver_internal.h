@@ -22,7 +22,7 @@ struct active_pair {
 
 struct row_group {
     int first; // row
-    struct halves halves;
+    struct forward_solves solves;
 };
 
 // W and the matrix have rows CAPACITY apart.

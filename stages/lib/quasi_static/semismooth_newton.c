@@ -7,7 +7,7 @@
 // multiplier, the augmented state, follows the linearised loads [advance].
 #include "contact_solver_internal.h"
 
-#include "sparse/dense_system.h"
+#include "sparse/dense_lu.h"
 
 #include <math.h>
 #include <string.h>

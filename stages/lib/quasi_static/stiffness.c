@@ -2,7 +2,7 @@
 // K = sum over pairs of B^T tangent B, and of geometric stiffness, with a
 // regularisation on the diagonal: blocks of 6 by 6 for the grains that move, three
 // translations and three rotations each. Its lower triangle lies by columns; K = L L^T
-// by sparse/supernodal.h, whose halves of solutions are L^-1 of a load.
+// by sparse/supernodal.h, whose forward solves are L^-1 of a load.
 #include "stiffness.h"
 
 #include "basics/memory.h"
@@ -262,24 +262,25 @@ void stiffness_finish(struct stiffness *s, struct displacement *answer)
             memcpy(&answer[i], s->load + s->number[i] * DEGREES, sizeof answer[i]);
 }
 
-void stiffness_deformation(const struct stiffness *s, const struct halves *halves,
-                           double *deformation)
+void stiffness_deformation(const struct stiffness *s,
+                           const struct forward_solves *solves, double *deformation)
 {
-    halves_apply(s->factor, halves, s->begun, deformation);
+    forward_solves_apply(s->factor, solves, s->begun, deformation);
 }
 
-void stiffness_subtract(struct stiffness *s, const struct halves *halves,
+void stiffness_subtract(struct stiffness *s, const struct forward_solves *solves,
                         const double *load)
 {
-    halves_take_off(s->factor, halves, load, s->left);
+    forward_solves_subtract(s->factor, solves, load, s->left);
 }
 
-void stiffness_halves(struct stiffness *s, int groups, const int *count,
-                      const struct unit_load (*load)[LANES], struct halves *halves)
+void stiffness_forward_solves(struct stiffness *s, int groups, const int *count,
+                              const struct unit_load (*load)[BATCH],
+                              struct forward_solves *solves)
 {
     enum { ENDS = 2 * DEGREES };
-    double value[HALVES][LANES][2][DEGREES] = {0};
-    int index[HALVES][LANES][2][DEGREES] = {0};
+    double value[MOST_SOLVES][BATCH][2][DEGREES] = {0};
+    int index[MOST_SOLVES][BATCH][2][DEGREES] = {0};
     for (int g = 0; g < groups; g++)
         for (int k = 0; k < count[g]; k++)
             for (int end = 0; end < 2; end++) {
@@ -293,16 +294,16 @@ void stiffness_halves(struct stiffness *s, int groups, const int *count,
                     index[g][k][end][r] = number < 0 ? -1 : number * DEGREES + r;
             }
     if (s->n_moving > 0)
-        supernodal_halves(s->factor, groups, count, ENDS, index[0][0][0],
-                          value[0][0][0], halves);
+        supernodal_forward_solves(s->factor, groups, count, ENDS, index[0][0][0],
+                                  value[0][0][0], solves);
     for (int g = 0; g < groups && s->n_moving == 0; g++)
-        halves[g] = (struct halves){.columns = count[g]};
+        solves[g] = (struct forward_solves){.columns = count[g]};
 }
 
-void stiffness_product(const struct stiffness *s, const struct halves *a,
-                       const struct halves *b, double *product)
+void stiffness_product(const struct stiffness *s, const struct forward_solves *a,
+                       const struct forward_solves *b, double *product)
 {
-    halves_product(s->factor, a, b, product);
+    forward_solves_product(s->factor, a, b, product);
 }
 
 double stiffness_work(const struct stiffness *s)

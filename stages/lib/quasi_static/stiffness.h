@@ -31,23 +31,25 @@ bool stiffness_is_positive(const struct stiffness *stiffness);
 void stiffness_begin(struct stiffness *stiffness, const struct displacement *load);
 void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
-// L^-1 B^T of single components, in up to HALVES GROUPS of COUNT (groups) each, LANES
-// at most. PRODUCT of two such: entries of W = B K^-1 B^T, a row for each of A. The
-// caller frees each (groups) with halves_free.
+// L^-1 B^T of single components, in up to MOST_SOLVES GROUPS of COUNT (groups) each,
+// BATCH at most. PRODUCT of two such: entries of W = B K^-1 B^T, a row for each of A.
+// The caller frees each (groups) with forward_solves_free.
 struct unit_load {
     int32_t pair, component;
 };
-void stiffness_halves(struct stiffness *stiffness, int groups, const int *count,
-                      const struct unit_load (*load)[LANES], struct halves *halves);
-void stiffness_product(const struct stiffness *stiffness, const struct halves *a,
-                       const struct halves *b, double *product);
+void stiffness_forward_solves(struct stiffness *stiffness, int groups, const int *count,
+                              const struct unit_load (*load)[BATCH],
+                              struct forward_solves *solves);
+void stiffness_product(const struct stiffness *stiffness,
+                       const struct forward_solves *a, const struct forward_solves *b,
+                       double *product);
 
-// DEFORMATION of the components of HALVES under the load of stiffness_begin, all of it;
+// DEFORMATION of the components of SOLVES under the load of stiffness_begin, all of it;
 // and subtracts B^T LOAD, a number for each, from it.
 void stiffness_deformation(const struct stiffness *stiffness,
-                           const struct halves *halves, double *deformation);
-void stiffness_subtract(struct stiffness *stiffness, const struct halves *halves,
-                        const double *load);
+                           const struct forward_solves *solves, double *deformation);
+void stiffness_subtract(struct stiffness *stiffness,
+                        const struct forward_solves *solves, const double *load);
 
 // Multiplications that a factor takes.
 double stiffness_work(const struct stiffness *stiffness);

@@ -2,7 +2,7 @@
 #include "cholesky.h"
 
 #include "basics/memory.h"
-#include "sparse/plain_cholmod.h"
+#include "sparse/cholmod_serial.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -33,7 +33,7 @@ enum status cholesky_make(const struct matrix *matrix, struct cholesky **made,
 {
     struct cholesky *cholesky = *made = NEW_ARRAY(struct cholesky, 1);
     cholmod_common *common = &cholesky->common;
-    plain_cholmod_start(common);
+    cholmod_serial_start(common);
     cholmod_sparse *lower = lower_triangle(matrix, common);
     if (lower) cholesky->factor = cholmod_analyze(lower, common);
     if (cholesky->factor) cholmod_factorize(lower, cholesky->factor, common);

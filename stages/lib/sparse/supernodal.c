@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "supernodal_state.h"
+#include "supernodal_internal.h"
 
 #include "basics/memory.h"
+#include "cholmod_serial.h"
 #include "dense_kernels.h"
-#include "plain_cholmod.h"
 #include "vector_kernels.h"
 
 #include <float.h>
@@ -81,7 +81,7 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     f->n = n;
     f->n_entry = start[n];
     cholmod_common common;
-    plain_cholmod_start(&common);
+    cholmod_serial_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL; // the analysis only: no BLAS in that
     cholmod_sparse matrix = {.nrow = (size_t)n,
                              .ncol = (size_t)n,
@@ -103,7 +103,7 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     f->work = NEW_ARRAY(double, ((size_t)f->tallest + PACKED) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->is_on_way = NEW_ARRAY(bool, f->n_super);
-    f->lanes = allocate_aligned((size_t)n, HALVES * LANES * sizeof *f->lanes);
+    f->lanes = allocate_aligned((size_t)n, MOST_SOLVES * BATCH * sizeof *f->lanes);
     return f;
 }
 
@@ -172,15 +172,15 @@ static void take_off_columns(struct supernodal *f, const struct supernode *super
 // read as much less often.
 static bool factor_panel(struct supernodal *f, const struct supernode *super)
 {
-    enum { WIDE = 48, NARROW = 8 };
-    double diagonal[WIDE];
+    enum { AVX512 = 48, AVX2 = 8 };
+    double diagonal[AVX512];
     for (int first = 0, end; first < super->columns; first = end) {
-        end = first + WIDE < super->columns ? first + WIDE : super->columns;
+        end = first + AVX512 < super->columns ? first + AVX512 : super->columns;
         for (int j = first; j < end; j++)
             diagonal[j - first] = super->panel[(long)j * super->rows + j];
         take_off_columns(f, super, 0, first, first, end);
         for (int k = first, last; k < end; k = last) {
-            last = k + NARROW < end ? k + NARROW : end;
+            last = k + AVX2 < end ? k + AVX2 : end;
             take_off_columns(f, super, first, k, k, last);
             if (!factor_columns(super, k, last, diagonal + k - first)) return false;
         }

@@ -31,37 +31,41 @@ double supernodal_work(const struct supernodal *factor);
 void supernodal_forward(struct supernodal *factor, const double *x, double *half);
 void supernodal_backward(struct supernodal *factor, const double *half, double *x);
 
-// L^-1 of sparse right-hand sides: not 0 only on the way from their rows to the root of
-// the elimination tree. Products of such halves are entries of B^T A^-1 B.
-enum { LANES = 8 };
-struct halves {
-    int columns;         // LANES at most
+// L^-1 of sparse right-hand sides: not 0 only on the reach of their rows, the paths
+// from them to the root of the elimination tree. Products of such forward solves are
+// entries of B^T A^-1 B.
+enum { BATCH = 8 };
+struct forward_solves {
+    int columns;         // BATCH at most
     int lanes;           // that they take
-    int n_super, *super; // the way, in ascending order
+    int n_super, *super; // the reach, in ascending order
     int size;            // of a column
     double work;         // multiplications that they took
     double *value;       // (size * lanes)
 };
 
-// Of as many GROUPS of right-hand sides as HALVES, COLUMNS (groups) in each, LANES at
-// most. Column c of group g has in COUNT rows, INDEX[(g * LANES + c) * count + k], the
+// Of as many GROUPS of right-hand sides as SOLVES, COLUMNS (groups) in each, BATCH at
+// most. Column c of group g has in COUNT rows, INDEX[(g * BATCH + c) * count + k], the
 // VALUE there; in a row -1 nothing. The caller frees each of them (groups) with
-// halves_free.
-enum { HALVES = 4 };
-void supernodal_halves(struct supernodal *factor, int groups, const int *columns,
-                       int count, const int *index, const double *value,
-                       struct halves *halves);
-void halves_free(struct halves *halves);
+// forward_solves_free.
+enum { MOST_SOLVES = 4 };
+void supernodal_forward_solves(struct supernodal *factor, int groups,
+                               const int *columns, int count, const int *index,
+                               const double *value, struct forward_solves *solves);
+void forward_solves_free(struct forward_solves *solves);
 
 // PRODUCT[k * b->columns + l] of column k of A and l of B, which may be the same.
-void halves_product(const struct supernodal *factor, const struct halves *a,
-                    const struct halves *b, double *product);
+void forward_solves_product(const struct supernodal *factor,
+                            const struct forward_solves *a,
+                            const struct forward_solves *b, double *product);
 
 // PRODUCT[k] of column k with HALF (n), and HALF less the columns times SHARE
 // (columns).
-void halves_apply(const struct supernodal *factor, const struct halves *halves,
-                  const double *half, double *product);
-void halves_take_off(const struct supernodal *factor, const struct halves *halves,
-                     const double *share, double *half);
+void forward_solves_apply(const struct supernodal *factor,
+                          const struct forward_solves *solves, const double *half,
+                          double *product);
+void forward_solves_subtract(const struct supernodal *factor,
+                             const struct forward_solves *solves, const double *share,
+                             double *half);
 
 #endif

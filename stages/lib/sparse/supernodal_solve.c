@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "supernodal_state.h"
+#include "supernodal_internal.h"
 
 #include "dense_kernels.h"
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "drying_front_correlation.h"
+
+#include "basics/memory.h"
+
+#include <gsl/gsl_statistics_double.h>
+#include <stdlib.h>
+
+struct front front_new(struct classes classes)
+{
+    return (struct front){
+        .slice =
+            NEW_ARRAY(double, (size_t)classes.n_interval *(size_t)classes.n_slice)};
+}
+
+void front_free(struct front *front)
+{
+    free(front->slice);
+    front->slice = NULL;
+}
+
+static void add_slices(struct front *front, const struct liquid *liquid,
+                       struct classes classes)
+{
+    double *time = NEW_ARRAY(double, classes.n_interval);
+    for (int k = 0; k < classes.n_interval; k++)
+        time[k] = time_of_saturation(liquid, (classes.n_interval - k - 1.0) /
+                                                 classes.n_interval);
+    double *slice =
+        slice_saturations(liquid, classes.n_slice, time, classes.n_interval);
+    const size_t n = (size_t)classes.n_interval * (size_t)classes.n_slice;
+    for (size_t k = 0; k < n; k++)
+        front->slice[k] += slice[k];
+    free(slice);
+    free(time);
+}
+
+void add_front(struct front *front, const struct run *run, const struct liquid *liquid,
+               struct classes classes)
+{
+    add_slices(front, liquid, classes);
+    double *slice = slice_saturations(liquid, classes.n_slice, run->time, run->n_crack);
+    for (int k = 0; k < run->n_crack; k++) {
+        const double *row = slice + (size_t)k * (size_t)classes.n_slice;
+        const struct slices in =
+            slices_of_bond(&run->packing, run->bond[k], classes.n_slice);
+        for (int half = 0; half < 2; half++) {
+            const double local = row[in.slice[half]];
+            if (isnan(local)) continue; // never any liquid there
+            front->local[class_of(1 - local, LOCAL_CLASSES)] += 0.5;
+            front->local_sum += 0.5 * local;
+            front->cracks += 0.5;
+        }
+    }
+    free(slice);
+}
+
+void front_sum(struct front *sum, const struct front *front, struct classes classes)
+{
+    const size_t n = (size_t)classes.n_interval * (size_t)classes.n_slice;
+    for (size_t k = 0; k < n; k++)
+        sum->slice[k] += front->slice[k];
+    for (int k = 0; k < LOCAL_CLASSES; k++)
+        sum->local[k] += front->local[k];
+    sum->local_sum += front->local_sum;
+    sum->cracks += front->cracks;
+}
+
+double front_correlation(const double *slice, const double *place,
+                         struct classes classes, int runs)
+{
+    const int n_slice = classes.n_slice, n = classes.n_interval * n_slice;
+    double *left = NEW_ARRAY(double, n), *opened = NEW_ARRAY(double, n);
+    size_t count = 0;
+    for (int k = 0; k < n; k++) {
+        if (isnan(slice[k])) continue;
+        left[count] = (k < n_slice ? runs : slice[k - n_slice]) - slice[k];
+        opened[count++] = place[k];
+    }
+    double correlation = NAN;
+    if (count > 1 && gsl_stats_variance(left, 1, count) > 0 &&
+        gsl_stats_variance(opened, 1, count) > 0)
+        correlation = gsl_stats_correlation(left, 1, opened, 1, count);
+    free(left);
+    free(opened);
+    return correlation;
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "basics/memory.h"
+#include "paired_test.h"
+#include "report.h"
+#include "sample.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// One fact over some of the runs.
+struct column {
+    const struct study *study;
+    int first, n;
+    double confidence;
+    bool paired; // with the runs before the first
+};
+
+// The caller frees the values.
+static struct sample take(struct column column, enum fact fact)
+{
+    double *value = NEW_ARRAY(double, column.n);
+    for (int r = 0; r < column.n; r++)
+        value[r] = column.study->facts[column.first + r].value[fact];
+    return (struct sample){value, column.n};
+}
+
+static json_t *mean_of(struct column column, enum fact fact)
+{
+    const struct sample sample = take(column, fact);
+    json_t *mean = json_value(sample_mean(sample));
+    free((void *)sample.value);
+    return mean;
+}
+
+static json_t *deviation_of(struct column column, enum fact fact)
+{
+    const struct sample sample = take(column, fact);
+    json_t *deviation = json_value(sample_deviation(sample));
+    free((void *)sample.value);
+    return deviation;
+}
+
+static json_t *interval_of(struct column column, enum fact fact)
+{
+    const struct sample sample = take(column, fact);
+    const double mean = sample_mean(sample);
+    const double half = half_width(sample, column.confidence);
+    free((void *)sample.value);
+    return json_pack("[o,o]", json_value(mean - half), json_value(mean + half));
+}
+
+// {"cracks":{"normal":…, …}, …}, with what OF gives for each fact.
+static json_t *table(struct column column, json_t *of(struct column, enum fact))
+{
+    json_t *object = json_object();
+    for (int f = 0; f < FACT_COUNT; f++) {
+        json_t *group = json_object_get(object, fact_names[f].group);
+        if (!group) {
+            group = json_object();
+            json_object_set_new(object, fact_names[f].group, group);
+        }
+        json_object_set_new(group, fact_names[f].name, of(column, (enum fact)f));
+    }
+    return object;
+}
+
+static void test_pairs(json_t *test, struct sample a, struct sample b)
+{
+    const struct paired_t t = paired_t_test(a, b);
+    const struct wilcoxon rank = wilcoxon_test(a, b);
+    json_object_set_new(test, "paired_t",
+                        json_pack("{s:o,s:o,s:o,s:o,s:o}", "mean", json_value(t.mean),
+                                  "sd", json_value(t.sd), "t", json_value(t.t),
+                                  "degrees_of_freedom", json_value(t.degrees), "p",
+                                  json_value(t.p)));
+    json_object_set_new(test, "wilcoxon",
+                        json_pack("{s:o,s:o,s:b}", "v", json_value(rank.v), "p",
+                                  json_value(rank.p), "exact", rank.exact));
+}
+
+static json_t *test_samples(struct sample a, struct sample b)
+{
+    if (isnan(sample_mean(a)) || isnan(sample_mean(b))) return json_null();
+    const struct welch welch = welch_test(a, b);
+    const struct mann_whitney rank = mann_whitney_test(a, b);
+    return json_pack("{s:[o,o],s:[o,o],s:{s:o,s:o,s:o},s:{s:o,s:o,s:b}}", "mean",
+                     json_value(sample_mean(a)), json_value(sample_mean(b)), "sd",
+                     json_value(sample_deviation(a)), json_value(sample_deviation(b)),
+                     "welch", "t", json_value(welch.t), "degrees_of_freedom",
+                     json_value(welch.degrees), "p", json_value(welch.p),
+                     "mann_whitney", "u", json_value(rank.u), "p", json_value(rank.p),
+                     "exact", rank.exact);
+}
+
+// Of the runs before COLUMN's first against COLUMN's own.
+static json_t *test_of(struct column column, enum fact fact)
+{
+    const struct sample a =
+        take((struct column){.study = column.study, .n = column.first}, fact);
+    const struct sample b = take(column, fact);
+    json_t *test = test_samples(a, b);
+    if (column.paired && json_is_object(test)) test_pairs(test, a, b);
+    free((void *)a.value);
+    free((void *)b.value);
+    return test;
+}
+
+static json_t *test(const struct study *study, struct groups groups)
+{
+    if (groups.first == 0) return json_null();
+    const struct column second = {.study = study,
+                                  .first = groups.first,
+                                  .n = study->n_run - groups.first,
+                                  .paired = groups.paired};
+    json_t *test = table(second, test_of);
+    json_object_set_new(test, "groups", json_pack("[i,i]", groups.first, second.n));
+    return test;
+}
+
+static json_t *what_intervals_are(int runs, double confidence)
+{
+    if (runs == 1) return json_string("one run: no interval; repeat over seeds");
+    return json_sprintf("%g %% confidence interval of the mean over %d runs, by "
+                        "Student's t",
+                        100 * confidence, runs);
+}
+
+void report_facts(json_t *report, const struct study *study, double confidence,
+                  struct groups groups)
+{
+    const struct column all = {study, 0, study->n_run, confidence, false};
+    const bool many = study->n_run > 1;
+    json_object_set_new(report, "interval_of",
+                        what_intervals_are(study->n_run, confidence));
+    json_object_set_new(report, "mean", table(all, mean_of));
+    json_object_set_new(report, "sd", many ? table(all, deviation_of) : json_null());
+    json_object_set_new(report, "confidence_interval",
+                        many ? table(all, interval_of) : json_null());
+    json_object_set_new(report, "test", test(study, groups));
+    json_t *each = json_array();
+    for (int r = 0; r < study->n_run; r++)
+        json_array_append_new(each,
+                              table((struct column){study, r, 1, 0, false}, mean_of));
+    json_object_set_new(report, "each", each);
+}

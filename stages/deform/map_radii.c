@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map_radii.h"
+
+#include "basics/memory.h"
+#include "nearest.h"
+#include "network/enclosed.h"
+#include "throats.h"
+
+#include <stdlib.h>
+
+// Of the throats that are asked for: their middles, and which they are.
+struct middles {
+    int n;
+    struct vector *at;
+    int *throat;
+};
+
+static struct middles find_middles(const struct network *network, const double *wet)
+{
+    struct middles middles = {0, NEW_ARRAY(struct vector, network->n_throat),
+                              NEW_ARRAY(int, network->n_throat)};
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK || (wet && !(wet[t] > 0)))
+            continue;
+        middles.at[middles.n] = throat_middle(network, t);
+        middles.throat[middles.n++] = t;
+    }
+    return middles;
+}
+
+static void free_middles(struct middles *middles)
+{
+    free(middles->at);
+    free(middles->throat);
+}
+
+// Takes the middles to where the grains have gone.
+static void follow_grains(const struct network *before,
+                          const struct surroundings *around,
+                          const struct packing *moved, struct middles *middles)
+{
+    for (int k = 0; k < middles->n; k++) {
+        struct vector sum = {0};
+        int64_t count = 0;
+        for (int end = 0; end < 2; end++) {
+            const int node = before->throat_nodes[middles->throat[k]][end];
+            for (int64_t g = around->offset[node]; g < around->offset[node + 1]; g++) {
+                const int grain = around->at[g].grain;
+                sum = add(sum, subtract(moved->position[grain],
+                                        before->packing.position[grain]));
+                count++;
+            }
+        }
+        if (count)
+            middles->at[k] = add(middles->at[k], scale(1.0 / (double)count, sum));
+    }
+}
+
+// Walls in which throats lie, all of them imposed empty.
+static unsigned empty_walls(const struct network *network)
+{
+    unsigned empty = 0, holding = 0;
+    for (int t = 0; t < network->n_throat; t++) {
+        const int32_t *end = network->throat_nodes[t];
+        const unsigned in = network->node_walls[end[0]] & network->node_walls[end[1]];
+        if (network->throat_kind[t] == THROAT_IMPOSED_EMPTY)
+            empty |= in;
+        else if (network->throat_kind[t] == THROAT_NETWORK)
+            holding |= in;
+    }
+    return empty & ~holding;
+}
+
+// What these shut in from the open walls is empty as well, as dry has it.
+static void empty_enclosed(struct network *network, unsigned open_walls)
+{
+    bool *open = NEW_ARRAY(bool, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        open[i] = network->node_walls[i] & open_walls;
+    empty_enclosed_throats(network, open);
+    free(open);
+}
+
+static void carry_saturations(const struct middles *old, const struct network *anew,
+                              const double *saturation, double *to)
+{
+    struct places places = places_make(&anew->packing, old->n, old->at);
+    for (int t = 0; t < anew->n_throat; t++) {
+        if (anew->throat_kind[t] != THROAT_NETWORK) continue;
+        const int k = nearest_place(&places, throat_middle(anew, t));
+        if (k >= 0) to[t] = saturation[old->throat[k]];
+    }
+    places_free(&places);
+}
+
+static void carry_volumes(const struct middles *old, const struct network *before,
+                          const double *saturation, const struct network *anew,
+                          struct carried *carried)
+{
+    struct middles wet = find_middles(anew, carried->saturation);
+    if (!wet.n) { // too little was left for any throat to be near
+        free_middles(&wet);
+        wet = find_middles(anew, NULL);
+    }
+    struct places places = places_make(&anew->packing, wet.n, wet.at);
+    for (int k = 0; k < old->n; k++) {
+        const int t = old->throat[k];
+        const int near = saturation[t] > 0 ? nearest_place(&places, old->at[k]) : -1;
+        if (near < 0) continue;
+        const int to = wet.throat[near];
+        carried->liquid[to] += saturation[t] * throat_volume(before, t);
+        if (carried->saturation[to] == 0)
+            carried->saturation[to] =
+                fmin(1, carried->liquid[to] / throat_volume(anew, to));
+    }
+    places_free(&places);
+    free_middles(&wet);
+}
+
+struct carried carry_liquid(const struct network *before,
+                            const struct surroundings *around,
+                            const struct packing *moved, const double *saturation,
+                            unsigned open_walls, struct network *anew)
+{
+    struct carried carried = {NEW_ARRAY(double, anew->n_throat),
+                              NEW_ARRAY(double, anew->n_throat)};
+    const unsigned empty = empty_walls(before);
+    if (empty) {
+        impose_empty_throats(anew, empty);
+        empty_enclosed(anew, open_walls);
+    }
+    struct middles old = find_middles(before, NULL);
+    follow_grains(before, around, moved, &old);
+    carry_saturations(&old, anew, saturation, carried.saturation);
+    carry_volumes(&old, before, saturation, anew, &carried);
+    free_middles(&old);
+    return carried;
+}
+
+enum status carry_radii(const struct network *before, const struct surroundings *around,
+                        const struct packing *moved, enum clearance how,
+                        struct network *anew, struct reason *reason)
+{
+    double *was = find_clearances(before, how, reason);
+    double *is = was ? find_clearances(anew, how, reason) : NULL;
+    if (!is) {
+        free(was);
+        return STATUS_BAD_DATA;
+    }
+    struct middles old = find_middles(before, NULL);
+    follow_grains(before, around, moved, &old);
+    struct places places = places_make(&anew->packing, old.n, old.at);
+    for (int t = 0; t < anew->n_throat; t++) {
+        if (anew->throat_kind[t] != THROAT_NETWORK) continue;
+        const int k = nearest_place(&places, throat_middle(anew, t));
+        if (k < 0) continue;
+        const int from = old.throat[k];
+        anew->throat_radius[t] =
+            moved_radius(before->throat_radius[from], was[from], is[t]);
+    }
+    if (!before->throat_volume) {
+        free(anew->throat_volume);
+        anew->throat_volume = NULL;
+    }
+    places_free(&places);
+    free_middles(&old);
+    free(was);
+    free(is);
+    return STATUS_OK;
+}

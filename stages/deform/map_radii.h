@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Liquid carried from a network to another of the same grains, which have moved.
+#ifndef CRAQUELURE_CARRY_H
+#define CRAQUELURE_CARRY_H
+
+#include "basics/status.h"
+#include "neighbour_grains.h"
+#include "network/clearance.h"
+
+struct carried {
+    double *liquid;     // (n_throat) of the new network, m3
+    double *saturation; // (n_throat) likewise, what it begins with
+};
+
+// Old throats are taken to where the grains around their ends have gone in the mean. A
+// new throat has the saturation of the old one whose middle is then nearest to its own;
+// the liquid of an old throat, SATURATION (n_throat of BEFORE) of its volume, goes to
+// the nearest new throat that has any. Throats of ANEW in walls where the old ones are
+// imposed empty become so, and so do those that these then shut in from OPEN_WALLS
+// (bits of enum wall). The caller frees both arrays.
+struct carried carry_liquid(const struct network *before,
+                            const struct surroundings *around,
+                            const struct packing *moved, const double *saturation,
+                            unsigned open_walls, struct network *anew);
+
+// Each throat of ANEW that holds liquid gets the radius of the old one that is nearest,
+// as above, changed as their clearances differ (moved_radius): drawn radii keep their
+// share of the clearance. Without volumes of throats before there are none after: they
+// are cylinders. STATUS_BAD_DATA: a face without a throat at its rim.
+enum status carry_radii(const struct network *before, const struct surroundings *around,
+                        const struct packing *moved, enum clearance how,
+                        struct network *anew, struct reason *reason);
+
+#endif

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pendular_rings.h"
+
+#include "basics/memory.h"
+#include "bridges/bridges.h"
+
+#include <stdlib.h>
+
+// Dimensionless volumes between which the one in equilibrium is looked for.
+static const double LEAST = 1e-9, MOST = 1;
+
+static double cubed(double x)
+{
+    return x * x * x;
+}
+
+static struct bridge bridge_of(const double radius[2], const struct ring_law *law,
+                               double volume)
+{
+    struct bridge bridge = {.radius = {radius[0], radius[1]},
+                            .contact_angle = {law->contact_angle, law->contact_angle},
+                            .surface_tension = law->surface_tension};
+    bridge.volume = volume * cubed(bridge_effective_radius(&bridge));
+    return bridge;
+}
+
+// --- one ring ----------------------------------------------------------------------
+
+// A trial volume: its suction, and by how much that is more than the liquid's, as a
+// logarithm; -INFINITY where it is none, INFINITY where the bridge ruptures.
+struct trial {
+    double log_volume, suction, excess;
+};
+
+// [G 2] is not off by as much.
+static bool ruptures(const struct bridge *bridge, double separation)
+{
+    return separation > 2 * bridge_rupture_distance(bridge);
+}
+
+static enum status try_volume(const double radius[2], double separation,
+                              const struct ring_law *law, struct trial *trial,
+                              struct reason *reason)
+{
+    const struct bridge bridge = bridge_of(radius, law, exp(trial->log_volume));
+    struct bridge_state state;
+    trial->excess = INFINITY;
+    if (ruptures(&bridge, separation)) return STATUS_OK;
+    const enum status status = bridge_solve(&bridge, separation, &state, reason);
+    trial->suction = state.suction;
+    trial->excess = status == STATUS_NO ? INFINITY
+                    : state.suction > 0 ? log(state.suction / law->suction)
+                                        : -INFINITY;
+    return status == STATUS_NO ? STATUS_OK : status;
+}
+
+// No bridge between the first and the last of three has more than this, as suction is
+// concave over the logarithm of the volume.
+static double most_between(const struct trial of[3])
+{
+    const double left = of[1].log_volume - of[0].log_volume;
+    const double right = of[2].log_volume - of[1].log_volume;
+    return of[1].suction + fmax((of[1].suction - of[2].suction) * left / right,
+                                (of[1].suction - of[0].suction) * right / left);
+}
+
+// Of three trials the middle one has the most suction, too little. Replaces it by one
+// that has enough, if there is one.
+static enum status climb(const double radius[2], double separation,
+                         const struct ring_law *law, struct trial of[3],
+                         struct reason *reason)
+{
+    static const double narrow = 1e-6;
+    while (of[1].excess < 0 && most_between(of) > law->suction &&
+           of[2].log_volume - of[0].log_volume > narrow) {
+        const double left = of[1].log_volume - of[0].log_volume;
+        const double right = of[2].log_volume - of[1].log_volume;
+        const int side = right > left ? 2 : 0;
+        struct trial trial = {.log_volume = of[1].log_volume +
+                                            (side ? 0.382 * right : -0.382 * left)};
+        const enum status status = try_volume(radius, separation, law, &trial, reason);
+        if (status) return status;
+        if (trial.suction > of[1].suction) {
+            of[2 - side] = of[1];
+            of[1] = trial;
+        } else
+            of[side] = trial;
+    }
+    return STATUS_OK;
+}
+
+// Smaller bridges have more suction, until next to rupture they have less again. By
+// regula falsi, every third step by halves; as soon as one has less than a larger one,
+// from the one that has the most. Where that has too little, *VOLUME is 0.
+static enum status find_volume(const double radius[2], double separation,
+                               const struct ring_law *law, double *volume,
+                               struct reason *reason)
+{
+    static const double accuracy = 1e-12;
+    struct trial low = {log(LEAST), 0, INFINITY};
+    struct trial high = {log(MOST), -INFINITY, -INFINITY};
+    struct trial beyond = high;
+    *volume = 0;
+    // Between plates this far apart no liquid has that suction, still less between
+    // spheres.
+    if (separation * law->suction >= 2 * law->surface_tension * cos(law->contact_angle))
+        return STATUS_OK;
+    for (int step = 1; high.log_volume - low.log_volume > accuracy; step++) {
+        const double share = low.excess / (low.excess - high.excess);
+        struct trial trial = {
+            .log_volume = low.log_volume +
+                          (step % 3 && isfinite(share) && share > 0 ? share : 0.5) *
+                              (high.log_volume - low.log_volume)};
+        const enum status status = try_volume(radius, separation, law, &trial, reason);
+        if (status) return status;
+        if (isinf(low.excess) && trial.excess < 0 && trial.suction < high.suction) {
+            struct trial of[3] = {trial, high, beyond};
+            const enum status failed = climb(radius, separation, law, of, reason);
+            if (failed || of[1].excess < 0) return failed;
+            trial = of[1];
+            high = of[2];
+        }
+        if (fabs(trial.excess) <= accuracy) low = high = trial;
+        if (trial.excess > 0) {
+            low = trial;
+        } else {
+            beyond = high;
+            high = trial;
+        }
+    }
+    if (low.excess < INFINITY) *volume = exp(low.log_volume);
+    return STATUS_OK;
+}
+
+enum status solve_ring(const double radius[2], double separation,
+                       const struct ring_law *law, double *volume, double *force,
+                       struct reason *reason)
+{
+    double part = law->volume;
+    *volume = *force = 0;
+    if (law->rule == RING_SUCTION) {
+        const enum status status = find_volume(radius, separation, law, &part, reason);
+        if (status) return status;
+    }
+    if (!(part > 0)) return STATUS_OK;
+    const struct bridge bridge = bridge_of(radius, law, part);
+    if (ruptures(&bridge, separation)) return STATUS_OK;
+    struct bridge_state state;
+    const enum status status = bridge_solve(&bridge, separation, &state, reason);
+    if (status == STATUS_NO) return STATUS_OK; // it ruptures
+    if (status) return status;
+    *volume = bridge.volume;
+    *force = state.force;
+    return STATUS_OK;
+}
+
+// --- all of them -------------------------------------------------------------------
+
+// Between two grains that share a face.
+struct ring {
+    int32_t grain[2]; // the lower first; the second below 0: none
+    double radius[2]; // m, of the two
+    double gap;       // m; 0 where they overlap
+    double angle;     // of all throats beside the face, each from both its sides; 4 pi
+                      // where the foot lies within it
+    double force;     // N
+};
+
+// In a layer each throat is a face, and so it is where the network has lost the face.
+static int ring_at(const struct wedges *wedges, const struct wedge *wedge)
+{
+    return wedges->layer || wedge->face < 0 ? wedges->network->n_face + wedge->throat
+                                            : wedge->face;
+}
+
+// The angle at the foot between the two ends of the throat.
+static double angle_of(const struct wedge *wedge)
+{
+    const struct vector from = subtract(wedge->from, wedge->foot);
+    const struct vector to = subtract(wedge->to, wedge->foot);
+    return atan2(norm(cross(from, to)), dot(from, to));
+}
+
+// Neither walls nor grains that are not there hold one.
+static bool has_ring(const struct wedges *wedges, const struct wedge *wedge)
+{
+    const struct packing *packing = &wedges->network->packing;
+    return wedge->beyond >= 0 && !is_auxiliary(packing, wedge->grain) &&
+           !is_auxiliary(packing, wedge->beyond);
+}
+
+static void add_to_ring(const struct wedges *wedges, const struct wedge *wedge,
+                        struct ring *ring)
+{
+    const double *radius = wedges->network->packing.radius;
+    const int low = wedge->grain < wedge->beyond ? wedge->grain : wedge->beyond;
+    const int high = wedge->grain < wedge->beyond ? wedge->beyond : wedge->grain;
+    ring->grain[0] = low;
+    ring->grain[1] = high;
+    ring->radius[0] = radius[low];
+    ring->radius[1] = radius[high];
+    ring->gap =
+        fmax(0, distance(wedge->across, wedge->centre) - (radius[low] + radius[high]));
+    ring->angle += angle_of(wedge);
+    if (!wedges->layer && wedge->face < 0) ring->angle = 4 * M_PI;
+}
+
+// For each face, then for each throat. The caller frees them.
+static struct ring *survey(struct wedges *wedges, int n)
+{
+    struct ring *ring = NEW_ARRAY(struct ring, n);
+    for (int r = 0; r < n; r++)
+        ring[r].grain[1] = -1;
+    for (int t = 0; t < wedges->network->n_throat; t++) {
+        const int count = wedges_at(wedges, t);
+        for (int k = 0; k < count; k++)
+            if (has_ring(wedges, &wedges->wedge[k]))
+                add_to_ring(wedges, &wedges->wedge[k],
+                            &ring[ring_at(wedges, &wedges->wedge[k])]);
+    }
+    return ring;
+}
+
+static enum status solve(const struct ring_law *law, struct ring *ring,
+                         struct reason *reason)
+{
+    double volume;
+    return solve_ring(ring->radius, ring->gap, law, &volume, &ring->force, reason);
+}
+
+static int by_shape(const void *a, const void *b)
+{
+    const struct ring *p = *(struct ring *const *)a, *q = *(struct ring *const *)b;
+    const double of_p[] = {p->radius[0], p->radius[1], p->gap};
+    const double of_q[] = {q->radius[0], q->radius[1], q->gap};
+    for (int k = 0; k < 3; k++)
+        if (of_p[k] != of_q[k]) return of_p[k] < of_q[k] ? -1 : 1;
+    return 0;
+}
+
+// Those between grains, the like of shape together. The caller frees them.
+static struct ring **sorted(struct ring *ring, int n, int *count)
+{
+    struct ring **list = NEW_ARRAY(struct ring *, n);
+    *count = 0;
+    for (int r = 0; r < n; r++)
+        if (ring[r].grain[1] >= 0) list[(*count)++] = &ring[r];
+    qsort(list, (size_t)*count, sizeof(struct ring *), by_shape);
+    return list;
+}
+
+// Each shape once: contacts of equal grains are all alike.
+static enum status solve_all(const struct ring_law *law, int n, struct ring *ring,
+                             struct reason *reason)
+{
+    int count, failed = n;
+    struct ring **list = sorted(ring, n, &count);
+#pragma omp parallel for schedule(dynamic, 16) reduction(min : failed)
+    for (int k = 0; k < count; k++) {
+        struct reason unused;
+        const bool is_known = k > 0 && by_shape(&list[k - 1], &list[k]) == 0;
+        if (!is_known && solve(law, list[k], &unused)) failed = k < failed ? k : failed;
+    }
+    struct reason why;
+    enum status status = STATUS_OK;
+    if (failed < n) status = solve(law, list[failed], &why);
+    for (int k = 1; k < count; k++)
+        if (by_shape(&list[k - 1], &list[k]) == 0) list[k]->force = list[k - 1]->force;
+    const int32_t *grain = failed < n ? list[failed]->grain : NULL;
+    free(list);
+    if (status == STATUS_OK) return STATUS_OK;
+    return refuse(reason, status, "ring between grains %d and %d: %.400s", grain[0],
+                  grain[1], why.text);
+}
+
+static struct vector part_of_ring(const struct wedges *wedges,
+                                  const struct wedge *wedge, const void *rings)
+{
+    if (!has_ring(wedges, wedge)) return (struct vector){0};
+    const struct ring *ring = (const struct ring *)rings + ring_at(wedges, wedge);
+    if (!(ring->angle > 0)) return (struct vector){0};
+    const double share = 2 * angle_of(wedge) / ring->angle;
+    const struct vector apart = subtract(wedge->across, wedge->centre);
+    return scale(share * ring->force / norm(apart), apart);
+}
+
+enum status find_rings(struct wedges *wedges, const struct ring_law *law,
+                       struct rings *rings, struct reason *reason)
+{
+    const int n = wedges->network->n_face + wedges->network->n_throat;
+    struct ring *ring = survey(wedges, n);
+    *rings = (struct rings){0};
+    const enum status status = solve_all(law, n, ring, reason);
+    for (int r = 0; r < n && !status; r++) {
+        rings->count += ring[r].force != 0;
+        rings->largest = fmax(rings->largest, fabs(ring[r].force));
+    }
+    if (!status) rings->patches = collect_patches(wedges, part_of_ring, ring);
+    free(ring);
+    return status;
+}

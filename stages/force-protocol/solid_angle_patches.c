@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solid_angle_patches.h"
+
+#include "basics/memory.h"
+
+#include <stdlib.h>
+
+// theta times the unit normal of the plane through the arc from direction A to
+// direction B. For unit vectors theta is the angle; small angles keep their digits.
+static struct vector arc(struct vector a, struct vector b)
+{
+    const struct vector normal = cross(a, b);
+    const double sine = norm(normal);
+    if (sine == 0) return (struct vector){0};
+    return scale(atan2(sine, dot(a, b)) / sine, normal);
+}
+
+// The integral of the unit normal over the spherical triangle A B C, counter-clockwise
+// from outside. The cone below it is closed, so the integral is minus that over its
+// three flat sides, which are sectors of area theta/2.
+static struct vector triangle_normal(struct vector a, struct vector b, struct vector c)
+{
+    return scale(0.5, add(arc(a, b), add(arc(b, c), arc(c, a))));
+}
+
+static struct vector direction(struct vector from, struct vector to)
+{
+    const struct vector apart = subtract(to, from);
+    return scale(1 / norm(apart), apart);
+}
+
+// Where the face's foot is the centre of the grain itself, any direction would do.
+static struct vector towards_foot(const struct wedge *wedge)
+{
+    return direction(wedge->centre, distance(wedge->foot, wedge->centre) > 0
+                                        ? wedge->foot
+                                        : wedge->across);
+}
+
+// In the plane of a layer, to the right of A: outwards where A runs from one end of a
+// throat to the other.
+static struct vector turned(struct vector a)
+{
+    return cross(a, (struct vector){.y = 1});
+}
+
+static struct vector arc_in_plane(const struct wedge *wedge)
+{
+    return turned(subtract(direction(wedge->centre, wedge->to),
+                           direction(wedge->centre, wedge->from)));
+}
+
+static double thickness(const struct wedges *wedges)
+{
+    const struct packing *packing = &wedges->network->packing;
+    return packing->upper.y - packing->lower.y;
+}
+
+// --- forms -------------------------------------------------------------------------
+
+static double radius_squared(const struct wedges *wedges, const struct wedge *wedge)
+{
+    const double radius = wedges->network->packing.radius[wedge->grain];
+    return radius * radius;
+}
+
+// Across the plane of a layer a sphere adds pi/2 to the arc.
+static struct vector solid_angle(const struct wedges *wedges, const struct wedge *wedge,
+                                 const void *unused)
+{
+    (void)unused;
+    const struct vector unit =
+        wedges->layer ? scale(M_PI / 2, arc_in_plane(wedge))
+                      : triangle_normal(towards_foot(wedge),
+                                        direction(wedge->centre, wedge->from),
+                                        direction(wedge->centre, wedge->to));
+    return scale(radius_squared(wedges, wedge), unit);
+}
+
+static struct vector face_area(const struct wedges *wedges, const struct wedge *wedge,
+                               const void *unused)
+{
+    (void)unused;
+    const struct vector from = subtract(wedge->from, wedge->foot);
+    const struct vector to = subtract(wedge->to, wedge->foot);
+    return wedges->layer ? scale(thickness(wedges), turned(subtract(to, from)))
+                         : scale(0.5, cross(from, to));
+}
+
+// Half of it with each of the two faces beside the throat; in a layer there is one.
+static struct vector to_centre(const struct wedges *wedges, const struct wedge *wedge,
+                               const void *unused)
+{
+    (void)unused;
+    const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
+    return scale((wedges->layer ? 1 : 0.5) * radius_squared(wedges, wedge),
+                 direction(wedge->centre, middle));
+}
+
+static struct vector in_plane(const struct wedges *wedges, const struct wedge *wedge,
+                              const void *unused)
+{
+    (void)unused;
+    return scale(radius_squared(wedges, wedge), arc_in_plane(wedge));
+}
+
+// A layer has the throat above and below it, half of each circle faces the grain.
+static struct vector contact_line(const struct wedges *wedges,
+                                  const struct wedge *wedge, const void *unused)
+{
+    (void)unused;
+    if (!wedges->layer) return direction(wedge->centre, wedge->across);
+    const struct vector outwards = turned(subtract(wedge->to, wedge->from));
+    return scale(2 / norm(outwards), outwards);
+}
+
+// --- lists -------------------------------------------------------------------------
+
+void patches_add(struct patches *patches, int throat, int grain, struct vector pull)
+{
+    int p = patches->n;
+    while (--p >= 0 && patches->patch[p].throat == throat)
+        if (patches->patch[p].particle == grain) {
+            patches->patch[p].pull = add(patches->patch[p].pull, pull);
+            return;
+        }
+    GROW_ARRAY(patches->patch, patches->n, patches->capacity);
+    patches->patch[patches->n++] = (struct patch){throat, grain, pull};
+}
+
+static void find_begins(struct patches *patches, int n_particle)
+{
+    free(patches->begin);
+    patches->begin = NEW_ARRAY(int, n_particle + 1);
+    for (int k = 0; k < patches->n; k++)
+        patches->begin[patches->patch[k].particle + 1]++;
+    for (int i = 0; i < n_particle; i++)
+        patches->begin[i + 1] += patches->begin[i];
+}
+
+void patches_sort(struct patches *patches, int n_particle)
+{
+    find_begins(patches, n_particle);
+    struct patch *sorted = NEW_ARRAY(struct patch, patches->n);
+    int *next = duplicate(patches->begin, (size_t)n_particle + 1, sizeof *next);
+    for (int k = 0; k < patches->n; k++)
+        sorted[next[patches->patch[k].particle]++] = patches->patch[k];
+    free(next);
+    free(patches->patch);
+    patches->patch = sorted;
+}
+
+struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
+                               const void *context)
+{
+    struct patches patches = {0};
+    for (int t = 0; t < wedges->network->n_throat; t++) {
+        const int n = wedges_at(wedges, t);
+        for (int k = 0; k < n; k++) {
+            const struct wedge *wedge = &wedges->wedge[k];
+            if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
+            patches_add(&patches, t, wedge->grain, make(wedges, wedge, context));
+        }
+    }
+    patches_sort(&patches, wedges->network->packing.n_particle);
+    return patches;
+}
+
+pull_of_wedge *pull_of(enum form form)
+{
+    return form == FORM_SOLID_ANGLE ? solid_angle
+           : form == FORM_FACES     ? face_area
+           : form == FORM_CENTRES   ? to_centre
+                                    : in_plane;
+}
+
+struct patches find_patches(struct wedges *wedges, enum form form)
+{
+    return collect_patches(wedges, pull_of(form), NULL);
+}
+
+struct patches find_contact_lines(struct wedges *wedges)
+{
+    return collect_patches(wedges, contact_line, NULL);
+}
+
+void patches_free(struct patches *patches)
+{
+    free(patches->patch);
+    free(patches->begin);
+    *patches = (struct patches){0};
+}
+
+enum status check_patches(const struct patches *patches, struct reason *reason)
+{
+    for (int k = 0; k < patches->n; k++)
+        if (!isfinite(norm(patches->patch[k].pull)))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/throats/nodes: throat %d meets the centre of grain %d",
+                          patches->patch[k].throat, patches->patch[k].particle);
+    return STATUS_OK;
+}
+
+void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
+                           struct patches *patches)
+{
+    int kept = 0;
+    for (int k = 0; k < patches->n; k++)
+        if (!(wedges->surface[patches->patch[k].throat] & walls))
+            patches->patch[kept++] = patches->patch[k];
+    patches->n = kept;
+    find_begins(patches, wedges->network->packing.n_particle);
+}

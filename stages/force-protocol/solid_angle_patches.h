@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How what is in each throat acts on each grain beside it [K 3.13-3.21, 5.1].
+#ifndef CRAQUELURE_PATCHES_H
+#define CRAQUELURE_PATCHES_H
+
+#include "basics/status.h"
+#include "throat_face_sectors.h"
+
+enum form {
+    // The suction on the patch of the grain's surface that faces the throat: R^2 times
+    // the integral of the unit normal over it. In a layer it is the lune of the sphere
+    // between the two ends of the throat. Those of one grain sum to zero to rounding,
+    // whatever the cell looks like [K 3.22].
+    FORM_SOLID_ANGLE,
+    // The same and the pull of the menisci where the liquid ends, along the contact
+    // lines and as large as the suction over the opening between two grains: together
+    // they are the suction over the part of the cell's faces beside the throat, so that
+    // two grains pull each other equally.
+    FORM_FACES,
+    FORM_CENTRES, // [K 5.1] R^2 times the direction to the middle of the throat
+    FORM_ARCS     // [K 3.20, 3.21] R times the arc of the circle, in a layer; times R
+};
+
+// What one throat does to one grain, for a unit of what is in the throat.
+struct patch {
+    int32_t throat, particle;
+    struct vector pull;
+};
+
+// By grain, then by throat; one for each pair. Auxiliary grains have none.
+struct patches {
+    int n;
+    struct patch *patch;
+    int *begin; // (n_particle+1) patches of each grain
+    int capacity;
+};
+
+// The pull of a unit of suction (m2).
+struct patches find_patches(struct wedges *wedges, enum form form);
+
+// The pull of a unit contact line in each throat: a circle around it, of radius r, that
+// pulls with sigma sin(theta) towards the middle of the throat [K 3.16]. Each grain has
+// the arc between the faces on both sides, and the integral over that is r times the
+// sum of the unit vectors towards both neighbours, whatever the angle: two grains pull
+// each other equally here as well. For a unit of r sigma sin(theta) (1).
+struct patches find_contact_lines(struct wedges *wedges);
+
+// Patches of what MAKE returns for each wedge.
+typedef struct vector pull_of_wedge(const struct wedges *, const struct wedge *,
+                                    const void *context);
+pull_of_wedge *pull_of(enum form form); // its context is not looked at
+struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
+                               const void *context);
+void patches_free(struct patches *patches);
+
+// Adds PULL to what THROAT does to GRAIN; throats in rising order. When all are there,
+// by grain.
+void patches_add(struct patches *patches, int throat, int grain, struct vector pull);
+void patches_sort(struct patches *patches, int n_particle);
+
+// STATUS_BAD_DATA when a node lies in the centre of a grain: it is in no direction.
+enum status check_patches(const struct patches *patches, struct reason *reason);
+
+// Takes out the patches of throats that lie in one of WALLS (bits of enum wall). Not of
+// those that only face it where cells were left out.
+void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
+                           struct patches *patches);
+
+#endif

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From what is in the throats to the forces on the grains, now or followed from step to
+// step of the drying.
+#ifndef CRAQUELURE_ACTION_H
+#define CRAQUELURE_ACTION_H
+
+#include "liquid_loads.h"
+#include "solid_angle_patches.h"
+
+// Which throats act on which grains, by each load; what is not modelled has no patches.
+// Forces are times SCALE, but for the weight.
+struct action {
+    struct patches patches[LOADS];
+    double scale;
+    double balance_change; // of the suction's pulls (balance.h); 0: none
+};
+void action_free(struct action *action);
+
+// Forces on all grains (n_particle), for the filling as it is now. OpenMP over the
+// grains, each summed in the order of throats.
+void forces_now(const struct action *action, const struct filling *filling,
+                struct vector *force);
+
+// The forces step by step; only of grains beside throats that change.
+struct walk {
+    const struct action *action;
+    struct filling filling;
+    bool far_reaching;     // throats change that the drying does not list
+    double (*load)[LOADS]; // (n_throat)
+    struct vector *force;  // (n_particle) N
+    int *offset, *grain;   // (n_throat+1): grains that each throat acts on
+    int n_changed;
+    int *changed;          // (n_changed) grains whose force the last move changed
+    struct vector *former; // (n_changed) what it was before
+    bool *listed;          // (n_particle)
+};
+
+// At the first step. The caller frees with walk_free.
+struct walk walk_begin(const struct action *action, const struct network *network,
+                       const struct filling_record *record,
+                       const struct suction_law *law);
+void walk_free(struct walk *walk);
+
+// To the end of the step, just before the next; then to the next. False: there is none.
+// Only where forces jump, WALK.FAR_REACHING, do the two differ.
+void walk_to_end_of_step(struct walk *walk);
+bool walk_advance(struct walk *walk);
+
+#endif

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether the processor has the vectors of eight numbers that *_avx512.c are compiled
+// for.
+#ifndef CRAQUELURE_WIDE_VECTORS_H
+#define CRAQUELURE_WIDE_VECTORS_H
+
+#include <stdbool.h>
+
+static inline bool has_avx512(void)
+{
+#if defined __x86_64__
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+#else
+    return false;
+#endif
+}
+
+#endif

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Centres of power, of four cells at a time.
+#include "geometry/insertion_cell.h"
+
+#include <float.h>
+
+// A number of each of four cells.
+typedef double quad __attribute__((vector_size(32)));
+typedef int64_t mask __attribute__((vector_size(32)));
+
+struct quads {
+    quad x, y, z;
+};
+
+static inline quad quad_size(quad x)
+{
+    return (quad)((mask)x & INT64_MAX);
+}
+
+static inline quad larger(quad x, quad y)
+{
+    const mask first = x > y;
+    return (quad)((first & (mask)x) | (~first & (mask)y));
+}
+
+static inline quad largest(struct quads v)
+{
+    return larger(larger(quad_size(v.x), quad_size(v.y)), quad_size(v.z));
+}
+
+static inline quad dot_quads(struct quads a, struct quads b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline struct quads cross_quads(struct quads a, struct quads b)
+{
+    return (struct quads){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                          a.x * b.y - a.y * b.x};
+}
+
+// Vertex K of each, from FROM, and its weight.
+static inline struct quads vertices(const struct weighted_point *point,
+                                    struct live_cell *const cell[4], int k,
+                                    struct quads from, quad *weight)
+{
+    const struct weighted_point *p[4];
+    for (int lane = 0; lane < 4; lane++)
+        p[lane] = &point[cell[lane]->vertex[k]];
+    *weight = (quad){p[0]->weight, p[1]->weight, p[2]->weight, p[3]->weight};
+    return (struct quads){
+        (quad){p[0]->at.x, p[1]->at.x, p[2]->at.x, p[3]->at.x} - from.x,
+        (quad){p[0]->at.y, p[1]->at.y, p[2]->at.y, p[3]->at.y} - from.y,
+        (quad){p[0]->at.z, p[1]->at.z, p[2]->at.z, p[3]->at.z} - from.z};
+}
+
+// For the rows r_k from the last vertex to the other three, 2 r_k . c = |r_k|^2 - w_k +
+// w. The bound is of each coordinate and generous.
+static void find_four_centres(const struct weighted_point *point,
+                              struct live_cell *const cell[4])
+{
+    quad weight[4], right[3], terms[3], size[3], error = {0};
+    const struct quads origin = {0},
+                       last = vertices(point, cell, 3, origin, &weight[3]);
+    struct quads row[3], centre = {0};
+    for (int k = 0; k < 3; k++) {
+        row[k] = vertices(point, cell, k, last, &weight[k]);
+        const quad square = dot_quads(row[k], row[k]), lighter = weight[3] - weight[k];
+        right[k] = 0.5 * (square + lighter);
+        terms[k] = square + quad_size(lighter);
+        size[k] = largest(row[k]);
+    }
+    const struct quads across[3] = {cross_quads(row[1], row[2]),
+                                    cross_quads(row[2], row[0]),
+                                    cross_quads(row[0], row[1])};
+    for (int k = 0; k < 3; k++) {
+        centre.x += right[k] * across[k].x;
+        centre.y += right[k] * across[k].y;
+        centre.z += right[k] * across[k].z;
+        error += terms[k] * size[(k + 1) % 3] * size[(k + 2) % 3];
+    }
+    const quad determinant = dot_quads(row[0], across[0]), one_over = 1 / determinant;
+    const quad slack = 16 * DBL_EPSILON * size[0] * size[1] * size[2];
+    centre =
+        (struct quads){one_over * centre.x, one_over * centre.y, one_over * centre.z};
+    const quad far = largest(centre);
+    error = 1.01 * (8 * DBL_EPSILON * error + far * slack) /
+                (quad_size(determinant) - slack) +
+            8 * DBL_EPSILON * far;
+    const mask flat = quad_size(determinant) <= 2 * slack;
+    for (int lane = 0; lane < 4; lane++) {
+        cell[lane]->at = flat[lane] ? (struct vector){0}
+                                    : (struct vector){centre.x[lane], centre.y[lane],
+                                                      centre.z[lane]};
+        cell[lane]->error = flat[lane] ? INFINITY : (float)error[lane];
+    }
+}
+
+static bool is_infinite(const struct live_cell *cell)
+{
+    return (cell->vertex[0] | cell->vertex[1] | cell->vertex[2] | cell->vertex[3]) < 0;
+}
+
+// The same for one cell with walls: the row of a wall is its normal, and what is right
+// of it the distance, for the centre is on the wall.
+static void find_walled_centre(const struct weighted_point *point,
+                               const struct wall_box *box, struct live_cell *cell)
+{
+    const struct weighted_point *last = &point[cell->vertex[3]];
+    struct vector row[3];
+    double right[3], terms[3], size[3], error = 0;
+    for (int k = 0; k < 3; k++) {
+        if (cell->vertex[k] < 0) {
+            const struct corner_between wall = wall_corner(box, cell->vertex[k]);
+            row[k] = (struct vector){0};
+            set_component(&row[k], wall.axis, wall.sign);
+            right[k] = wall.sign * (wall.plane - component(last->at, wall.axis));
+            terms[k] = 2 * right[k];
+        } else {
+            const struct weighted_point *p = &point[cell->vertex[k]];
+            row[k] = subtract(p->at, last->at);
+            const double square = dot(row[k], row[k]),
+                         lighter = last->weight - p->weight;
+            right[k] = 0.5 * (square + lighter);
+            terms[k] = square + fabs(lighter);
+        }
+        size[k] = fmax(fabs(row[k].x), fmax(fabs(row[k].y), fabs(row[k].z)));
+    }
+    const struct vector across[3] = {cross(row[1], row[2]), cross(row[2], row[0]),
+                                     cross(row[0], row[1])};
+    struct vector centre = {0};
+    for (int k = 0; k < 3; k++) {
+        centre = add(centre, scale(right[k], across[k]));
+        error += terms[k] * size[(k + 1) % 3] * size[(k + 2) % 3];
+    }
+    const double determinant = dot(row[0], across[0]);
+    const double slack = 16 * DBL_EPSILON * size[0] * size[1] * size[2];
+    centre = scale(1 / determinant, centre);
+    const double far = fmax(fabs(centre.x), fmax(fabs(centre.y), fabs(centre.z)));
+    const bool flat = fabs(determinant) <= 2 * slack;
+    error =
+        1.01 * (8 * DBL_EPSILON * error + far * slack) / (fabs(determinant) - slack) +
+        8 * DBL_EPSILON * far;
+    cell->at = flat ? (struct vector){0} : centre;
+    cell->error = flat ? INFINITY : (float)error;
+}
+
+static bool has_walls(const struct live_cell *cell)
+{
+    return cell->vertex[0] <= FIRST_WALL || cell->vertex[1] <= FIRST_WALL ||
+           cell->vertex[2] <= FIRST_WALL;
+}
+
+void find_centres(const struct weighted_point *point, const struct wall_box *box,
+                  struct live_cell *cells, const int32_t *which, int count)
+{
+    struct live_cell *cell[4];
+    int n = 0;
+    for (int k = 0; k < count; k++) {
+        cell[n] = &cells[which[k]];
+        cell[n]->error = -1;
+        if (box && has_walls(cell[n]))
+            find_walled_centre(point, box, cell[n]);
+        else
+            n += !is_infinite(cell[n]);
+        if (n == 4) find_four_centres(point, cell);
+        n %= 4;
+    }
+    if (!n) return;
+    for (int lane = n; lane < 4; lane++)
+        cell[lane] = cell[0];
+    find_four_centres(point, cell);
+}

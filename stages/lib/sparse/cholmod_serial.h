@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CHOLMOD as every stage uses it.
+#ifndef CRAQUELURE_PLAIN_CHOLMOD_H
+#define CRAQUELURE_PLAIN_CHOLMOD_H
+
+#include <cholmod.h>
+
+// Begins COMMON, which the caller ends with cholmod_finish: silent, simplicial and
+// always in the same ordering. No BLAS, so the same bytes everywhere and for any number
+// of threads.
+static inline void cholmod_serial_start(cholmod_common *common)
+{
+    cholmod_start(common);
+    common->print = 0;
+    common->supernodal = CHOLMOD_SIMPLICIAL;
+    common->nmethods = 1;
+    common->method[0].ordering = CHOLMOD_AMD;
+}
+
+// The lower triangle of a symmetric matrix of N rows, entry by entry, at MOST so many;
+// NULL: out of memory, as take_matrix, which frees the entries.
+static inline cholmod_triplet *new_entries(cholmod_common *common, int n, size_t most)
+{
+    return cholmod_allocate_triplet((size_t)n, (size_t)n, most, -1, CHOLMOD_REAL,
+                                    common);
+}
+
+static inline void add_entry(cholmod_triplet *entries, int row, int column,
+                             double value)
+{
+    ((int *)entries->i)[entries->nnz] = row > column ? row : column;
+    ((int *)entries->j)[entries->nnz] = row > column ? column : row;
+    ((double *)entries->x)[entries->nnz] = value;
+    entries->nnz++;
+}
+
+static inline cholmod_sparse *take_matrix(cholmod_common *common,
+                                          cholmod_triplet *entries)
+{
+    cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, entries->nnz, common);
+    cholmod_free_triplet(&entries, common);
+    return matrix;
+}
+
+#endif

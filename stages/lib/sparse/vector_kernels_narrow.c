@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#define BYTES 32
-#define NAMED(name) name##_narrow
-#include "vector_kernels_of.h"

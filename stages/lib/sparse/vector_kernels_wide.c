@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// For processors with AVX-512.
-#if defined __x86_64__
-#pragma GCC target("avx512f,avx512dq,avx512vl,fma")
-#endif
-#define BYTES 64
-#define NAMED(name) name##_wide
-#include "vector_kernels_of.h"
