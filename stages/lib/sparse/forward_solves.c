@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Halves of answers to sparse loads. A column alone lies as such; more lie side by side
-// in four or eight lanes, the last of them perhaps 0.
+// Forward solves L y = b for sparse b: rows on the reach of b in the elimination tree,
+// the paths from its rows to the root, in ascending order [Davis 2006, 3.2]. A column
+// alone lies as such; more lie side by side in four or eight lanes, the last of them
+// perhaps 0.
 #include "supernodal_internal.h"
 
 #include "basics/memory.h"
