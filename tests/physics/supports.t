@@ -11,7 +11,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch
+from tap import BIN, CYCLES, SCENE, done, ok, run, scratch
+
+HELD = (*CYCLES, "support=fixed")
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
@@ -19,17 +21,18 @@ with scratch() as folder:
     small = ("pack", "-p", SCENE, "--set", "counts=[4,4,4]")
     network = run("merge-nodes", "-p", SCENE, input=run("tessellate", "-p", SCENE,
                                                         input=run(*small)))
-    run("force-protocol", "-p", SCENE, "--set", "steps=4", "-o", at("forces"),
+    run("force-protocol", "-p", SCENE, "--set", "steps=4", "--set", "force_scale=1",
+        "-o", at("forces"),
         input=run("dry", "-p", SCENE, input=network))
     force = h5py.File(at("forces"))["force"][:]
 
     def replay(*settings):
-        run("dem-replay", "-q", "-p", SCENE, *words(("cycles=50", *settings)), at("forces"),
+        run("dem-replay", "-q", "-p", SCENE, *words((*HELD, "cycles=50", *settings)), at("forces"),
             "-o", at("response"))
         return h5py.File(at("response"))
 
     def refused(*settings):
-        tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(settings), at("forces"),
+        tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words((*HELD, *settings)), at("forces"),
                                 "-o", at("refused")], capture_output=True, text=True)
         return tried.returncode, tried.stderr
 
@@ -98,7 +101,7 @@ with scratch() as folder:
         ok(apart < 1e-9 and abs(moved[0].sum(axis=0)).max() < 1e-12 * 64 * size,
            f"large_displacements={large}: the mean place is kept, whatever the numbers of grains",
            (apart, moved[0].sum(axis=0) / size))
-    tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(("held.walls=[]", "cycles=1")),
+    tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words((*HELD, "held.walls=[]", "cycles=1")),
                             at("forces"), "-o", at("none")], capture_output=True, text=True)
     ok("holds no grain" in tried.stderr and tried.returncode == 0, "where none is held it is said")
     status, message = refused("held.walls=[]", "engine=quasi-static")
@@ -112,7 +115,7 @@ with scratch() as folder:
 
     # ---- what does not come to rest
     for most in 1, 40:
-        words_of_it = words(("engine=quasi-static", f"quasi_static.most_iterations={most}"))
+        words_of_it = words((*HELD, "engine=quasi-static", f"quasi_static.most_iterations={most}"))
         told = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words_of_it, at("forces"), "-o",
                                at("response")], capture_output=True, text=True).stderr
         count = h5py.File(at("response"))["summary"].attrs["steps_unsettled"]

@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Three grains in a column, the lowest held: what a fragment that came loose still bears, how the
+# moment in a bond counts in its strength, and which engine engine=auto takes. Closed forms.
+import math
+import os
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import SCENE, done, ok, run, scratch
+
+RADIUS = 250e-9
+NECK = 0.5858 * RADIUS
+AREA = math.pi * NECK ** 2
+COMMON = ("support=fixed", "friction=0.5", "cycles=2000", "ramp=0", "tolerance=1e-6",
+          "most_cycles=100000", "unsettled=count", "density_scaling=true")
+
+with scratch() as folder:
+    at = lambda name: os.path.join(folder, name)
+    words = lambda settings: [word for s in settings for word in ("--set", s)]
+    column = run("pack", "-p", SCENE, "--set", "counts=[1,1,3]")
+    with open(at("column"), "wb") as file:
+        file.write(column)
+    # Attributes and units of a forces artifact, from a body that can be dried.
+    network = run("merge-nodes", "-p", SCENE, input=run("tessellate", "-p", SCENE, input=run(
+        "pack", "-p", SCENE, "--set", "counts=[2,2,2]")))
+    run("force-protocol", "-p", SCENE, "--set", "steps=2", "-o", at("model"),
+        input=run("dry", "-p", SCENE, input=network))
+
+    def write_forces(name, force):
+        """FORCE: (time, 3 grains, 3), N."""
+        with h5py.File(at("model")) as model, h5py.File(at(name), "w") as file:
+            with h5py.File(at("column")) as grains:
+                for group in "bonds", "domain", "particles":
+                    grains.copy(group, file)
+            model.copy("summary", file)
+            for key, value in model.attrs.items():
+                file.attrs[key] = value
+            steps = len(force)
+            for key, value in (("time", np.arange(steps, dtype=float)),
+                               ("saturation", np.linspace(1, 0.5, steps)), ("force", force)):
+                file[key] = value
+                file[key].attrs["units"] = model[key].attrs["units"]
+
+    def replay(name, *settings):
+        run("dem-replay", "-q", "-p", SCENE, *words((*COMMON, *settings)), at(name), "-o",
+            at("response"))
+        return h5py.File(at("response"))
+
+    # ---- a fragment of two grains that came loose: inertia relief
+    # The pull of 3 on the upper and 1 on the middle grain breaks the lower bond, which alone is
+    # weak enough: it bears 4. What does not accelerate the pair is +1 and -1: its bond bears 1.
+    unit = 1e-9
+    pull = np.zeros((4, 3, 3))
+    pull[:, 1, 2], pull[:, 2, 2] = unit, 3 * unit
+    write_forces("pull", pull)
+    breaks = (f"bond.normal_strength={3.5 * unit / AREA}", "bond.shear_strength=1e9")
+    away, borne = {}, {}
+    for loose in "unload", "keep":
+        for cycles in 2000, 4000:
+            response = replay("pull", "engine=explicit", *breaks, f"cycles={cycles}", "tolerance=null",
+                              f"loose_grains={loose}", "snapshots=[0.5]")
+            away[loose, cycles] = response["snapshots/displacement"][-1, 1:, 2].max()
+            pairs = response["contacts/particles"][:].tolist()
+            borne[loose, cycles] = response["snapshots/contact_force"][-1, pairs.index([1, 2]), 2]
+            ok(response["cracks/bond"][:].tolist() == [0] and response["cracks/mode"][0] == 0,
+               f"{loose}, {cycles} cycles: the lower bond breaks in tension, and no other")
+    relieved = [borne["unload", n] / -unit for n in (2000, 4000)]
+    ok(np.allclose(np.abs(relieved), 1, rtol=1e-3), "a loose pair bears what balances itself in it",
+       relieved)
+    ok(away["unload", 4000] < 1e-3 * RADIUS
+       and abs(away["unload", 4000] - away["unload", 2000]) < 1e-5 * RADIUS,
+       "it stays where it came loose, however long a step lasts", away)
+    ok(away["keep", 4000] > 2 * away["keep", 2000] > 10 * away["unload", 4000],
+       "with loose_grains=keep it flies", away)
+
+    # ---- the moment in a bond [K 4.41]: stress beta |M| R / I, with M = r F of a pull F across
+    # the upper bond, whose grain may turn, and I = pi R^4 / 4. The lower bond has three times
+    # that: its arm is 3 r.
+    steps = 100
+    across = np.zeros((steps, 3, 3))
+    across[:, 2, 0] = np.linspace(unit / steps, unit, steps)
+    write_forces("across", across)
+    weakest = lambda share: share * 3 * RADIUS * unit * NECK / (math.pi * NECK ** 4 / 4)
+    for engine in "explicit", "quasi-static":
+        for beta in 1, 0.5:
+            # Strong enough for 60.5 of the 100 steps.
+            response = replay("across", f"engine={engine}", "tolerance=1e-5",
+                              f"bond.normal_strength={weakest(0.605 * beta)}",
+                              "bond.shear_strength=1e9", f"bond.moment_contribution={beta}")
+            cracks = response["history/cracks"][:]
+            first = int((cracks == 0).sum())
+            ok(first == 60 and response["cracks/bond"][0] == 0 and response["cracks/mode"][0] == 0,
+               f"{engine}, beta {beta}: the bond breaks at the load of the closed form", first)
+        response = replay("across", f"engine={engine}", "tolerance=1e-5",
+                          f"bond.normal_strength={weakest(0.01)}", "bond.shear_strength=1e9",
+                          "bond.moment_contribution=0")
+        tension = len(response["cracks/bond"])
+        ok(tension == 0, f"{engine}, beta 0: a moment breaks nothing", tension)
+
+    # ---- engine=auto
+    for settings, engine in ((("friction=0",), "quasi-static"), (("friction=0.5",), "explicit"),
+                             (("friction=0", "support=wall"), "explicit"),
+                             (("friction=0", "prestress=true"), "explicit")):
+        response = replay("pull", "engine=auto", "bond.normal_strength=1e9", "bond.shear_strength=1e9",
+                          *settings)
+        model = response.attrs["model"].decode()
+        ok(model.startswith("discrete elements") == (engine == "explicit") and "\nengine: " in model,
+           f"engine=auto takes {engine} with {', '.join(settings)}", model)
+done()
