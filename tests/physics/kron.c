@@ -175,7 +175,7 @@ static void solve_cluster_elimination(const struct sample *sample, double *poten
 static void solve_cluster_cholesky(const struct sample *sample, double *flow)
 {
     cholmod_common common;
-    plain_cholmod_start(&common);
+    cholmod_serial_start(&common);
     int row[NODES], entry[4 * NODES];
     struct graph_link link[4 * NODES];
     struct graph_arm arm[ENDS];
