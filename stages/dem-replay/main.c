@@ -220,7 +220,9 @@ static void write_response(const struct packing *packing, const struct load *loa
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
-static void warn_if_restless(const struct load *load, const struct response *response)
+static void warn_if_restless(const struct load *load,
+                             const struct replay_settings *settings,
+                             const struct response *response)
 {
     if (response->n_restless > 0)
         report("under %d of the loads not all came to rest within "
@@ -229,9 +231,9 @@ static void warn_if_restless(const struct load *load, const struct response *res
     else if (response->n_unsettled > load->n_time / 2)
         report(
             "%d of %d steps of the load did not come to rest, to an unbalanced ratio "
-            "of 1e-4: cycles and tolerance say how long a step lasts, "
+            "of %g: cycles, tolerance and most_cycles say how long a step lasts, "
             "engine=quasi-static finds the rest itself",
-            response->n_unsettled, load->n_time);
+            response->n_unsettled, load->n_time, ratio_at_rest(settings));
 }
 
 // Grains that have moved by more than the largest radius, at any snapshot, and the one
@@ -320,7 +322,7 @@ int main(int argc, char **argv)
     struct response response;
     run(&packing, &load, settings, &invocation, input->path, &checkpoint.keeper,
         &response);
-    if (!invocation.quiet) warn_if_restless(&load, &response);
+    if (!invocation.quiet) warn_if_restless(&load, settings, &response);
     if (!invocation.quiet) warn_if_loose(&packing, settings, &response);
     if (!invocation.quiet) warn_of_weight(&weight, &response, &packing);
     write_response(&packing, &load, settings, &response, &weight, &invocation, input,

@@ -127,6 +127,10 @@ enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
                    const struct replay_progress *progress, const struct keeper *keeper,
                    struct response *response, struct reason *reason);
+// Unbalanced ratio [K 4.20] below which a load counts as settled: the tolerance, or K's
+// 1e-4 [K 5.2] where there is none.
+double ratio_at_rest(const struct replay_settings *settings);
+
 void response_free(struct response *response);
 
 #endif

@@ -377,8 +377,7 @@ static void note_time_step(const struct run *run)
 
 static void note_unsettled(const struct run *run)
 {
-    const double wanted = run->settings->tolerance;
-    const double settled = isnan(wanted) ? 1e-4 : wanted; // [K 5.2]
+    const double settled = ratio_at_rest(run->settings);
     for (int k = 0; k < run->load->n_time; k++)
         run->response->n_unsettled += run->response->unbalanced_ratio[k] >= settled &&
                                       is_loaded(run->load, run->packing->n_particle, k);

@@ -71,7 +71,8 @@ def stop_and_go_on(title, command, folder):
 def make_forces(folder):
     made = b""
     for stage in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol"]:
-        made = run(stage, "-p", SCENE, input=made)
+        weaker = ["--set", "force_scale=1"] if stage == "force-protocol" else []
+        made = run(stage, "-p", SCENE, *weaker, input=made)
     path = os.path.join(folder, "forces")
     with open(path, "wb") as file:
         file.write(made)
@@ -171,7 +172,7 @@ with scratch() as folder:
               [*short, "--set", "cycles=100", "--set", "bridges.volume=1e-22", "--set",
                "bridges.shared=true", "--set", "bond.kind=contact"])
 
-    equilibria = [*short, "--set", 'engine="quasi-static"']
+    equilibria = [*short, "--set", 'engine="quasi-static"', "--set", "support=fixed"]
     in_pieces("dem-replay by equilibria with friction", equilibria)
     in_pieces("dem-replay by equilibria with large displacements",
               [*equilibria, "--set", "quasi_static.large_displacements=true"])

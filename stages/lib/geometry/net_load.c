@@ -82,7 +82,6 @@ static struct net_load about_centre(const struct whole *whole,
 {
     struct net_load net = {0};
     for (int i = 0; i < whole->packing->n_particle; i++) {
-        if (whole_mass(whole, i) == 0) continue;
         net.force = add(net.force, force[i]);
         net.moment = add(net.moment, cross(whole_place(whole, i), force[i]));
     }
