@@ -14,11 +14,6 @@ const struct replay_engine *replay_engine(const struct replay_settings *settings
                                                : &replay_by_equilibria;
 }
 
-double ratio_at_rest(const struct replay_settings *settings)
-{
-    return isnan(settings->tolerance) ? 1e-4 : settings->tolerance;
-}
-
 // ---- begin --------------------------------------------------------------------------
 
 // Of this replay, and so none of an earlier one or of the weight.

@@ -8,6 +8,7 @@
 #include "dem/dem.h"
 #include "geometry/net_load.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 enum support {
@@ -129,7 +130,10 @@ enum status replay(const struct packing *packing, const struct load *load,
                    struct response *response, struct reason *reason);
 // Unbalanced ratio [K 4.20] below which a load counts as settled: the tolerance, or K's
 // 1e-4 [K 5.2] where there is none.
-double ratio_at_rest(const struct replay_settings *settings);
+static inline double ratio_at_rest(const struct replay_settings *settings)
+{
+    return isnan(settings->tolerance) ? 1e-4 : settings->tolerance;
+}
 
 void response_free(struct response *response);
 
