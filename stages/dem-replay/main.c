@@ -171,8 +171,9 @@ static void run(const struct packing *packing, const struct load *load,
 static const char *describe_loose(const struct replay_settings *settings)
 {
     if (settings->engine != ENGINE_EXPLICIT) return "";
-    return settings->loose == LOOSE_UNLOADED ? "loose grains: their loads end\n"
-                                             : "loose grains: their loads go on\n";
+    return settings->loose == LOOSE_UNLOADED
+               ? "loose grains: their net loads are taken off\n"
+               : "loose grains: their loads go on\n";
 }
 
 static void write_response(const struct packing *packing, const struct load *load,
@@ -330,7 +331,7 @@ int main(int argc, char **argv)
 
     checkpoint_end(&checkpoint);
     json_decref(digest);
-    dem_free_arrays(engine.array, engine.count);
+    free_arrays(engine.array, engine.count);
     if (earlier) artifact_close(earlier);
     response_free(&response);
     free(settings->relative_strength);

@@ -95,7 +95,8 @@ const struct parameter replay_table[] = {
      .choices = "keep|unload",
      .text =
          "explicit: grains that no intact bonds join to a held grain (to the largest "
-         "fragment, where none is held) keep their load and fly, or lose it"},
+         "fragment, where none is held) keep their load and fly, or are rid of its net "
+         "force and moment"},
     {"engine", PARAMETER_CHOICE, "1", "\"auto\"", AT(engine),
      .choices = "explicit|quasi-static|auto",
      .text = "auto: quasi-static without friction, where it is far faster, else "
@@ -219,8 +220,8 @@ const char *complete_bridges(struct replay_parameters *parameters,
     return difference;
 }
 
-// What equilibria do well: without friction each load has one equilibrium, whatever
-// came before, and is found at once (docs/equilibrium.md).
+// Without friction each load has one equilibrium, which does not depend on the loads
+// before it and is found quickly (docs/equilibrium.md).
 static bool suits_equilibria(const struct replay_settings *settings,
                              const struct packing *packing)
 {

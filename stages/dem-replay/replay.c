@@ -35,7 +35,7 @@ static enum status go_on(struct run *run, struct reason *reason)
 {
     const struct kept_state *state = run->keeper->begin;
     struct response *response = run->response;
-    enum status status = run->engine->restore(run, &state->engine, reason);
+    enum status status = run->engine->restore(run, state, reason);
     struct engine_past past = {0};
     if (!status) {
         own_cracks(run, &past.n_crack);
@@ -169,7 +169,6 @@ static void take_snapshots(struct run *run)
 
 static enum status do_step(struct run *run, struct reason *reason)
 {
-    take_forces(run);
     const enum status status = advance(run, reason);
     if (status) return status;
     if (run->place.step < 0) {
@@ -232,6 +231,6 @@ void response_free(struct response *response)
     free(response->cracks);
     free(response->reaction);
     free(response->weight_crack);
-    dem_free_arrays(response->engine.array, response->engine.count);
+    free_arrays(response->engine.array, response->engine.count);
     *response = (struct response){0};
 }

@@ -13,7 +13,7 @@
 
 struct by_cycles {
     struct dem *dem;
-    struct loose_grains loose; // as far as loads of loose grains end
+    struct loose_grains loose; // none, where they keep their loads
     bool has_looked;           // for them
     int n_crack;               // then
 };
@@ -78,10 +78,22 @@ static enum status create(struct run *run, struct dem **dem, struct reason *reas
     return status;
 }
 
-static enum status restore(struct run *run, const struct array_list *list,
-                           struct reason *reason)
+static enum status restore_dem(struct run *run, const struct array_list *list,
+                               struct reason *reason)
 {
     return dem_restore(dem_of(run), list->array, list->count, reason);
+}
+
+// With the load as it was: it follows the grains at some cycles only (TAKE_OFF_EVERY).
+static enum status restore(struct run *run, const struct kept_state *kept,
+                           struct reason *reason)
+{
+    enum status status = restore_dem(run, &kept->engine, reason);
+    if (!status)
+        status = restore_load(&kept->stage, run->packing->n_particle, run->force,
+                              &run->taken_off, reason);
+    if (!status) dem_set_force(dem_of(run), run->force);
+    return status;
 }
 
 static enum status begin(struct run *run, struct reason *reason)
@@ -94,7 +106,7 @@ static enum status begin(struct run *run, struct reason *reason)
     if (status || !earlier) return status;
     if (saved_by_equilibria(earlier))
         return refuse_other_engine(reason, "quasi-static");
-    return restore(run, earlier, reason);
+    return restore_dem(run, earlier, reason);
 }
 
 // ---- loads --------------------------------------------------------------------------
@@ -119,39 +131,40 @@ static int64_t load_holds(const struct run *run)
     return unloads(run) ? STOP_EVERY : INT64_MAX;
 }
 
-// Nothing is loose as long as nothing was and no bond has broken since.
+// Fragments change only as bonds break.
 static void follow_loose(struct run *run)
 {
     struct by_cycles *state = run->state;
+    if (!unloads(run)) return;
     int n_crack;
     dem_cracks(state->dem, &n_crack);
-    const bool is_known = state->has_looked && n_crack == state->n_crack;
-    if (!unloads(run) || (is_known && state->loose.n_loose == 0)) return;
-    find_loose(&state->loose, run->packing, run->settings->held, state->dem);
+    if (!state->has_looked || n_crack != state->n_crack)
+        find_loose(&state->loose, run->packing, run->settings->held, state->dem);
     state->has_looked = true;
     state->n_crack = n_crack;
     const int64_t now = dem_cycle(state->dem) - run->place.began;
-    if (now % STOP_EVERY == 0) dem_stop(state->dem, state->loose.is_loose);
+    if (state->loose.n_loose > 0 && now % STOP_EVERY == 0)
+        dem_stop(state->dem, state->loose.is_loose);
 }
 
 // What is taken off loose fragments pressed them on the others: what rests on a wall
 // takes it over, so that the wall still bears the net load of all. Held grains bear
 // what comes.
-static void take_off_loose(struct run *run, const struct vector *displacement)
+static void take_off_loose(struct run *run)
 {
     const struct loose_grains *loose = loose_of(run);
+    struct vector *displacement = NEW_ARRAY(struct vector, run->packing->n_particle);
+    dem_displacements(dem_of(run), displacement);
     const struct net_load off =
         relieve_loose(loose, run->packing, displacement, run->force);
     if (run->settings->support == SUPPORT_WALL)
         put_on_net_load(run->packing, loose->is_loose, displacement, off, run->force);
+    free(displacement);
 }
 
-// Of loose fragments, and of all that is left where nothing holds it.
+// Of all that is left where nothing holds it.
 static void take_off(struct run *run)
 {
-    const bool is_free = run->settings->support == SUPPORT_FREE;
-    const struct loose_grains *loose = loose_of(run);
-    if (!is_free && loose->n_loose == 0) return;
     struct vector *state[3];
     for (int k = 0; k < 3; k++)
         state[k] = NEW_ARRAY(struct vector, run->packing->n_particle);
@@ -161,10 +174,8 @@ static void take_off(struct run *run)
     const struct moving_grains now = {state[0], state[1], state[2],
                                       run->settings->material.density,
                                       TAKE_OFF_EVERY * dem_time_step(dem_of(run))};
-    if (loose->n_loose > 0) take_off_loose(run, state[0]);
-    if (is_free)
-        run->taken_off =
-            take_off_net_load(run->packing, loose->is_loose, &now, run->force);
+    run->taken_off =
+        take_off_net_load(run->packing, loose_of(run)->is_loose, &now, run->force);
     for (int k = 0; k < 3; k++)
         free(state[k]);
 }
@@ -194,7 +205,8 @@ static void apply_forces(struct run *run)
     take_forces(run);
     grow(run);
     follow_loose(run);
-    take_off(run);
+    if (loose_of(run)->n_loose > 0) take_off_loose(run);
+    if (run->settings->support == SUPPORT_FREE) take_off(run);
     dem_set_force(dem_of(run), run->force);
 }
 
@@ -206,6 +218,14 @@ static double unbalanced_ratio(const struct run *run)
 {
     const double ratio = dem_unbalanced_ratio(dem_of(run));
     return isinf(ratio) ? 1 : ratio;
+}
+
+static void keep(const struct run *run)
+{
+    struct array_list list =
+        save_response(run->response, run->packing, run->load->n_time, run->place);
+    save_load(&list, run->force, run->packing->n_particle, run->taken_off);
+    keep_state(run->keeper, dem_of(run), list);
 }
 
 // CYCLES more, cut where the state may be kept, and where the load follows the grains,
@@ -222,10 +242,7 @@ static enum status run_cycles(struct run *run, int64_t cycles, struct reason *re
             dem_run(dem_of(run), left < next ? left : next, reason);
         if (status) return status;
         if ((dem_cycle(dem_of(run)) - run->place.began) % holds == 0) apply_forces(run);
-        if (is_due(run->keeper))
-            keep_state(run->keeper, dem_of(run),
-                       save_response(run->response, run->packing, run->load->n_time,
-                                     run->place));
+        if (is_due(run->keeper)) keep(run);
     }
     return STATUS_OK;
 }
@@ -286,8 +303,8 @@ static enum status give_strengths(struct run *run, struct reason *reason)
     list.array = dem_save(whole, &list.count);
     run->is_whole = false;
     enum status status = create(run, &state->dem, reason);
-    if (!status) status = restore(run, &list, reason);
-    dem_free_arrays(list.array, list.count);
+    if (!status) status = restore_dem(run, &list, reason);
+    free_arrays(list.array, list.count);
     dem_free(whole);
     return status;
 }
@@ -300,7 +317,7 @@ static enum status stand(struct run *run, struct reason *reason)
     const struct replay_settings *settings = run->settings;
     const int64_t done = dem_cycle(dem_of(run)) - run->place.began;
     dem_set_local_damping(dem_of(run), calming_share(run));
-    apply_forces(run);
+    if (done == 0) apply_forces(run);
     const enum status status = done > 0 ? STATUS_OK : run_cycles(run, 1, reason);
     if (status) return status;
     return settle(run, run->place.began + 1,
@@ -321,7 +338,7 @@ static enum status advance(struct run *run, struct reason *reason)
         dem_set_local_damping(dem_of(run), run->settings->material.local_damping);
     const int64_t full = run->place.began + ramp(run);
     enum status status = STATUS_OK;
-    apply_forces(run);
+    if (dem_cycle(dem_of(run)) == run->place.began) apply_forces(run);
     while (!status && dem_cycle(dem_of(run)) < full) {
         apply_forces(run);
         status = run_cycles(run, 1, reason);
@@ -387,6 +404,8 @@ static void end(struct run *run)
 {
     struct by_cycles *state = run->state;
     if (state->dem) note_time_step(run);
+    if (state->dem && unloads(run))
+        find_loose(&state->loose, run->packing, run->settings->held, state->dem);
     note_unsettled(run);
     run->response->n_gone = state->loose.n_loose;
     run->response->first_gone = state->loose.first_one;

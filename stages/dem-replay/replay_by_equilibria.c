@@ -112,10 +112,10 @@ static enum status begin(struct run *run, struct reason *reason)
     return repeat(run, reason);
 }
 
-static enum status restore(struct run *run, const struct array_list *list,
+static enum status restore(struct run *run, const struct kept_state *kept,
                            struct reason *reason)
 {
-    return quasi_static_restore(last(run), list, reason);
+    return quasi_static_restore(last(run), &kept->engine, reason);
 }
 
 // ---- advance ------------------------------------------------------------------------
@@ -140,6 +140,7 @@ static void keep(struct run *run)
 static enum status advance(struct run *run, struct reason *reason)
 {
     keep(run);
+    take_forces(run);
     return find(run, reason);
 }
 

@@ -29,10 +29,10 @@ static void save_snapshots(struct array_list *list, const struct response *respo
         memcpy(intact + s * n_bond, snapshot->intact, n_bond);
     }
     const int64_t numbers = (int64_t)(3 * count * n);
-    add_array(list, "snapshot_step", DEM_INT32, (int64_t)count, step);
-    add_array(list, "snapshot_displacement", DEM_FLOAT64, numbers, displacement);
-    add_array(list, "snapshot_force", DEM_FLOAT64, numbers, force);
-    add_array(list, "snapshot_intact", DEM_UINT8, (int64_t)(count * n_bond), intact);
+    add_array(list, "snapshot_step", ARRAY_INT32, (int64_t)count, step);
+    add_array(list, "snapshot_displacement", ARRAY_FLOAT64, numbers, displacement);
+    add_array(list, "snapshot_force", ARRAY_FLOAT64, numbers, force);
+    add_array(list, "snapshot_intact", ARRAY_UINT8, (int64_t)(count * n_bond), intact);
     free(step);
     free(displacement);
     free(force);
@@ -66,7 +66,7 @@ static void save_bridges(struct array_list *list, const struct dem_contact *cont
         bridge[k][1] = contact[k].bridge_force;
         any = any || bridge[k][0] > 0;
     }
-    if (any) add_array(list, bridges_name, DEM_FLOAT64, 2 * (int64_t)n, bridge);
+    if (any) add_array(list, bridges_name, ARRAY_FLOAT64, 2 * (int64_t)n, bridge);
     free(bridge);
 }
 
@@ -87,12 +87,12 @@ static void save_contacts(struct array_list *list, const struct response *respon
         force[k] = contact[k].force;
         position[k] = contact[k].position;
     }
-    add_array(list, "snapshot_contacts", DEM_INT32, response->n_snapshot, of_each);
-    add_array(list, "contact_particle", DEM_INT32, 2 * (int64_t)n, particle);
-    add_array(list, "contact_bond", DEM_INT32, n, bond);
-    add_array(list, "contact_overlap", DEM_FLOAT64, n, overlap);
-    add_array(list, "contact_force", DEM_FLOAT64, 3 * (int64_t)n, force);
-    add_array(list, "contact_position", DEM_FLOAT64, 3 * (int64_t)n, position);
+    add_array(list, "snapshot_contacts", ARRAY_INT32, response->n_snapshot, of_each);
+    add_array(list, "contact_particle", ARRAY_INT32, 2 * (int64_t)n, particle);
+    add_array(list, "contact_bond", ARRAY_INT32, n, bond);
+    add_array(list, "contact_overlap", ARRAY_FLOAT64, n, overlap);
+    add_array(list, "contact_force", ARRAY_FLOAT64, 3 * (int64_t)n, force);
+    add_array(list, "contact_position", ARRAY_FLOAT64, 3 * (int64_t)n, position);
     save_bridges(list, contact, n);
     free(of_each);
     free(contact);
@@ -108,22 +108,31 @@ struct array_list save_response(const struct response *response,
                                 struct replay_place place)
 {
     struct array_list list = {NULL, 0};
-    add_array(&list, "step", DEM_INT64, 1, &(int64_t){place.step});
-    add_array(&list, "step_began", DEM_INT64, 1, &place.began);
-    add_array(&list, "unbalanced_ratio", DEM_FLOAT64, n_time,
+    add_array(&list, "step", ARRAY_INT64, 1, &(int64_t){place.step});
+    add_array(&list, "step_began", ARRAY_INT64, 1, &place.began);
+    add_array(&list, "unbalanced_ratio", ARRAY_FLOAT64, n_time,
               response->unbalanced_ratio);
-    add_array(&list, "cycles", DEM_INT64, n_time, response->cycles);
-    add_array(&list, "cracks", DEM_INT32, n_time, response->cracks);
-    add_array(&list, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, response->reaction);
-    add_array(&list, "crack_step", DEM_INT32, response->n_crack, response->crack_step);
-    add_array(&list, "weight_cracks", DEM_INT32, 1,
+    add_array(&list, "cycles", ARRAY_INT64, n_time, response->cycles);
+    add_array(&list, "cracks", ARRAY_INT32, n_time, response->cracks);
+    add_array(&list, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time,
+              response->reaction);
+    add_array(&list, "crack_step", ARRAY_INT32, response->n_crack,
+              response->crack_step);
+    add_array(&list, "weight_cracks", ARRAY_INT32, 1,
               &(int32_t){response->n_weight_crack});
-    add_array(&list, "weight_unbalanced_ratio", DEM_FLOAT64,
+    add_array(&list, "weight_unbalanced_ratio", ARRAY_FLOAT64,
               !isnan(response->weight_unbalanced_ratio),
               &response->weight_unbalanced_ratio);
     save_snapshots(&list, response, packing);
     save_contacts(&list, response);
     return list;
+}
+
+void save_load(struct array_list *list, const struct vector *force, int n_particle,
+               struct net_load taken_off)
+{
+    add_array(list, "force", ARRAY_FLOAT64, 3 * (int64_t)n_particle, force);
+    add_array(list, "taken_off", ARRAY_FLOAT64, 6, &taken_off);
 }
 
 struct array_list save_loads(const struct array_list *earlier,
@@ -137,20 +146,35 @@ struct array_list save_loads(const struct array_list *earlier,
     double *all = NEW_ARRAY(double, before + now);
     const void *data = weight;
     if (earlier && before)
-        data = dem_find_array(earlier->array, earlier->count, loads_name)->data;
+        data = find_array(earlier->array, earlier->count, loads_name)->data;
     if (before) memcpy(all, data, (size_t)before * sizeof *all);
     memcpy(all + before, load->force, (size_t)now * sizeof *all);
     struct array_list list = {NULL, 0};
-    add_array(&list, loads_name, DEM_FLOAT64, before + now, all);
+    add_array(&list, loads_name, ARRAY_FLOAT64, before + now, all);
     free(all);
     return list;
 }
 
 // ---- in -----------------------------------------------------------------------------
 
+enum status restore_load(const struct array_list *list, int n_particle,
+                         struct vector *force, struct net_load *taken_off,
+                         struct reason *reason)
+{
+    struct array_reader reader = {.list = list, .reason = reason};
+    const struct vector *applied = read_array(
+        &reader, "force", ARRAY_FLOAT64, 3 * (int64_t)n_particle, -largest, largest);
+    const struct net_load *off =
+        read_array(&reader, "taken_off", ARRAY_FLOAT64, 6, -largest, largest);
+    if (reader.failed) return STATUS_BAD_DATA;
+    memcpy(force, applied, (size_t)n_particle * sizeof *force);
+    *taken_off = *off;
+    return STATUS_OK;
+}
+
 bool saved_by_equilibria(const struct array_list *list)
 {
-    return dem_find_array(list->array, list->count, loads_name) != NULL;
+    return find_array(list->array, list->count, loads_name) != NULL;
 }
 
 enum status refuse_other_engine(struct reason *reason, const char *name)
@@ -167,7 +191,7 @@ const struct vector *saved_loads(const struct array_list *list,
     const int64_t each = 3 * (int64_t)packing->n_particle;
     const int64_t most = each > 0 ? array_count(list, loads_name) / each : 0;
     *n_load = (int)(most > 1 ? most : 1);
-    return read_array(&reader, loads_name, DEM_FLOAT64, *n_load * each, -largest,
+    return read_array(&reader, loads_name, ARRAY_FLOAT64, *n_load * each, -largest,
                       largest);
 }
 
@@ -177,17 +201,17 @@ static enum status restore_history(struct response *response, int first_step,
                                    struct replay_place *place)
 {
     const int64_t *step =
-        read_array(reader, "step", DEM_INT64, 1, first_step, n_time - 1);
+        read_array(reader, "step", ARRAY_INT64, 1, first_step, n_time - 1);
     const int64_t *began =
-        read_array(reader, "step_began", DEM_INT64, 1, 0, (double)cycle);
+        read_array(reader, "step_began", ARRAY_INT64, 1, 0, (double)cycle);
     const double *ratio =
-        read_array(reader, "unbalanced_ratio", DEM_FLOAT64, n_time, 0, largest);
+        read_array(reader, "unbalanced_ratio", ARRAY_FLOAT64, n_time, 0, largest);
     const int64_t *cycles =
-        read_array(reader, "cycles", DEM_INT64, n_time, 0, most_cycles);
+        read_array(reader, "cycles", ARRAY_INT64, n_time, 0, most_cycles);
     const int32_t *cracks =
-        read_array(reader, "cracks", DEM_INT32, n_time, 0, INT32_MAX);
+        read_array(reader, "cracks", ARRAY_INT32, n_time, 0, INT32_MAX);
     const struct net_load *reaction = read_array(
-        reader, "reaction", DEM_FLOAT64, 6 * (int64_t)n_time, -largest, largest);
+        reader, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time, -largest, largest);
     if (reader->failed) return STATUS_BAD_DATA;
     const size_t n = (size_t)n_time;
     *place = (struct replay_place){(int)*step, *began};
@@ -203,8 +227,8 @@ enum status restore_weight(struct response *response, int n_crack,
 {
     struct array_reader reader = {.list = list, .reason = reason};
     const int64_t n_ratio = array_count(list, "weight_unbalanced_ratio");
-    const int32_t *n = read_array(&reader, "weight_cracks", DEM_INT32, 1, 0, n_crack);
-    const double *ratio = read_array(&reader, "weight_unbalanced_ratio", DEM_FLOAT64,
+    const int32_t *n = read_array(&reader, "weight_cracks", ARRAY_INT32, 1, 0, n_crack);
+    const double *ratio = read_array(&reader, "weight_unbalanced_ratio", ARRAY_FLOAT64,
                                      n_ratio > 0, 0, largest);
     if (reader.failed) return STATUS_BAD_DATA;
     response->n_weight_crack = *n;
@@ -225,7 +249,8 @@ static enum status restore_cracks(struct response *response, int n_time,
                                   struct array_reader *reader)
 {
     const int64_t n = array_count(reader->list, "crack_step");
-    const int32_t *step = read_array(reader, "crack_step", DEM_INT32, n, 0, n_time - 1);
+    const int32_t *step =
+        read_array(reader, "crack_step", ARRAY_INT32, n, 0, n_time - 1);
     if (reader->failed) return STATUS_BAD_DATA;
     if (n > past->n_crack)
         return refuse(reader->reason, STATUS_BAD_DATA,
@@ -250,13 +275,13 @@ static enum status restore_snapshots(struct response *response,
                       "snapshot_step: is longer than the parameters say");
     const int64_t numbers = 3 * count * packing->n_particle;
     const int32_t *step =
-        read_array(reader, "snapshot_step", DEM_INT32, count, 0, load->n_time - 1);
+        read_array(reader, "snapshot_step", ARRAY_INT32, count, 0, load->n_time - 1);
     const struct vector *displacement = read_array(
-        reader, "snapshot_displacement", DEM_FLOAT64, numbers, -largest, largest);
+        reader, "snapshot_displacement", ARRAY_FLOAT64, numbers, -largest, largest);
     const struct vector *force =
-        read_array(reader, "snapshot_force", DEM_FLOAT64, numbers, -largest, largest);
-    const uint8_t *intact =
-        read_array(reader, "snapshot_intact", DEM_UINT8, count * packing->n_bond, 0, 1);
+        read_array(reader, "snapshot_force", ARRAY_FLOAT64, numbers, -largest, largest);
+    const uint8_t *intact = read_array(reader, "snapshot_intact", ARRAY_UINT8,
+                                       count * packing->n_bond, 0, 1);
     if (reader->failed) return STATUS_BAD_DATA;
     if (!rises(step, count))
         return refuse(reader->reason, STATUS_BAD_DATA, "snapshot_step: must not fall");
@@ -286,19 +311,19 @@ static struct dem_contact *read_contacts(const struct packing *packing, int64_t 
                                          struct array_reader *reader)
 {
     const int walls = 1; // at most
-    const int32_t(*particle)[2] = read_array(reader, "contact_particle", DEM_INT32,
+    const int32_t(*particle)[2] = read_array(reader, "contact_particle", ARRAY_INT32,
                                              2 * n, -walls, packing->n_particle - 1);
     const int32_t *bond =
-        read_array(reader, "contact_bond", DEM_INT32, n, -1, packing->n_bond - 1);
+        read_array(reader, "contact_bond", ARRAY_INT32, n, -1, packing->n_bond - 1);
     const double *overlap =
-        read_array(reader, "contact_overlap", DEM_FLOAT64, n, -largest, largest);
+        read_array(reader, "contact_overlap", ARRAY_FLOAT64, n, -largest, largest);
     const struct vector *force =
-        read_array(reader, "contact_force", DEM_FLOAT64, 3 * n, -largest, largest);
+        read_array(reader, "contact_force", ARRAY_FLOAT64, 3 * n, -largest, largest);
     const struct vector *position =
-        read_array(reader, "contact_position", DEM_FLOAT64, 3 * n, -largest, largest);
+        read_array(reader, "contact_position", ARRAY_FLOAT64, 3 * n, -largest, largest);
     const bool wet = array_count(reader->list, bridges_name) > 0;
     const double(*bridge)[2] =
-        wet ? read_array(reader, bridges_name, DEM_FLOAT64, 2 * n, -largest, largest)
+        wet ? read_array(reader, bridges_name, ARRAY_FLOAT64, 2 * n, -largest, largest)
             : NULL;
     if (reader->failed) return NULL;
     const int64_t odd = first_unordered(particle, n);
@@ -326,7 +351,7 @@ static enum status restore_contacts(struct response *response,
                                     struct array_reader *reader)
 {
     const int64_t n = array_count(reader->list, "contact_bond");
-    const int32_t *of_each = read_array(reader, "snapshot_contacts", DEM_INT32,
+    const int32_t *of_each = read_array(reader, "snapshot_contacts", ARRAY_INT32,
                                         response->n_snapshot, 0, (double)n);
     struct dem_contact *contact = read_contacts(packing, n, reader);
     if (!contact) return STATUS_BAD_DATA;

@@ -18,6 +18,15 @@ struct array_list save_response(const struct response *response,
                                 const struct packing *packing, int n_time,
                                 struct replay_place place);
 
+// Adds to LIST the FORCE (n_particle, N) on the grains, and what was TAKEN_OFF it.
+void save_load(struct array_list *list, const struct vector *force, int n_particle,
+               struct net_load taken_off);
+
+// Out of such a LIST into FORCE and *TAKEN_OFF; STATUS_BAD_DATA: it has them not.
+enum status restore_load(const struct array_list *list, int n_particle,
+                         struct vector *force, struct net_load *taken_off,
+                         struct reason *reason);
+
 // An equilibrium follows from all loads that led to it, so these are its state: those
 // of EARLIER (NULL: none), WEIGHT (n_particle; NULL: none), and then LOAD. A new list.
 struct array_list save_loads(const struct array_list *earlier,

@@ -37,8 +37,8 @@ struct replay_engine {
     void (*describe)(const struct replay_settings *settings, char *text, size_t size);
     // At rest, or where the earlier replay that SETTINGS name ended.
     enum status (*begin)(struct run *, struct reason *);
-    // As it was when LIST was kept on the way.
-    enum status (*restore)(struct run *, const struct array_list *list,
+    // As it was when KEPT was kept on the way.
+    enum status (*restore)(struct run *, const struct kept_state *kept,
                            struct reason *);
     enum status (*advance)(struct run *, struct reason *); // by the step and its force
     int64_t (*cycles)(const struct run *);                 // so far

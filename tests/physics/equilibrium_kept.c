@@ -51,7 +51,7 @@ static void assert_finite(const struct scene *scene, const struct array_list *li
 {
     for (int k = 0; k < list->count; k++) {
         const double *number = list->array[k].data;
-        if (list->array[k].type != DEM_FLOAT64) continue;
+        if (list->array[k].type != ARRAY_FLOAT64) continue;
         for (int64_t l = 0; l < list->array[k].count; l++)
             if (!isfinite(number[l]))
                 fail_msg("%s: %s holds %g", scene->name, list->array[k].name,
@@ -68,7 +68,7 @@ static void go_on(const struct scene *scene, const struct block *block,
     quasi_static_free(*equilibrium);
     *equilibrium = begin(scene, block);
     if (quasi_static_restore(*equilibrium, &list, &reason)) fail_msg("%s", reason.text);
-    dem_free_arrays(list.array, list.count);
+    free_arrays(list.array, list.count);
 }
 
 static void assert_same(const struct scene *scene, int load, struct quasi_static *one,
@@ -77,14 +77,13 @@ static void assert_same(const struct scene *scene, int load, struct quasi_static
     struct array_list a = quasi_static_save(one), b = quasi_static_save(other);
     assert_int_equal(a.count, b.count);
     for (int k = 0; k < a.count; k++) {
-        const size_t bytes =
-            (size_t)a.array[k].count * dem_number_size(a.array[k].type);
+        const size_t bytes = (size_t)a.array[k].count * number_size(a.array[k].type);
         if (a.array[k].count != b.array[k].count ||
             memcmp(a.array[k].data, b.array[k].data, bytes))
             fail_msg("%s: other %s after load %d", scene->name, a.array[k].name, load);
     }
-    dem_free_arrays(a.array, a.count);
-    dem_free_arrays(b.array, b.count);
+    free_arrays(a.array, a.count);
+    free_arrays(b.array, b.count);
 }
 
 // Beside one in one piece, which forgets after as many loads.

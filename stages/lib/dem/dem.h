@@ -315,14 +315,4 @@ struct named_array *dem_save(const struct dem *dem, int *count);
 enum status dem_restore(struct dem *dem, const struct named_array *array, int count,
                         struct reason *reason);
 
-// The names of checkpoint/named_arrays.h that dem-replay still has.
-#define dem_array named_array
-#define DEM_FLOAT64 ARRAY_FLOAT64
-#define DEM_INT32 ARRAY_INT32
-#define DEM_INT64 ARRAY_INT64
-#define DEM_UINT8 ARRAY_UINT8
-#define dem_free_arrays free_arrays
-#define dem_find_array find_array
-#define dem_number_size number_size
-
 #endif

@@ -129,7 +129,7 @@ static void save_kinds(const struct quasi_static *qs, struct array_list *list)
                                      (int32_t)pair->contact.state};
         memcpy(kind[j], each, sizeof each);
     }
-    add_array(list, "joint_kinds", DEM_INT32, KINDS * (int64_t)qs->n_pair, kind);
+    add_array(list, "joint_kinds", ARRAY_INT32, KINDS * (int64_t)qs->n_pair, kind);
     free(kind);
 }
 
@@ -148,12 +148,12 @@ static void save_cracks(const struct quasi_static *qs, struct array_list *list)
     }
     uint8_t *intact = NEW_ARRAY(uint8_t, qs->packing->n_bond);
     quasi_static_bonds_intact(qs, intact);
-    add_array(list, "bond_intact", DEM_UINT8, qs->packing->n_bond, intact);
+    add_array(list, "bond_intact", ARRAY_UINT8, qs->packing->n_bond, intact);
     free(intact);
-    add_array(list, "crack_bond", DEM_INT32, n, bond);
-    add_array(list, "crack_mode", DEM_UINT8, n, mode);
-    add_array(list, "crack_cycle", DEM_INT64, n, cycle);
-    add_array(list, "crack_position", DEM_FLOAT64, 3 * (int64_t)n, position);
+    add_array(list, "crack_bond", ARRAY_INT32, n, bond);
+    add_array(list, "crack_mode", ARRAY_UINT8, n, mode);
+    add_array(list, "crack_cycle", ARRAY_INT64, n, cycle);
+    add_array(list, "crack_position", ARRAY_FLOAT64, 3 * (int64_t)n, position);
     free(bond);
     free(mode);
     free(cycle);
@@ -177,14 +177,14 @@ struct array_list quasi_static_save(const struct quasi_static *qs)
         double *number = NEW_ARRAY(double, count);
         copy_table(&table[t], number, true);
         bound_numbers(number, count);
-        add_array(&list, table[t].name, DEM_FLOAT64, count, number);
+        add_array(&list, table[t].name, ARRAY_FLOAT64, count, number);
         free(number);
     }
     const int64_t counted[COUNTS] = {
         qs->iterations,       qs->n_detached,    qs->first_detached, qs->n_unconverged,
         qs->last_unconverged, qs->n_instability, qs->last_unstable};
-    add_array(&list, "counted", DEM_INT64, COUNTS, counted);
-    add_array(&list, "is_gone", DEM_UINT8, qs->n, qs->is_detached);
+    add_array(&list, "counted", ARRAY_INT64, COUNTS, counted);
+    add_array(&list, "is_gone", ARRAY_UINT8, qs->n, qs->is_detached);
     save_kinds(qs, &list);
     save_cracks(qs, &list);
     return list;
@@ -197,7 +197,7 @@ static bool restore_kinds(struct quasi_static *qs, struct array_reader *reader)
     const int64_t n = array_count(reader->list, "joint_kinds") / KINDS;
     const double most = qs->n > qs->packing->n_bond ? qs->n : qs->packing->n_bond;
     const int32_t(*kind)[KINDS] =
-        read_array(reader, "joint_kinds", DEM_INT32, KINDS * n, -1, most);
+        read_array(reader, "joint_kinds", ARRAY_INT32, KINDS * n, -1, most);
     if (!kind) return false;
     for (int64_t j = 0; j < n && !reader->failed; j++)
         reader->failed = kind[j][0] < 0 || kind[j][0] >= qs->n || kind[j][1] >= qs->n ||
@@ -225,12 +225,12 @@ static bool restore_cracks(struct quasi_static *qs, struct array_reader *reader)
 {
     const int64_t n = array_count(reader->list, "crack_bond");
     const int32_t *bond =
-        read_array(reader, "crack_bond", DEM_INT32, n, 0, qs->packing->n_bond - 1);
-    const uint8_t *mode = read_array(reader, "crack_mode", DEM_UINT8, n, 0, 1);
+        read_array(reader, "crack_bond", ARRAY_INT32, n, 0, qs->packing->n_bond - 1);
+    const uint8_t *mode = read_array(reader, "crack_mode", ARRAY_UINT8, n, 0, 1);
     const int64_t *cycle =
-        read_array(reader, "crack_cycle", DEM_INT64, n, 0, most_counted);
+        read_array(reader, "crack_cycle", ARRAY_INT64, n, 0, most_counted);
     const struct vector *position =
-        read_array(reader, "crack_position", DEM_FLOAT64, 3 * n, -largest, largest);
+        read_array(reader, "crack_position", ARRAY_FLOAT64, 3 * n, -largest, largest);
     if (reader->failed) return false;
     qs->n_crack = qs->crack_capacity = (int)n;
     qs->crack = reallocate(qs->crack, (size_t)n, sizeof *qs->crack);
@@ -245,8 +245,9 @@ static bool restore_cracks(struct quasi_static *qs, struct array_reader *reader)
 static bool restore_counted(struct quasi_static *qs, struct array_reader *reader)
 {
     const int64_t *counted =
-        read_array(reader, "counted", DEM_INT64, COUNTS, 0, most_counted);
-    const uint8_t *is_detached = read_array(reader, "is_gone", DEM_UINT8, qs->n, 0, 1);
+        read_array(reader, "counted", ARRAY_INT64, COUNTS, 0, most_counted);
+    const uint8_t *is_detached =
+        read_array(reader, "is_gone", ARRAY_UINT8, qs->n, 0, 1);
     if (reader->failed) return false;
     int *const of[COUNTS] = {&qs->iterations,       &qs->n_detached,
                              &qs->first_detached,   &qs->n_unconverged,
@@ -279,7 +280,7 @@ enum status quasi_static_restore(struct quasi_static *qs, const struct array_lis
     for (int t = 0; t < n_table; t++) {
         const int64_t count = (int64_t)width_of(&table[t]) * table[t].count;
         const double *number =
-            read_array(&reader, table[t].name, DEM_FLOAT64, count, -largest, largest);
+            read_array(&reader, table[t].name, ARRAY_FLOAT64, count, -largest, largest);
         if (!number) return STATUS_BAD_DATA;
         copy_table(&table[t], (double *)number, false);
     }

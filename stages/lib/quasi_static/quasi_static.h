@@ -60,7 +60,7 @@ enum status quasi_static_solve(struct quasi_static *qs, const struct vector *for
 // a factor: the cache is old when there have been many since the last time.
 bool quasi_static_cache_is_old(const struct quasi_static *qs);
 void quasi_static_drop_cache(struct quasi_static *qs);
-// A new list, to be freed with dem_free_arrays. STATUS_BAD_DATA: it is not of such
+// A new list, to be freed with free_arrays. STATUS_BAD_DATA: it is not of such
 // grains and bonds.
 struct array_list quasi_static_save(const struct quasi_static *qs);
 enum status quasi_static_restore(struct quasi_static *qs, const struct array_list *list,
