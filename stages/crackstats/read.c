@@ -7,39 +7,25 @@
 
 #include <stdlib.h>
 
-// Rings of liquid and weight stay when the last throat is empty.
-static bool is_loaded_at_last(const struct artifact *response, int n_snapshot)
-{
-    if (n_snapshot == 0) return false;
-    const struct dataset_values force =
-        artifact_get_values(response, "/snapshots/force");
-    const size_t row = force.count / (size_t)n_snapshot;
-    bool is_loaded = false;
-    for (size_t k = force.count - row; k < force.count && !is_loaded; k++)
-        is_loaded = force.value[k] != 0;
-    free(force.value);
-    return is_loaded;
-}
-
+// Responses of dem-replay before version 45 say how many loads did not come to rest,
+// not which.
 static void read_unsettled(struct run *run, const struct artifact *response,
                            const double *time, int n_time)
 {
-    const double unsettled = artifact_get_number(response, "/summary/steps_unsettled");
-    if (unsettled > n_time)
-        die(STATUS_BAD_DATA,
-            "%s: /summary/steps_unsettled: must be at most the %d steps of "
-            "/history/time, got %.0f",
-            input_name(response->path), n_time, unsettled);
-    run->n_unsettled = (int)unsettled;
-    double *ratio = artifact_get(response, "/history/unbalanced_ratio", NULL);
-    double *saturation = artifact_get(response, "/history/saturation", NULL);
-    const bool is_dry =
-        run->n_snapshot > 0 && run->snapshot_saturation[run->n_snapshot - 1] == 0;
-    run->n_unsettled_crack = unsettled_cracks(
-        run, &(struct loads){n_time, time, ratio, saturation,
-                             is_dry && is_loaded_at_last(response, run->n_snapshot)});
-    free(ratio);
-    free(saturation);
+    if (!artifact_has_dataset(response, "/history/settled")) {
+        if (artifact_get_number(response, "/summary/steps_unsettled") > 0)
+            die(STATUS_BAD_DATA,
+                "%s: /history/settled: is not there, and some loads did not come to "
+                "rest: replay it with this dem-replay",
+                input_name(response->path));
+        return;
+    }
+    uint8_t *settled = artifact_get(response, "/history/settled", NULL);
+    for (int k = 0; k < n_time; k++)
+        run->n_unsettled += !settled[k];
+    run->n_unsettled_crack =
+        unsettled_cracks(run, &(struct loads){n_time, time, settled});
+    free(settled);
 }
 
 // Bonds never heal, and nothing breaks after the end.

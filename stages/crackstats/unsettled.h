@@ -9,14 +9,11 @@
 // The loads of a replay, in their order.
 struct loads {
     int n;
-    const double *time;       // (n) s, increasing
-    const double *ratio;      // (n) unbalanced ratio at their ends [K 4.20]
-    const double *saturation; // (n) of the network
-    bool dry_is_loaded;       // something still pulls where no liquid is left
+    const double *time;     // (n) s, increasing
+    const uint8_t *settled; // (n) 1: came to rest
 };
 
-// Cracks of RUN under those N_UNSETTLED loads whose unbalanced ratio is largest. A step
-// without a load, which cannot settle, is none of them.
+// Cracks of RUN under loads that are not settled.
 int unsettled_cracks(const struct run *run, const struct loads *loads);
 
 #endif

@@ -125,6 +125,7 @@ static void note_step(struct run *run)
     const int step = run->place.step;
     response->cycles[step] = run->engine->cycles(run) - run->place.began;
     response->unbalanced_ratio[step] = run->engine->unbalanced_ratio(run);
+    response->settled[step] = run->engine->is_settled(run);
     response->reaction[step] = reaction(run);
     note_cracks(run);
 }
@@ -190,6 +191,7 @@ enum status replay(const struct packing *packing, const struct load *load,
         .unbalanced_ratio = NEW_ARRAY(double, load->n_time),
         .cycles = NEW_ARRAY(int64_t, load->n_time),
         .cracks = NEW_ARRAY(int32_t, load->n_time),
+        .settled = NEW_ARRAY(uint8_t, load->n_time),
         .reaction = NEW_ARRAY(struct net_load, load->n_time),
         .weight_unbalanced_ratio = NAN,
         .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot + 1)};
@@ -207,6 +209,8 @@ enum status replay(const struct packing *packing, const struct load *load,
         if (progress && progress->report && run.place.step >= 0)
             progress->report(progress->context, (double)run.place.step / load->n_time);
     }
+    for (int k = 0; k < load->n_time; k++)
+        response->n_unsettled += !response->settled[k];
     if (!status && settings->weight) take_weight_cracks(&run);
     if (!status && settings->keep_state) response->engine = run.engine->save(&run);
     run.engine->end(&run);
@@ -229,6 +233,7 @@ void response_free(struct response *response)
     free(response->unbalanced_ratio);
     free(response->cycles);
     free(response->cracks);
+    free(response->settled);
     free(response->reaction);
     free(response->weight_crack);
     free_arrays(response->engine.array, response->engine.count);

@@ -88,17 +88,18 @@ struct snapshot {
 struct response {
     int n_crack; // of this replay; an earlier one's are not among them
     struct dem_crack *crack;
-    int *crack_step;           // (n_crack) row of the load it broke under
-    double *unbalanced_ratio;  // (n_time) at the end of each step
-    int64_t *cycles;           // (n_time) of time steps; quasi-static: of iterations
-    int32_t *cracks;           // (n_time) so far
+    int *crack_step;          // (n_crack) row of the load it broke under
+    double *unbalanced_ratio; // (n_time) at the end of each step
+    int64_t *cycles;          // (n_time) of time steps; quasi-static: of iterations
+    int32_t *cracks;          // (n_time) so far
+    uint8_t *settled; // (n_time) 1: all came to rest under it; without a load always
     struct net_load *reaction; // (n_time) of supports on the grains, or in place of
                                // them: what was taken off, the other way
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
     int n_gone, first_gone;   // grains that left an equilibrium, or whose loads ended
-    int n_unsettled;          // loads, but none, at whose end not all was at rest
+    int n_unsettled;          // steps that are not settled
     int n_restless, restless; // loads under which something held did not come to rest,
                               // and the grain furthest from it under the last
     int n_snap, snapped; // ends of equilibrium gone through in time, and the grain that

@@ -228,6 +228,12 @@ static void keep(const struct run *run)
     keep_state(run->keeper, dem_of(run), list);
 }
 
+static bool is_settled(const struct run *run)
+{
+    return unbalanced_ratio(run) < ratio_at_rest(run->settings) ||
+           !is_loaded(run->load, run->packing->n_particle, run->place.step);
+}
+
 // CYCLES more, cut where the state may be kept, and where the load follows the grains,
 // which must not depend on it.
 static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
@@ -392,21 +398,12 @@ static void note_time_step(const struct run *run)
         isinf(limit) ? response->time_step / (isnan(safety) ? 1 : safety) : limit;
 }
 
-static void note_unsettled(const struct run *run)
-{
-    const double settled = ratio_at_rest(run->settings);
-    for (int k = 0; k < run->load->n_time; k++)
-        run->response->n_unsettled += run->response->unbalanced_ratio[k] >= settled &&
-                                      is_loaded(run->load, run->packing->n_particle, k);
-}
-
 static void end(struct run *run)
 {
     struct by_cycles *state = run->state;
     if (state->dem) note_time_step(run);
     if (state->dem && unloads(run))
         find_loose(&state->loose, run->packing, run->settings->held, state->dem);
-    note_unsettled(run);
     run->response->n_gone = state->loose.n_loose;
     run->response->first_gone = state->loose.first_one;
     loose_free(&state->loose);
@@ -422,6 +419,7 @@ const struct replay_engine replay_by_cycles = {
     .advance = advance,
     .cycles = cycles,
     .unbalanced_ratio = unbalanced_ratio,
+    .is_settled = is_settled,
     .reaction = reaction,
     .cracks = cracks,
     .observe = observe,

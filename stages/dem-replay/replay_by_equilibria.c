@@ -13,6 +13,7 @@
 struct equilibria {
     struct quasi_static *last;
     int restless_before, snaps_before; // of an earlier replay
+    bool is_settled;                   // under the load of this step
     struct kept_state kept;            // the last
 };
 
@@ -139,9 +140,14 @@ static void keep(struct run *run)
 
 static enum status advance(struct run *run, struct reason *reason)
 {
+    struct equilibria *state = run->state;
+    int grain;
+    const int before = quasi_static_unconverged(state->last, &grain);
     keep(run);
     take_forces(run);
-    return find(run, reason);
+    const enum status status = find(run, reason);
+    state->is_settled = quasi_static_unconverged(state->last, &grain) == before;
+    return status;
 }
 
 // ---- what there is to see -----------------------------------------------------------
@@ -154,6 +160,11 @@ static int64_t cycles(const struct run *run)
 static double unbalanced_ratio(const struct run *run)
 {
     return quasi_static_unbalanced_ratio(last(run));
+}
+
+static bool is_settled(const struct run *run)
+{
+    return ((const struct equilibria *)run->state)->is_settled;
 }
 
 static struct net_load reaction(const struct run *run)
@@ -189,7 +200,6 @@ static void end(struct run *run)
         response->n_restless =
             quasi_static_unconverged(state->last, &response->restless) -
             state->restless_before;
-        response->n_unsettled = response->n_restless;
         response->n_snap = quasi_static_instabilities(state->last, &response->snapped) -
                            state->snaps_before;
     }
@@ -208,6 +218,7 @@ const struct replay_engine replay_by_equilibria = {
     .advance = advance,
     .cycles = cycles,
     .unbalanced_ratio = unbalanced_ratio,
+    .is_settled = is_settled,
     .reaction = reaction,
     .cracks = cracks,
     .observe = observe,

@@ -114,6 +114,7 @@ struct array_list save_response(const struct response *response,
               response->unbalanced_ratio);
     add_array(&list, "cycles", ARRAY_INT64, n_time, response->cycles);
     add_array(&list, "cracks", ARRAY_INT32, n_time, response->cracks);
+    add_array(&list, "settled", ARRAY_UINT8, n_time, response->settled);
     add_array(&list, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time,
               response->reaction);
     add_array(&list, "crack_step", ARRAY_INT32, response->n_crack,
@@ -210,6 +211,7 @@ static enum status restore_history(struct response *response, int first_step,
         read_array(reader, "cycles", ARRAY_INT64, n_time, 0, most_cycles);
     const int32_t *cracks =
         read_array(reader, "cracks", ARRAY_INT32, n_time, 0, INT32_MAX);
+    const uint8_t *settled = read_array(reader, "settled", ARRAY_UINT8, n_time, 0, 1);
     const struct net_load *reaction = read_array(
         reader, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time, -largest, largest);
     if (reader->failed) return STATUS_BAD_DATA;
@@ -218,6 +220,7 @@ static enum status restore_history(struct response *response, int first_step,
     memcpy(response->unbalanced_ratio, ratio, n * sizeof *ratio);
     memcpy(response->cycles, cycles, n * sizeof *cycles);
     memcpy(response->cracks, cracks, n * sizeof *cracks);
+    memcpy(response->settled, settled, n * sizeof *settled);
     memcpy(response->reaction, reaction, n * sizeof *reaction);
     return STATUS_OK;
 }

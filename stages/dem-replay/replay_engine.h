@@ -43,6 +43,7 @@ struct replay_engine {
     enum status (*advance)(struct run *, struct reason *); // by the step and its force
     int64_t (*cycles)(const struct run *);                 // so far
     double (*unbalanced_ratio)(const struct run *);
+    bool (*is_settled)(const struct run *); // all is at rest under the step's load
     struct net_load (*reaction)(const struct run *);
     const struct dem_crack *(*cracks)(const struct run *, int *count);
     void (*observe)(const struct run *, struct snapshot *);

@@ -43,6 +43,7 @@ static void put_history(struct artifact *artifact, const struct load *load,
                  load->n_time);
     artifact_put(artifact, "/history/cycles", response->cycles, load->n_time);
     artifact_put(artifact, "/history/cracks", response->cracks, load->n_time);
+    artifact_put(artifact, "/history/settled", response->settled, load->n_time);
     struct vector *force = NEW_ARRAY(struct vector, load->n_time);
     struct vector *moment = NEW_ARRAY(struct vector, load->n_time);
     for (int k = 0; k < load->n_time; k++) {

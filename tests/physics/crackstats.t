@@ -97,34 +97,32 @@ with scratch() as folder:
        stats["interval_of"])
 
     # ---- loads that did not come to rest --------------------------------------------
-    def unsettled(ratio, count, cracks, pull=None):
-        """By crackstats, of a response in which COUNT loads of these RATIOs did not settle, with
-        CRACKS under each, and nothing or PULL on the grains at the last snapshot."""
+    def unsettled(settled, cracks):
+        """Loads and cracks under them, by crackstats, of a response with CRACKS under each load."""
         shutil.copy(at("response"), at("restless"))
         with h5py.File(at("restless"), "r+") as file:
             times = file["history/time"][:]
-            file["history/unbalanced_ratio"][...] = ratio
-            file["summary"].attrs["steps_unsettled"] = count
-            if pull is not None:
-                file["snapshots/force"][-1] = pull
-            assert len(times) == len(ratio) and file["history/saturation"][-1] == 0
+            file["history/settled"][...] = settled
         by_hand(at("restless"), list(range(sum(cracks))), np.repeat(times, cracks),
                 [0] * sum(cracks), [0] * sum(cracks))
         of = crackstats(at("restless"))["each"][0]["unsettled"]
         return of["loads"], of["cracks"]
 
     steps = h5py.File(at("response"))["history/time"].shape[0]
-    ratio, cracks = np.full(steps, 1e-6), np.arange(steps)
-    ok(unsettled(ratio, 0, cracks) == (0, 0), "all loads came to rest")
-    ratio[[1, 3]] = 0.02, 0.01
-    ok(unsettled(ratio, 2, cracks) == (2, 1 + 3), "cracks under the two loads that did not")
-    ratio[-1] = 0.5
-    ok(unsettled(ratio, 2, cracks, 0) == (2, 1 + 3), "what is dry has no load")
-    ok(unsettled(ratio, 3, cracks, 1e-9) == (3, 1 + 3 + cracks[-1]), "but where something still pulls")
-    ok(unsettled(ratio, steps, cracks, 1e-9) == (steps, sum(cracks)), "none came to rest")
+    settled, cracks = np.ones(steps, int), np.arange(steps)
+    ok(unsettled(settled, cracks) == (0, 0), "all loads came to rest")
+    settled[[1, 3]] = 0
+    ok(unsettled(settled, cracks) == (2, 1 + 3), "cracks under the two loads that did not")
+    ok(unsettled(0 * settled, cracks) == (steps, sum(cracks)), "none came to rest")
     with h5py.File(at("restless"), "r+") as file:
-        file["summary"].attrs["steps_unsettled"] = steps + 1
-    ok(refused("/summary/steps_unsettled: must be at most", at("restless")), "more of them than loads are refused")
+        del file["history/settled"]
+        file["summary"].attrs["steps_unsettled"] = 0
+    ok(crackstats(at("restless"))["each"][0]["unsettled"] == {"loads": 0, "cracks": 0},
+       "an old response that came to rest")
+    with h5py.File(at("restless"), "r+") as file:
+        file["summary"].attrs["steps_unsettled"] = 1
+    ok(refused("/history/settled: is not there, and some loads", at("restless")),
+       "an old one that did not is refused")
     # By cycles, a real one: those above the tolerance, which lies amid its ratios.
     def in_haste(tolerance):
         words = ["engine=explicit", "cycles=100", "most_cycles=1", "unsettled=count", "ramp=0",

@@ -126,6 +126,7 @@ static void assert_same(const struct response *a, const struct response *b, int 
         same = a->weight_crack[k].bond == b->weight_crack[k].bond;
     same = same && !memcmp(a->reaction, b->reaction, LOADS * sizeof *a->reaction) &&
            !memcmp(a->cycles, b->cycles, LOADS * sizeof *a->cycles) &&
+           !memcmp(a->settled, b->settled, LOADS) &&
            !memcmp(a->unbalanced_ratio, b->unbalanced_ratio, LOADS * sizeof(double));
     if (!same) fail_msg("another end from state %d", state);
 }
