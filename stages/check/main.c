@@ -5,14 +5,19 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "geometry/fabric.h"
+#include "parameters/conditions.h"
 #include "tell.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct check_parameters {
     double touching_gap;
     int64_t frame;
+    double import_scale;
+    bool import_diameters;
+    struct conditions conditions;
     struct material material;
 };
 
@@ -23,6 +28,10 @@ static const struct parameter table[] = {
      .text = "largest gap between touching surfaces, over the sum of the two radii"},
     {"frame", PARAMETER_INTEGER, "1", "-1", AT(frame), BETWEEN(-1, 1e12),
      .text = "of a LAMMPS dump, from 0; -1: the last"},
+    {"import.scale", PARAMETER_NUMBER, "m", "1", AT(import_scale), ABOVE(0),
+     .text = "metres per unit of length of INPUT, as pack.import.scale"},
+    {"import.diameters", PARAMETER_BOOLEAN, "1", "false", AT(import_diameters),
+     .text = "INPUT has diameters in place of radii"},
     {"density", PARAMETER_NUMBER, "kg m-3", "2500", AT(material.density), ABOVE(0),
      .text =
          "of the grains; this and the following parameters are for the suggestions"},
@@ -32,10 +41,9 @@ static const struct parameter table[] = {
      .text = "Young's modulus of the bonds"},
     {"radius_fraction", PARAMETER_NUMBER, "1", "0.5", AT(material.radius_fraction),
      BETWEEN(1e-6, 1), .text = "bond radius, of the smaller grain's"},
-    {"surface_tension", PARAMETER_NUMBER, "N m-1", "0.07274",
-     AT(material.surface_tension), ABOVE(0), .text = "of the liquid; default: water"},
-    {"contact_angle", PARAMETER_NUMBER, "degree", "0", AT(material.contact_angle),
-     BETWEEN(0, 90), .text = "of the liquid on the grains"},
+    FLUID_ROWS(AT(conditions)),
+    SURFACE_TENSION_ROW(AT(conditions)),
+    CONTACT_ANGLE_ROW(AT(conditions), 89),
     {0}};
 
 static const struct stage stage = {
@@ -71,9 +79,21 @@ static void judge_free(const struct packing_facts *facts, struct findings *findi
                 "%d of %d grains touch neither grain nor wall", facts->free, facts->n);
 }
 
+// Below this share of the capillary forces weight changes little.
+static void judge_weight(const struct bond_numbers *weight, struct findings *findings)
+{
+    const double matters = 0.05, most = fmax(weight->grain, weight->body);
+    if (!(most >= matters)) return;
+    add_finding(findings, FINDING_NOTE, "weight",
+                "%s weighs about %.2g of its suction: gravity=9.81 in force-protocol "
+                "and dem-replay adds weight",
+                weight->grain < most ? "the body" : "a grain", most);
+}
+
 static struct findings judge(const struct packing *packing,
                              const struct packing_facts *facts,
-                             const struct bond_facts *bonds)
+                             const struct bond_facts *bonds,
+                             const struct bond_numbers *weight)
 {
     struct findings findings = {0};
     if (!facts->n)
@@ -83,6 +103,7 @@ static struct findings judge(const struct packing *packing,
     judge_bonds(packing, bonds, facts->n, bottom_of(facts), &findings);
     judge_free(facts, &findings);
     judge_defaults(facts, &findings);
+    judge_weight(weight, &findings);
     return findings;
 }
 
@@ -95,22 +116,42 @@ static void bond_text(struct packing *packing, const struct contacts *contacts,
     bond_contacts(packing, contacts);
 }
 
+// Lengths in metres, the liquid's surface tension.
+static struct packing read_input(const char *path, struct check_parameters *parameters,
+                                 json_t *inputs)
+{
+    struct reason reason;
+    if (conditions_complete(&parameters->conditions, 1u << FLUID_SURFACE_TENSION,
+                            &reason))
+        die(STATUS_BAD_DATA, "check.%s", reason.text);
+    parameters->material.surface_tension =
+        parameters->conditions.property[FLUID_SURFACE_TENSION];
+    parameters->material.contact_angle = parameters->conditions.contact_angle;
+    bool has_box;
+    struct packing packing =
+        read_grains(path, NULL, parameters->frame, &has_box, inputs);
+    convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
+                   has_box);
+    return packing;
+}
+
 int main(int argc, char **argv)
 {
-    struct check_parameters parameters;
+    struct check_parameters parameters = {.conditions = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     json_t *inputs = json_array();
-    struct packing packing =
-        read_grains(invocation.inputs[0], NULL, parameters.frame, NULL, inputs);
+    struct packing packing = read_input(invocation.inputs[0], &parameters, inputs);
     const double gap = parameters.touching_gap;
     struct contacts contacts = find_contacts(&packing, gap);
     bond_text(&packing, &contacts, inputs);
 
     const struct packing_facts facts = packing_facts(&packing, &contacts, gap);
     const struct bond_facts bonds = bond_facts(&packing);
-    const struct findings findings = judge(&packing, &facts, &bonds);
-    const struct checked checked = {&packing, &contacts, &facts,
-                                    &bonds,   &findings, &parameters.material};
+    const struct bond_numbers weight =
+        expected_bond_numbers(&parameters.material, &packing, &facts);
+    const struct findings findings = judge(&packing, &facts, &bonds, &weight);
+    const struct checked checked = {
+        &packing, &contacts, &facts, &bonds, &findings, &weight, &parameters.material};
     const int wrong = count_wrong(&findings);
     if (invocation.tells && !invocation.quiet) tell(&checked, wrong);
     if (!invocation.tells)

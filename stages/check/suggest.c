@@ -23,13 +23,33 @@ double bottom_of(const struct packing_facts *facts)
     return facts->lower.z + 1.2 * facts->ninetieth;
 }
 
-double expected_stress(const struct material *material, double radius)
+static double expected_suction(const struct material *material, double radius)
 {
     const double tension =
         material->surface_tension * cos(material->contact_angle * M_PI / 180);
-    const double suction = suction_over_tension * tension / radius;
-    return force_over_suction * fabs(suction) /
+    return suction_over_tension * tension / radius;
+}
+
+double expected_stress(const struct material *material, double radius)
+{
+    return force_over_suction * fabs(expected_suction(material, radius)) /
            (material->radius_fraction * material->radius_fraction);
+}
+
+struct bond_numbers expected_bond_numbers(const struct material *material,
+                                          const struct packing *packing,
+                                          const struct packing_facts *facts)
+{
+    const double r = facts->median, gravity = 9.80665;
+    const double suction = expected_suction(material, r);
+    const struct vector side = subtract(packing->upper, packing->lower);
+    double volume = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        volume += 4 * M_PI / 3 * pow(packing->radius[i], 3);
+    const double weight = material->density * gravity * volume;
+    const double force = force_over_suction * suction * M_PI * r * r;
+    return (struct bond_numbers){.grain = weight / packing->n_particle / force,
+                                 .body = weight / (side.x * side.y * suction)};
 }
 
 // Two digits: more would say more than is known.

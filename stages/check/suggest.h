@@ -14,7 +14,7 @@ struct material {
     double bond_modulus;    // of the bonds, Pa
     double radius_fraction; // of a bond, of the smaller grain's
     double surface_tension; // N/m
-    double contact_angle;   // degree
+    double contact_angle;   // degrees
 };
 
 // Below this height lie the centres of the lowest grains, to hold; m.
@@ -22,6 +22,15 @@ double bottom_of(const struct packing_facts *facts);
 
 // The stress in a neck under the largest capillary force to expect, Pa.
 double expected_stress(const struct material *material, double radius);
+
+// Weight on earth over the largest capillary force to expect on a grain, and over what
+// the suction bears of the body: dem-replay/weight.h.
+struct bond_numbers {
+    double grain, body;
+};
+struct bond_numbers expected_bond_numbers(const struct material *material,
+                                          const struct packing *packing,
+                                          const struct packing_facts *facts);
 
 // {"dem-replay": {...}}; the caller owns it.
 json_t *suggest(const struct material *material, const struct packing *packing,

@@ -70,6 +70,8 @@ static void tell_suggested(const struct checked *checked, FILE *out)
     tell_numbers("", json_object_get(suggested, "dem-replay"), out);
     fprintf(out, "\n           (strengths: the stress of the largest force to expect; "
                  "try a third to three times)\n");
+    fprintf(out, "weight     of a grain %.2g, of the body %.2g of its suction\n",
+            checked->weight->grain, checked->weight->body);
     json_decref(suggested);
     json_t *cost = expected_cost(checked->facts->n);
     size_t k;
@@ -155,6 +157,11 @@ json_t *checked_json(const struct checked *checked, int wrong)
                                   "ninetieth", facts->ninetieth, "largest",
                                   facts->largest));
     json_object_set_new(document, "box", box_json(checked));
+    json_object_set_new(document, "weight",
+                        facts->n
+                            ? json_pack("{s:f,s:f}", "grain", checked->weight->grain,
+                                        "body", checked->weight->body)
+                            : json_null());
     json_object_set_new(
         document, "contacts",
         json_pack("{s:i,s:f,s:i,s:i,s:i}", "pairs", checked->contacts->count,

@@ -12,6 +12,7 @@ struct checked {
     const struct packing_facts *facts;
     const struct bond_facts *bonds;
     const struct findings *findings;
+    const struct bond_numbers *weight;
     const struct material *material;
 };
 

@@ -23,20 +23,6 @@ static void apply_box(struct packing *packing, const struct pack_parameters *par
     }
 }
 
-// Lengths in metres, the last column a radius.
-static void apply_units(struct packing *packing,
-                        const struct pack_parameters *parameters, bool has_box)
-{
-    const double by = parameters->import_scale;
-    for (int i = 0; i < packing->n_particle; i++) {
-        packing->position[i] = scale(by, packing->position[i]);
-        packing->radius[i] *= parameters->import_diameters ? 0.5 * by : by;
-    }
-    packing->lower = scale(by, packing->lower);
-    packing->upper = scale(by, packing->upper);
-    if (!has_box && parameters->import_diameters) box_around(packing);
-}
-
 // Grains from text or from another packing; INPUTS gets what the provenance says of it.
 static struct packing import(const char *path, const struct pack_parameters *parameters,
                              json_t *inputs)
@@ -46,7 +32,8 @@ static struct packing import(const char *path, const struct pack_parameters *par
         read_grains(path, "packing", parameters->frame, &has_box, inputs);
     for (int axis = 0; axis < 3 && !has_box; axis++)
         packing.periodic[axis] = parameters->domain.periodic[axis];
-    apply_units(&packing, parameters, has_box);
+    convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
+                   has_box);
     apply_box(&packing, parameters);
     return packing;
 }

@@ -201,4 +201,45 @@ status, _, said = call("dem-replay", *few,
 ok(status == 0 and f"of {n} grains to those that are held" in said,
    "that hardly a grain hangs on those held is said", said)
 
+# ---- weight -------------------------------------------------------------------------------
+
+# Beads of a millimetre that settled, given in millimetres: the whole chain says what they weigh.
+beads = ["count=300", "radius=5e-4", "method=deposition", "lower=[0,0,0]",
+         "upper=[6.3e-3,6.3e-3,2.5e-2]"]
+made = run("pack", "-q", *settings(*beads))
+open(at("beads.h5"), "wb").write(made)
+with h5py.File(at("beads.h5")) as file:
+    beads_mm = text("beads-mm", 1e3 * file["particles/position"][:], 1e3 * file["particles/radius"][:])
+for stage, words in [("tessellate", []), ("merge-nodes", []), ("dry", ["step_interval=0.1"]),
+                     ("force-protocol", ["force_scale=1"])]:
+    made = run(stage, "-q", *settings(*words), input=made)
+made = run("dem-replay", "-q", *settings("cycles=1", "most_cycles=1", "ramp=0"), input=made)
+open(at("beads-response.h5"), "wb").write(made)
+with h5py.File(at("beads-response.h5")) as file:
+    measured = file["summary"].attrs["bond_number_grain"], file["summary"].attrs["bond_number_body"]
+status, report, _ = check(beads_mm, "--set", "import.scale=1e-3")
+expected = report["weight"]["grain"], report["weight"]["body"]
+# The chain's box is higher than the grains, which changes neither number.
+ok("weight" in [f["name"] for f in report["findings"]] and all(0.5 < e / m < 2 for e, m in zip(expected, measured)),
+   "the weight to expect, beside what the whole chain measures", (expected, measured))
+twice = text("beads-twice", 1e3 * h5py.File(at("beads.h5"))["particles/position"][:],
+             2e3 * h5py.File(at("beads.h5"))["particles/radius"][:])
+ok(check(twice, "--set", "import.scale=1e-3", "--set", "import.diameters=true")[1]["radius"]
+   == report["radius"], "diameters for radii")
+ethanol = check(beads_mm, "--set", "import.scale=1e-3", "--set", "fluid=ethanol")[1]
+ok(2 < ethanol["weight"]["grain"] / report["weight"]["grain"] < 4,
+   "ethanol pulls a third as hard as water", (ethanol["weight"], report["weight"]))
+status, _, said = call("check", "--set", "fluid=other", beads_mm)
+ok(status == 65 and "check.surface_tension" in said, "another liquid has to say how it pulls", said)
+
+# ---- input without end --------------------------------------------------------------------
+
+for words in (["pack", "-q", "--set", "method=import", "-o", at("endless.h5")], ["check"]):
+    endless = subprocess.Popen(["yes"], stdout=subprocess.PIPE)
+    ended = subprocess.run([f"{BIN}/{words[0]}", *words[1:]], stdin=endless.stdout,
+                           capture_output=True, text=True, timeout=20)
+    endless.kill()
+    ok(ended.returncode == 65 and "line 1: must be four numbers" in ended.stderr,
+       f"{words[0]} of text without end, and without grains", ended.stderr)
+
 done()

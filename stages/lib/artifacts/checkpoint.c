@@ -151,11 +151,12 @@ static void write_here(const struct checkpoint *checkpoint,
 }
 
 // By a child, whose failure is not the run's: hours of work do not end for a full disk.
-// STATUS_OK, or how the child ended; it said why.
+// STATUS_OK, or how the child ended; it said why, unless SILENT: the same as last time.
 static int write_state(const struct checkpoint *checkpoint,
-                       const struct kept_state *state)
+                       const struct kept_state *state, bool silent)
 {
     const pid_t child = fork();
+    if (child == 0 && silent && !freopen("/dev/null", "w", stderr)) _exit(STATUS_IO);
     if (child <= 0) write_here(checkpoint, state);
     if (child < 0) return STATUS_OK; // none could be had: we wrote it ourselves
     if (child == 0) _exit(STATUS_OK);
@@ -231,12 +232,14 @@ static void keep(void *context, const struct kept_state *state)
 {
     struct checkpoint *checkpoint = context;
     const int signal_now = stopped_by;
-    const int status = write_state(checkpoint, state);
+    const bool silent = checkpoint->has_failed && !signal_now;
+    const int status = write_state(checkpoint, state, silent);
     checkpoint->written = now();
     if (status && signal_now) exit(status);
-    if (status)
+    if (status && !silent)
         report("%s: no state is kept this time; the run goes on",
                checkpoint->invocation->checkpoint);
+    checkpoint->has_failed = status != 0;
     if (!signal_now) return;
     if (!checkpoint->invocation->quiet)
         report("stopped: %s: the same call goes on from %s", strsignal(signal_now),

@@ -19,6 +19,7 @@ struct checkpoint {
     const struct invocation *invocation;
     json_t *inputs;          // digests, as in the provenance of the output
     double written;          // s, when the last one was, or the run began
+    bool has_failed;         // it could not be written, which was said
     struct kept_state begin; // what FILE held
     struct keeper keeper;    // for the run
 };

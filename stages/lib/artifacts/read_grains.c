@@ -37,10 +37,20 @@ static struct packing read_artifact(const char *path, struct bytes image,
     return packing;
 }
 
+// Text of grains begins with a number or a comment: other text may have no end.
+static bool may_hold_grains(const struct bytes *beginning)
+{
+    size_t k = 0;
+    while (k < beginning->size && strchr(" \t\r\n,;", beginning->data[k]))
+        k++;
+    return k == beginning->size || strchr("0123456789+-.#", beginning->data[k]) ||
+           is_hdf5(beginning) || !memcmp(beginning->data, "ITEM", 4);
+}
+
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
                            bool *has_box, json_t *inputs)
 {
-    const struct bytes bytes = read_whole(path);
+    const struct bytes bytes = read_whole_of(path, may_hold_grains);
     if (!bytes.size && !strcmp(path, "-"))
         die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
                              "an input, make run from IMPORT=FILE");
@@ -49,4 +59,15 @@ struct packing read_grains(const char *path, const char *schema, int64_t frame,
     const struct packing packing = read_lines(path, bytes, frame, inputs);
     free(bytes.data);
     return packing;
+}
+
+void convert_grains(struct packing *packing, double by, bool diameters, bool has_box)
+{
+    for (int i = 0; i < packing->n_particle; i++) {
+        packing->position[i] = scale(by, packing->position[i]);
+        packing->radius[i] *= diameters ? 0.5 * by : by;
+    }
+    packing->lower = scale(by, packing->lower);
+    packing->upper = scale(by, packing->upper);
+    if (!has_box && diameters) box_around(packing);
 }

@@ -14,4 +14,8 @@
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
                            bool *has_box, json_t *inputs);
 
+// Lengths that were not in metres: BY is metres per unit. DIAMETERS: the radii are
+// diameters; walls where grains end, unless the file HAS_BOX, then move in.
+void convert_grains(struct packing *packing, double by, bool diameters, bool has_box);
+
 #endif

@@ -44,9 +44,9 @@ char *json_canonical(const json_t *json)
 static char *as_written(const json_t *value)
 {
     for (int digits = 6; digits < 17; digits++) {
-        char *text =
-            json_dumps(value, JSON_SORT_KEYS | JSON_COMPACT |
-                                  JSON_REAL_PRECISION(digits) | JSON_ENCODE_ANY);
+        char *text = json_dumps(value, JSON_SORT_KEYS | JSON_COMPACT |
+                                           JSON_REAL_PRECISION((size_t)digits) |
+                                           JSON_ENCODE_ANY);
         json_t *back = json_loads(text, JSON_DECODE_ANY, NULL);
         const bool same = json_equal(back, value);
         json_decref(back);
