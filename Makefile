@@ -177,15 +177,15 @@ $(foreach d,unit physics bench,$(eval $(call test_rules,$d)))
 include $(wildcard $(addsuffix /*.d,$(addprefix $(BUILD)/obj/,*/* */*/* */*/*/*)))
 
 # --- pipelines: re-run by content -----------------------------------------------------
-# pipelines/memo decides what is stale from what files hold, never from their times. It is
+# tools/memo decides what is stale from what files hold, never from their times. It is
 # asked while parsing, so that `make -n` and `make -q` tell the truth: an artifact is forced
 # when it, or what it is made from, is stale, and every prerequisite is order-only. It is
 # asked again in the recipe, when all inputs are there: if those came out as they were,
 # nothing runs.
 #
-# A study is a file pipelines/GOAL.mk, as pipelines/curves.mk: each `step` is an artifact that a
-# stage makes (pipelines/crack.mk has one for each stage), each `report` a table or picture
-# that a program beside it makes, and `study` the goal.
+# pipelines/run has the product's own `run` and `demo`. A study is a folder of pipelines/studies;
+# in its study.mk each `step` is an artifact that a stage makes (pipelines/run/run.mk has one for
+# each stage), each `report` a table or picture that a program makes, and `study` the goal.
 
 RUN ?=# a launcher for the stages: RUN='srun -n1'
 THREADS ?=# of each stage
@@ -201,7 +201,7 @@ artifacts :=
 pipeline_goals := $(RUNS)/%
 
 # $1 is made from the files $3 by command $4, in which program $5 runs. $2: what else its key
-# holds, in the words of pipelines/memo.
+# holds, in the words of tools/memo.
 artifact = $(if $(filter $1,$(artifacts)),,$(eval artifacts += $1)$(eval \
 	recipe/$1 := $2 $(3:%=input=%) output=$1)$(eval inputs/$1 := $3)$(eval \
 	command/$1 := $4)$(eval programs/$1 := $(filter $(PROGRAMS),$5)))
@@ -212,10 +212,11 @@ step = $(call artifact,$1,scene=$4 stage=$2 $(if $(filter $(BUILD)/bin/$2,$3),ve
 	-p $4 $(foreach s,$5,--set $(call quoted,$s)) \
 	$(THREADS:%=--threads %) $6 -o $1,$3)
 
+pipeline_library := $(filter-out %.pyc,$(wildcard pipelines/lib/*.*))
 # $1 is a table or a picture that pipelines/$2 makes of the files $3. It is called with these, or
 # with the words $4 where they are given, and with $1.
 report = $(call artifact,$1,stage=$2 version=1,$(wildcard pipelines/$2 pipelines/$2.gp \
-	pipelines/$2-*.awk pipelines/$2.awk pipelines/common.* pipelines/style.gp) $3,pipelines/$2 \
+	pipelines/$2-*.awk pipelines/$2.awk $(pipeline_library)) $3,pipelines/$2 \
 	$(or $4,$3) $1,$(BUILD)/bin/inspect)
 
 # The words $1 in their order, each once.
@@ -230,17 +231,17 @@ study = $(eval .PHONY: $1)$(eval pipeline_goals += $1)$(eval $1: $2 ; \
 shown = @$(if $1,cat $1;) $(if $2,echo 'picture$(if $(word 2,$2),s): $2')
 
 # Others use what these two define.
-first_pipelines := $(wildcard pipelines/crack.mk pipelines/networks-k.mk)
-include $(first_pipelines) $(filter-out $(first_pipelines),$(wildcard pipelines/*.mk))
+first_pipelines := $(wildcard pipelines/run/run.mk $(addprefix pipelines/studies/,networks-k/study.mk coupled/study.mk))
+include $(first_pipelines) $(filter-out $(first_pipelines),$(wildcard pipelines/studies/*/study.mk))
 
 ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # A file, for there may be more recipes than a command line holds; this make's own, for there may
 # be several at work.
 recipes := $(shell mkdir -p $(BUILD) && mktemp $(BUILD)/recipes.XXXXXX)
 $(file >$(recipes),$(foreach a,$(artifacts),$(recipe/$a)))
-stale := $(shell pipelines/memo check $(recipes))
+stale := $(shell tools/memo check $(recipes))
 ifneq ($(.SHELLSTATUS),0)
-$(error pipelines/memo could not tell what is stale)
+$(error tools/memo could not tell what is stale)
 endif
 
 # What memo is told of $1: by a file where there are so many inputs that a shell's line may not
@@ -250,7 +251,7 @@ told_file = $(recipes)-$(subst /,-,$1)
 told_by_file = $(if $(really),$$(file >$(told_file),$(told)))@$(told_file)
 define artifact_rule
 $1: $(if $(filter $1,$(stale)),FORCE) | $(inputs/$1) $(programs/$1)
-	$(if $(filter 0,$(V)),@)pipelines/memo run $(if $(word 500,$(inputs/$1)),$(told_by_file),$(told))
+	$(if $(filter 0,$(V)),@)tools/memo run $(if $(word 500,$(inputs/$1)),$(told_by_file),$(told))
 endef
 $(foreach a,$(artifacts),$(eval $(call artifact_rule,$a)))
 endif
@@ -274,10 +275,11 @@ $(BUILD)/man/craquelure-%.1: $(BUILD)/bin/% tools/man-page VERSION
 $(COMPLETION): tools/completion tools/run $(PROGRAMS)
 	@mkdir -p $(@D) && tools/completion $(PROGRAMS) tools/run >$@
 
-# What `craquelure run` and `demo` need, as it lies in the tree; samples and documents.
-shared_scripts := $(addprefix pipelines/,memo picture crack-patterns)
-shared := $(shared_scripts) Makefile VERSION $(addprefix pipelines/,crack.mk common.sh \
-	headline.jq style.gp) $(wildcard $(addsuffix [.-]*,$(shared_scripts)) *.md docs/*.md docs/pictures/* \
+# What `craquelure run` and `demo` need, as it lies in the tree: all pipelines but the studies;
+# samples and documents.
+pipeline_files := $(filter-out %__pycache__,$(wildcard $(addprefix pipelines/,run/* figures/* lib/*)))
+shared_scripts := tools/memo $(foreach f,$(pipeline_files),$(if $(suffix $f),,$f))
+shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.md docs/pictures/* \
 	samples/*.json schemas/*.json stages/*/version)
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 

@@ -14,7 +14,7 @@ done
 
 mkdir -p "$scratch/fake"
 cd "$scratch" || exit
-cp -r "$tree/Makefile" "$tree/VERSION" "$tree/pipelines" .
+cp -r "$tree/Makefile" "$tree/VERSION" "$tree/pipelines" "$tree/tools" .
 cat >fake/dpkg-query <<'END'
 #!/bin/bash
 [[ " $(cat "$SCRATCH/missing" 2>/dev/null) " == *" ${!#} "* ]] && exit 1
@@ -49,7 +49,8 @@ is 'where apt fails, make does, and shows the end of what apt said' '2 E: no net
     "$? $(grep -o '^E: .*' said)"
 is 'in few lines' yes "$( (( $(wc -l <said) < 25 )) && echo yes)"
 rm no-network
-cat >pipelines/goals.mk <<'END'
+mkdir pipelines/studies/goals
+cat >pipelines/studies/goals/study.mk <<'END'
 first second: ; @echo $@ >>asked
 END
 : >asked

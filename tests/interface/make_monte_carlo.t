@@ -43,22 +43,22 @@ for arm in inviscid-0.4e4 inviscid-0.8e4 inviscid-1.6e4 inviscid-2e4 immobile-1.
 done
 counts=$(jq -r '.mean | "\(.cracks.total) \(.first.total) \(.fragments.count)"' "$scratch/one.json")
 read -r all first fragments <<<"$counts"
-pipelines/strength "$scratch/one" "$scratch/strength.md"
-yes "and its picture" pipelines/strength-figure "$scratch/strength.md" "$scratch/strength.svg"
+pipelines/studies/strength/table "$scratch/one" "$scratch/strength.md"
+yes "and its picture" pipelines/studies/strength/figure "$scratch/strength.md" "$scratch/strength.svg"
 is 'the table of strengths, of one seed' "$all (K 81)" \
     "$(awk -F' *[|] *' '$3 == "1.6e4" && $2 == "inviscid" { print $8 }' "$scratch/strength.md")"
-pipelines/weibull table "$scratch"/one/*-one-0.json "$scratch/weibull.md"
+pipelines/studies/weibull/report table "$scratch"/one/*-one-0.json "$scratch/weibull.md"
 is 'and that of scattered ones' "inviscid|one|0|$all|$first.0|$fragments" \
     "$(sed -n 's/ *| */|/g; s/|\(inviscid|.*\)|[0-9.]*|\([0-9]*\)|/\1|\2/p' "$scratch/weibull.md")"
 
 is 'one more runs alone' 'counts.svg immobile-4.h5 immobile.json inviscid-4.h5 inviscid.json table.md test.json' \
     "$(study REALISATIONS=4)"
 jq '.test.cracks.total.welch.p = 0' "$where/test.json" >"$scratch/least.json"
-pipelines/monte-carlo "$where"/{inviscid,immobile}.json "$scratch/least.json" "$scratch/least.md"
+pipelines/studies/monte-carlo/table "$where"/{inviscid,immobile}.json "$scratch/least.json" "$scratch/least.md"
 is 'a probability that no number holds' '< 1e-300' "$(awk -F' *[|] *' '$2 == "all cracks" { print $5 }' "$scratch/least.md")"
 mkdir "$scratch/by"
 echo "stage=x version=1 output=$scratch/by/file -- cp $where/test.json $scratch/by/file" >"$scratch/recipe"
-yes 'what a command line does not hold goes by a file' pipelines/memo run "@$scratch/recipe"
+yes 'what a command line does not hold goes by a file' tools/memo run "@$scratch/recipe"
 is 'which is read once' "$(<"$where/test.json")" "$(cat "$scratch/recipe" "$scratch/by/file" 2>/dev/null)"
 yes 'so that there may be thousands of runs' awk 'length > 131000 { exit 1 }' <(make -n monte-carlo \
     MONTE_CARLO_SCENE="$scratch/tiny.json" RUNS="$scratch" REALISATIONS=1500 2>/dev/null)

@@ -4,8 +4,8 @@
 # and writes what it was given.
 source tests/interface/make_tap.sh
 
-cp -r Makefile VERSION pipelines "$scratch"
-rm -f "$scratch/pipelines/picture"* # the demo's; not this test's
+cp -r Makefile VERSION pipelines tools "$scratch"
+rm -f "$scratch/pipelines/run/picture"* # the demo's; not this test's
 cd "$scratch" || exit
 mkdir -p build/bin samples
 unset SCENE RUN THREADS PACK TESSELLATE MERGE_NODES DRY FORCE_PROTOCOL DEM_REPLAY CRACKSTATS
@@ -84,7 +84,7 @@ settled 'touched scene'
 touch -d '3 days ago' $x/{crackstats.json,drying.h5}
 touch $x/network.h5
 settled 'touched artifacts'
-touch build/bin/dry Makefile pipelines/memo
+touch build/bin/dry Makefile tools/memo
 echo '# recompiled' >>build/bin/dry
 settled 'recompiled program'
 
@@ -183,7 +183,8 @@ is 'make run without a scene' 64 \
     "$(make run SCENE= 2>&1 | grep -o 'Error .*' | cut -d' ' -f2)"
 
 # More recipes than a command line holds.
-cat >pipelines/many.mk <<'END'
+mkdir pipelines/studies/{many,wrong}
+cat >pipelines/studies/many/study.mk <<'END'
 ifeq ($(MAKECMDGOALS),many)
 long := $(shell printf %01000d)
 $(foreach n,$(shell seq 200),$(call step,$(RUNS)/many/$n.h5,pack,$(PACK),$(SCENE),counts=$(long)$n,))
@@ -213,19 +214,19 @@ settled 'after both'
 
 # Two at once: one begins while the other looks at what is stale.
 make run SCENE=$scene >said 2>&1
-mv pipelines/memo memo-itself
-cat >pipelines/memo <<'END'
+mv tools/memo memo-itself
+cat >tools/memo <<'END'
 #!/bin/bash
 [[ $1 == check ]] && sleep 0.5
 exec ./memo-itself "$@"
 END
-chmod +x pipelines/memo
+chmod +x tools/memo
 cp $scene samples/y.json
 edit '.pack.radius = 3'
 make -n run SCENE=$scene >plan & sleep 0.2
 make -n run SCENE=samples/y.json >said
 wait $!
-mv memo-itself pipelines/memo
+mv memo-itself tools/memo
 is 'of two makes at once each sees what is stale' 1 "$(grep -c 'memo run .*stage=pack' plan)"
 
 # --- names of files: they work, or are refused in one line, and none is run ----------------
@@ -264,17 +265,17 @@ for name in 'a,b' 'a@b+c' 'a~b^c' 'größe' '-a'; do
     make run SCENE="samples/$name.json" >said 2>&1
     is "a scene named $name works" "$all" "$(xargs <ran)"
 done
-cat >pipelines/wrong.mk <<'END'
+cat >pipelines/studies/wrong/study.mk <<'END'
 $(if $(filter wrong,$(MAKECMDGOALS)),$(call artifact,$(RUNS)/wrong,what='is (this,,true,true))
 pipeline_goals += wrong
 wrong: $(RUNS)/wrong
 END
 make -n wrong >said 2>&1
 is 'recipes that cannot be read leave nothing either' '' "$(find build -name 'recipes*')"
-rm pipelines/wrong.mk
+rm pipelines/studies/wrong/study.mk
 cp $scene samples/stiff-5x5x10.json
 plan=$(make -n demo)
-is 'make demo: one network, one picture of its cracks' 'crack-patterns merge-nodes pack tessellate' \
+is 'make demo: one network, one picture of its cracks' 'figures/crack-patterns merge-nodes pack tessellate' \
     "$(sed -n 's/.* stage=\([^ ]*\).*/\1/p' <<<"$plan" | sort | uniq -u | xargs)"
 is 'make demo: two limits' 'immobile inviscid' \
     "$(grep -o -- '--set .liquid=[a-z]*' <<<"$plan" | cut -d= -f2 | sort | xargs)"
@@ -290,7 +291,7 @@ is 'in both limits' "$(seeds inviscid <<<"$plan")" "$(seeds immobile <<<"$plan")
 is 'or those that are asked for, each once' 's s3 s7' "$(make -n demo DEMO_SEEDS='7 5 3 7' | seeds inviscid)"
 is 'whole numbers only' 'must be whole numbers' \
     "$(make -n demo DEMO_SEEDS='1;touch PWN' 2>&1 | grep -o 'must be whole numbers')"
-cat >pipelines/crack-patterns <<'END'
+cat >pipelines/figures/crack-patterns <<'END'
 #!/bin/bash
 touch "${!#}"
 END
@@ -309,7 +310,7 @@ is 'nor the network, for a run of the scene' '1 crackstats 1 dem-replay 1 dry 1 
 
 # --- what a run comes down to, in a line ---------------------------------------------------
 
-told() { jq -rf pipelines/headline.jq --arg draws 'draws of the throat radii' <<<"$1"; }
+told() { jq -rf pipelines/run/headline.jq --arg draws 'draws of the throat radii' <<<"$1"; }
 cracks() { echo "{\"total\": $1, \"normal\": $2, \"shear\": $3}"; }
 is 'one run' 'one run: 75 of 625 bonds broke, 24 in tension, 51 in shear; every load came to rest' \
     "$(told "{\"runs\": 1, \"bonds\": 625, \"cracks\": $(cracks 75 24 51), \"confidence_interval\": null,

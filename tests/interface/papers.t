@@ -33,7 +33,7 @@ ok(len(claims) > 60, "functions are found in the text", len(claims))
 ok(not wrong, "every function is in its file", wrong)
 
 goals = re.findall(r"`make ([\w-]+)`", words)
-rules = "".join(read(path).decode() for path in ["Makefile", *glob.glob("pipelines/*.mk")])
+rules = "".join(read(path).decode() for path in ["Makefile", *glob.glob("pipelines/**/*.mk", recursive=True)])
 ok(not [goal for goal in goals if not re.search(rf"^{goal}:", rules, re.M)],
    "every goal of make is there", goals)
 

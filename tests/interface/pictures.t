@@ -39,7 +39,7 @@ def modes(response):
     return f"{mode.count(0)} in tension, {mode.count(1)} in shear"
 
 
-palette = dict(re.findall(r'^([a-z]+) = "(#[0-9a-f]{6})"$', read("pipelines/style.gp").decode(), re.M))
+palette = dict(re.findall(r'^([a-z]+) = "(#[0-9a-f]{6})"$', read("pipelines/lib/style.gp").decode(), re.M))
 cracks = colours(palette["tension"] + palette["shear"])
 ok(len(set(palette.values())) == len(palette) > 5, "style.gp has each colour once", palette)
 
@@ -57,9 +57,9 @@ with scratch() as folder:
     ok(re.match("[1-9].*, [1-9]", counts[0]) and counts[0] != counts[1], "cracks of both modes", counts)
 
     first = at("inviscid", "response.h5")
-    drawn = [draw("picture", folder, at("picture.svg")),
-             draw("crack-patterns", f"wet={first}@0.5", f"dry={first}", at("patterns.svg")),
-             draw("crack-patterns", first, at("pattern.svg"))]
+    drawn = [draw("run/picture", folder, at("picture.svg")),
+             draw("figures/crack-patterns", f"wet={first}@0.5", f"dry={first}", at("patterns.svg")),
+             draw("figures/crack-patterns", first, at("pattern.svg"))]
     for name, svg in zip(("picture", "patterns", "pattern"), drawn):
         ok(cracks <= colours(svg), f"{name}: cracks have the colours of style.gp", cracks - colours(svg))
         ok("broken in tension" in svg and "broken in shear" in svg, f"{name}: a legend says which is which")
@@ -69,7 +69,9 @@ with scratch() as folder:
 # ---- the scripts --------------------------------------------------------------------
 old = colours("#0a2a7a #ffc20e #e0b000")
 wrong = {"colours of their own for cracks": [], "red beside green": [], "saturations not from 1 to 0": []}
-for script in sorted(glob.glob("pipelines/*")):
+for script in sorted(glob.glob("pipelines/*/**", recursive=True)):
+    if os.path.isdir(script) or script.endswith(".pyc"):
+        continue
     text = read(script).decode()
     here = colours(text)
     red = any(c[0] > 120 and c[0] > 1.5 * max(c[1:]) for c in here)

@@ -9,8 +9,8 @@ import sys
 sys.path.insert(0, "tests")
 from tap import done, ok, read, scratch
 
-programs = sorted(entry.path for entry in os.scandir("pipelines")
-                  if entry.is_file() and os.access(entry.path, os.X_OK))
+programs = sorted(path for folder, _, files in os.walk("pipelines") for path in
+                  (os.path.join(folder, name) for name in files) if os.access(path, os.X_OK))
 ok(len(programs) > 30, "there are programs", programs)
 with scratch() as folder:
     kept = os.path.join(folder, "kept")
@@ -22,7 +22,7 @@ with scratch() as folder:
         is_kept = read(kept) == b"precious\n" and os.listdir(folder) == ["kept"]
         ok(said.returncode == 64 and not said.stdout and "Traceback" not in said.stderr and is_kept,
            f"{program} with one argument", f"{said.returncode} {said.stderr}")
-said = subprocess.run(["pipelines/coupled-course", "a", "1", "b", "c"], capture_output=True, text=True)
-ok(said.returncode == 64 and said.stderr == "Usage: pipelines/coupled-course FOLDER N OUT.tsv\n",
+said = subprocess.run(["pipelines/studies/coupled/course", "a", "1", "b", "c"], capture_output=True, text=True)
+ok(said.returncode == 64 and said.stderr == "Usage: pipelines/studies/coupled/course FOLDER N OUT.tsv\n",
    "or with one too many", f"{said.returncode} {said.stderr}")
 done()

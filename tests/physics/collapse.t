@@ -68,7 +68,7 @@ with scratch() as folder:
            (status, stretch, wanted))
     # What goes beside OUT does not go beside what OUT leads to, nor to the root.
     os.symlink(at("moved"), at("link"))
-    ends = [subprocess.run([os.path.abspath("pipelines/collapse"), "no-such-scene", "1", "1", name], cwd=folder,
+    ends = [subprocess.run([os.path.abspath("pipelines/studies/collapse/table"), "no-such-scene", "1", "1", name], cwd=folder,
                            capture_output=True, text=True) for name in ("link", "/dev/stdout", "/dev/null")]
     ok(all(end.returncode == 73 and end.stderr.count("\n") == 1 for end in ends), "a link or a device is refused as OUT",
        [end.stderr for end in ends])

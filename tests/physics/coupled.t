@@ -162,7 +162,7 @@ with scratch() as folder:
             tiny[name].update(section)
         with open(at("tiny.json"), "w", encoding="utf-8") as file:
             json.dump(tiny, file)
-        command = ["pipelines/coupled-run", at("tiny.json"), portions, at(f"{title}/course.tsv")]
+        command = ["pipelines/studies/coupled/run", at("tiny.json"), portions, at(f"{title}/course.tsv")]
         end = subprocess.run(command, env=os.environ | {"BIN": BIN}, capture_output=True)
         with open(at(f"{title}/course.tsv"), encoding="utf-8") as file:
             blocks = file.read().split("\n\n\n")
@@ -231,7 +231,7 @@ with scratch() as folder:
 
     # What is not of such a run is not touched, and what cannot be meant is not run.
     def refusal(status, word, folder, portions, *settings):
-        end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), portions, *settings, at(f"{folder}/course.tsv")],
+        end = subprocess.run(["pipelines/studies/coupled/run", at("tiny.json"), portions, *settings, at(f"{folder}/course.tsv")],
                              env=os.environ | {"BIN": BIN}, capture_output=True, text=True)
         return (end.returncode, end.stderr.count("\n"), word in end.stderr) == (status, 1, True)
 
@@ -244,7 +244,7 @@ with scratch() as folder:
     refused += [refusal(73, "other/7", "other", "2")]
     for device in "/dev/null", "/dev/stdout": # the second is a file here
         with open(at("printed"), "w", encoding="utf-8") as file:
-            end = subprocess.run(["pipelines/coupled-run", at("tiny.json"), "2", device],
+            end = subprocess.run(["pipelines/studies/coupled/run", at("tiny.json"), "2", device],
                                  env=os.environ | {"BIN": BIN}, stdout=file, stderr=subprocess.PIPE, text=True)
         refused += [end.returncode == 73 and end.stderr.count("\n") == 1 and "must be a file" in end.stderr]
     ok(all(refused) and os.path.exists(at("other/7/precious")) and not os.path.exists(at("none")),

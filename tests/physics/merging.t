@@ -103,7 +103,7 @@ with scratch() as folder:
         "edges": [{"id": "0", "source": "0", "target": "1",
                    "metadata": {"link_length": 1, "link_squared_radius": 0.01}}]}}).encode())
     for names in ["before.h5", "0.06.h5", "0.13.h5", "0.28.h5"], ["bare.h5"]:
-        drawn = subprocess.run(["pipelines/network-figure", *map(at, names), at("figure.svg")],
+        drawn = subprocess.run(["pipelines/figures/network", *map(at, names), at("figure.svg")],
                                capture_output=True, env=dict(os.environ, BIN=BIN))
         ok(drawn.returncode == 0 and not drawn.stderr and open(at("figure.svg")).read()
            .rstrip().endswith("</svg>"), f"a figure of {len(names)}", drawn.stderr.decode())

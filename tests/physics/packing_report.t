@@ -126,7 +126,7 @@ with scratch() as folder:
        "and says what was left out")
 
     for name in "grains", "one":
-        drawn = subprocess.run(["pipelines/packing-figure", at(name), at("figure.svg")],
+        drawn = subprocess.run(["pipelines/figures/packing", at(name), at("figure.svg")],
                                capture_output=True)
         ok(drawn.returncode == 0 and not drawn.stderr and open(at("figure.svg")).read()
            .rstrip().endswith("</svg>"), f"a figure of {name}", drawn.stderr.decode())

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# From a scene to its cracks:
+#
+#     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
+#     make demo                        ->  the sample in both drying limits, for several draws of
+#                                          the throat radii, and pictures of the first
+#     make demo SCENE=samples/x.json   ->  the same for another scene
+#     make demo DEMO_SEEDS="3 4 5"     ->  the same for these draws
+
+SCENE ?=
+IMPORT ?=# what `pack` reads, for a scene that imports its grains
+
+# Each stage may be replaced: DRY=mydry. It is asked for its --version to know it by.
+PACK ?= $(BUILD)/bin/pack
+TESSELLATE ?= $(BUILD)/bin/tessellate
+MERGE_NODES ?= $(BUILD)/bin/merge-nodes
+DRY ?= $(BUILD)/bin/dry
+FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
+DEM_REPLAY ?= $(BUILD)/bin/dem-replay
+CRACKSTATS ?= $(BUILD)/bin/crackstats
+
+# $1 is made by the stage of that name from scene $2, with the overrides $3, and the files $4.
+pack = $(call step,$1,pack,$(PACK),$2,$3,$4)
+tessellate = $(call step,$1,tessellate,$(TESSELLATE),$2,$3,$4)
+merge-nodes = $(call step,$1,merge-nodes,$(MERGE_NODES),$2,$3,$4)
+dry = $(call step,$1,dry,$(DRY),$2,$3,$4)
+force-protocol = $(call step,$1,force-protocol,$(FORCE_PROTOCOL),$2,$3,$4)
+dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
+crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
+
+pipeline_goals += demo run
+
+# packing, tessellation and network of scene $2 in folder $1, with the overrides $3 of the packing
+# and $4 of the tessellation.
+define crack_network
+$(call pack,$1/packing.h5,$2,$3,$(IMPORT))
+$(call tessellate,$1/tessellation.h5,$2,$4,$1/packing.h5)
+$(call merge-nodes,$1/network.h5,$2,,$1/tessellation.h5)
+endef
+
+# The rest, in folder $1, from network $3, with the overrides $4 of the drying.
+define crack_history
+$(call dry,$1/drying.h5,$2,$4,$3)
+$(call force-protocol,$1/forces.h5,$2,,$1/drying.h5)
+$(call dem-replay,$1/response.h5,$2,,$1/forces.h5)
+$(call crackstats,$1/crackstats.json,$2,,$1/response.h5 $1/drying.h5)
+endef
+
+# Prints what $1, a crackstats.json, comes down to; $2: a word before it.
+headline = printf '%s' '$2' && jq -rf pipelines/run/headline.jq --arg draws 'draws of the throat radii' $1
+
+# --- one scene ------------------------------------------------------------------------
+
+.PHONY: run
+ifneq ($(SCENE),)
+run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
+$(call crack_network,$(run_folder),$(SCENE))
+$(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
+# A wrong key of the last stage is not to be found after the others have run.
+run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats
+ifdef really
+.PHONY: sections
+$(run_folder)/packing.h5: | sections
+sections: | $(run_stages:%=$(BUILD)/bin/%)
+	@for stage in $(run_stages); do \
+		$(BUILD)/bin/$$stage -p $(SCENE) --parameters >/dev/null || exit; done
+endif
+run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
+ifdef really
+	@$(call headline,$(run_folder)/crackstats.json) 2>/dev/null || true
+	@echo 'artifacts: $(run_folder)'
+endif
+else
+run:
+	@echo 'Which scene? make run SCENE=samples/x.json' >&2; exit 64
+endif
+
+# --- the demonstration ----------------------------------------------------------------
+
+DEMO_SEEDS ?=# of the throat radii; pictures show the first [eight from the scene's own on]
+
+demo_scene := $(or $(SCENE),samples/stiff-5x5x10.json)
+demo_folder := $(RUNS)/$(basename $(notdir $(demo_scene)))
+demo_limits := inviscid immobile
+demo_picture := $(if $(wildcard pipelines/run/picture),$(demo_folder)/picture.svg)
+
+.PHONY: demo
+demo: ## from the stiff aggregate of the samples to its cracks and a picture, in both limits
+
+ifneq ($(filter demo $(demo_folder)/%,$(MAKECMDGOALS)),)
+# The scene's own seed; none where it takes the network's radii and draws none.
+demo_own := $(shell jq -r '.dry.throat_radius | select((.distribution // "network") != "network") \
+	| .seed // 1 | floor' $(demo_scene) 2>/dev/null)
+ifneq ($(strip $(DEMO_SEEDS)),)
+$(call must,DEMO_SEEDS,$(natural),whole numbers)
+$(if $(demo_own),,$(error DEMO_SEEDS: $(demo_scene) draws no throat radii: dry.throat_radius.distribution says how))
+endif
+demo_seeds := $(or $(call once_each,$(DEMO_SEEDS)),$(if $(demo_own),$(shell seq $(demo_own) $$(($(demo_own) + 7)))))
+demo_first := $(firstword $(demo_seeds))
+demo_others := $(wordlist 2,$(words $(demo_seeds)),$(demo_seeds))
+
+# The runs of limit $1: the first in its folder, as `make run` has it, the others in one each.
+demo_run_folders = $(demo_folder)/$1 $(demo_others:%=$(demo_folder)/$1/seed-%)
+# What sets seed $1 where it is not that of the scene.
+demo_set = $(addprefix throat_radius.seed=,$(filter-out $(demo_own),$1))
+define demo_limit
+$(call crack_history,$(demo_folder)/$1,$(demo_scene),$(demo_folder)/network.h5,liquid=$1 $(call demo_set,$(demo_first)))
+$(foreach seed,$(demo_others),$(call \
+	crack_history,$(demo_folder)/$1/seed-$(seed),$(demo_scene),$(demo_folder)/network.h5,liquid=$1 $(call demo_set,$(seed))))
+$(call crackstats,$(demo_folder)/$1/seeds.json,$(demo_scene),,$(foreach \
+	folder,$(call demo_run_folders,$1),$(folder)/response.h5 $(folder)/drying.h5))
+endef
+$(call crack_network,$(demo_folder),$(demo_scene))
+$(foreach limit,$(demo_limits),$(call demo_limit,$(limit)))
+
+demo_counts := $(demo_limits:%=$(demo_folder)/%/crackstats.json)
+demo_means := $(if $(demo_others),$(demo_limits:%=$(demo_folder)/%/seeds.json),$(demo_counts))
+demo_drawn := $(foreach limit,$(demo_limits),$(addprefix \
+	$(demo_folder)/$(limit)/,drying.h5 forces.h5 response.h5 crackstats.json))
+ifneq ($(demo_picture),)
+$(call report,$(demo_picture),run/picture,$(demo_drawn),$(demo_folder))
+endif
+
+# What has broken at four saturations [K Figs. 5.14, 5.16].
+demo_patterns := $(demo_folder)/patterns.svg
+demo_moments := $(foreach limit,$(demo_limits),$(foreach s,0.9 0.6 0.3 \
+	0,'$(limit), saturation $s=$(demo_folder)/$(limit)/response.h5@$s'))
+$(call report,$(demo_patterns),figures/crack-patterns,$(demo_limits:%=$(demo_folder)/%/response.h5),$(demo_moments))
+
+demo: $(demo_counts) $(demo_means) $(demo_picture) $(demo_patterns)
+ifdef really
+	@$(foreach limit,$(demo_limits),$(call headline,$(filter $(demo_folder)/$(limit)/%,$(demo_means)),$(limit): );)
+	@echo 'artifacts: $(demo_folder)'
+	@echo 'pictures:  $(demo_picture) $(demo_patterns)'
+endif
+endif
