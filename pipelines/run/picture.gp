@@ -13,7 +13,7 @@ set key left top Left reverse samplen 2.5 spacing 1.3 width -5 maxrows 2 # above
 set tmargin at screen 0.92
 set bmargin at screen 0.2
 
-table(limit, name) = tables . "/" . limit . "/" . name
+table(limit, name) = tables . "/" . limit . "-" . name
 set style line 1 linewidth 2.5
 set style line 2 linewidth 2.5 dashtype (8, 5)
 set style line 3 pointtype 7 pointsize 0.9 linecolor rgb black
