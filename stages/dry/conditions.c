@@ -186,12 +186,12 @@ enum status check_steps(const struct drying_conditions *conditions,
                         const struct network *network, struct reason *reason)
 {
     const int n = count_throats(network);
-    if (conditions->step_interval > 0 || n <= MOST_RECORDED_THROATS) return STATUS_OK;
+    if (conditions->step_interval > 0 || n <= MAX_RECORDED_THROATS) return STATUS_OK;
     const double bytes = 12 * pow(n, 1.7) / 2; // rows as measured on cubic lattices
     return refuse(reason, STATUS_BAD_DATA,
                   "step_interval: must be above 0 in networks of more than %d throats, "
                   "is 0 with %d: what changes at each event would come to some %.2g GB",
-                  MOST_RECORDED_THROATS, n, bytes / 1e9);
+                  MAX_RECORDED_THROATS, n, bytes / 1e9);
 }
 
 static double mean_throat_length(const struct network *network)

@@ -87,7 +87,7 @@ enum status check_throats(const struct network *network, struct reason *reason);
 
 // Every event of more throats than this is not recorded: the changes, about half the
 // throats to the power of 1.7 of them, would take more than 2 GB.
-enum { MOST_RECORDED_THROATS = 100000 };
+enum { MAX_RECORDED_THROATS = 100000 };
 
 // Those that take part.
 int count_throats(const struct network *network);

@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 // Of step_interval: null.
-enum { MOST_THROATS_BY_EVENTS = 30000 };
+enum { MAX_THROATS_BY_EVENTS = 30000 };
 static const double COARSE_STEPS = 1e-3;
 
 #define AT(member) offsetof(struct dry_parameters, member)
@@ -187,6 +187,6 @@ enum status complete_conditions(struct dry_parameters *parameters,
     conditions->lumped = parameters->exchange == EXCHANGE_LUMPED;
     if (isnan(conditions->step_interval))
         conditions->step_interval =
-            count_throats(network) > MOST_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
+            count_throats(network) > MAX_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
     return STATUS_OK;
 }

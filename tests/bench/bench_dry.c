@@ -200,7 +200,7 @@ static int follow_shifts(const int n[3], const struct drying_conditions c, int e
         emptying_times_make(&occupancy, c.liquid == LIQUID_IMMOBILE);
     double *before = NEW_ARRAY(double, network.n_node);
     struct shifts shifts = {0};
-    for (int event = 0; occupancy.n_full > 0; event++) {
+    for (int event = 0; occupancy.n_liquid > 0; event++) {
         const double rate = vapour_rate(&occupancy.vapour);
         for (int k = 0; event % every == 0 && k < occupancy.n_wet; k++)
             before[occupancy.wet[k]] =

@@ -240,7 +240,7 @@ static void check(enum liquid_limit liquid, bool follow)
     struct losses losses = losses_make(network.n_throat);
     uint64_t seed = 3;
     int n_wait = 0;
-    for (int k = 0; occupancy.n_full > 3; k++) {
+    for (int k = 0; occupancy.n_liquid > 3; k++) {
         if (kelvin_menisci_find(&kelvin, &occupancy, &losses, &reason))
             fail_msg("%s", reason.text);
         if (k % 8 == 0) n_wait += compare(&occupancy, &conditions, &kelvin, &losses);

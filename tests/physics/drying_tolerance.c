@@ -72,12 +72,12 @@ static struct errors dry_beside_exact(const struct network *network,
         emptying_times_make(&occupancy, conditions->liquid == LIQUID_IMMOBILE);
     struct errors errors = {0};
     compare(&occupancy, &exact, &errors);
-    while (occupancy.n_full > 0) {
+    while (occupancy.n_liquid > 0) {
         assert_true(emptying_times_advance(&times) >= 0);
         for (int k = 0; k < times.n_ended; k++)
             empty_exactly(&occupancy, &exact, times.ended[k], liquid_beside);
         emptying_times_empty_ended(&times);
-        if (occupancy.n_full > 0) compare(&occupancy, &exact, &errors);
+        if (occupancy.n_liquid > 0) compare(&occupancy, &exact, &errors);
         assert_true(fabs(emptying_times_imbalance(&times)) < 1e-12);
     }
     emptying_times_free(&times);

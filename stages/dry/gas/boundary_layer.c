@@ -100,7 +100,7 @@ static enum status find_feet(const struct open_surface *face, enum boundary_feet
 
 // ---- levels and exchange areas ------------------------------------------------------
 
-enum { MOST_LAYERS = 10000 }; // the range of boundary_layer.layers
+enum { MAX_LAYERS = 10000 }; // the range of boundary_layer.layers
 
 static enum status choose_layers(double thickness, int layers, int n_node,
                                  struct boundary_layer *layer, struct reason *reason)
@@ -108,12 +108,12 @@ static enum status choose_layers(double thickness, int layers, int n_node,
     const double wanted = layers > 0 ? layers : fmax(1, round(thickness));
     // Levels and the network's nodes are numbered together, and each site may have many
     // links: leave room in an int.
-    if (wanted > MOST_LAYERS)
+    if (wanted > MAX_LAYERS)
         return refuse(
             reason, STATUS_BAD_DATA,
             "the boundary layer is %g throats thick: give boundary_layer.layers, at "
             "most %d",
-            wanted, MOST_LAYERS);
+            wanted, MAX_LAYERS);
     if (wanted * layer->n_exposed + n_node > INT_MAX / 16)
         return refuse(reason, STATUS_BAD_DATA,
                       "layers: %g over %d exposed nodes are too many", wanted,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 // Fewer are not parted any more.
-enum { LEAST_COLUMNS = 8 };
+enum { MIN_COLUMNS = 8 };
 
 struct placed {
     double along; // where the column stands, across the cut
@@ -90,7 +90,7 @@ static bool reaches_beyond(const struct dissection *dissection, int column)
 // the first that have neighbours in the other.
 static void dissect(struct dissection *dissection, int begin, int end)
 {
-    if (end - begin <= LEAST_COLUMNS) return;
+    if (end - begin <= MIN_COLUMNS) return;
     sort_along(dissection, begin, end, widest_axis(dissection, begin, end));
     const int middle = begin + (end - begin) / 2;
     for (int k = middle; k < end; k++)

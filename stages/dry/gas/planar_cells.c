@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 // Edges narrower than this part of the points' distance are rounding.
-static const double LEAST_WIDTH = 1e-12;
+static const double MIN_WIDTH = 1e-12;
 
 // Points in bins, as compressed rows.
 struct bins {
@@ -232,7 +232,7 @@ static void add_edges(struct cutting *cutting, int i, bool ends)
         const double width = ends ? length_in_region(cutting->region, cutting->point[i],
                                                      from->at, to->at)
                                   : hypot(to->at.x - from->at.x, to->at.y - from->at.y);
-        if (width <= LEAST_WIDTH * from->distance) continue;
+        if (width <= MIN_WIDTH * from->distance) continue;
         GROW_ARRAY(cells->edge, cells->n_edge, cutting->edge_capacity);
         cells->edge[cells->n_edge++] =
             (struct planar_edge){.point = {i, from->neighbour},

@@ -7,7 +7,7 @@
 #include <string.h>
 
 // Sums keep twice the digits of a number, so that all are left when this part is.
-static const double LEAST_PART = 1e-10;
+static const double MIN_PART = 1e-10;
 
 void mark_dirty(struct emptying_times *times, int k)
 {
@@ -147,7 +147,7 @@ bool evaporation_shares_lack_digits(const struct emptying_times *times)
     for (int l = 0; l < times->n_dirty; l++) {
         const int k = times->dirty[l];
         if (times->has_sum[k] &&
-            compensated_value(times->sum[k]) < LEAST_PART * times->summed[k])
+            compensated_value(times->sum[k]) < MIN_PART * times->summed[k])
             return true;
     }
     return false;

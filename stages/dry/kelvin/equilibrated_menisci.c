@@ -14,26 +14,26 @@
 
 // Corrections at most; after some with a factor that has followed changes, it is made
 // anew.
-enum { REFINEMENTS = 4, STALE = 2 };
+enum { REFINEMENTS = 4, STALE_AFTER = 2 };
 
 // A new order costs as much as the changes of some ten throats; by then they have
 // filled the factor.
-enum { MOST_FOLLOWED = 16 };
+enum { MAX_UPDATES = 16 };
 
 // What is added to the diagonal of one of the equilibrated menisci, of it: where vapour
 // cannot leave, all could be in equilibrium at any one potential.
-static const double STAY = 1e-12;
+static const double DIAGONAL_SHIFT = 1e-12;
 
 // Part of the rate that equilibrated bodies may evaporate.
-static const double CLOSED = 1e-13;
+static const double FLUX_TOLERANCE = 1e-13;
 
 struct equilibrated_menisci {
     cholmod_common common;
     cholmod_factor *factor; // L D L' of all rows, those of bodies that are not
                             // equilibrated being of the identity; NULL: to be made
-    int n_followed;         // throats that have emptied since it was made
-    bool has_followed;      // rows have come or gone
-    int n_slot, room;       // rows in use, of how many
+    int n_updates;          // throats that have emptied since it was made
+    bool was_updated;       // rows have come or gone
+    int n_slot, capacity;   // rows in use, of how many
     int *owner;             // (n_slot) throat or cluster
     int *slot;              // (n_throat) by throat or cluster, -1: none
     bool *has;              // (n_throat) likewise: its row is in the factor
@@ -46,30 +46,30 @@ struct equilibrated_menisci {
 
 // --- making ------------------------------------------------------------------------
 
-static int room_for(int n)
+static int capacity_for(int n)
 {
     return n + n / 4 + 64;
 }
 
 struct equilibrated_menisci *equilibrated_make(int n_throat, int n_site, bool by_throat)
 {
-    const int room = room_for(n_throat);
+    const int capacity = capacity_for(n_throat);
     struct equilibrated_menisci *equilibrated =
         NEW_ARRAY(struct equilibrated_menisci, 1);
     *equilibrated = (struct equilibrated_menisci){
-        .owner = NEW_ARRAY(int, room),
+        .owner = NEW_ARRAY(int, capacity),
         .slot = NEW_ARRAY(int, n_throat),
         .has = NEW_ARRAY(bool, n_throat),
-        .row = NEW_ARRAY(int, room),
-        .root = NEW_ARRAY(double, room),
-        .x = NEW_ARRAY(double, room),
-        .work = NEW_ARRAY(double, room),
+        .row = NEW_ARRAY(int, capacity),
+        .root = NEW_ARRAY(double, capacity),
+        .x = NEW_ARRAY(double, capacity),
+        .work = NEW_ARRAY(double, capacity),
         .rows = schur_rows_make(n_throat, n_site),
         .dried = dried_nodes_make(n_throat, n_site, by_throat)};
     for (int t = 0; t < n_throat; t++)
         equilibrated->slot[t] = -1;
     cholmod_serial_start(&equilibrated->common);
-    equilibrated->common.dbound = STAY;
+    equilibrated->common.dbound = DIAGONAL_SHIFT;
     return equilibrated;
 }
 
@@ -131,7 +131,7 @@ static void make_row(struct equilibrated_menisci *equilibrated,
 static double entry(const struct equilibrated_menisci *equilibrated,
                     const struct kelvin_menisci *kelvin, int body, int other)
 {
-    if (other == body) return 1 + STAY;
+    if (other == body) return 1 + DIAGONAL_SHIFT;
     return equilibrated->rows.value[other] /
            (equilibrated->root[slot_of(equilibrated, kelvin, body)] *
             equilibrated->root[slot_of(equilibrated, kelvin, other)]);
@@ -157,7 +157,7 @@ static bool list_row(struct equilibrated_menisci *equilibrated,
     make_row(equilibrated, kelvin, occupancy, body);
     equilibrated->has[kelvin->body[body]] = true;
     const bool has_room =
-        more_entries(equilibrated, entries, rows->n + equilibrated->room);
+        more_entries(equilibrated, entries, rows->n + equilibrated->capacity);
     for (int i = 0; has_room && i < rows->n; i++) {
         const int other = rows->column[i];
         if (equilibrated->has[kelvin->body[other]])
@@ -173,14 +173,15 @@ static cholmod_sparse *make_matrix(struct equilibrated_menisci *equilibrated,
                                    const struct kelvin_menisci *kelvin,
                                    const struct occupancy *occupancy)
 {
-    cholmod_triplet *entries = new_entries(&equilibrated->common, equilibrated->room,
-                                           8 * (size_t)equilibrated->room);
+    cholmod_triplet *entries =
+        new_entries(&equilibrated->common, equilibrated->capacity,
+                    8 * (size_t)equilibrated->capacity);
     if (!entries) return NULL;
     bool good = true;
     for (int a = 0; good && a < kelvin->n; a++)
         if (kelvin->zero_flux[a])
             good = list_row(equilibrated, kelvin, occupancy, a, entries);
-    for (int s = 0; good && s < equilibrated->room; s++)
+    for (int s = 0; good && s < equilibrated->capacity; s++)
         if (s >= equilibrated->n_slot || !equilibrated->has[equilibrated->owner[s]])
             add_entry(entries, s, s, 1);
     if (good) return take_matrix(&equilibrated->common, entries);
@@ -193,9 +194,9 @@ static bool factorise(struct equilibrated_menisci *equilibrated,
                       const struct occupancy *occupancy)
 {
     equilibrated_forget(equilibrated);
-    equilibrated->n_followed = 0;
-    equilibrated->has_followed = false;
-    equilibrated->room = room_for(kelvin->n);
+    equilibrated->n_updates = 0;
+    equilibrated->was_updated = false;
+    equilibrated->capacity = capacity_for(kelvin->n);
     for (int a = 0; a < kelvin->n; a++)
         add_slot(equilibrated, kelvin->body[a]);
     cholmod_sparse *matrix = make_matrix(equilibrated, kelvin, occupancy);
@@ -204,7 +205,7 @@ static bool factorise(struct equilibrated_menisci *equilibrated,
         equilibrated->factor &&
         cholmod_factorize(matrix, equilibrated->factor, &equilibrated->common);
     cholmod_free_sparse(&matrix, &equilibrated->common);
-    for (int i = 0; good && i < equilibrated->room; i++)
+    for (int i = 0; good && i < equilibrated->capacity; i++)
         equilibrated->row[((const int *)equilibrated->factor->Perm)[i]] = i;
     if (!good) equilibrated_forget(equilibrated);
     return good;
@@ -214,8 +215,8 @@ static bool factorise(struct equilibrated_menisci *equilibrated,
 
 static cholmod_sparse *new_column(struct equilibrated_menisci *equilibrated, int most)
 {
-    return cholmod_allocate_sparse((size_t)equilibrated->room, 1, (size_t)most, false,
-                                   true, 0, CHOLMOD_REAL, &equilibrated->common);
+    return cholmod_allocate_sparse((size_t)equilibrated->capacity, 1, (size_t)most,
+                                   false, true, 0, CHOLMOD_REAL, &equilibrated->common);
 }
 
 static void add_to_column(cholmod_sparse *column, int row, double value)
@@ -268,12 +269,12 @@ static bool update(struct equilibrated_menisci *equilibrated,
     bool good = true;
     for (int a = 0; good && a < kelvin->n; a++) {
         if (equilibrated->has[kelvin->body[a]] == kelvin->zero_flux[a]) continue;
-        equilibrated->has_followed = true;
+        equilibrated->was_updated = true;
         if (!kelvin->zero_flux[a]) good = take_row(equilibrated, kelvin->body[a]);
     }
     for (int a = 0; good && a < kelvin->n; a++) {
         if (equilibrated->has[kelvin->body[a]] == kelvin->zero_flux[a]) continue;
-        good = equilibrated->n_slot < equilibrated->room &&
+        good = equilibrated->n_slot < equilibrated->capacity &&
                add_row(equilibrated, kelvin, occupancy, a);
     }
     return good || factorise(equilibrated, kelvin, occupancy);
@@ -339,11 +340,12 @@ void equilibrated_follow(struct equilibrated_menisci *equilibrated,
 {
     struct dried_nodes *dried = &equilibrated->dried;
     schur_rows_list(&equilibrated->rows, kelvin, occupancy);
-    equilibrated->n_followed += n;
+    equilibrated->n_updates += n;
     bool good = equilibrated->factor && dried->n_throat == n &&
-                equilibrated->n_followed <= MOST_FOLLOWED;
-    equilibrated->has_followed = true;
-    memset(equilibrated->x, 0, (size_t)equilibrated->room * sizeof *equilibrated->x);
+                equilibrated->n_updates <= MAX_UPDATES;
+    equilibrated->was_updated = true;
+    memset(equilibrated->x, 0,
+           (size_t)equilibrated->capacity * sizeof *equilibrated->x);
     for (int i = 0; good && i < dried->n_body; i++)
         good = take_row(equilibrated, dried->body[i]);
     for (int i = 0; good && i < dried->n_node; i++)
@@ -355,26 +357,27 @@ void equilibrated_follow(struct equilibrated_menisci *equilibrated,
 // --- all ---------------------------------------------------------------------------
 
 // Whether they evaporate nothing but rounding.
-static bool is_closed(const struct kelvin_menisci *kelvin)
+static bool has_zero_flux(const struct kelvin_menisci *kelvin)
 {
-    double gain = 0, noise = 0;
+    double evaporation = 0, noise = 0;
     for (int a = 0; a < kelvin->n; a++) {
         if (!kelvin->zero_flux[a]) continue;
-        gain += fabs(kelvin->gain[a]);
+        evaporation += fabs(kelvin->evaporation[a]);
         noise += kelvin->noise[a];
     }
-    return gain <= fmax(CLOSED * kelvin->rate, noise);
+    return evaporation <= fmax(FLUX_TOLERANCE * kelvin->rate, noise);
 }
 
 static void correct(struct equilibrated_menisci *equilibrated,
                     struct kelvin_menisci *kelvin)
 {
-    memset(equilibrated->x, 0, (size_t)equilibrated->room * sizeof *equilibrated->x);
+    memset(equilibrated->x, 0,
+           (size_t)equilibrated->capacity * sizeof *equilibrated->x);
     for (int a = 0; a < kelvin->n; a++) {
         const int slot = slot_of(equilibrated, kelvin, a);
         if (kelvin->zero_flux[a])
             equilibrated->x[equilibrated->row[slot]] =
-                kelvin->gain[a] / equilibrated->root[slot];
+                kelvin->evaporation[a] / equilibrated->root[slot];
     }
     cholmod_solve_serial(equilibrated->factor, equilibrated->x, equilibrated->work);
     for (int a = 0; a < kelvin->n; a++) {
@@ -388,12 +391,12 @@ static void correct(struct equilibrated_menisci *equilibrated,
 bool solve_zero_flux(struct kelvin_menisci *kelvin, const struct occupancy *occupancy)
 {
     struct equilibrated_menisci *equilibrated = kelvin->equilibrated;
-    for (int k = 0; k < REFINEMENTS && !is_closed(kelvin); k++) {
-        const bool anew = k == STALE && equilibrated->has_followed;
+    for (int k = 0; k < REFINEMENTS && !has_zero_flux(kelvin); k++) {
+        const bool anew = k == STALE_AFTER && equilibrated->was_updated;
         if (k == 0 && !update(equilibrated, kelvin, occupancy)) return false;
         if (anew && !factorise(equilibrated, kelvin, occupancy)) return false;
         correct(equilibrated, kelvin);
-        kelvin_find_gains(kelvin, occupancy);
+        kelvin_find_evaporation(kelvin, occupancy);
     }
     return true;
 }

@@ -3,12 +3,12 @@
 
 // A throat that lacks less than this of its volume is full. In a step that rounding
 // makes, menisci lose as little, and to fill them would be a step of that kind again.
-static const double SCRATCH = 1e-12;
+static const double FULL_TOLERANCE = 1e-12;
 
 bool kelvin_is_full(const struct kelvin_menisci *kelvin,
                     const struct occupancy *occupancy, int place)
 {
-    return occupancy_saturation(occupancy, kelvin->throat[place]) > 1 - SCRATCH;
+    return occupancy_saturation(occupancy, kelvin->throat[place]) > 1 - FULL_TOLERANCE;
 }
 
 // Its place. What was equilibrated when last found is likely to be so again.
@@ -54,13 +54,13 @@ static void list_shares(struct kelvin_menisci *kelvin, struct occupancy *occupan
     const int node = occupancy->wet[k], begin = kelvin->offset[k];
     int end = begin;
     double sum = 0;
-    kelvin->conducted[k] = kelvin->outside[node];
+    kelvin->node_conductance_bound[k] = kelvin->initial_conductance[node];
     for (int i = occupancy->incidence.offset[node];
          i < occupancy->incidence.offset[node + 1]; i++) {
         const int throat = occupancy->incidence.throat[i];
         const int cluster = occupancy->clusters.of_throat[throat];
         if (cluster < 0) {
-            kelvin->conducted[k] += occupancy->vapour.conductance[throat];
+            kelvin->node_conductance_bound[k] += occupancy->vapour.conductance[throat];
             continue;
         }
         const int body = kelvin->by_throat ? throat : cluster;
@@ -106,18 +106,18 @@ static double potential_over_middle(const struct kelvin_menisci *kelvin,
     const struct vector *at = network->node_position;
     const double height = at[node].z - (at[end[0]].z + at[end[1]].z) / 2;
     const double exponent = kelvin->exponent[place];
-    return kelvin_potential(law, exponent + law->steepness * height) -
+    return kelvin_potential(law, exponent + law->exponent_per_height * height) -
            kelvin_potential(law, exponent);
 }
 
-void kelvin_raise_nodes(struct kelvin_menisci *kelvin,
-                        const struct occupancy *occupancy)
+void kelvin_find_gravity_potentials(struct kelvin_menisci *kelvin,
+                                    const struct occupancy *occupancy)
 {
     for (int k = 0; k < occupancy->n_wet; k++) {
-        kelvin->raised[k] = 0;
+        kelvin->gravity_potential[k] = 0;
         for (int i = kelvin->offset[k];
-             kelvin->law.steepness != 0 && i < kelvin->offset[k + 1]; i++)
-            kelvin->raised[k] +=
+             kelvin->law.exponent_per_height != 0 && i < kelvin->offset[k + 1]; i++)
+            kelvin->gravity_potential[k] +=
                 kelvin->share[i].part *
                 potential_over_middle(kelvin, occupancy->network, occupancy->wet[k],
                                       kelvin->share[i].body);

@@ -9,8 +9,8 @@
 void kelvin_list_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy);
 
 // What gravity adds to the potential at each wet node, as curved as the bodies are.
-void kelvin_raise_nodes(struct kelvin_menisci *kelvin,
-                        const struct occupancy *occupancy);
+void kelvin_find_gravity_potentials(struct kelvin_menisci *kelvin,
+                                    const struct occupancy *occupancy);
 
 // Whether the throat that gas enters the body at PLACE by is full.
 bool kelvin_is_full(const struct kelvin_menisci *kelvin,

@@ -21,14 +21,15 @@ static void find_levels(struct kelvin_menisci *kelvin,
                         const struct occupancy *occupancy)
 {
     for (int k = 0; k < occupancy->n_wet; k++) {
-        double mean = kelvin->raised[k];
+        double mean = kelvin->gravity_potential[k];
         for (int i = kelvin->offset[k]; i < kelvin->offset[k + 1]; i++)
             mean += kelvin->share[i].part * kelvin->potential[kelvin->share[i].body];
         kelvin->level[occupancy->wet[k]] = mean;
     }
 }
 
-void kelvin_find_gains(struct kelvin_menisci *kelvin, const struct occupancy *occupancy)
+void kelvin_find_evaporation(struct kelvin_menisci *kelvin,
+                             const struct occupancy *occupancy)
 {
     const struct kron_fronts *mesh = &occupancy->vapour.mesh;
     struct compensated rate = {0};
@@ -40,24 +41,27 @@ void kelvin_find_gains(struct kelvin_menisci *kelvin, const struct occupancy *oc
     }
     kelvin->rate = compensated_value(rate);
     kron_fronts_add_flows(mesh, kelvin->level, kelvin->flow);
-    memset(kelvin->gain, 0, (size_t)kelvin->n * sizeof *kelvin->gain);
+    memset(kelvin->evaporation, 0, (size_t)kelvin->n * sizeof *kelvin->evaporation);
     for (int k = 0; k < occupancy->n_wet; k++)
-        share_flow(kelvin, k, kelvin->flow[occupancy->wet[k]], kelvin->gain);
+        share_flow(kelvin, k, kelvin->flow[occupancy->wet[k]], kelvin->evaporation);
 }
 
-void kelvin_find_reaches(struct kelvin_menisci *kelvin,
-                         const struct occupancy *occupancy)
+void kelvin_find_conductance_bounds(struct kelvin_menisci *kelvin,
+                                    const struct occupancy *occupancy)
 {
-    memset(kelvin->reach, 0, (size_t)kelvin->n * sizeof *kelvin->reach);
+    memset(kelvin->conductance_bound, 0,
+           (size_t)kelvin->n * sizeof *kelvin->conductance_bound);
     for (int k = 0; k < occupancy->n_wet; k++)
-        share_flow(kelvin, k, kelvin->conducted[k], kelvin->reach);
+        share_flow(kelvin, k, kelvin->node_conductance_bound[k],
+                   kelvin->conductance_bound);
 }
 
 void kelvin_find_noise(struct kelvin_menisci *kelvin)
 {
     kelvin->all_noise = 0;
     for (int a = 0; a < kelvin->n; a++) {
-        kelvin->noise[a] = NOISE * kelvin->reach[a] * fabs(kelvin->potential[a]);
+        kelvin->noise[a] =
+            NOISE * kelvin->conductance_bound[a] * fabs(kelvin->potential[a]);
         kelvin->all_noise += kelvin->noise[a];
     }
 }

@@ -5,13 +5,13 @@
 
 #include "kelvin_menisci.h"
 
-// Finds GAIN of each body, and RATE into the air, from POTENTIAL.
-void kelvin_find_gains(struct kelvin_menisci *kelvin,
-                       const struct occupancy *occupancy);
+// Finds EVAPORATION of each body, and RATE into the air, from POTENTIAL.
+void kelvin_find_evaporation(struct kelvin_menisci *kelvin,
+                             const struct occupancy *occupancy);
 
-// Finds REACH of each body from what its nodes conduct.
-void kelvin_find_reaches(struct kelvin_menisci *kelvin,
-                         const struct occupancy *occupancy);
+// Finds CONDUCTANCE_BOUND of each body from what its nodes conduct.
+void kelvin_find_conductance_bounds(struct kelvin_menisci *kelvin,
+                                    const struct occupancy *occupancy);
 
 // Finds NOISE of each body: gains below it are rounding.
 void kelvin_find_noise(struct kelvin_menisci *kelvin);

@@ -6,41 +6,42 @@
 struct kelvin_law kelvin_law(const struct drying_conditions *conditions)
 {
     const double heat = GAS_CONSTANT * conditions->temperature / conditions->molar_mass;
-    const double over_flat = conditions->gas_pressure - conditions->saturation_pressure;
+    const double air_pressure =
+        conditions->gas_pressure - conditions->saturation_pressure;
     const double tension =
         2 * conditions->surface_tension * cos(conditions->contact_angle * (M_PI / 180));
     return (struct kelvin_law){
-        .over_flat = over_flat,
+        .air_pressure = air_pressure,
         .saturation = conditions->saturation_pressure,
         .drop =
             log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
-                  over_flat),
+                  air_pressure),
         .exponent = tension / (conditions->liquid_density * heat),
-        .of_pressure = 1 / (conditions->liquid_density * heat),
-        .steepness =
+        .exponent_per_pressure = 1 / (conditions->liquid_density * heat),
+        .exponent_per_height =
             conditions->liquid == LIQUID_IMMOBILE ? 0 : conditions->gravity / heat};
 }
 
 // This form keeps its digits for wide throats.
 double kelvin_potential(const struct kelvin_law *law, double exponent)
 {
-    return log1p(-law->saturation * expm1(-exponent) / law->over_flat) / law->drop;
+    return log1p(-law->saturation * expm1(-exponent) / law->air_pressure) / law->drop;
 }
 
 double kelvin_slope(const struct kelvin_law *law, double exponent)
 {
-    const double gas = law->over_flat - law->saturation * expm1(-exponent);
+    const double gas = law->air_pressure - law->saturation * expm1(-exponent);
     return law->saturation * exp(-exponent) / gas / law->drop;
 }
 
 double kelvin_exponent_at(const struct kelvin_law *law, double potential)
 {
-    return -log1p(-expm1(potential * law->drop) * law->over_flat / law->saturation);
+    return -log1p(-expm1(potential * law->drop) * law->air_pressure / law->saturation);
 }
 
 double kelvin_least_exponent(const struct kelvin_law *law)
 {
-    return -log1p(law->over_flat / law->saturation / 2);
+    return -log1p(law->air_pressure / law->saturation / 2);
 }
 
 enum status check_kelvin(const struct drying_conditions *conditions,

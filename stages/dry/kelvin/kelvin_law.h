@@ -9,11 +9,11 @@
 #include "dry/conditions.h"
 
 struct kelvin_law {
-    double over_flat, saturation; // p_g - p_sat, p_sat, Pa
-    double drop;                  // of -ln(1 - p_v/p_g) from flat menisci to the air
-    double exponent;              // of a throat 1 m in radius
-    double of_pressure;           // of 1 Pa
-    double steepness;             // rise of the exponent a metre upwards, 1/m
+    double air_pressure, saturation; // p_g - p_sat, p_sat, Pa
+    double drop;                     // of -ln(1 - p_v/p_g) from flat menisci to the air
+    double exponent;                 // of a throat 1 m in radius
+    double exponent_per_pressure;    // of 1 Pa
+    double exponent_per_height;      // rise of the exponent a metre upwards, 1/m
 };
 
 // Of the liquid, the gas and the temperature of CONDITIONS.

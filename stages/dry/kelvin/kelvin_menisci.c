@@ -11,17 +11,18 @@
 
 // In the first rounds all menisci that break their condition change at once; from then
 // on only the first of them, which always comes to an end (Murty 1974).
-enum { ROUNDS_AT_ONCE = 10, MOST_ROUNDS = 1000 };
+enum { ROUNDS_AT_ONCE = 10, MAX_ROUNDS = 1000 };
 
 // A meniscus this much more curved than its throat, of its potential, stays
 // equilibrated: hysteresis, for a body at the threshold would flip by rounding.
-static const double VERGE = 1e-10;
+static const double HYSTERESIS = 1e-10;
 
 // Largest part of the rate into the air that may be lost in that: late, wet nodes have
 // links that conduct a million times what leads to the air.
-static const double ENOUGH = 1e-6;
+static const double MAX_RESIDUAL = 1e-6;
 
-static void find_outside(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
+static void find_initial_conductances(struct kelvin_menisci *kelvin,
+                                      struct occupancy *occupancy)
 {
     struct kron_fronts *mesh = &occupancy->vapour.mesh;
     const int n_site = occupancy->vapour.n_site;
@@ -29,10 +30,10 @@ static void find_outside(struct kelvin_menisci *kelvin, struct occupancy *occupa
     double *link = NEW_ARRAY(double, n_site);
     kron_fronts_list(mesh);
     for (int i = 0; i < n_site; i++) {
-        kelvin->outside[i] = mesh->air_conductance[i];
+        kelvin->initial_conductance[i] = mesh->air_conductance[i];
         const int n = kron_fronts_list_links(mesh, i, other, link);
         for (int k = 0; k < n; k++) {
-            kelvin->outside[i] += link[other[k]];
+            kelvin->initial_conductance[i] += link[other[k]];
             link[other[k]] = 0;
         }
     }
@@ -53,7 +54,7 @@ struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
         .law = kelvin_law(conditions),
         .throat = NEW_ARRAY(int, n),
         .potential = NEW_ARRAY(double, n),
-        .gain = NEW_ARRAY(double, n),
+        .evaporation = NEW_ARRAY(double, n),
         .zero_flux = NEW_ARRAY(bool, n),
         .flows = NEW_ARRAY(bool, n),
         .exponent = NEW_ARRAY(double, n),
@@ -65,10 +66,10 @@ struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
         .at_throat = NEW_ARRAY(int, n),
         .offset = NEW_ARRAY(int, network->n_node + 1),
         .share = NEW_ARRAY(struct share, 2 * (size_t)n),
-        .raised = NEW_ARRAY(double, network->n_node),
-        .conducted = NEW_ARRAY(double, network->n_node),
-        .outside = NEW_ARRAY(double, occupancy->vapour.n_site),
-        .reach = NEW_ARRAY(double, n),
+        .gravity_potential = NEW_ARRAY(double, network->n_node),
+        .node_conductance_bound = NEW_ARRAY(double, network->n_node),
+        .initial_conductance = NEW_ARRAY(double, occupancy->vapour.n_site),
+        .conductance_bound = NEW_ARRAY(double, n),
         .noise = NEW_ARRAY(double, n),
         .level = NEW_ARRAY(double, occupancy->vapour.n_site),
         .flow = NEW_ARRAY(double, occupancy->vapour.n_site)};
@@ -76,7 +77,7 @@ struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
         equilibrated_make(n, occupancy->vapour.n_site, kelvin.by_throat);
     for (int t = 0; t < n; t++)
         kelvin.section[t] = occupancy->volume[t] / network->throat_length[t];
-    find_outside(&kelvin, occupancy);
+    find_initial_conductances(&kelvin, occupancy);
     for (int t = 0; t < n; t++) {
         kelvin.place[t] = -1;
         if (network->throat_kind[t] == THROAT_NETWORK)
@@ -92,7 +93,7 @@ void kelvin_menisci_free(struct kelvin_menisci *kelvin)
     free(kelvin->section);
     free(kelvin->throat);
     free(kelvin->potential);
-    free(kelvin->gain);
+    free(kelvin->evaporation);
     free(kelvin->zero_flux);
     free(kelvin->flows);
     free(kelvin->exponent);
@@ -104,12 +105,12 @@ void kelvin_menisci_free(struct kelvin_menisci *kelvin)
     free(kelvin->at_throat);
     free(kelvin->offset);
     free(kelvin->share);
-    free(kelvin->raised);
-    free(kelvin->conducted);
-    free(kelvin->outside);
+    free(kelvin->gravity_potential);
+    free(kelvin->node_conductance_bound);
+    free(kelvin->initial_conductance);
     free(kelvin->level);
     free(kelvin->flow);
-    free(kelvin->reach);
+    free(kelvin->conductance_bound);
     free(kelvin->noise);
     equilibrated_free(kelvin->equilibrated);
     *kelvin = (struct kelvin_menisci){0};
@@ -137,7 +138,7 @@ static double most_excess(const struct kelvin_menisci *kelvin)
     double worst = 0;
     for (int a = 0; a < kelvin->n; a++)
         worst = fmax(worst, excess_curvature(kelvin, a));
-    return fmax(VERGE, worst / 2);
+    return fmax(HYSTERESIS, worst / 2);
 }
 
 // Which begin or cease to be equilibrated; no more than MOST.
@@ -152,7 +153,8 @@ static struct revision revise(struct kelvin_menisci *kelvin,
             kelvin->zero_flux[a] = false;
             kelvin->potential[a] = kelvin->entry_potential[kelvin->throat[a]];
             revision.ended++;
-        } else if (!kelvin->zero_flux[a] && kelvin->gain[a] < -10 * kelvin->all_noise &&
+        } else if (!kelvin->zero_flux[a] &&
+                   kelvin->evaporation[a] < -10 * kelvin->all_noise &&
                    kelvin_is_full(kelvin, occupancy, a)) {
             kelvin->zero_flux[a] = true;
             revision.begun++;
@@ -168,12 +170,12 @@ static void add_losses(const struct kelvin_menisci *kelvin,
 {
     for (int r = 0; r < kelvin->n; r++) {
         const int a = kelvin->ranked[r], throat = kelvin->throat[a];
-        const double gain = kelvin->gain[a];
+        const double evaporation = kelvin->evaporation[a];
         if (kelvin->zero_flux[a] || kelvin->flows[a] ||
-            fabs(gain) <= kelvin->noise[a] ||
-            (gain < 0 && kelvin_is_full(kelvin, occupancy, a)))
+            fabs(evaporation) <= kelvin->noise[a] ||
+            (evaporation < 0 && kelvin_is_full(kelvin, occupancy, a)))
             continue;
-        losses->loss[losses->n++] = (struct loss){throat, gain};
+        losses->loss[losses->n++] = (struct loss){throat, evaporation};
     }
 }
 
@@ -196,17 +198,17 @@ static enum status find_potentials(struct kelvin_menisci *kelvin,
                                    struct reason *reason)
 {
     kelvin_find_noise(kelvin);
-    for (int round = 0; round < MOST_ROUNDS; round++) {
+    for (int round = 0; round < MAX_ROUNDS; round++) {
         if (!solve_zero_flux(kelvin, occupancy))
             return refuse(reason, STATUS_INTERNAL, "kelvin: out of memory");
         const int most = round < ROUNDS_AT_ONCE ? kelvin->n : 1;
         const struct revision revision = revise(kelvin, occupancy, most);
         if (revision.begun + revision.ended == 0) return STATUS_OK;
-        if (revision.ended > 0) kelvin_find_gains(kelvin, occupancy);
+        if (revision.ended > 0) kelvin_find_evaporation(kelvin, occupancy);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "kelvin: no consistent menisci after %d rounds, among %d",
-                  MOST_ROUNDS, kelvin->n);
+                  "kelvin: no consistent menisci after %d rounds, among %d", MAX_ROUNDS,
+                  kelvin->n);
 }
 
 void kelvin_menisci_forget(struct kelvin_menisci *kelvin)
@@ -222,29 +224,29 @@ void kelvin_menisci_empty_throat(struct kelvin_menisci *kelvin,
 }
 
 // A throat has emptied.
-static void begin_anew(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
+static void relist_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    const int n_emptied = kelvin->listed_at - occupancy->n_full;
-    kelvin->listed_at = occupancy->n_full;
+    const int n_emptied = kelvin->listed_at - occupancy->n_liquid;
+    kelvin->listed_at = occupancy->n_liquid;
     kelvin_list_bodies(kelvin, occupancy);
     kron_fronts_list(&occupancy->vapour.mesh);
     equilibrated_follow(kelvin->equilibrated, kelvin, occupancy, n_emptied);
-    kelvin_find_reaches(kelvin, occupancy);
-    kelvin_raise_nodes(kelvin, occupancy);
-    kelvin_find_gains(kelvin, occupancy);
+    kelvin_find_conductance_bounds(kelvin, occupancy);
+    kelvin_find_gravity_potentials(kelvin, occupancy);
+    kelvin_find_evaporation(kelvin, occupancy);
 }
 
 void kelvin_menisci_begin(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
-    if (kelvin->listed_at != occupancy->n_full) begin_anew(kelvin, occupancy);
+    if (kelvin->listed_at != occupancy->n_liquid) relist_bodies(kelvin, occupancy);
 }
 
 enum status kelvin_menisci_find_others(struct kelvin_menisci *kelvin,
                                        const struct occupancy *occupancy,
                                        struct reason *reason)
 {
-    kelvin_raise_nodes(kelvin, occupancy);
-    kelvin_find_gains(kelvin, occupancy);
+    kelvin_find_gravity_potentials(kelvin, occupancy);
+    kelvin_find_evaporation(kelvin, occupancy);
     return find_potentials(kelvin, occupancy, reason);
 }
 
@@ -258,12 +260,12 @@ enum status kelvin_menisci_end(struct kelvin_menisci *kelvin,
         kelvin->had_zero_flux[kelvin->body[a]] = kelvin->zero_flux[a];
         kelvin->zero_flux_potential[kelvin->body[a]] = kelvin->potential[a];
     }
-    if (kelvin->residual <= ENOUGH) return STATUS_OK;
+    if (kelvin->residual <= MAX_RESIDUAL) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: the evaporation of %d menisci differs from the flow into "
                   "the air by %.3g of that; needed is %g; the widest are driven by "
                   "%.2g of what flat ones would be",
-                  kelvin->n, kelvin->residual, ENOUGH, kelvin_drive(kelvin));
+                  kelvin->n, kelvin->residual, MAX_RESIDUAL, kelvin_drive(kelvin));
 }
 
 double kelvin_drive(const struct kelvin_menisci *kelvin)
@@ -288,7 +290,7 @@ void kelvin_menisci_state(struct kelvin_menisci *kelvin, const struct network *n
                           struct checkpoint_stream *stream)
 {
     const int n_throat = network->n_throat;
-    stream_numbers(stream, kelvin->outside, network->n_node);
+    stream_numbers(stream, kelvin->initial_conductance, network->n_node);
     stream_numbers(stream, &kelvin->rate, 1);
     stream_numbers(stream, &kelvin->residual, 1);
     stream_flags(stream, kelvin->had_zero_flux, n_throat);

@@ -44,25 +44,25 @@ struct kelvin_menisci {
     // Of the bodies beside gas, as they were when so many throats held liquid.
     int listed_at; // -1: not yet
     int n;
-    int *body;                // (n) throat or cluster
-    int *throat;              // (n) that gas enters: what the body loses or takes up
-    double *potential;        // (n)
-    double *gain;             // (n) what it evaporates; below 0: takes up
-    bool *zero_flux;          // (n) flatter than its throat makes it
-    bool *flows;              // (n) its exponent and potential are given, by its flow
-    double *exponent;         // (n) p_c M / (rho R T) in its throat; as curved as that
-                              // makes it, if equilibrated
-    int *place;               // (n_throat) of a throat or cluster, -1: none
-    double *reach;            // (n) at most what conducts vapour from it
-    double *noise, all_noise; // (n) less gain than this is none; their sum
-    int *ranked;              // (n) places by throats, ascending
-    int *at_throat;           // (n_throat) room
-    int *offset;              // (n_wet+1) of the shares in each wet node
-    struct share *share;      // (offset[n_wet])
-    double *raised;           // (n_wet) potential that gravity adds there
-    double *conducted;        // (n_wet) at most what conducts vapour from there
-    double *outside;          // (n_site) conductance of the boundary layer, at first
-    double *level, *flow;     // (n_site) room
+    int *body;                 // (n) throat or cluster
+    int *throat;               // (n) that gas enters: what the body loses or takes up
+    double *potential;         // (n)
+    double *evaporation;       // (n) what it evaporates; below 0: takes up
+    bool *zero_flux;           // (n) flatter than its throat makes it
+    bool *flows;               // (n) its exponent and potential are given, by its flow
+    double *exponent;          // (n) p_c M / (rho R T) in its throat; as curved as that
+                               // makes it, if equilibrated
+    int *place;                // (n_throat) of a throat or cluster, -1: none
+    double *conductance_bound; // (n) at most what conducts vapour from it
+    double *noise, all_noise;  // (n) less gain than this is none; their sum
+    int *ranked;               // (n) places by throats, ascending
+    int *at_throat;            // (n_throat) room
+    int *offset;               // (n_wet+1) of the shares in each wet node
+    struct share *share;       // (offset[n_wet])
+    double *gravity_potential; // (n_wet) potential that gravity adds there
+    double *node_conductance_bound; // (n_wet) at most what conducts vapour from there
+    double *initial_conductance; // (n_site) conductance of the boundary layer, at first
+    double *level, *flow;        // (n_site) room
 };
 
 // For OCCUPANCY before any throat has emptied. The caller frees it with

@@ -8,11 +8,11 @@
 
 // Of the conductance of its throat: less and the flow settles what evaporates in a few
 // rounds.
-static const double FELT = 1e-2;
+static const double MIN_RESPONSE = 1e-2;
 
-int throat_of(const struct kelvin_viscous *both, int k)
+int throat_of(const struct kelvin_viscous *coupling, int k)
 {
-    return both->kelvin->throat[both->body[k]];
+    return coupling->kelvin->throat[coupling->body[k]];
 }
 
 static int cluster_of(const struct kelvin_menisci *kelvin,
@@ -67,10 +67,11 @@ static void find_degrees(const struct occupancy *occupancy, struct links *links,
     }
 }
 
-static void add_drops(struct kelvin_viscous *both, const struct occupancy *occupancy,
-                      struct links *links, const int *place)
+static void add_response_bounds(struct kelvin_viscous *coupling,
+                                const struct occupancy *occupancy, struct links *links,
+                                const int *place)
 {
-    const struct kelvin_menisci *kelvin = both->kelvin;
+    const struct kelvin_menisci *kelvin = coupling->kelvin;
     for (int k = 0; k < occupancy->n_wet; k++) {
         double all, apart;
         find_degrees(occupancy, links, k, &all, &apart);
@@ -78,28 +79,29 @@ static void add_drops(struct kelvin_viscous *both, const struct occupancy *occup
             const struct share *share = &kelvin->share[i];
             const int which = place[share->body] - 1;
             if (which < 0) continue;
-            both->single[which] += share->part * all;
-            both->lumped[which] +=
+            coupling->single[which] += share->part * all;
+            coupling->lumped[which] +=
                 share->part * part_of_cluster(kelvin, occupancy, k, share) * apart;
         }
     }
 }
 
-void find_drops(struct kelvin_viscous *both, const struct occupancy *occupancy)
+void find_response_bounds(struct kelvin_viscous *coupling,
+                          const struct occupancy *occupancy)
 {
-    const struct kelvin_menisci *kelvin = both->kelvin;
+    const struct kelvin_menisci *kelvin = coupling->kelvin;
     const int n_site = occupancy->vapour.n_site;
     struct links links = {.group = NEW_ARRAY(int, n_site),
                           .other = NEW_ARRAY(int, n_site),
                           .link = NEW_ARRAY(double, n_site)};
     int *place = NEW_ARRAY(int, kelvin->n);
-    for (int k = 0; k < both->n; k++) {
-        place[both->body[k]] = k + 1;
-        both->lumped[k] = both->single[k] = 0;
+    for (int k = 0; k < coupling->n; k++) {
+        place[coupling->body[k]] = k + 1;
+        coupling->lumped[k] = coupling->single[k] = 0;
     }
     for (int k = 0; k < occupancy->n_wet; k++)
         links.group[occupancy->wet[k]] = group_of(kelvin, occupancy, k);
-    add_drops(both, occupancy, &links, place);
+    add_response_bounds(coupling, occupancy, &links, place);
     free(links.group);
     free(links.other);
     free(links.link);
@@ -107,28 +109,29 @@ void find_drops(struct kelvin_viscous *both, const struct occupancy *occupancy)
 }
 
 // What the K-th evaporates alone rises with its pressure by this.
-static double rise_alone(const struct kelvin_viscous *both, int k, double *slope)
+static double rise_alone(const struct kelvin_viscous *coupling, int k, double *slope)
 {
-    const struct kelvin_menisci *kelvin = both->kelvin;
-    *slope = both->unit * kelvin_slope(&kelvin->law, kelvin->exponent[both->body[k]]);
-    return *slope * both->single[k];
+    const struct kelvin_menisci *kelvin = coupling->kelvin;
+    *slope = coupling->unit *
+             kelvin_slope(&kelvin->law, kelvin->exponent[coupling->body[k]]);
+    return *slope * coupling->single[k];
 }
 
 // Of each cluster, whether a response is needed: none of its menisci moves, or one
 // evaporates so much more with its pressure that the flow is felt.
-static bool *find_responsive(const struct kelvin_viscous *both,
+static bool *find_responsive(const struct kelvin_viscous *coupling,
                              const struct occupancy *occupancy)
 {
-    const struct liquid_flow *flow = both->flow;
+    const struct liquid_flow *flow = coupling->flow;
     bool *moves = NEW_ARRAY(bool, occupancy->clusters.n_id);
     bool *responsive = NEW_ARRAY(bool, occupancy->clusters.n_id);
-    for (int k = 0; k < both->n; k++) {
-        const int throat = throat_of(both, k);
+    for (int k = 0; k < coupling->n; k++) {
+        const int throat = throat_of(coupling, k);
         const int cluster = occupancy->clusters.of_throat[throat];
         double slope;
         moves[cluster] |= flow->moving[throat];
         responsive[cluster] |=
-            rise_alone(both, k, &slope) > FELT * flow->conductance[throat];
+            rise_alone(coupling, k, &slope) > MIN_RESPONSE * flow->conductance[throat];
     }
     for (int c = 0; c < occupancy->clusters.n_id; c++)
         responsive[c] |= !moves[c];
@@ -136,18 +139,18 @@ static bool *find_responsive(const struct kelvin_viscous *both,
     return responsive;
 }
 
-void set_responses(struct kelvin_viscous *both, const struct occupancy *occupancy)
+void set_responses(struct kelvin_viscous *coupling, const struct occupancy *occupancy)
 {
-    struct liquid_flow *flow = both->flow;
-    bool *responsive = find_responsive(both, occupancy);
-    for (int k = 0; k < both->n; k++) {
-        const int throat = throat_of(both, k);
+    struct liquid_flow *flow = coupling->flow;
+    bool *responsive = find_responsive(coupling, occupancy);
+    for (int k = 0; k < coupling->n; k++) {
+        const int throat = throat_of(coupling, k);
         double slope;
-        const double alone = rise_alone(both, k, &slope);
-        const double more = fmax(both->single[k] - both->lumped[k], 0);
+        const double alone = rise_alone(coupling, k, &slope);
+        const double more = fmax(coupling->single[k] - coupling->lumped[k], 0);
         const double part = alone / (alone + flow->conductance[throat]);
         flow->response[throat] = responsive[occupancy->clusters.of_throat[throat]]
-                                     ? slope * (both->lumped[k] + part * more)
+                                     ? slope * (coupling->lumped[k] + part * more)
                                      : 0;
     }
     free(responsive);

@@ -7,13 +7,14 @@
 #include "kelvin_viscous.h"
 
 // Of the K-th meniscus at hand that flows.
-int throat_of(const struct kelvin_viscous *both, int k);
+int throat_of(const struct kelvin_viscous *coupling, int k);
 
 // Fills LUMPED and SINGLE for the menisci as they are listed.
-void find_drops(struct kelvin_viscous *both, const struct occupancy *occupancy);
+void find_response_bounds(struct kelvin_viscous *coupling,
+                          const struct occupancy *occupancy);
 
 // Of the flow, at the exponents of now: where liquid flows easily menisci rise and fall
 // with their cluster, else alone.
-void set_responses(struct kelvin_viscous *both, const struct occupancy *occupancy);
+void set_responses(struct kelvin_viscous *coupling, const struct occupancy *occupancy);
 
 #endif

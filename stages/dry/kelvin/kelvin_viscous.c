@@ -12,13 +12,13 @@
 
 // What menisci evaporate in the gas and what flows to them in the liquid may differ by
 // this part of the rate into the air, added up.
-static const double AGREED = 1e-12;
+static const double COUPLING_TOLERANCE = 1e-12;
 
 // As many times more are enough where that is not found at once.
-static const double ENOUGH = 10;
+static const double TOLERANCE_SLACK = 10;
 
 // By mixing; in all.
-enum { PATIENT_ROUNDS = 60, MOST_ROUNDS = 200 };
+enum { MIXING_ROUNDS = 60, MAX_ROUNDS = 200 };
 
 // Part of a potential by which it is changed to see what follows.
 static const double DIFFERENCE = 1e-4;
@@ -26,97 +26,100 @@ static const double DIFFERENCE = 1e-4;
 // In the first revisions all menisci that must stop do, and those begin to move that
 // lack at least this part of what the worst of their cluster does; from then on only
 // the first of them (Murty 1974).
-enum { REVISIONS_AT_ONCE = 30, MOST_REVISIONS = 200 };
-static const double BEGINNERS = 0.5;
+enum { REVISIONS_AT_ONCE = 30, MAX_REVISIONS = 200 };
+static const double BEGIN_FRACTION = 0.5;
 
 // From then on one may stay that is more curved than its throat by this part: where
 // next to nothing flows only the mean of a node's menisci is given, and none of the
 // ways to share it may fit to the last digit.
-static const double VERGE = 0.01;
+static const double HYSTERESIS = 0.01;
 
 // A meniscus on its way to be more curved than its throat by this part begins to move
 // at once.
-static const double FAR = 0.1;
+static const double CURVATURE_MARGIN = 0.1;
 
 struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
                                           struct liquid_flow *flow)
 {
     const struct network *network = flow->network;
     const int n = network->n_throat;
-    struct kelvin_viscous both = {.kelvin = kelvin,
-                                  .flow = flow,
-                                  .excess = NEW_ARRAY(double, n),
-                                  .waited = NEW_ARRAY(bool, n),
-                                  .unit =
-                                      kelvin->law.of_pressure * flow->menisci.pressure,
-                                  .body = NEW_ARRAY(int, n),
-                                  .x = NEW_ARRAY(double, n),
-                                  .image = NEW_ARRAY(double, n),
-                                  .lumped = NEW_ARRAY(double, n),
-                                  .single = NEW_ARRAY(double, n),
-                                  .anderson = anderson_make(n)};
+    struct kelvin_viscous coupling = {.kelvin = kelvin,
+                                      .flow = flow,
+                                      .excess = NEW_ARRAY(double, n),
+                                      .waited = NEW_ARRAY(bool, n),
+                                      .unit = kelvin->law.exponent_per_pressure *
+                                              flow->menisci.pressure,
+                                      .body = NEW_ARRAY(int, n),
+                                      .x = NEW_ARRAY(double, n),
+                                      .mapped = NEW_ARRAY(double, n),
+                                      .lumped = NEW_ARRAY(double, n),
+                                      .single = NEW_ARRAY(double, n),
+                                      .anderson = anderson_make(n)};
     for (int t = 0; t < n; t++)
-        both.excess[t] = -1;
+        coupling.excess[t] = -1;
     liquid_flow_respond(flow);
-    return both;
+    return coupling;
 }
 
-void kelvin_viscous_free(struct kelvin_viscous *both)
+void kelvin_viscous_free(struct kelvin_viscous *coupling)
 {
-    free(both->excess);
-    free(both->waited);
-    free(both->body);
-    free(both->x);
-    free(both->image);
-    free(both->lumped);
-    free(both->single);
-    anderson_free(&both->anderson);
-    *both = (struct kelvin_viscous){0};
+    free(coupling->excess);
+    free(coupling->waited);
+    free(coupling->body);
+    free(coupling->x);
+    free(coupling->mapped);
+    free(coupling->lumped);
+    free(coupling->single);
+    anderson_free(&coupling->anderson);
+    *coupling = (struct kelvin_viscous){0};
 }
 
-void kelvin_viscous_state(struct kelvin_viscous *both, struct checkpoint_stream *stream)
+void kelvin_viscous_state(struct kelvin_viscous *coupling,
+                          struct checkpoint_stream *stream)
 {
-    stream_numbers(stream, both->excess, both->flow->network->n_throat);
-    stream_flags(stream, both->waited, both->flow->network->n_throat);
-    stream_long(stream, &both->rounds);
+    stream_numbers(stream, coupling->excess, coupling->flow->network->n_throat);
+    stream_flags(stream, coupling->waited, coupling->flow->network->n_throat);
+    stream_long(stream, &coupling->rounds);
 }
 
 // --- menisci -----------------------------------------------------------------------
 
-static double entry_exponent(const struct kelvin_viscous *both, int throat)
+static double entry_exponent(const struct kelvin_viscous *coupling, int throat)
 {
-    return both->kelvin->law.exponent / both->flow->network->throat_radius[throat];
+    return coupling->kelvin->law.exponent /
+           coupling->flow->network->throat_radius[throat];
 }
 
 // Those in throats partly empty move, those that are new, and else as they did.
-static void list_menisci(struct kelvin_viscous *both, struct occupancy *occupancy)
+static void list_menisci(struct kelvin_viscous *coupling, struct occupancy *occupancy)
 {
-    struct kelvin_menisci *kelvin = both->kelvin;
-    both->n = 0;
+    struct kelvin_menisci *kelvin = coupling->kelvin;
+    coupling->n = 0;
     for (int a = 0; a < kelvin->n; a++) {
         const int throat = kelvin->throat[a];
         if (!kelvin->flows[a]) continue;
-        both->body[both->n] = a;
-        both->x[both->n++] = kelvin_potential(
-            &kelvin->law,
-            entry_exponent(both, throat) - both->unit * fmax(both->excess[throat], 0));
-        both->flow->moving[throat] |=
-            both->excess[throat] < 0 || !throat_is_full(occupancy, throat);
+        coupling->body[coupling->n] = a;
+        coupling->x[coupling->n++] = kelvin_potential(
+            &kelvin->law, entry_exponent(coupling, throat) -
+                              coupling->unit * fmax(coupling->excess[throat], 0));
+        coupling->flow->moving[throat] |=
+            coupling->excess[throat] < 0 || !throat_is_full(occupancy, throat);
     }
 }
 
 // Of a cluster of which none moves and which did not wait, the one begins that gas
 // enters most easily.
-static void begin_lone(struct kelvin_viscous *both, struct occupancy *occupancy)
+static void begin_lone(struct kelvin_viscous *coupling, struct occupancy *occupancy)
 {
     bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
-    for (int k = 0; k < both->n; k++)
-        any[occupancy->clusters.of_throat[throat_of(both, k)]] |=
-            both->flow->moving[throat_of(both, k)];
-    for (int k = 0; k < both->n; k++) {
-        const int cluster = occupancy->clusters.of_throat[throat_of(both, k)];
+    for (int k = 0; k < coupling->n; k++)
+        any[occupancy->clusters.of_throat[throat_of(coupling, k)]] |=
+            coupling->flow->moving[throat_of(coupling, k)];
+    for (int k = 0; k < coupling->n; k++) {
+        const int cluster = occupancy->clusters.of_throat[throat_of(coupling, k)];
         const int first = clusters_invasion_throat(&occupancy->clusters, cluster);
-        if (!any[cluster] && !(both->waited[first])) both->flow->moving[first] = true;
+        if (!any[cluster] && !(coupling->waited[first]))
+            coupling->flow->moving[first] = true;
     }
     free(any);
 }
@@ -124,55 +127,57 @@ static void begin_lone(struct kelvin_viscous *both, struct occupancy *occupancy)
 // On the way menisci may bulge, but not so far that the gas would be all vapour, or be
 // more curved than their throats can hold, but not so that it would be dry (where
 // vapour rounds to none, neither).
-static void set_potentials(struct kelvin_viscous *both)
+static void set_potentials(struct kelvin_viscous *coupling)
 {
-    struct kelvin_menisci *kelvin = both->kelvin;
+    struct kelvin_menisci *kelvin = coupling->kelvin;
     const double flattest =
         kelvin_potential(&kelvin->law, kelvin_least_exponent(&kelvin->law));
-    for (int k = 0; k < both->n; k++) {
-        const int throat = throat_of(both, k), a = both->body[k];
-        const double entry = entry_exponent(both, throat);
+    for (int k = 0; k < coupling->n; k++) {
+        const int throat = throat_of(coupling, k), a = coupling->body[k];
+        const double entry = entry_exponent(coupling, throat);
         const double most = kelvin_potential(&kelvin->law, 2 * entry);
-        const bool moves = both->flow->moving[throat];
-        both->x[k] = fmin(fmax(both->x[k], flattest), most);
+        const bool moves = coupling->flow->moving[throat];
+        coupling->x[k] = fmin(fmax(coupling->x[k], flattest), most);
         kelvin->exponent[a] =
             moves ? entry
-                  : fmin(kelvin_exponent_at(&kelvin->law, both->x[k]), 2 * entry);
+                  : fmin(kelvin_exponent_at(&kelvin->law, coupling->x[k]), 2 * entry);
         kelvin->potential[a] =
-            moves ? kelvin_potential(&kelvin->law, entry) : both->x[k];
-        both->x[k] = kelvin->potential[a];
-        both->flow->excess[throat] = (entry - kelvin->exponent[a]) / both->unit;
+            moves ? kelvin_potential(&kelvin->law, entry) : coupling->x[k];
+        coupling->x[k] = kelvin->potential[a];
+        coupling->flow->excess[throat] = (entry - kelvin->exponent[a]) / coupling->unit;
     }
 }
 
 // The flow's answer, by the slope of the potential.
-static double potential_found(const struct kelvin_viscous *both, int k)
+static double potential_found(const struct kelvin_viscous *coupling, int k)
 {
-    const struct liquid_flow *flow = both->flow;
-    const int throat = throat_of(both, k);
-    if (flow->moving[throat]) return both->x[k];
-    const double slope =
-        kelvin_slope(&both->kelvin->law, both->kelvin->exponent[both->body[k]]);
-    return both->x[k] -
-           slope * both->unit * (flow->found[throat] - flow->excess[throat]);
+    const struct liquid_flow *flow = coupling->flow;
+    const int throat = throat_of(coupling, k);
+    if (flow->moving[throat]) return coupling->x[k];
+    const double slope = kelvin_slope(&coupling->kelvin->law,
+                                      coupling->kelvin->exponent[coupling->body[k]]);
+    return coupling->x[k] -
+           slope * coupling->unit * (flow->found[throat] - flow->excess[throat]);
 }
 
 // --- the flow ----------------------------------------------------------------------
 
-static enum status find_flow(struct kelvin_viscous *both,
+static enum status find_flow(struct kelvin_viscous *coupling,
                              const struct occupancy *occupancy, struct losses *losses,
                              struct reason *reason)
 {
-    for (int k = 0; k < both->n; k++)
-        losses->charge[throat_of(both, k)] = both->kelvin->gain[both->body[k]];
-    set_responses(both, occupancy);
+    for (int k = 0; k < coupling->n; k++)
+        losses->evaporation[throat_of(coupling, k)] =
+            coupling->kelvin->evaporation[coupling->body[k]];
+    set_responses(coupling, occupancy);
     losses->n = 0;
-    const enum status status = liquid_flow_find(both->flow, occupancy, losses->charge,
-                                                losses->loss, &losses->n, reason);
-    for (int k = 0; k < both->n; k++) {
-        const int throat = throat_of(both, k);
-        both->image[k] = potential_found(both, k);
-        losses->charge[throat] = 0;
+    const enum status status =
+        liquid_flow_find(coupling->flow, occupancy, losses->evaporation, losses->loss,
+                         &losses->n, reason);
+    for (int k = 0; k < coupling->n; k++) {
+        const int throat = throat_of(coupling, k);
+        coupling->mapped[k] = potential_found(coupling, k);
+        losses->evaporation[throat] = 0;
     }
     return status;
 }
@@ -180,15 +185,15 @@ static enum status find_flow(struct kelvin_viscous *both,
 // --- which move --------------------------------------------------------------------
 
 // The largest lack of each cluster.
-static double *find_most(const struct kelvin_viscous *both,
+static double *find_most(const struct kelvin_viscous *coupling,
                          const struct occupancy *occupancy)
 {
     double *most = NEW_ARRAY(double, occupancy->clusters.n_id);
-    for (int k = 0; k < both->n; k++) {
-        const int throat = throat_of(both, k);
+    for (int k = 0; k < coupling->n; k++) {
+        const int throat = throat_of(coupling, k);
         const int cluster = occupancy->clusters.of_throat[throat];
-        if (!both->flow->moving[throat])
-            most[cluster] = fmax(most[cluster], -both->flow->found[throat]);
+        if (!coupling->flow->moving[throat])
+            most[cluster] = fmax(most[cluster], -coupling->flow->found[throat]);
     }
     return most;
 }
@@ -196,18 +201,18 @@ static double *find_most(const struct kelvin_viscous *both,
 // Those begin to move that are more curved than their throats by FAR of it, and nearly
 // the most of their cluster; those stop that take up more than NOISE, full. Returns how
 // many; no more than MOST.
-static int revise(struct kelvin_viscous *both, const struct occupancy *occupancy,
+static int revise(struct kelvin_viscous *coupling, const struct occupancy *occupancy,
                   double far, double noise, int most)
 {
-    struct liquid_flow *flow = both->flow;
-    double *worst = find_most(both, occupancy);
+    struct liquid_flow *flow = coupling->flow;
+    double *worst = find_most(coupling, occupancy);
     int n = 0;
-    for (int k = 0; k < both->n && n < most; k++) {
-        const int throat = throat_of(both, k);
+    for (int k = 0; k < coupling->n && n < most; k++) {
+        const int throat = throat_of(coupling, k);
         const double found = flow->found[throat];
         const double enough =
-            fmax(BEGINNERS * worst[occupancy->clusters.of_throat[throat]],
-                 far * entry_exponent(both, throat) / both->unit);
+            fmax(BEGIN_FRACTION * worst[occupancy->clusters.of_throat[throat]],
+                 far * entry_exponent(coupling, throat) / coupling->unit);
         const bool changes = flow->moving[throat]
                                  ? throat_is_full(occupancy, throat) && found < -noise
                                  : found < 0 && -found >= enough;
@@ -220,60 +225,62 @@ static int revise(struct kelvin_viscous *both, const struct occupancy *occupancy
 
 // --- the fixed point ---------------------------------------------------------------
 
-static double agreement(const struct kelvin_viscous *both)
+static double coupling_tolerance(const struct kelvin_viscous *coupling)
 {
-    return fmax(AGREED * both->kelvin->rate, both->kelvin->all_noise);
+    return fmax(COUPLING_TOLERANCE * coupling->kelvin->rate,
+                coupling->kelvin->all_noise);
 }
 
 // No less than what evaporates would change by, added up.
-static double disagreement(const struct kelvin_viscous *both)
+static double coupling_residual(const struct kelvin_viscous *coupling)
 {
     double sum = 0;
-    for (int k = 0; k < both->n; k++)
-        sum += both->single[k] * fabs(both->image[k] - both->x[k]);
+    for (int k = 0; k < coupling->n; k++)
+        sum += coupling->single[k] * fabs(coupling->mapped[k] - coupling->x[k]);
     return sum;
 }
 
-static enum status find_image(struct kelvin_viscous *both,
-                              const struct occupancy *occupancy, struct losses *losses,
-                              struct reason *reason)
+static enum status evaluate(struct kelvin_viscous *coupling,
+                            const struct occupancy *occupancy, struct losses *losses,
+                            struct reason *reason)
 {
-    set_potentials(both);
+    set_potentials(coupling);
     const enum status status =
-        kelvin_menisci_find_others(both->kelvin, occupancy, reason);
-    return status ? status : find_flow(both, occupancy, losses, reason);
+        kelvin_menisci_find_others(coupling->kelvin, occupancy, reason);
+    return status ? status : find_flow(coupling, occupancy, losses, reason);
 }
 
 // How image less x of those menisci falls, in MATRIX (n,n), by differences.
-static enum status find_slopes(struct kelvin_viscous *both,
-                               const struct occupancy *occupancy, const int *which,
-                               gsl_matrix *matrix, struct losses *losses,
-                               struct reason *reason)
+static enum status find_jacobian(struct kelvin_viscous *coupling,
+                                 const struct occupancy *occupancy, const int *which,
+                                 gsl_matrix *matrix, struct losses *losses,
+                                 struct reason *reason)
 {
-    const size_t bytes = (size_t)both->n * sizeof *both->x, n = matrix->size1;
-    double *x = NEW_ARRAY(double, both->n), *image = NEW_ARRAY(double, both->n);
-    memcpy(x, both->x, bytes);
-    memcpy(image, both->image, bytes);
+    const size_t bytes = (size_t)coupling->n * sizeof *coupling->x, n = matrix->size1;
+    double *x = NEW_ARRAY(double, coupling->n),
+           *mapped = NEW_ARRAY(double, coupling->n);
+    memcpy(x, coupling->x, bytes);
+    memcpy(mapped, coupling->mapped, bytes);
     enum status status = STATUS_OK;
     for (size_t c = 0; c < n && !status; c++) {
-        memcpy(both->x, x, bytes);
-        both->x[which[c]] *= 1 - DIFFERENCE;
-        const double change = both->x[which[c]] - x[which[c]];
-        status = find_image(both, occupancy, losses, reason);
+        memcpy(coupling->x, x, bytes);
+        coupling->x[which[c]] *= 1 - DIFFERENCE;
+        const double change = coupling->x[which[c]] - x[which[c]];
+        status = evaluate(coupling, occupancy, losses, reason);
         for (size_t r = 0; r < n; r++)
             gsl_matrix_set(matrix, r, c,
-                           (r == c) -
-                               (both->image[which[r]] - image[which[r]]) / change);
+                           (r == c) - (coupling->mapped[which[r]] - mapped[which[r]]) /
+                                          change);
     }
-    memcpy(both->x, x, bytes);
-    memcpy(both->image, image, bytes);
-    free(image);
+    memcpy(coupling->x, x, bytes);
+    memcpy(coupling->mapped, mapped, bytes);
+    free(mapped);
     free(x);
     return status;
 }
 
 // X + MATRIX^-1 (image - x).
-static enum status add_step(struct kelvin_viscous *both, const int *which,
+static enum status add_step(struct kelvin_viscous *coupling, const int *which,
                             gsl_matrix *matrix, struct reason *reason)
 {
     const size_t n = matrix->size1;
@@ -281,7 +288,7 @@ static enum status add_step(struct kelvin_viscous *both, const int *which,
     gsl_permutation *order = gsl_permutation_alloc(n);
     int sign;
     for (size_t r = 0; r < n; r++)
-        gsl_vector_set(step, r, both->image[which[r]] - both->x[which[r]]);
+        gsl_vector_set(step, r, coupling->mapped[which[r]] - coupling->x[which[r]]);
     gsl_linalg_LU_decomp(matrix, order, &sign);
     double least = INFINITY;
     for (size_t r = 0; r < n; r++)
@@ -289,82 +296,87 @@ static enum status add_step(struct kelvin_viscous *both, const int *which,
     const bool good = least > 0;
     if (good) gsl_linalg_LU_svx(matrix, order, step);
     for (size_t r = 0; good && r < n; r++)
-        both->x[which[r]] += gsl_vector_get(step, r);
+        coupling->x[which[r]] += gsl_vector_get(step, r);
     gsl_permutation_free(order);
     gsl_vector_free(step);
     if (good) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "kelvin: nothing determines the pressures of %d menisci", both->n);
+                  "kelvin: nothing determines the pressures of %d menisci",
+                  coupling->n);
 }
 
 // Newton's: where hardly anything flows, menisci of one node may share what it has in
 // nearly any way, and mixing does not find which.
-static enum status newton_step(struct kelvin_viscous *both,
+static enum status newton_step(struct kelvin_viscous *coupling,
                                const struct occupancy *occupancy, struct losses *losses,
                                struct reason *reason)
 {
-    int n = 0, *which = NEW_ARRAY(int, both->n);
-    for (int k = 0; k < both->n; k++)
-        if (!both->flow->moving[throat_of(both, k)]) which[n++] = k;
+    int n = 0, *which = NEW_ARRAY(int, coupling->n);
+    for (int k = 0; k < coupling->n; k++)
+        if (!coupling->flow->moving[throat_of(coupling, k)]) which[n++] = k;
     gsl_matrix *matrix = gsl_matrix_alloc((size_t)n, (size_t)n);
-    enum status status = find_slopes(both, occupancy, which, matrix, losses, reason);
-    if (!status) status = add_step(both, which, matrix, reason);
+    enum status status =
+        find_jacobian(coupling, occupancy, which, matrix, losses, reason);
+    if (!status) status = add_step(coupling, which, matrix, reason);
     gsl_matrix_free(matrix);
     free(which);
     return status;
 }
 
-static void mix(struct kelvin_viscous *both)
+static void mix(struct kelvin_viscous *coupling)
 {
-    double *step = both->image;
-    for (int k = 0; k < both->n; k++)
-        step[k] -= both->x[k];
-    anderson_step(&both->anderson, step);
-    for (int k = 0; k < both->n; k++)
-        both->x[k] += step[k];
+    double *step = coupling->mapped;
+    for (int k = 0; k < coupling->n; k++)
+        step[k] -= coupling->x[k];
+    anderson_step(&coupling->anderson, step);
+    for (int k = 0; k < coupling->n; k++)
+        coupling->x[k] += step[k];
 }
 
 // For menisci of which it is known which move, but for those that are far from it.
-static enum status find_both(struct kelvin_viscous *both,
-                             const struct occupancy *occupancy, bool revises,
-                             struct losses *losses, struct reason *reason)
+static enum status solve_coupling(struct kelvin_viscous *coupling,
+                                  const struct occupancy *occupancy, bool revises,
+                                  struct losses *losses, struct reason *reason)
 {
-    struct kelvin_menisci *kelvin = both->kelvin;
+    struct kelvin_menisci *kelvin = coupling->kelvin;
     double apart = 0;
-    int patience = PATIENT_ROUNDS;
+    int last_mixing_round = MIXING_ROUNDS;
     losses->n = 0;
-    anderson_begin(&both->anderson, both->n);
-    for (int round = 0; round < MOST_ROUNDS; round++) {
-        enum status status = find_image(both, occupancy, losses, reason);
+    anderson_begin(&coupling->anderson, coupling->n);
+    for (int round = 0; round < MAX_ROUNDS; round++) {
+        enum status status = evaluate(coupling, occupancy, losses, reason);
         if (status) return status;
-        apart = disagreement(both);
+        apart = coupling_residual(coupling);
         if (!isfinite(apart)) break;
-        const double enough = round < patience ? 1 : ENOUGH;
-        if (apart <= enough * agreement(both)) return STATUS_OK;
-        both->rounds++;
-        const double noise = round < patience ? kelvin->rate : agreement(both) + apart;
-        if (revises && revise(both, occupancy, FAR, noise, both->n) > 0) {
-            anderson_begin(&both->anderson, both->n);
-            patience = round + PATIENT_ROUNDS;
+        const double enough = round < last_mixing_round ? 1 : TOLERANCE_SLACK;
+        if (apart <= enough * coupling_tolerance(coupling)) return STATUS_OK;
+        coupling->rounds++;
+        const double noise = round < last_mixing_round
+                                 ? kelvin->rate
+                                 : coupling_tolerance(coupling) + apart;
+        if (revises &&
+            revise(coupling, occupancy, CURVATURE_MARGIN, noise, coupling->n) > 0) {
+            anderson_begin(&coupling->anderson, coupling->n);
+            last_mixing_round = round + MIXING_ROUNDS;
         }
-        if (round < patience)
-            mix(both);
+        if (round < last_mixing_round)
+            mix(coupling);
         else
-            status = newton_step(both, occupancy, losses, reason);
+            status = newton_step(coupling, occupancy, losses, reason);
         if (status) return status;
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: the evaporation of %d menisci differs from the flow to them "
                   "by %.3g of the rate into the air; the widest are driven by %.2g of "
                   "what flat ones would be",
-                  both->n, apart / kelvin->rate, kelvin_drive(kelvin));
+                  coupling->n, apart / kelvin->rate, kelvin_drive(kelvin));
 }
 
 // A full throat that loses no more than the rate is agreed to loses nothing.
-static void drop_noise(const struct kelvin_viscous *both,
+static void drop_noise(const struct kelvin_viscous *coupling,
                        const struct occupancy *occupancy, struct losses *losses)
 {
-    const double noise = agreement(both);
+    const double noise = coupling_tolerance(coupling);
     int n = 0;
     for (int k = 0; k < losses->n; k++)
         if (!throat_is_full(occupancy, losses->loss[k].throat) ||
@@ -373,43 +385,44 @@ static void drop_noise(const struct kelvin_viscous *both,
     losses->n = n;
 }
 
-static void keep(struct kelvin_viscous *both, const struct occupancy *occupancy)
+static void keep(struct kelvin_viscous *coupling, const struct occupancy *occupancy)
 {
     bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
-    for (int k = 0; k < both->n; k++)
-        any[occupancy->clusters.of_throat[throat_of(both, k)]] |=
-            both->flow->moving[throat_of(both, k)];
-    for (int k = 0; k < both->n; k++) {
-        const int throat = throat_of(both, k);
-        both->excess[throat] = fmax(both->flow->excess[throat], 0);
-        both->waited[throat] = !any[occupancy->clusters.of_throat[throat]];
+    for (int k = 0; k < coupling->n; k++)
+        any[occupancy->clusters.of_throat[throat_of(coupling, k)]] |=
+            coupling->flow->moving[throat_of(coupling, k)];
+    for (int k = 0; k < coupling->n; k++) {
+        const int throat = throat_of(coupling, k);
+        coupling->excess[throat] = fmax(coupling->flow->excess[throat], 0);
+        coupling->waited[throat] = !any[occupancy->clusters.of_throat[throat]];
     }
     free(any);
 }
 
-enum status kelvin_viscous_find(struct kelvin_viscous *both,
+enum status kelvin_viscous_find(struct kelvin_viscous *coupling,
                                 struct occupancy *occupancy, struct losses *losses,
                                 struct reason *reason)
 {
-    kelvin_menisci_begin(both->kelvin, occupancy);
-    list_menisci(both, occupancy);
-    begin_lone(both, occupancy);
-    find_drops(both, occupancy);
-    for (int round = 0; round < MOST_REVISIONS; round++) {
+    kelvin_menisci_begin(coupling->kelvin, occupancy);
+    list_menisci(coupling, occupancy);
+    begin_lone(coupling, occupancy);
+    find_response_bounds(coupling, occupancy);
+    for (int round = 0; round < MAX_REVISIONS; round++) {
         const bool at_once = round < REVISIONS_AT_ONCE;
-        const enum status status = find_both(both, occupancy, at_once, losses, reason);
+        const enum status status =
+            solve_coupling(coupling, occupancy, at_once, losses, reason);
         if (status) return status;
-        if (revise(both, occupancy, at_once ? 0 : VERGE, agreement(both),
-                   at_once ? both->n : 1) > 0)
+        if (revise(coupling, occupancy, at_once ? 0 : HYSTERESIS,
+                   coupling_tolerance(coupling), at_once ? coupling->n : 1) > 0)
             continue;
-        keep(both, occupancy);
-        drop_noise(both, occupancy, losses);
+        keep(coupling, occupancy);
+        drop_noise(coupling, occupancy, losses);
         const enum status ended =
-            kelvin_menisci_end(both->kelvin, occupancy, losses, reason);
+            kelvin_menisci_end(coupling->kelvin, occupancy, losses, reason);
         losses_sort(losses);
         return ended;
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "kelvin: no consistent menisci after %d rounds, among %d that flow",
-                  MOST_REVISIONS, both->n);
+                  MAX_REVISIONS, coupling->n);
 }

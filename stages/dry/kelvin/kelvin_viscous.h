@@ -30,10 +30,10 @@ struct kelvin_viscous {
 
     // Of the menisci at hand that flow.
     int n;
-    int *body;         // (n) place in KELVIN
-    double *x, *image; // (n) surpluses
-    double *lumped;    // (n) fall of what evaporates with the potential, all of its
-    double *single;    // cluster changing alike; or it alone
+    int *body;          // (n) place in KELVIN
+    double *x, *mapped; // (n) surpluses
+    double *lumped;     // (n) fall of what evaporates with the potential, all of its
+    double *single;     // cluster changing alike; or it alone
     struct anderson anderson;
 };
 
@@ -45,13 +45,13 @@ struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
 // come in ascending throats.
 //
 // STATUS_NOT_CONVERGED if flow and vapour are not found.
-enum status kelvin_viscous_find(struct kelvin_viscous *both,
+enum status kelvin_viscous_find(struct kelvin_viscous *coupling,
                                 struct occupancy *occupancy, struct losses *losses,
                                 struct reason *reason);
 
-void kelvin_viscous_state(struct kelvin_viscous *both,
+void kelvin_viscous_state(struct kelvin_viscous *coupling,
                           struct checkpoint_stream *stream);
 
-void kelvin_viscous_free(struct kelvin_viscous *both);
+void kelvin_viscous_free(struct kelvin_viscous *coupling);
 
 #endif

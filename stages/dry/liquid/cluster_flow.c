@@ -3,33 +3,33 @@
 
 #include <math.h>
 
-static void list_ends(struct liquid_flow *flow, const struct piece *piece)
+static void list_ends(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
     solver->n_mover = 0;
-    for (int t = first_throat(solver, piece, LIST_MENISCI); t >= 0;
-         t = solver->lists.next[t])
+    for (int t = first_throat(solver, problem, LIST_MENISCI); t >= 0;
+         t = solver->members.next[t])
         if (flow->moving[t]) solver->mover[solver->n_mover++] = t;
     solver->n_end = solver->n_mover;
-    for (int t = first_throat(solver, piece, LIST_MENISCI); flow->response && t >= 0;
-         t = solver->lists.next[t])
+    for (int t = first_throat(solver, problem, LIST_MENISCI); flow->response && t >= 0;
+         t = solver->members.next[t])
         if (!flow->moving[t] && flow->response[t] > 0)
             solver->mover[solver->n_end++] = t;
 }
 
-enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
-                               struct reason *reason)
+enum status cluster_flow_solve(struct liquid_flow *flow,
+                               struct cluster_problem *problem, struct reason *reason)
 {
     struct flow_solver *solver = flow->solver;
     double error = INFINITY;
-    list_ends(flow, piece);
-    struct cluster_laplacian *graph = find_graph(flow, piece);
-    if (graph) error = solve_cluster_cholesky(flow, piece, graph);
+    list_ends(flow, problem);
+    struct cluster_laplacian *graph = find_graph(flow, problem);
+    if (graph) error = solve_cluster_cholesky(flow, problem, graph);
     if (graph && !(error < FLOW_TOLERANCE)) {
-        free_graph(solver, &solver->cluster[piece->cluster]);
-        list_nodes(flow, piece);
+        free_graph(solver, &solver->cluster[problem->cluster]);
+        list_nodes(flow, problem);
     }
-    if (!(error < FLOW_TOLERANCE)) error = solve_cluster_elimination(flow, piece);
+    if (!(error < FLOW_TOLERANCE)) error = solve_cluster_elimination(flow, problem);
     if (!(error < FLOW_TOLERANCE))
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "the liquid's balance closes to %.3g of its largest flow only, "

@@ -11,17 +11,18 @@
 #define FLOW_TOLERANCE 1e-11
 
 // Potentials, flows to the menisci that FLOW says move, and their scale.
-enum status cluster_flow_solve(struct liquid_flow *flow, struct piece *piece,
-                               struct reason *reason);
+enum status cluster_flow_solve(struct liquid_flow *flow,
+                               struct cluster_problem *problem, struct reason *reason);
 
 // Either way: movers and nodes are listed; returns the error of the balances, of the
 // largest flow.
-double solve_cluster_elimination(struct liquid_flow *flow, struct piece *piece);
-double solve_cluster_cholesky(struct liquid_flow *flow, struct piece *piece,
+double solve_cluster_elimination(struct liquid_flow *flow,
+                                 struct cluster_problem *problem);
+double solve_cluster_cholesky(struct liquid_flow *flow, struct cluster_problem *problem,
                               struct cluster_laplacian *graph);
 
 // The cluster's graph; NULL if it is too small for one: then its nodes are listed.
 struct cluster_laplacian *find_graph(struct liquid_flow *flow,
-                                     const struct piece *piece);
+                                     const struct cluster_problem *problem);
 
 #endif

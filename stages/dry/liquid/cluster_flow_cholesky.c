@@ -9,15 +9,15 @@
 // A cluster of at least this many nodes has a graph, which is made anew when this part
 // of its nodes have left.
 enum { GRAPH_NODES = 150, REFINEMENTS = 8 };
-static const double MOST_LEFT = 0.06;
+static const double MAX_LEFT_SHARE = 0.06;
 
-static int list_links(struct liquid_flow *flow, const struct piece *piece)
+static int list_links(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
     int n_link = 0;
     for (enum throat_list l = 0; l < LISTS; l++)
-        for (int t = first_throat(solver, piece, l); t >= 0;
-             t = solver->lists.next[t]) {
+        for (int t = first_throat(solver, problem, l); t >= 0;
+             t = solver->members.next[t]) {
             int end[2];
             solver->entry[t] = -1;
             if (liquid_ends(flow, t, end) != 2) continue;
@@ -30,14 +30,14 @@ static int list_links(struct liquid_flow *flow, const struct piece *piece)
 }
 
 // The nodes are listed.
-static bool make_graph(struct liquid_flow *flow, const struct piece *piece)
+static bool make_graph(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
-    struct cluster_memory *memory = &solver->cluster[piece->cluster];
+    struct cluster_memory *memory = &solver->cluster[problem->cluster];
     const int n = solver->n_node;
     for (int k = 0; k < n; k++)
         solver->site[solver->node[k]] = k;
-    const int n_link = list_links(flow, piece);
+    const int n_link = list_links(flow, problem);
     for (int k = 0; k < n; k++)
         solver->site[solver->node[k]] = -1;
     int *row = NEW_ARRAY(int, n), *entry = NEW_ARRAY(int, n_link);
@@ -52,8 +52,8 @@ static bool make_graph(struct liquid_flow *flow, const struct piece *piece)
                 memory->graph->potential[row[k]] = solver->potential[solver->node[k]];
         }
         for (enum throat_list l = 0; l < LISTS; l++)
-            for (int t = first_throat(solver, piece, l); t >= 0;
-                 t = solver->lists.next[t])
+            for (int t = first_throat(solver, problem, l); t >= 0;
+                 t = solver->members.next[t])
                 if (solver->entry[t] >= 0) solver->entry[t] = entry[solver->entry[t]];
     }
     free(row);
@@ -62,41 +62,43 @@ static bool make_graph(struct liquid_flow *flow, const struct piece *piece)
 }
 
 struct cluster_laplacian *find_graph(struct liquid_flow *flow,
-                                     const struct piece *piece)
+                                     const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
-    struct cluster_memory *memory = &solver->cluster[piece->cluster];
+    struct cluster_memory *memory = &solver->cluster[problem->cluster];
     const struct cluster_laplacian *old = memory->graph;
-    if (old && old->n_left <= MOST_LEFT * old->n) return memory->graph;
+    if (old && old->n_left <= MAX_LEFT_SHARE * old->n) return memory->graph;
     free_graph(solver, memory);
-    list_nodes(flow, piece);
-    if (solver->n_node >= GRAPH_NODES) make_graph(flow, piece);
+    list_nodes(flow, problem);
+    if (solver->n_node >= GRAPH_NODES) make_graph(flow, problem);
     return memory->graph;
 }
 
 // Potentials are above that of another throat now.
-static void change_reference(struct liquid_flow *flow, const struct piece *piece)
+static void change_reference(struct liquid_flow *flow,
+                             const struct cluster_problem *problem)
 {
-    struct cluster_memory *memory = &flow->solver->cluster[piece->cluster];
-    if (memory->reference >= 0 && memory->reference != piece->reference) {
+    struct cluster_memory *memory = &flow->solver->cluster[problem->cluster];
+    if (memory->reference >= 0 && memory->reference != problem->reference) {
         const double rise =
-            menisci_potential(&flow->menisci, memory->reference, piece->reference);
+            menisci_potential(&flow->menisci, memory->reference, problem->reference);
         for (int k = 0; k < memory->graph->n; k++)
             compensated_add(&memory->graph->potential[k], rise);
     }
-    memory->reference = piece->reference;
+    memory->reference = problem->reference;
 }
 
 // What menisci take that stay, and the arms to those that move or respond.
-static void describe_menisci(struct liquid_flow *flow, const struct piece *piece,
-                             struct cluster_laplacian *graph)
+static void set_boundary_conditions(struct liquid_flow *flow,
+                                    const struct cluster_problem *problem,
+                                    struct cluster_laplacian *graph)
 {
     struct flow_solver *solver = flow->solver;
     int n_arm = 0;
     for (int k = 0; k < graph->n; k++)
         graph->source[k] = 0;
-    for (int t = first_throat(solver, piece, LIST_MENISCI); t >= 0;
-         t = solver->lists.next[t]) {
+    for (int t = first_throat(solver, problem, LIST_MENISCI); t >= 0;
+         t = solver->members.next[t]) {
         int end[2];
         const int n = liquid_ends(flow, t, end);
         if (solver->entry[t] >= 0 && n == 2)
@@ -107,7 +109,7 @@ static void describe_menisci(struct liquid_flow *flow, const struct piece *piece
             if (flow->moving[t])
                 solver->arm[n_arm++] = (struct graph_arm){
                     row, meniscus_arm(flow, t, n),
-                    menisci_potential(&flow->menisci, t, piece->reference)};
+                    menisci_potential(&flow->menisci, t, problem->reference)};
             else
                 graph->source[row] -= extracted_from_end(flow, t, n);
         }
@@ -118,7 +120,7 @@ static void describe_menisci(struct liquid_flow *flow, const struct piece *piece
         for (int e = 0; e < n; e++)
             solver->arm[n_arm++] =
                 (struct graph_arm){solver->row[end[e]], response_arm(flow, t, n),
-                                   end_potential(flow, t, piece->reference)};
+                                   end_potential(flow, t, problem->reference)};
     }
     cluster_laplacian_set_arms(graph, n_arm, solver->arm);
 }
@@ -144,24 +146,24 @@ static void collect_inflow(struct liquid_flow *flow,
 
 // What the worst balance lacks, of the largest flow; 0 where nothing flows, as between
 // menisci that are all alike.
-static double graph_error(struct liquid_flow *flow, struct piece *piece,
+static double graph_error(struct liquid_flow *flow, struct cluster_problem *problem,
                           struct cluster_laplacian *graph)
 {
     const double residual = cluster_laplacian_residual(graph);
     collect_inflow(flow, graph);
-    piece->flow = flow_scale(flow, piece);
-    return residual > 0 ? residual / piece->flow : 0;
+    problem->flow = flow_scale(flow, problem);
+    return residual > 0 ? residual / problem->flow : 0;
 }
 
-double solve_cluster_cholesky(struct liquid_flow *flow, struct piece *piece,
+double solve_cluster_cholesky(struct liquid_flow *flow, struct cluster_problem *problem,
                               struct cluster_laplacian *graph)
 {
-    change_reference(flow, piece);
-    describe_menisci(flow, piece, graph);
-    double error = graph_error(flow, piece, graph);
+    change_reference(flow, problem);
+    set_boundary_conditions(flow, problem, graph);
+    double error = graph_error(flow, problem, graph);
     for (int k = 0; k < REFINEMENTS && !(error <= FLOW_TARGET); k++) {
-        const bool good = cluster_laplacian_correct(graph, FLOW_TARGET * piece->flow);
-        error = graph_error(flow, piece, graph);
+        const bool good = cluster_laplacian_correct(graph, FLOW_TARGET * problem->flow);
+        error = graph_error(flow, problem, graph);
         if (!good) break;
     }
     return error;

@@ -43,10 +43,11 @@ static void link_end(struct liquid_flow *flow, int k)
 }
 
 // Returns by how much what flows to the menisci differs from what is taken on the way.
-static double find_inflow(struct liquid_flow *flow, const struct piece *piece)
+static double find_inflow(struct liquid_flow *flow,
+                          const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
-    double sum = piece->evaporation;
+    double sum = problem->evaporation;
     for (int k = 0; k < solver->n_end; k++) {
         const int throat = solver->mover[k];
         int end[2];
@@ -54,19 +55,20 @@ static double find_inflow(struct liquid_flow *flow, const struct piece *piece)
         solver->inflow[throat] = kron_flow(&solver->kron, k, drop_between_ends, flow);
         if (k >= solver->n_mover)
             solver->inflow[throat] += n * extracted_from_end(flow, throat, n);
-        sum += solver->inflow[throat] - solver->charge[throat];
+        sum += solver->inflow[throat] - solver->evaporation[throat];
     }
     return fabs(sum);
 }
 
-static void keep_potentials(struct liquid_flow *flow, const struct piece *piece)
+static void keep_potentials(struct liquid_flow *flow,
+                            const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
-    struct cluster_memory *memory = &solver->cluster[piece->cluster];
+    struct cluster_memory *memory = &solver->cluster[problem->cluster];
     double *level = solver->level;
     for (int k = 0; k < solver->n_end; k++)
         level[solver->n_node + k] =
-            end_potential(flow, solver->mover[k], piece->reference);
+            end_potential(flow, solver->mover[k], problem->reference);
     kron_potentials(&solver->kron, level);
     for (int k = 0; k < solver->n_node; k++) {
         const int node = solver->node[k];
@@ -75,26 +77,28 @@ static void keep_potentials(struct liquid_flow *flow, const struct piece *piece)
                           : &solver->potential[node];
         *potential = (struct compensated){.value = level[k]};
     }
-    memory->reference = piece->reference;
+    memory->reference = problem->reference;
 }
 
 // The nodes are listed. Returns the error of the balance.
-double solve_cluster_elimination(struct liquid_flow *flow, struct piece *piece)
+double solve_cluster_elimination(struct liquid_flow *flow,
+                                 struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
     kron_begin(&solver->kron, solver->n_node, solver->n_end);
     for (int k = 0; k < solver->n_node; k++)
         solver->site[solver->node[k]] = k;
     for (enum throat_list l = 0; l < LISTS; l++)
-        for (int t = first_throat(solver, piece, l); t >= 0; t = solver->lists.next[t])
+        for (int t = first_throat(solver, problem, l); t >= 0;
+             t = solver->members.next[t])
             if (!flow->moving[t]) link_throat(flow, t);
     for (int k = 0; k < solver->n_end; k++)
         link_end(flow, k);
     for (int k = 0; k < solver->n_node; k++)
         solver->site[solver->node[k]] = -1;
     kron_eliminate(&solver->kron);
-    const double residual = find_inflow(flow, piece);
-    keep_potentials(flow, piece);
-    piece->flow = flow_scale(flow, piece);
-    return residual > 0 ? residual / piece->flow : 0;
+    const double residual = find_inflow(flow, problem);
+    keep_potentials(flow, problem);
+    problem->flow = flow_scale(flow, problem);
+    return residual > 0 ? residual / problem->flow : 0;
 }

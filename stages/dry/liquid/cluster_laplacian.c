@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 // When conjugate gradients take more steps than this, the factor has drifted away.
-enum { MOST_STEPS = 30 };
+enum { MAX_STEPS = 30 };
 
 // --- the rows ------------------------------------------------------------------------
 
@@ -140,14 +140,14 @@ double cluster_laplacian_residual(struct cluster_laplacian *graph)
     return isfinite(sum) ? largest : INFINITY;
 }
 
-static void multiply(void *context, const double *x, double *image)
+static void multiply(void *context, const double *x, double *product)
 {
     const struct cluster_laplacian *graph = context;
     for (int i = 0; i < graph->n; i++) {
         double sum = graph->ground[i] * x[i];
         for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
             sum += graph->conductance[k] * (x[i] - x[graph->column[k]]);
-        image[i] = sum;
+        product[i] = sum;
     }
 }
 
@@ -180,11 +180,11 @@ bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance
 {
     if (!updated_cholesky_follow(graph->factor, graph)) return false;
     level_potentials(graph);
-    double **room = updated_cholesky_room(graph->factor);
+    double **scratch = updated_cholesky_scratch(graph->factor);
     const struct linear_problem problem = {
-        graph->n, graph, multiply, precondition, {room[0], room[1], room[2]}};
-    double *correction = room[3];
-    conjugate_gradients(&problem, graph->residual, correction, tolerance, MOST_STEPS);
+        graph->n, graph, multiply, precondition, {scratch[0], scratch[1], scratch[2]}};
+    double *correction = scratch[3];
+    conjugate_gradients(&problem, graph->residual, correction, tolerance, MAX_STEPS);
     if (!(sqrt(sum_of_products(graph->residual, graph->residual, graph->n)) <=
           tolerance))
         updated_cholesky_forget(graph->factor);

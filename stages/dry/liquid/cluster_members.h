@@ -22,15 +22,15 @@ struct cluster_members cluster_members_make(const struct clusters *clusters,
                                             int n_throat);
 
 // Puts THROAT where CLUSTERS has it now.
-void cluster_members_follow(struct cluster_members *lists,
+void cluster_members_follow(struct cluster_members *members,
                             const struct clusters *clusters, int throat);
 
-static inline int cluster_members_first(const struct cluster_members *lists,
+static inline int cluster_members_first(const struct cluster_members *members,
                                         int cluster, enum throat_list list)
 {
-    return cluster < lists->capacity ? lists->first[cluster][list] : -1;
+    return cluster < members->capacity ? members->first[cluster][list] : -1;
 }
 
-void cluster_members_free(struct cluster_members *lists);
+void cluster_members_free(struct cluster_members *members);
 
 #endif

@@ -8,7 +8,7 @@
 
 // Of the flow that a response would make of all of a potential: what rounding leaves is
 // FLOW_TARGET of this.
-static const double ROUNDED = 1e-2;
+static const double ROUNDING_SHARE = 1e-2;
 
 // --- one throat, one cluster ---------------------------------------------------------
 
@@ -54,7 +54,7 @@ double response_arm(const struct liquid_flow *flow, int throat, int n)
 
 double extracted_from_end(const struct liquid_flow *flow, int throat, int n)
 {
-    return flow->solver->charge[throat] / n * through_arm(flow, throat, n);
+    return flow->solver->evaporation[throat] / n * through_arm(flow, throat, n);
 }
 
 double end_potential(const struct liquid_flow *flow, int throat, int reference)
@@ -70,10 +70,10 @@ double node_potential(const struct flow_solver *solver, int cluster, int node)
                                    : solver->potential[node]);
 }
 
-int first_throat(const struct flow_solver *solver, const struct piece *piece,
-                 enum throat_list list)
+int first_throat(const struct flow_solver *solver,
+                 const struct cluster_problem *problem, enum throat_list list)
 {
-    return cluster_members_first(&solver->lists, piece->cluster, list);
+    return cluster_members_first(&solver->members, problem->cluster, list);
 }
 
 static void add_node(struct flow_solver *solver, int node)
@@ -83,13 +83,13 @@ static void add_node(struct flow_solver *solver, int node)
     solver->node[solver->n_node++] = node;
 }
 
-void list_nodes(struct liquid_flow *flow, const struct piece *piece)
+void list_nodes(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
     solver->n_node = 0;
     for (enum throat_list l = 0; l < LISTS; l++)
-        for (int t = first_throat(solver, piece, l); t >= 0;
-             t = solver->lists.next[t]) {
+        for (int t = first_throat(solver, problem, l); t >= 0;
+             t = solver->members.next[t]) {
             int end[2];
             const int n = liquid_ends(flow, t, end);
             for (int e = 0; e < n; e++)
@@ -154,16 +154,16 @@ void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occu
     const struct clusters *clusters = &occupancy->clusters;
     const struct incidence *incidence = &occupancy->incidence;
     reserve(solver, clusters->n_id);
-    const int old = solver->lists.cluster[throat];
+    const int old = solver->members.cluster[throat];
     struct cluster_memory *memory = &solver->cluster[old];
     const int32_t *node = occupancy->network->throat_nodes[throat];
     for (int end = 0; end < 2; end++)
         cut_node(solver, memory, node[end]);
-    cluster_members_follow(&solver->lists, clusters, throat);
+    cluster_members_follow(&solver->members, clusters, throat);
     for (int k = 0; k < clusters->n_moved; k++) {
         const int moved = clusters->moved[k];
         part_with(solver, occupancy->network, memory, moved);
-        cluster_members_follow(&solver->lists, clusters, moved);
+        cluster_members_follow(&solver->members, clusters, moved);
         solver->cluster[clusters->of_throat[moved]] =
             (struct cluster_memory){.reference = memory->reference,
                                     .resistance = memory->resistance,
@@ -172,7 +172,7 @@ void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occu
     for (int end = 0; end < 2; end++)
         for (int k = incidence->offset[node[end]]; k < incidence->offset[node[end] + 1];
              k++)
-            cluster_members_follow(&solver->lists, clusters, incidence->throat[k]);
+            cluster_members_follow(&solver->members, clusters, incidence->throat[k]);
     if (clusters->size[old] > 0) return;
     free_graph(solver, memory);
     *memory = (struct cluster_memory){.reference = -1};
@@ -185,8 +185,8 @@ void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occu
         solver->cluster[c] = (struct cluster_memory){.reference = -1};
     }
     reserve(solver, occupancy->clusters.n_id);
-    cluster_members_free(&solver->lists);
-    solver->lists =
+    cluster_members_free(&solver->members);
+    solver->members =
         cluster_members_make(&occupancy->clusters, occupancy->network->n_throat);
 }
 
@@ -196,7 +196,7 @@ struct flow_solver *flow_solver_make(const struct occupancy *occupancy)
               n_throat = occupancy->network->n_throat;
     struct flow_solver *solver = NEW_ARRAY(struct flow_solver, 1);
     *solver = (struct flow_solver){
-        .lists = cluster_members_make(&occupancy->clusters, n_throat),
+        .members = cluster_members_make(&occupancy->clusters, n_throat),
         .row = NEW_ARRAY(int, n_node),
         .entry = NEW_ARRAY(int, n_throat),
         .potential = NEW_ARRAY(struct compensated, n_node),
@@ -222,7 +222,7 @@ void flow_solver_free(struct flow_solver *solver)
     for (int c = 0; c < solver->capacity; c++)
         free_graph(solver, &solver->cluster[c]);
     cholmod_finish(&solver->common);
-    cluster_members_free(&solver->lists);
+    cluster_members_free(&solver->members);
     kron_free(&solver->kron);
     free(solver->cluster);
     free(solver->row);
@@ -240,18 +240,18 @@ void flow_solver_free(struct flow_solver *solver)
 
 // --- scale ---------------------------------------------------------------------------
 
-double flow_scale(const struct liquid_flow *flow, const struct piece *piece)
+double flow_scale(const struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     const struct flow_solver *solver = flow->solver;
-    double scale = piece->turnover;
+    double scale = problem->turnover;
     for (int k = 0; k < solver->n_mover; k++)
         scale = fmax(scale, fabs(solver->inflow[solver->mover[k]]));
     for (int k = solver->n_mover; k < solver->n_end; k++) {
         const int throat = solver->mover[k];
         const double moves =
-            menisci_potential(&flow->menisci, throat, piece->reference);
+            menisci_potential(&flow->menisci, throat, problem->reference);
         const double sum = fabs(moves) + fabs(flow->excess[throat]);
-        scale = fmax(scale, ROUNDED * flow->response[throat] * sum);
+        scale = fmax(scale, ROUNDING_SHARE * flow->response[throat] * sum);
     }
     return scale;
 }

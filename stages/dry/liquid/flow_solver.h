@@ -25,9 +25,9 @@ struct cluster_memory {
 
 struct flow_solver {
     const struct occupancy *occupancy;
-    const double *charge;
+    const double *evaporation;
     cholmod_common common;
-    struct cluster_members lists;
+    struct cluster_members members;
     int capacity;
     struct cluster_memory *cluster; // (capacity) by identity
     struct kron kron;
@@ -49,7 +49,7 @@ struct flow_solver {
 
 // A cluster of liquid at this step. Its unknowns are the potentials at nodes that
 // liquid fills and passes through.
-struct piece {
+struct cluster_problem {
     int cluster, n_throat;
     int reference;      // throat that gas enters most easily: potentials are above its
     double evaporation; // of all its throats
@@ -64,7 +64,8 @@ struct flow_solver *flow_solver_make(const struct occupancy *occupancy);
 void flow_solver_free(struct flow_solver *solver);
 
 // The scale of the flows: the largest to or from a moving meniscus, or what evaporates.
-double flow_scale(const struct liquid_flow *flow, const struct piece *piece);
+double flow_scale(const struct liquid_flow *flow,
+                  const struct cluster_problem *problem);
 
 // Nothing is remembered of the clusters as they were.
 void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occupancy);
@@ -82,8 +83,8 @@ int liquid_ends(const struct liquid_flow *flow, int throat, int end[2]);
 // From the meniscus of THROAT to each of its N liquid ends.
 double meniscus_arm(const struct liquid_flow *flow, int throat, int n);
 
-// The same where the vapour responds, up to where the meniscus would evaporate CHARGE;
-// what is taken from each of its N liquid ends; potential there.
+// The same where the vapour responds, up to where the meniscus would evaporate
+// EVAPORATION; what is taken from each of its N liquid ends; potential there.
 double response_arm(const struct liquid_flow *flow, int throat, int n);
 double extracted_from_end(const struct liquid_flow *flow, int throat, int n);
 double end_potential(const struct liquid_flow *flow, int throat, int reference);
@@ -92,11 +93,11 @@ double end_potential(const struct liquid_flow *flow, int throat, int reference);
 double node_potential(const struct flow_solver *solver, int cluster, int node);
 
 // Lists the cluster's nodes in the solver's NODE.
-void list_nodes(struct liquid_flow *flow, const struct piece *piece);
+void list_nodes(struct liquid_flow *flow, const struct cluster_problem *problem);
 
 // Of the cluster at hand, on either list; -1: none.
-int first_throat(const struct flow_solver *solver, const struct piece *piece,
-                 enum throat_list list);
+int first_throat(const struct flow_solver *solver,
+                 const struct cluster_problem *problem, enum throat_list list);
 
 // The potentials go to the solver's, and the graph is gone, if there was one.
 void free_graph(struct flow_solver *solver, struct cluster_memory *memory);

@@ -8,15 +8,15 @@
 struct losses losses_make(int n_throat)
 {
     return (struct losses){.loss = NEW_ARRAY(struct loss, n_throat),
-                           .charge = NEW_ARRAY(double, n_throat),
-                           .charged = NEW_ARRAY(int, n_throat)};
+                           .evaporation = NEW_ARRAY(double, n_throat),
+                           .evaporating = NEW_ARRAY(int, n_throat)};
 }
 
 void losses_free(struct losses *losses)
 {
     free(losses->loss);
-    free(losses->charge);
-    free(losses->charged);
+    free(losses->evaporation);
+    free(losses->evaporating);
     *losses = (struct losses){0};
 }
 
@@ -26,8 +26,8 @@ double liquid_section(const struct occupancy *occupancy, int throat)
     return occupancy->volume[throat] / occupancy->network->throat_length[throat];
 }
 
-static void charge_throats(struct losses *losses, const struct occupancy *occupancy,
-                           int node)
+static void share_evaporation(struct losses *losses, const struct occupancy *occupancy,
+                              int node)
 {
     const double evaporation = vapour_evaporation(&occupancy->vapour, node);
     if (!(evaporation > 0)) return; // shut in
@@ -38,11 +38,12 @@ static void charge_throats(struct losses *losses, const struct occupancy *occupa
         section += liquid_section(occupancy, occupancy->incidence.throat[k]);
     for (int k = begin; k < end; k++) {
         const int throat = occupancy->incidence.throat[k];
-        const double charge =
+        const double share =
             evaporation * (liquid_section(occupancy, throat) / section);
-        if (!(charge > 0)) continue;
-        if (losses->charge[throat] == 0) losses->charged[losses->n_charged++] = throat;
-        losses->charge[throat] += charge;
+        if (!(share > 0)) continue;
+        if (losses->evaporation[throat] == 0)
+            losses->evaporating[losses->n_evaporating++] = throat;
+        losses->evaporation[throat] += share;
     }
 }
 
@@ -62,13 +63,13 @@ enum status losses_find(struct losses *losses, struct occupancy *occupancy,
                         struct liquid_flow *flow, struct reason *reason)
 {
     losses->n = 0;
-    losses->n_charged = 0;
+    losses->n_evaporating = 0;
     for (int k = 0; k < occupancy->n_wet; k++)
-        charge_throats(losses, occupancy, occupancy->wet[k]);
-    const enum status status = liquid_flow_find(flow, occupancy, losses->charge,
+        share_evaporation(losses, occupancy, occupancy->wet[k]);
+    const enum status status = liquid_flow_find(flow, occupancy, losses->evaporation,
                                                 losses->loss, &losses->n, reason);
-    for (int k = 0; k < losses->n_charged; k++)
-        losses->charge[losses->charged[k]] = 0;
+    for (int k = 0; k < losses->n_evaporating; k++)
+        losses->evaporation[losses->evaporating[k]] = 0;
     losses_sort(losses);
     return status;
 }

@@ -15,9 +15,9 @@ struct losses {
     int n;
     struct loss *loss; // (n) ascending throats
     // Workspace, all zero between calls.
-    double *charge; // (n_throat) what each throat is charged with
-    int n_charged;
-    int *charged; // (n_charged) throats
+    double *evaporation; // (n_throat) what each throat is charged with
+    int n_evaporating;
+    int *evaporating; // (n_evaporating) throats
 };
 
 // Room for N_THROAT throats. The caller frees it with losses_free.

@@ -17,7 +17,7 @@ static void fill_throats(struct occupancy *occupancy, double length)
         occupancy->volume[t] = throat_volume(network, t) / (length * length * length);
         occupancy->liquid[t].value = occupancy->volume[t];
         compensated_add(&total, occupancy->volume[t]);
-        occupancy->n_full++;
+        occupancy->n_liquid++;
         for (int end = 0; end < 2; end++)
             occupancy->liquid_beside[network->throat_nodes[t][end]]++;
     }
@@ -91,7 +91,7 @@ enum status occupancy_make(const struct network *network, unsigned open_walls,
 
 void occupancy_empty_throat(struct occupancy *occupancy, int throat)
 {
-    occupancy->n_full--;
+    occupancy->n_liquid--;
     occupancy->liquid[throat] = (struct compensated){0};
     vapour_open_throat(&occupancy->vapour, throat,
                        occupancy->network->throat_nodes[throat][0],
@@ -139,7 +139,7 @@ void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stre
     stream_sums(stream, occupancy->liquid, n_throat);
     stream_sums(stream, &occupancy->total_liquid, 1);
     stream_numbers(stream, &occupancy->initial_liquid, 1);
-    stream_integer(stream, &occupancy->n_full, 0, n_throat);
+    stream_integer(stream, &occupancy->n_liquid, 0, n_throat);
     stream_flags(stream, occupancy->gas, n_node);
     stream_integers(stream, occupancy->liquid_beside, n_node, 0, n_throat);
     stream_integer(stream, &occupancy->n_wet, 0, n_node);

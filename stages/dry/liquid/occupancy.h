@@ -22,7 +22,7 @@ struct occupancy {
     double capacity;            // volume of all
     double initial_liquid;
     struct compensated total_liquid;
-    int n_full; // throats not yet empty
+    int n_liquid; // throats not yet empty
 
     bool *gas;          // (n_node)
     int *liquid_beside; // (n_node) throats with liquid at the node

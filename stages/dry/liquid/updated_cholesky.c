@@ -10,7 +10,7 @@
 #include <string.h>
 
 // More changes than this at once are factorised.
-enum { MOST_CHANGES = 300, ROOM = 4 };
+enum { MAX_CHANGES = 300, SCRATCH_ARRAYS = 4 };
 
 // Up to so many arms are followed closely; more, when they have changed by this part of
 // what the factor has.
@@ -28,8 +28,8 @@ struct updated_cholesky {
     double *conductance; // (entries) in the factor, at the first of a link's two places
     double *ground;      // (n) of arms, in the factor
     int n_noted, capacity;
-    int *noted;                // (n_noted) entries that have changed, some twice
-    double *room[ROOM], *work; // (n)
+    int *noted; // (n_noted) entries that have changed, some twice
+    double *scratch[SCRATCH_ARRAYS], *work; // (n)
 };
 
 // --- from scratch --------------------------------------------------------------------
@@ -108,8 +108,8 @@ struct updated_cholesky *updated_cholesky_make(cholmod_common *common,
                                             NEW_ARRAY(double, graph->offset[graph->n]),
                                         .ground = NEW_ARRAY(double, graph->n),
                                         .work = NEW_ARRAY(double, graph->n)};
-    for (int k = 0; k < ROOM; k++)
-        factor->room[k] = NEW_ARRAY(double, graph->n);
+    for (int k = 0; k < SCRATCH_ARRAYS; k++)
+        factor->scratch[k] = NEW_ARRAY(double, graph->n);
     return factor;
 }
 
@@ -121,8 +121,8 @@ void updated_cholesky_free(struct updated_cholesky *factor)
     free(factor->ground);
     free(factor->noted);
     free(factor->work);
-    for (int k = 0; k < ROOM; k++)
-        free(factor->room[k]);
+    for (int k = 0; k < SCRATCH_ARRAYS; k++)
+        free(factor->scratch[k]);
     free(factor);
 }
 
@@ -131,9 +131,9 @@ void updated_cholesky_forget(struct updated_cholesky *factor)
     cholmod_free_factor(&factor->factor, factor->common);
 }
 
-double **updated_cholesky_room(struct updated_cholesky *factor)
+double **updated_cholesky_scratch(struct updated_cholesky *factor)
 {
-    return factor->room;
+    return factor->scratch;
 }
 
 // --- from what it was ----------------------------------------------------------------
@@ -179,7 +179,7 @@ static bool change_rank(struct updated_cholesky *factor, const struct rank_one *
     return good;
 }
 
-// Returns how many there are; more than MOST_CHANGES if not all found room.
+// Returns how many there are; more than MAX_CHANGES if not all found room.
 static int link_changes(struct updated_cholesky *factor,
                         const struct cluster_laplacian *graph, struct rank_one *change)
 {
@@ -188,7 +188,7 @@ static int link_changes(struct updated_cholesky *factor,
         const int here = factor->noted[k], there = graph->mirror[here];
         const double grown = graph->conductance[here] - factor->conductance[here];
         if (grown == 0) continue;
-        if (n == MOST_CHANGES) return n + 1;
+        if (n == MAX_CHANGES) return n + 1;
         const int a = graph->column[here], b = graph->column[there];
         factor->conductance[here] = factor->conductance[there] =
             graph->conductance[here];
@@ -208,7 +208,7 @@ static int ground_changes(struct updated_cholesky *factor,
         if (grown == 0 || graph->present[i] == 0 ||
             (graph->ground[i] > 0 && fabs(grown) <= least * factor->ground[i]))
             continue;
-        if (n == MOST_CHANGES) return n + 1;
+        if (n == MAX_CHANGES) return n + 1;
         factor->ground[i] = graph->ground[i];
         change[n++] = (struct rank_one){{i, -1}, grown};
     }
@@ -219,10 +219,10 @@ bool updated_cholesky_follow(struct updated_cholesky *factor,
                              const struct cluster_laplacian *graph)
 {
     if (!factor->factor) return factorise(factor, graph);
-    struct rank_one change[MOST_CHANGES];
+    struct rank_one change[MAX_CHANGES];
     int n = link_changes(factor, graph, change);
-    if (n <= MOST_CHANGES) n = ground_changes(factor, graph, change, n);
-    if (n > MOST_CHANGES) return factorise(factor, graph);
+    if (n <= MAX_CHANGES) n = ground_changes(factor, graph, change, n);
+    if (n > MAX_CHANGES) return factorise(factor, graph);
     // What is added comes first: the matrix must stay positive definite.
     if (change_rank(factor, change, n, true) && change_rank(factor, change, n, false))
         return true;

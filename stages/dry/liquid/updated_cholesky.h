@@ -34,6 +34,6 @@ void updated_cholesky_solve(const struct updated_cholesky *factor, const double 
                             double *x);
 
 // Four arrays (n) for who solves with it.
-double **updated_cholesky_room(struct updated_cholesky *factor);
+double **updated_cholesky_scratch(struct updated_cholesky *factor);
 
 #endif

@@ -31,8 +31,9 @@ struct liquid_flow {
     bool *moving;        // (n_throat) its meniscus, when last solved for
     // Where vapour follows the pressure of menisci, else NULL. (n_throat)
     double *response; // of one that stays: rise of what evaporates with the pressure
-    double *excess;   // pressure over that at which it moves, where CHARGE evaporates
-    double *found;    // what that is then; of one that moves: what it loses
+    double
+        *excess;   // pressure over that at which it moves, where EVAPORATION evaporates
+    double *found; // what that is then; of one that moves: what it loses
     bool wants_pressures; // where they decide nothing, too
     double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit,
                       // 0 in gas: if they were wanted
@@ -51,16 +52,17 @@ void liquid_flow_follow(struct liquid_flow *flow, const struct occupancy *occupa
                         int throat);
 
 // Finds which throats lose liquid, or gain it (a negative rate), when each evaporates
-// CHARGE[throat]: LOSS, with room for one entry a throat, and their number N_LOSS, in
-// no order. The losses of a cluster add up to what it evaporates.
+// EVAPORATION[throat]: LOSS, with room for one entry a throat, and their number N_LOSS,
+// in no order. The losses of a cluster add up to what it evaporates.
 //
 // Where vapour follows pressure MOVING is given, partly empty throats among them, and
 // throats by themselves are left out: in them nothing flows.
 //
 // STATUS_NOT_CONVERGED if menisci are not found or the balance does not close.
 enum status liquid_flow_find(struct liquid_flow *flow,
-                             const struct occupancy *occupancy, const double *charge,
-                             struct loss *loss, int *n_loss, struct reason *reason);
+                             const struct occupancy *occupancy,
+                             const double *evaporation, struct loss *loss, int *n_loss,
+                             struct reason *reason);
 
 // What is remembered from call to call only to be faster is not any more: the next
 // goes on from the menisci alone.

@@ -99,19 +99,19 @@ static bool menisci_fit(const struct clusters *clusters)
 static bool liquid_fits(const struct occupancy *occupancy)
 {
     const struct network *network = occupancy->network;
-    int *beside = NEW_ARRAY(int, network->n_node), n_full = 0;
+    int *beside = NEW_ARRAY(int, network->n_node), n_liquid = 0;
     bool fits = true;
     for (int t = 0; t < network->n_throat; t++) {
         if (occupancy->clusters.of_throat[t] < 0) continue;
         fits &= network->throat_kind[t] == THROAT_NETWORK;
-        n_full++;
+        n_liquid++;
         for (int end = 0; end < 2; end++)
             beside[network->throat_nodes[t][end]]++;
     }
     for (int i = 0; i < network->n_node; i++)
         fits &= beside[i] == occupancy->liquid_beside[i];
     free(beside);
-    return fits && n_full == occupancy->n_full;
+    return fits && n_liquid == occupancy->n_liquid;
 }
 
 // Wet nodes are listed once each, have liquid, and menisci in its throats.

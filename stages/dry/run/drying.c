@@ -24,13 +24,13 @@ static void note_first_period(struct run *run)
 
 static void begin(struct run *run)
 {
-    run->n_at_start = run->occupancy.n_full;
+    run->n_at_start = run->occupancy.n_liquid;
     run->first_rate = rate_now(run);
     note_breakthrough(run);
     record_state(run);
 }
 
-static enum status go_on(struct run *run, struct reason *reason)
+static enum status take_step(struct run *run, struct reason *reason)
 {
     if (run->conditions->kelvin) return drying_step_kelvin(run, reason);
     if (run->conditions->liquid == LIQUID_VISCOUS)
@@ -43,11 +43,11 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
 {
     enum status status = STATUS_OK;
     while (!status && goes_on(run)) {
-        status = go_on(run, reason);
+        status = take_step(run, reason);
         note_first_period(run);
         if (progress && progress->report)
             progress->report(progress->context,
-                             1 - (double)run->occupancy.n_full / run->n_at_start);
+                             1 - (double)run->occupancy.n_liquid / run->n_at_start);
         if (!status) keep_if_due(run, progress ? progress->keeper : NULL);
     }
     return status;
@@ -101,7 +101,7 @@ static void prepare(struct run *run)
                              menisci_make(network, run->conditions, &run->scale));
     if (has_kelvin) run->kelvin = kelvin_menisci_make(&run->occupancy, run->conditions);
     if (is_viscous && has_kelvin)
-        run->both = kelvin_viscous_make(&run->kelvin, &run->flow);
+        run->coupling = kelvin_viscous_make(&run->kelvin, &run->flow);
     if (is_viscous || has_kelvin)
         run->losses = losses_make(network->n_throat);
     else
@@ -183,7 +183,7 @@ static void free_run(struct run *run)
 {
     liquid_flow_free(&run->flow);
     losses_free(&run->losses);
-    kelvin_viscous_free(&run->both);
+    kelvin_viscous_free(&run->coupling);
     kelvin_menisci_free(&run->kelvin);
     emptying_times_free(&run->times);
     free(run->ended);

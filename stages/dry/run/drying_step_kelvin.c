@@ -8,21 +8,21 @@ enum status find_kelvin_losses(struct run *run, struct reason *reason)
     if (run->conditions->liquid != LIQUID_VISCOUS)
         return kelvin_menisci_find(&run->kelvin, &run->occupancy, &run->losses, reason);
     run->flow.wants_pressures = snapshot_is_due(run);
-    return kelvin_viscous_find(&run->both, &run->occupancy, &run->losses, reason);
+    return kelvin_viscous_find(&run->coupling, &run->occupancy, &run->losses, reason);
 }
 
 enum status drying_step_kelvin(struct run *run, struct reason *reason)
 {
     struct occupancy *occupancy = &run->occupancy;
     if (run->losses.n == 0) return refuse_standstill(run, reason);
-    const int n_before = occupancy->n_full;
+    const int n_before = occupancy->n_liquid;
     carry_out_losses(run);
     run->n_flow_step++;
-    if (occupancy->n_full > 0) {
+    if (occupancy->n_liquid > 0) {
         const enum status status = find_kelvin_losses(run, reason);
         if (status) return status;
     }
     record_losses(run);
-    if (occupancy->n_full > 0) keep_pressures(run);
-    return note_idle(run, occupancy->n_full == n_before, reason);
+    if (occupancy->n_liquid > 0) keep_pressures(run);
+    return note_idle(run, occupancy->n_liquid == n_before, reason);
 }

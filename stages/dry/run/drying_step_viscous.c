@@ -139,12 +139,12 @@ enum status note_idle(struct run *run, bool idle, struct reason *reason)
 {
     run->n_idle = idle ? run->n_idle + 1 : 0;
     const double most =
-        100.0 * (run->occupancy.n_full + 10) / run->conditions->saturation_step;
+        100.0 * (run->occupancy.n_liquid + 10) / run->conditions->saturation_step;
     if (run->n_idle < most) return STATUS_OK;
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "throats refilled %d times over, and none has emptied, with %d still "
                   "wet (a smaller saturation_step may help)",
-                  run->n_idle, run->occupancy.n_full);
+                  run->n_idle, run->occupancy.n_liquid);
 }
 
 enum status drying_step_viscous(struct run *run, struct reason *reason)
@@ -155,9 +155,9 @@ enum status drying_step_viscous(struct run *run, struct reason *reason)
     if (status) return status;
     keep_pressures(run);
     if (run->losses.n == 0) return refuse_standstill(run, reason);
-    const int n_before = occupancy->n_full;
+    const int n_before = occupancy->n_liquid;
     carry_out_losses(run);
     run->n_flow_step++;
     record_losses(run);
-    return note_idle(run, occupancy->n_full == n_before, reason);
+    return note_idle(run, occupancy->n_liquid == n_before, reason);
 }

@@ -9,7 +9,7 @@
 #include <string.h>
 
 // Of all liquid, in which rounding may end when all that can leave has left.
-static const double LEAST_REST = 1e-12;
+static const double MIN_REST = 1e-12;
 
 // --- by invasion -------------------------------------------------------------------
 
@@ -17,7 +17,7 @@ static const double LEAST_REST = 1e-12;
 // walls.
 enum { INLET = 1, OUTLET = 2 };
 
-static uint8_t *ways_in_and_out(const struct occupancy *occupancy)
+static uint8_t *inlets_and_outlets(const struct occupancy *occupancy)
 {
     const struct network *network = occupancy->network;
     uint8_t *ways = NEW_ARRAY(uint8_t, network->n_node);
@@ -35,7 +35,7 @@ static enum status find_invasion(const struct occupancy *occupancy, bool trappin
     double *entry_priority = NEW_ARRAY(double, network.n_throat);
     for (int t = 0; t < network.n_throat; t++)
         entry_priority[t] = -occupancy->clusters.rank[t];
-    network.node_walls = ways_in_and_out(occupancy);
+    network.node_walls = inlets_and_outlets(occupancy);
     const struct invasion_conditions conditions = {.entry_priority = entry_priority,
                                                    .inlet = INLET,
                                                    .outlet = OUTLET,
@@ -67,7 +67,7 @@ enum status invaded_saturations(const struct occupancy *occupancy, double satura
     }
     invasion_free(&invasion);
     const double rest = compensated_value(excess) / occupancy->capacity;
-    if (rest > LEAST_REST)
+    if (rest > MIN_REST)
         status = refuse(reason, STATUS_BAD_DATA,
                         "start_saturation: must be above %.6g, which gas cuts off "
                         "(start_trapping), is %g",

@@ -74,7 +74,8 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
         losses_state(&run->losses, n_throat, stream);
     }
     if (is_viscous) flow_state(run, stream);
-    if (is_viscous && run->conditions->kelvin) kelvin_viscous_state(&run->both, stream);
+    if (is_viscous && run->conditions->kelvin)
+        kelvin_viscous_state(&run->coupling, stream);
     if (!is_viscous && !run->conditions->kelvin)
         emptying_times_state(&run->times, stream);
 }

@@ -10,21 +10,21 @@
 // From 1 at the start to exactly 0 at the end.
 double network_saturation(const struct run *run)
 {
-    if (run->occupancy.n_full == 0) return 0;
+    if (run->occupancy.n_liquid == 0) return 0;
     const double liquid = compensated_value(run->occupancy.total_liquid);
     return fmin(1, fmax(0, liquid / run->occupancy.capacity));
 }
 
 double rate_now(const struct run *run)
 {
-    if (run->occupancy.n_full == 0) return 0;
+    if (run->occupancy.n_liquid == 0) return 0;
     return run->conditions->kelvin ? run->kelvin.rate
                                    : vapour_rate(&run->occupancy.vapour);
 }
 
 bool goes_on(const struct run *run)
 {
-    return run->occupancy.n_full > 0 &&
+    return run->occupancy.n_liquid > 0 &&
            network_saturation(run) > run->conditions->stop_saturation;
 }
 
@@ -81,5 +81,5 @@ enum status refuse_standstill(const struct run *run, struct reason *reason)
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "nothing evaporates any more with %d throats still wet (rates too "
                   "small for the arithmetic)",
-                  run->occupancy.n_full);
+                  run->occupancy.n_liquid);
 }

@@ -16,13 +16,13 @@ struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
     struct occupancy occupancy;
-    struct emptying_times times;  // of liquid without viscosity, or immobile
-    struct liquid_flow flow;      // of viscous liquid
-    struct kelvin_menisci kelvin; // of menisci with vapour pressures of their own
-    struct kelvin_viscous both;   // of the last two
-    struct losses losses;         // of the last three
-    int n_idle;                   // viscous: steps since a throat has emptied
-    int64_t n_flow_step;          // viscous, curved: steps so far, recorded or not
+    struct emptying_times times;    // of liquid without viscosity, or immobile
+    struct liquid_flow flow;        // of viscous liquid
+    struct kelvin_menisci kelvin;   // of menisci with vapour pressures of their own
+    struct kelvin_viscous coupling; // of the last two
+    struct losses losses;           // of the last three
+    int n_idle;                     // viscous: steps since a throat has emptied
+    int64_t n_flow_step;            // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
     struct compensated time, evaporated; // scaled
     double first_rate;                   // scaled
