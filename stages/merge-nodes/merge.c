@@ -2,7 +2,7 @@
 #include "merge.h"
 
 #include "basics/memory.h"
-#include "merge_parts.h"
+#include "merge_state.h"
 
 #include <math.h>
 
@@ -66,7 +66,7 @@ static int count_walls(uint8_t walls)
     return __builtin_popcount(walls);
 }
 
-static bool spans_the_box(uint8_t walls)
+static bool spans_box(uint8_t walls)
 {
     return (walls & 3) == 3 || (walls & 12) == 12 || (walls & 48) == 48 ||
            (walls & 192) == 192;
@@ -106,7 +106,7 @@ static void unite(struct merging *merging, struct merging_ends ends)
     const double b = difference > 0 ? 0 : merging->weight[other];
     const struct network *network = merging->network;
     const struct vector from = merging->position[root];
-    const struct vector apart = merging_along(merging, ends);
+    const struct vector apart = merging_vector(merging, ends);
     merging->position[root] = add(from, scale(b / (a + b), apart));
     merging->weight[root] = a + b;
     merging->walls[root] |= merging->walls[other];
@@ -128,10 +128,10 @@ static bool merge_ends(struct merging *merging, int t, double *lost)
 {
     struct merging_ends ends = merging_ends(merging, t);
     if (ends.node[0] == ends.node[1]) return false; // around a box that repeats
-    if (spans_the_box(merging->walls[ends.node[0]] | merging->walls[ends.node[1]]))
+    if (spans_box(merging->walls[ends.node[0]] | merging->walls[ends.node[1]]))
         return false;
     if (merging->row[ends.node[0]].count < merging->row[ends.node[1]].count)
-        ends = merging_turned(ends); // the shorter list moves
+        ends = merging_reversed(ends); // the shorter list moves
     const int root = ends.node[0];
     const struct vector before = merging->position[root];
     unite(merging, ends);
@@ -139,7 +139,7 @@ static bool merge_ends(struct merging *merging, int t, double *lost)
     merging_move_throats(merging, root, ends.node[1],
                          distance(before, merging->position[root]) > 0);
     const double *volume = merging->network->throat_volume;
-    if (volume) *lost += merging_share(merging, root, volume[t]);
+    if (volume) *lost += merging_share_volume(merging, root, volume[t]);
     return true;
 }
 

@@ -22,7 +22,7 @@ struct census take_census(const struct network *network)
         census.volume += throat_volume(network, t);
         for (int end = 0; end < 2; end++) {
             const int count = ++census.coordination[network->throat_nodes[t][end]];
-            if (count > census.most_throats) census.most_throats = count;
+            if (count > census.max_throats) census.max_throats = count;
         }
     }
     return census;
@@ -39,11 +39,11 @@ void census_free(struct census *census)
 // How many nodes have 0, 1, 2, ... throats.
 static json_t *coordination_json(const struct census *census)
 {
-    int *nodes = NEW_ARRAY(int, census->most_throats + 1);
+    int *nodes = NEW_ARRAY(int, census->max_throats + 1);
     for (int i = 0; i < census->n_node; i++)
         nodes[census->coordination[i]]++;
     json_t *list = json_array();
-    for (int k = 0; k <= census->most_throats; k++)
+    for (int k = 0; k <= census->max_throats; k++)
         json_array_append_new(list, json_integer(nodes[k]));
     free(nodes);
     return json_pack("{s:f,s:o}", "mean",

@@ -10,10 +10,10 @@
 
 // Of a network as it is: copies of what is to be counted.
 struct census {
-    int n_node, n_throat, most_throats; // at one node
-    int *coordination;                  // (n_node)
-    double *length, *radius;            // (n_throat) m
-    double volume;                      // of all throats, m3
+    int n_node, n_throat, max_throats; // at one node
+    int *coordination;                 // (n_node)
+    double *length, *radius;           // (n_throat) m
+    double volume;                     // of all throats, m3
 };
 
 // The caller frees it with census_free.

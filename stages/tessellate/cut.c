@@ -3,7 +3,7 @@
 
 #include "basics/memory.h"
 #include "loops.h"
-#include "reduce.h"
+#include "remove_cells.h"
 #include "throats_beside.h"
 
 #include <stdlib.h>

@@ -4,14 +4,14 @@
 #include "assemble.h"
 #include "basics/memory.h"
 #include "cut.h"
-#include "reduce.h"
+#include "remove_cells.h"
 #include "surface_marks.h"
 
 #include <stdlib.h>
 
 // Images of grains farther from a side than this many units are made only when the
 // cells show that they are needed.
-static const double first_reach = 2;
+static const double FIRST_REACH = 2;
 
 // Whether a larger reach would give no more images: each grain is reflected in each
 // wall, and copied as far as can be told.
@@ -65,7 +65,7 @@ static enum status triangulate_in_box(const struct packing *packing, bool power,
                                       struct triangulation *triangulation,
                                       struct nodes *nodes, struct reason *reason)
 {
-    double reach = first_reach;
+    double reach = FIRST_REACH;
     for (;;) {
         enum status status =
             place_generators(packing, reach, power, generators, reason);

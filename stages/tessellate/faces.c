@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_AROUND = 1 << 20 }; // cells around one edge; more means broken links
+enum { MAX_AROUND = 1 << 20 }; // cells around one edge; more means broken links
 
 // The corners of a face, each a node and the repetition of the box it is in.
 struct loop {
@@ -35,7 +35,7 @@ struct face_list {
 };
 
 // Which of the six edges of a cell does not end at two of its corners, as a bit.
-static const uint8_t other_edge[4][4] = {
+static const uint8_t OPPOSITE_EDGE[4][4] = {
     {0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}};
 
 static void append_corner(struct loop *loop, int32_t node, struct image image)
@@ -56,17 +56,17 @@ static void append_corner(struct loop *loop, int32_t node, struct image image)
 // first across the facet opposite OUT, gathers the nodes passed, and marks the edge as
 // seen in the cells of the part. False when the way leaves the finite cells, or passes
 // an earlier part, to which the face belongs.
-static bool turn_around(const struct triangulation *cells, struct part part, int start,
-                        int out, int stays, struct loop *loop)
+static bool walk_around_edge(const struct triangulation *cells, struct part part,
+                             int start, int out, int stays, struct loop *loop)
 {
     int at = start, steps = 0;
     loop->count = 0;
     do {
         const struct cell *here = &cells->cell[at];
-        if (at < part.end) cells->seen[at] |= other_edge[out][stays];
+        if (at < part.end) cells->seen[at] |= OPPOSITE_EDGE[out][stays];
         append_corner(loop, cells->node[at], node_image(cells, at));
         const int32_t next = here->neighbour[out], kept = here->vertex[stays];
-        if (next < part.begin || ++steps > MOST_AROUND) return false;
+        if (next < part.begin || ++steps > MAX_AROUND) return false;
         // What stayed is left next, what is new stays.
         out = index_among(cells->cell[next].vertex, kept);
         stays = index_among(cells->cell[next].neighbour, at);
@@ -142,14 +142,14 @@ static void find_faces(const struct assembly *assembly, struct part part, int ce
     const struct cell *here = &assembly->triangulation->cell[cell];
     for (int e = 0; e < 6; e++) {
         const int *corner = edges[e]; // an even permutation
-        if (assembly->triangulation->seen[cell] & other_edge[corner[2]][corner[3]])
+        if (assembly->triangulation->seen[cell] & OPPOSITE_EDGE[corner[2]][corner[3]])
             continue;
         const int32_t p = here->vertex[corner[0]], q = here->vertex[corner[1]];
         loop->forward = compare_generators(generators, p, q) < 0;
         struct row row = {0};
         if (is_face(generators, loop->forward ? p : q, loop->forward ? q : p, &row) &&
-            turn_around(assembly->triangulation, part, cell, corner[2], corner[3],
-                        loop) &&
+            walk_around_edge(assembly->triangulation, part, cell, corner[2], corner[3],
+                             loop) &&
             loop->count >= 3) // else closed up on a wall
             append_face(faces, &row, loop);
     }

@@ -175,7 +175,7 @@ static double depth(const struct generators *generators, int i, int wall)
 }
 
 // Reflections in planes tangent to a wall this much larger, in units, stay clear of it.
-static const double round_clearance = 0.25;
+static const double ROUND_CLEARANCE = 0.25;
 
 static void add_round_reflections(struct generators *generators, double grid)
 {
@@ -185,7 +185,7 @@ static void add_round_reflections(struct generators *generators, double grid)
         const double far = distance(at, body_nearest_round(&generators->round, at));
         if (far > generators->reach) continue;
         const int added = add_like(generators, i);
-        const struct vector image = add(at, scale(2 * (far + round_clearance), out));
+        const struct vector image = add(at, scale(2 * (far + ROUND_CLEARANCE), out));
         generators->point[added].at = round_to(grid, image);
         generators->origin[added].base = added;
         generators->origin[added].wall = WALL_OUTER;
@@ -248,7 +248,7 @@ static struct vector wrapped(const struct packing *packing, struct vector at)
     return at;
 }
 
-static void put_in_order(struct generators *generators)
+static void sort_generators(struct generators *generators)
 {
     const int n = generators->n;
     struct vector *at = NEW_ARRAY(struct vector, n);
@@ -303,7 +303,7 @@ enum status place_generators(const struct packing *packing, double reach, bool p
     add_reflections(generators);
     generators->n_base = generators->n;
     add_copies(generators);
-    put_in_order(generators);
+    sort_generators(generators);
     return STATUS_OK;
 }
 

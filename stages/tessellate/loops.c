@@ -2,7 +2,7 @@
 #include "loops.h"
 
 #include "basics/memory.h"
-#include "reduce.h"
+#include "remove_cells.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -113,7 +113,7 @@ static int *number_corners(const struct loops *loops, struct network *network)
         number[i] = -1;
     for (int64_t k = 0; k < loops->n_corner; k++)
         number[loops->corner[k].node] = 0;
-    pack_nodes(network, number);
+    compact_nodes(network, number);
     return number;
 }
 

@@ -12,10 +12,10 @@
 
 // Nodes closer to a wall, or wall nodes closer to each other, than this are taken to
 // coincide; in units. A thousand times what rounding the generators does.
-static const double coincide = 1e-9;
+static const double COINCIDENCE = 1e-9;
 
 // Determinants below this, of the product of the edges, lose digits that matter.
-static const double flat = 1e-3;
+static const double MIN_DETERMINANT = 1e-3;
 
 static bool repeats(const struct generators *generators)
 {
@@ -31,7 +31,7 @@ static struct vector power_centre(const struct generators *generators,
     for (int k = 0; k < 4; k++)
         p[k] = &generators->point[corner[k]];
     struct vector row[3];
-    double right[3], squares = flat * flat;
+    double right[3], squares = MIN_DETERMINANT * MIN_DETERMINANT;
     for (int k = 0; k < 3; k++) {
         row[k] = subtract(p[k + 1]->at, p[0]->at);
         const double square = dot(row[k], row[k]);
@@ -67,7 +67,7 @@ static uint8_t snap_to_walls(const struct generators *generators,
         const double at = wall % 2 ? component(generators->box, wall / 2) : 0;
         const double beyond =
             (wall % 2 ? 1 : -1) * (component(*position, wall / 2) - at);
-        if (fabs(beyond) < coincide) {
+        if (fabs(beyond) < COINCIDENCE) {
             walls |= (uint8_t)(1 << wall);
             set_component(position, wall / 2, at);
         } else if (beyond > 0) {
@@ -79,7 +79,7 @@ static uint8_t snap_to_walls(const struct generators *generators,
 
 // ---- names --------------------------------------------------------------------------
 
-static void put_in_order(const struct generators *generators, int32_t *a, int32_t *b)
+static void order_pair(const struct generators *generators, int32_t *a, int32_t *b)
 {
     const bool swap = compare_generators(generators, *a, *b) > 0;
     const int32_t first = swap ? *b : *a;
@@ -91,11 +91,11 @@ static void sort_corners(const struct generators *generators, const int32_t cell
                          int32_t corner[4])
 {
     memcpy(corner, cell, 4 * sizeof *corner);
-    put_in_order(generators, &corner[0], &corner[1]);
-    put_in_order(generators, &corner[2], &corner[3]);
-    put_in_order(generators, &corner[0], &corner[2]);
-    put_in_order(generators, &corner[1], &corner[3]);
-    put_in_order(generators, &corner[1], &corner[2]);
+    order_pair(generators, &corner[0], &corner[1]);
+    order_pair(generators, &corner[2], &corner[3]);
+    order_pair(generators, &corner[0], &corner[2]);
+    order_pair(generators, &corner[1], &corner[3]);
+    order_pair(generators, &corner[1], &corner[2]);
 }
 
 // A cell is named after the bases of its corners in order, and where they are relative
@@ -239,9 +239,10 @@ static bool place_group(const struct generators *generators,
 
 // Groups are near each other, their cells less so, their places anywhere: asked for in
 // time.
-PREFETCHING expect_group(const struct generators *generators,
-                         const struct cell_groups *groups, const struct places *places,
-                         const struct triangulation *triangulation, int g)
+PREFETCHING prefetch_group(const struct generators *generators,
+                           const struct cell_groups *groups,
+                           const struct places *places,
+                           const struct triangulation *triangulation, int g)
 {
     enum { AHEAD = 6 };
     if (g + 2 * AHEAD >= groups->n) return;
@@ -277,7 +278,7 @@ static bool find_places(const struct generators *generators,
             allocate((size_t)groups->largest, sizeof *named.corner)};
 #pragma omp for
         for (int g = 0; g < groups->n; g++) {
-            expect_group(generators, groups, places, triangulation, g);
+            prefetch_group(generators, groups, places, triangulation, g);
             if (!place_group(generators, groups, g, triangulation, named, places,
                              &all_complete))
                 all_named = false;
@@ -330,7 +331,7 @@ static void unite_on_walls(const struct generators *generators,
             const struct image other = node_image(triangulation, d);
             const struct vector there =
                 position_in_image(generators, places->position[place[d]], other);
-            if (distance(at, there) <= coincide)
+            if (distance(at, there) <= COINCIDENCE)
                 unite(places, place[c], image, place[d], other);
         }
     }

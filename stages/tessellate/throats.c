@@ -223,8 +223,8 @@ static void fuse_candidates(const struct assembly *assembly,
 
 // Nodes come in any order in space: where they are, and where their throats go, is
 // asked for in time.
-PREFETCHING expect_nodes(const struct assembly *assembly, int c, const int *begin,
-                         const struct network *network)
+PREFETCHING prefetch_nodes(const struct assembly *assembly, int c, const int *begin,
+                           const struct network *network)
 {
     enum { AHEAD = 12 };
     const struct triangulation *cells = assembly->triangulation;
@@ -251,7 +251,7 @@ static void store_throats(const struct assembly *assembly,
     const double unit = assembly->generators->unit;
 #pragma omp parallel for
     for (int c = 0; c < cells->n_cell; c++) {
-        expect_nodes(assembly, c, begin, network);
+        prefetch_nodes(assembly, c, begin, network);
         if (cells->seen[c] && !(cells->seen[c] & SHARES_NODE)) {
             struct candidate at[4];
             const int count = gather(assembly, c, at), node = cells->node[c];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "merge_parts.h"
+#include "merge_state.h"
 
 #include "basics/memory.h"
 
@@ -94,7 +94,7 @@ struct merging_ends merging_ends(struct merging *merging, int throat)
     return ends;
 }
 
-struct merging_ends merging_turned(struct merging_ends ends)
+struct merging_ends merging_reversed(struct merging_ends ends)
 {
     return (struct merging_ends){{ends.node[1], ends.node[0]},
                                  image_opposite(ends.image)};
@@ -104,10 +104,10 @@ struct merging_ends merging_turned(struct merging_ends ends)
 static struct merging_ends ends_from(struct merging *merging, int root, int throat)
 {
     const struct merging_ends ends = merging_ends(merging, throat);
-    return ends.node[0] == root ? ends : merging_turned(ends);
+    return ends.node[0] == root ? ends : merging_reversed(ends);
 }
 
-static bool same_way(struct merging_ends a, struct merging_ends b)
+static bool same_ends(struct merging_ends a, struct merging_ends b)
 {
     return a.node[0] == b.node[0] && a.node[1] == b.node[1] &&
            same_image(a.image, b.image);
@@ -115,10 +115,10 @@ static bool same_way(struct merging_ends a, struct merging_ends b)
 
 static bool parallel(struct merging_ends a, struct merging_ends b)
 {
-    return same_way(a, b) || same_way(a, merging_turned(b));
+    return same_ends(a, b) || same_ends(a, merging_reversed(b));
 }
 
-struct vector merging_along(const struct merging *merging, struct merging_ends ends)
+struct vector merging_vector(const struct merging *merging, struct merging_ends ends)
 {
     return image_apart(&merging->network->packing, merging->position[ends.node[0]],
                        merging->position[ends.node[1]], ends.image);
@@ -145,7 +145,7 @@ static void fuse(struct merging *merging, int kept, int removed)
     merging_remove(merging, removed);
 }
 
-double merging_share(struct merging *merging, int root, double volume)
+double merging_share_volume(struct merging *merging, int root, double volume)
 {
     const struct throat_row *row = &merging->row[root];
     double *of = merging->network->throat_volume, sum = 0;
@@ -204,7 +204,7 @@ struct merging merging_begin(struct network *network)
 
 static void measure_again(struct merging *merging, int throat)
 {
-    const double length = norm(merging_along(merging, merging_ends(merging, throat)));
+    const double length = norm(merging_vector(merging, merging_ends(merging, throat)));
     merging->network->throat_length[throat] = length;
     merging->stamp[throat]++;
     push(merging, throat, length);

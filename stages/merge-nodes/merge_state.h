@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bookkeeping behind merge_nodes: which nodes are one, which throats they have,
 // which throat is the shortest.
-#ifndef CRAQUELURE_MERGE_PARTS_H
-#define CRAQUELURE_MERGE_PARTS_H
+#ifndef CRAQUELURE_MERGE_STATE_H
+#define CRAQUELURE_MERGE_STATE_H
 
 #include "network/network.h"
 
@@ -50,10 +50,10 @@ struct merging_ends {
 struct merging_ends merging_ends(struct merging *merging, int throat);
 
 // The same, seen from the second.
-struct merging_ends merging_turned(struct merging_ends ends);
+struct merging_ends merging_reversed(struct merging_ends ends);
 
 // From the first of ENDS to the second.
-struct vector merging_along(const struct merging *merging, struct merging_ends ends);
+struct vector merging_vector(const struct merging *merging, struct merging_ends ends);
 
 // Takes the shortest throat left off the queue. False when none is left.
 bool merging_shortest(struct merging *merging, int *throat, double *length);
@@ -63,7 +63,7 @@ void merging_remove(struct merging *merging, int throat);
 
 // Hands the VOLUME of a throat that is gone to those at ROOT, in proportion to what
 // they have (equally where they have none). Returns what no throat was there to take.
-double merging_share(struct merging *merging, int root, double volume);
+double merging_share_volume(struct merging *merging, int root, double volume);
 
 // Gives the throats of OTHER to ROOT, fusing those that have become parallel, and
 // measures again what has changed: the moved ones, and all of ROOT if it MOVED itself.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is left out of a network once all of it is known.
-#ifndef CRAQUELURE_REDUCE_H
-#define CRAQUELURE_REDUCE_H
+#ifndef CRAQUELURE_REMOVE_CELLS_H
+#define CRAQUELURE_REMOVE_CELLS_H
 
 #include "network/network.h"
 
@@ -23,6 +23,6 @@ void reduce_to_plane(struct network *network);
 
 // Takes away nodes whose NUMBER, (n_node), is negative; of the others it becomes the
 // new one.
-void pack_nodes(struct network *network, int *number);
+void compact_nodes(struct network *network, int *number);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reduce.h"
+#include "remove_cells.h"
 
 #include "basics/memory.h"
 #include "surface_marks.h"
@@ -9,7 +9,7 @@
 #include <string.h>
 
 // What stays.
-struct staying {
+struct kept_parts {
     bool *grain, *face, *throat;
     int *node; // its new number; -1: does not stay
 };
@@ -19,52 +19,51 @@ static bool is_along_y(int32_t side)
     return side < 0 && (-1 - side) / 2 == 1;
 }
 
-static int choose_grains(const struct network *network, bool layer, bool *stays)
+static int keep_grains(const struct network *network, bool layer, bool *kept)
 {
     bool *cut = NEW_ARRAY(bool, network->packing.n_particle);
     for (int f = 0; f < network->n_face; f++) {
         const int32_t *side = network->face_particles[f];
-        stays[side[0]] = true;
+        kept[side[0]] = true;
         if (side[1] >= 0)
-            stays[side[1]] = true;
+            kept[side[1]] = true;
         else if (!layer || !is_along_y(side[1]))
             cut[side[0]] = true;
     }
     int count = 0;
     for (int i = 0; i < network->packing.n_particle; i++)
-        count += stays[i] = stays[i] && !cut[i] && !is_auxiliary(&network->packing, i);
+        count += kept[i] = kept[i] && !cut[i] && !is_auxiliary(&network->packing, i);
     free(cut);
     return count;
 }
 
-static void choose_rest(const struct network *network, struct staying *stays)
+static void keep_neighbours(const struct network *network, struct kept_parts *kept)
 {
     for (int f = 0; f < network->n_face; f++) {
         const int32_t *side = network->face_particles[f];
-        stays->face[f] =
-            stays->grain[side[0]] || (side[1] >= 0 && stays->grain[side[1]]);
-        if (!stays->face[f]) continue;
+        kept->face[f] = kept->grain[side[0]] || (side[1] >= 0 && kept->grain[side[1]]);
+        if (!kept->face[f]) continue;
         for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
-            stays->node[network->face_nodes[k]] = 0;
+            kept->node[network->face_nodes[k]] = 0;
     }
-    free(stays->throat);
-    stays->throat = throats_beside(network, stays->grain);
+    free(kept->throat);
+    kept->throat = throats_beside(network, kept->grain);
 }
 
 // The throats of the boundary layer that begin at what stays.
-static void keep_feet(const struct network *network, struct staying *stays)
+static void keep_boundary_layer(const struct network *network, struct kept_parts *kept)
 {
     for (int t = 0; t < network->n_throat; t++) {
         const int32_t *ends = network->throat_nodes[t];
-        stays->throat[t] |= network->throat_kind[t] == THROAT_BOUNDARY_LAYER &&
-                            (stays->node[ends[0]] >= 0 || stays->node[ends[1]] >= 0);
+        kept->throat[t] |= network->throat_kind[t] == THROAT_BOUNDARY_LAYER &&
+                           (kept->node[ends[0]] >= 0 || kept->node[ends[1]] >= 0);
     }
     for (int t = 0; t < network->n_throat; t++)
-        for (int end = 0; end < 2 && stays->throat[t]; end++)
-            stays->node[network->throat_nodes[t][end]] = 0;
+        for (int end = 0; end < 2 && kept->throat[t]; end++)
+            kept->node[network->throat_nodes[t][end]] = 0;
 }
 
-void pack_nodes(struct network *network, int *number)
+void compact_nodes(struct network *network, int *number)
 {
     int n = 0;
     for (int i = 0; i < network->n_node; i++) {
@@ -76,13 +75,13 @@ void pack_nodes(struct network *network, int *number)
     network->n_node = n;
 }
 
-static void pack_throats(struct network *network, const struct staying *stays)
+static void compact_throats(struct network *network, const struct kept_parts *kept)
 {
     int n = 0;
     for (int t = 0; t < network->n_throat; t++) {
-        if (!stays->throat[t]) continue;
+        if (!kept->throat[t]) continue;
         for (int end = 0; end < 2; end++)
-            network->throat_nodes[n][end] = stays->node[network->throat_nodes[t][end]];
+            network->throat_nodes[n][end] = kept->node[network->throat_nodes[t][end]];
         network->throat_radius[n] = network->throat_radius[t];
         network->throat_length[n] = network->throat_length[t];
         network->throat_kind[n] = network->throat_kind[t];
@@ -92,17 +91,17 @@ static void pack_throats(struct network *network, const struct staying *stays)
     network->n_throat = n;
 }
 
-static void pack_faces(struct network *network, const struct staying *stays)
+static void compact_faces(struct network *network, const struct kept_parts *kept)
 {
     int n = 0;
     int64_t to = 0;
     for (int f = 0; f < network->n_face; f++) {
         const int64_t begin = network->face_offset[f],
                       end = network->face_offset[f + 1];
-        if (!stays->face[f]) continue;
+        if (!kept->face[f]) continue;
         network->face_offset[n] = to;
         for (int64_t k = begin; k < end; k++, to++) {
-            network->face_nodes[to] = stays->node[network->face_nodes[k]];
+            network->face_nodes[to] = kept->node[network->face_nodes[k]];
             if (network->face_node_image)
                 network->face_node_image[to] = network->face_node_image[k];
         }
@@ -115,51 +114,51 @@ static void pack_faces(struct network *network, const struct staying *stays)
     network->n_face = n;
 }
 
-static struct staying nothing_stays(const struct network *network)
+static struct kept_parts keep_nothing(const struct network *network)
 {
-    struct staying stays = {.grain = NEW_ARRAY(bool, network->packing.n_particle),
-                            .face = NEW_ARRAY(bool, network->n_face),
-                            .throat = NEW_ARRAY(bool, network->n_throat),
-                            .node = NEW_ARRAY(int, network->n_node)};
+    struct kept_parts kept = {.grain = NEW_ARRAY(bool, network->packing.n_particle),
+                              .face = NEW_ARRAY(bool, network->n_face),
+                              .throat = NEW_ARRAY(bool, network->n_throat),
+                              .node = NEW_ARRAY(int, network->n_node)};
     for (int i = 0; i < network->n_node; i++)
-        stays.node[i] = -1;
-    return stays;
+        kept.node[i] = -1;
+    return kept;
 }
 
-// Leaves in the network what stays; frees STAYS.
-static void leave(struct network *network, struct staying *stays)
+// Leaves in the network what stays; frees KEPT.
+static void remove_rest(struct network *network, struct kept_parts *kept)
 {
-    pack_nodes(network, stays->node);
-    pack_throats(network, stays);
-    pack_faces(network, stays);
-    free(stays->grain);
-    free(stays->face);
-    free(stays->throat);
-    free(stays->node);
+    compact_nodes(network, kept->node);
+    compact_throats(network, kept);
+    compact_faces(network, kept);
+    free(kept->grain);
+    free(kept->face);
+    free(kept->throat);
+    free(kept->node);
 }
 
 int eliminate_cut_cells(struct network *network, bool layer)
 {
-    struct staying stays = nothing_stays(network);
-    const int count = choose_grains(network, layer, stays.grain);
-    face_walls(network, stays.grain, layer);
-    choose_rest(network, &stays);
-    keep_feet(network, &stays);
-    leave(network, &stays);
+    struct kept_parts kept = keep_nothing(network);
+    const int count = keep_grains(network, layer, kept.grain);
+    face_walls(network, kept.grain, layer);
+    keep_neighbours(network, &kept);
+    keep_boundary_layer(network, &kept);
+    remove_rest(network, &kept);
     return count;
 }
 
 void reduce_to_plane(struct network *network)
 {
-    struct staying stays = nothing_stays(network);
+    struct kept_parts kept = keep_nothing(network);
     for (int i = 0; i < network->n_node; i++)
-        if (network->node_walls[i] & WALL_Y_LOWER) stays.node[i] = 0;
+        if (network->node_walls[i] & WALL_Y_LOWER) kept.node[i] = 0;
     for (int t = 0; t < network->n_throat; t++)
-        stays.throat[t] = stays.node[network->throat_nodes[t][0]] >= 0 &&
-                          stays.node[network->throat_nodes[t][1]] >= 0;
+        kept.throat[t] = kept.node[network->throat_nodes[t][0]] >= 0 &&
+                         kept.node[network->throat_nodes[t][1]] >= 0;
     for (int f = 0; f < network->n_face; f++)
-        stays.face[f] = network->face_particles[f][1] == -3; // the lower wall y
-    leave(network, &stays);
+        kept.face[f] = network->face_particles[f][1] == -3; // the lower wall y
+    remove_rest(network, &kept);
     for (int i = 0; i < network->n_node; i++) // a wall of the box, not of the layer
         network->node_walls[i] &= (uint8_t)~WALL_Y_LOWER;
 }
