@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What can be dried, and the units it is computed in. With L the mean throat length,
+// the scaled unit of the rate is one throat's worth of K 3.9,
+//     rate = diffusivity (p_g M / (R T)) ln((p_g - p_inf) / (p_g - p_sat)) L,
+// of mass rho L^3, and of time mass / rate. In these units vapour conductances are
+// area over length, the driving potential is 1, and a throat loses scaled volume. The
+// trap is the logarithm: where p_sat is close to p_inf, or to p_g, only log1p of the
+// difference keeps its digits.
 #include "conditions.h"
 
 #include "basics/compensated.h"
@@ -97,6 +104,7 @@ static enum status check_air(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+// Where the run starts and ends, and what is recorded of it.
 static enum status check_course(const struct drying_conditions *conditions,
                                 struct reason *reason)
 {
@@ -206,9 +214,8 @@ static double mean_throat_length(const struct network *network)
     return compensated_value(sum) / n;
 }
 
-// ln((p_g - p_inf) / (p_g - p_sat)): the fall of -ln(1 - p_v/p_g) from the wet nodes to
-// the drying air. This form keeps its digits from p_sat just above p_inf to p_sat just
-// below p_g.
+// ln((p_g - p_inf) / (p_g - p_sat)): the rise of -ln(1 - p_v/p_g) from the drying air
+// to the wet nodes.
 static double potential_drop(const struct drying_conditions *conditions)
 {
     return log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /

@@ -48,25 +48,25 @@ struct drying_conditions {
     bool lumped;             // no lattice of layers and columns, only beta
     unsigned open_walls;     // bits of enum wall; at least one
     enum liquid_limit liquid;
-    // Liquid at the start, of the throats' volume, in (0,1]: what is left when gas has
-    // come in through the open walls, the widest throat it touches first. Or by
-    // throats.
+    // Liquid at the start, as a fraction of the throats' volume, in (0,1]: gas has come
+    // in through the open walls and always entered the widest throat it touched. START,
+    // if not NULL, gives the saturation throat by throat instead.
     double start_saturation;
-    bool start_trapping;    // what gas then cuts off from the walls opposite stays
-    const double *start;    // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    bool start_trapping; // liquid that gas then cuts off from the walls opposite stays
+    const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
     double stop_saturation; // where it ends, from 0 (dry) to below what it begins with
-    // What all wet nodes give off is known to this part of the rate, its errors added
-    // up: from 1e-6 on, links on large fronts are floats. 0: exact.
+    // Largest sum of the errors in what the wet nodes evaporate, relative to the rate.
+    // From 1e-6 on, links on large fronts are stored as floats. 0: exact.
     double vapour_tolerance;
-    // Fall of the network's saturation from one recorded step to the next; 0: each
+    // Decrease of the network's saturation from one recorded step to the next; 0: each
     // event is a step.
     double step_interval;
     double
         first_period_rate_fraction; // of the first rate, in (0,1): where period 1 ends
 };
 
-// Scaled units: the mean throat length is 1, the density of the liquid is 1, and so is
-// the fall of the vapour's potential from saturation to the drying air.
+// Scaled units: the mean throat length is 1, the density of the liquid is 1, and the
+// vapour's potential differs by 1 between saturation and the drying air.
 struct drying_scale {
     double length;         // m
     double mass;           // kg
@@ -85,18 +85,18 @@ enum status check_conditions(const struct drying_conditions *conditions,
 // part.
 enum status check_throats(const struct network *network, struct reason *reason);
 
-// Every event of more throats than this is not recorded: the changes, about half the
-// throats to the power of 1.7 of them, would take more than 2 GB.
+// Networks of more throats than this must not record every event: the changes, about
+// n^1.7 / 2 rows, would take more than 2 GB.
 enum { MAX_RECORDED_THROATS = 100000 };
 
-// Those that take part.
+// How many throats hold liquid: those of kind THROAT_NETWORK.
 int count_throats(const struct network *network);
 
-// STATUS_BAD_DATA if every event of a network so large would be recorded.
+// STATUS_BAD_DATA if step_interval is 0 in a network above MAX_RECORDED_THROATS.
 enum status check_steps(const struct drying_conditions *conditions,
                         const struct network *network, struct reason *reason);
 
-// STATUS_BAD_DATA if time would leave the range of numbers.
+// STATUS_BAD_DATA if the unit of time is not between 1e-150 and 1e150 s.
 enum status check_scale(const struct drying_conditions *conditions,
                         const struct network *network, struct reason *reason);
 
@@ -104,9 +104,10 @@ enum status check_scale(const struct drying_conditions *conditions,
 struct drying_scale drying_scale(const struct network *network,
                                  const struct drying_conditions *conditions);
 
-// Radius of the throat, in m, in which a molecule of vapour is held up as much by the
-// wall as by the gas: D_K = (2/3) r sqrt(8 R T / (pi M)) is the diffusivity. 0 without
-// the Knudsen effect.
+// Radius of a throat, in m, in which collisions with the wall slow the vapour as much
+// as collisions with the gas: there the Knudsen diffusivity
+// D_K = (2/3) r sqrt(8 R T / (pi M)) equals the molecular one. 0 without the Knudsen
+// effect.
 double knudsen_radius(const struct drying_conditions *conditions);
 
 #endif

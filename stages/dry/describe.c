@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of the artifact's `model`: what was modelled, with the numbers that matter,
+// and what was left out.
 #include "describe.h"
 
 #include "conditions.h"

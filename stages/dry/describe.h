@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was modelled of the liquid and the menisci, in words: lines of `model`.
+// The model of liquid and menisci in words: lines of the artifact's `model`.
 #ifndef CRAQUELURE_DRY_DESCRIBE_H
 #define CRAQUELURE_DRY_DESCRIBE_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the user may say to dry.
+// The parameters of dry.
 #ifndef CRAQUELURE_DRY_PARAMETERS_H
 #define CRAQUELURE_DRY_PARAMETERS_H
 
@@ -12,15 +12,15 @@
 enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 
 struct dry_parameters {
-    struct conditions given; // what the conditions get liquid and air from
+    struct conditions given; // liquid and air, as the user gave them
     struct drying_conditions conditions;
     struct number_list snapshots;
     double snapshot_interval;
-    double *even_snapshots; // in place of the list; NULL: none
+    double *even_snapshots; // by snapshot_interval, in place of the list; NULL: none
     struct air_flow air;
     int liquid, transfer_law, exchange, feet;
     int shut;     // throats without clearance
-    int enclosed; // throats that those, and others imposed empty, have shut in
+    int enclosed; // throats cut off from all others by these and those imposed empty
     int64_t layers;
     unsigned open_walls, imposed_empty;
     struct drawn_radii radii;
@@ -28,8 +28,9 @@ struct dry_parameters {
 
 extern const struct parameter dry_table[];
 
-// Gives the conditions what was not read right into them, and what NETWORK decides. The
-// caller frees .even_snapshots. STATUS_BAD_DATA as conditions_complete.
+// Completes .conditions from the parameters that were not read directly into them and
+// from NETWORK, which decides defaults. The caller frees .even_snapshots.
+// STATUS_BAD_DATA as conditions_complete.
 enum status complete_conditions(struct dry_parameters *parameters,
                                 const struct network *network, struct reason *reason);
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The drying artifact: history, events and changes as they were recorded, profiles and
+// snapshots made from them, a summary with the balances. Only here do results get
+// names.
 #include "write_drying.h"
 
 #include "artifacts/liquid.h"

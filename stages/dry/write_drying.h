@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The drying artifact.
+// Writes the drying artifact (schemas/drying.json).
 #ifndef CRAQUELURE_WRITE_DRYING_H
 #define CRAQUELURE_WRITE_DRYING_H
 
 #include "artifacts/artifact.h"
 #include "parameters.h"
 
-// HISTORY of the whole run on NETWORK, as PARAMETERS asked for it, with the boundary
-// layer that TRANSFER made; to the output of INVOCATION. INPUT is the network artifact.
+// Writes HISTORY of the whole run on NETWORK under PARAMETERS to the output of
+// INVOCATION. TRANSFER made the boundary layer; INPUT is the network artifact. SI
+// units. Ends the program on failure.
 void write_drying(const struct network *network, const struct drying_history *history,
                   const struct invocation *invocation, const struct artifact *input,
                   const struct dry_parameters *parameters,

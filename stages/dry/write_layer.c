@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The boundary layer is made again, in metres, since the run keeps only its scaled
+// one.
 #include "write_layer.h"
 
 #include "basics/status.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What drying artifacts say of the boundary layer.
+// The boundary layer in a drying artifact: datasets and lines of its description.
 #ifndef CRAQUELURE_WRITE_LAYER_H
 #define CRAQUELURE_WRITE_LAYER_H
 
@@ -7,12 +7,14 @@
 #include "dry/gas/mass_transfer.h"
 #include "dry/run/drying.h"
 
-// Its columns, their exchange areas and links, as dry_network had them.
+// Writes its columns, their exchange areas and links to ARTIFACT, in metres, as
+// dry_network had them. Ends the program on failure.
 void put_boundary_layer(struct artifact *artifact, const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_history *history);
 
-// For the model, written to TEXT: how it is modelled, and what its thickness is from.
+// Lines of `model`, written to TEXT, which they return: how the layer is modelled, and
+// where its thickness comes from.
 const char *describe_layer(const struct drying_conditions *conditions,
                            const struct drying_history *history, char text[300]);
 const char *describe_flow(enum transfer_law law, const struct mass_transfer *transfer,

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A finite-volume lattice above the open surface [K 3.3.5, Fig. 3.44]. Column i stands
+// on node exposed[i] and has the Voronoi cell of that node on the surface as
+// cross-section:
+//     conductance along the column    area[i] / spacing
+//     between neighbouring columns    lateral_width spacing / lateral_length,
+// half of the latter at level 0, where only half a cell lies in the gas. The areas sum
+// to the open surface whatever the network, so that a wet surface dries at area /
+// thickness. Nodes behind one another, seen along the columns, share one column. A
+// column whose cell lies over a hole of the surface has no area and is dropped; then
+// the diagram is computed again.
 #include "boundary_layer.h"
 
 #include "basics/memory.h"
@@ -30,7 +40,8 @@ void boundary_feet_mark(const struct network *network, int wall,
     free(throats);
 }
 
-// Where a foot is on the face, in steps that no two separate columns share.
+// Where a foot is on the face, rounded to a grid so fine that two separate columns
+// never share a cell of it.
 struct spot {
     int64_t x, y;
     double depth; // from the outermost inwards
@@ -46,13 +57,13 @@ static int compare_spots(const void *a, const void *b)
     return (s->node > t->node) - (s->node < t->node);
 }
 
-// Whether rounding parts the two: a column needs room.
+// Whether only rounding separates the two: each column needs a cell of its own.
 static bool same_spot(const struct spot *s, const struct spot *t)
 {
     return s->x == t->x && s->y == t->y;
 }
 
-// Takes off the marks of nodes right behind another.
+// Clears the marks of nodes that lie right behind another.
 static void keep_outermost(const struct open_surface *face, int n_marked, bool *foot)
 {
     const struct network *network = face->network;
@@ -135,7 +146,7 @@ static struct planar_cells cells_of(const struct open_surface *face,
     return cells;
 }
 
-// Takes away the columns without area, over holes in the face. Returns how many.
+// Drops columns without area: they stand over holes of the face. Returns how many.
 static int drop_empty(const double *area, struct boundary_layer *layer)
 {
     double total = 0;
@@ -207,7 +218,7 @@ enum status boundary_layer_make(const struct network *network, int wall, double 
 
 // ---- on several walls ---------------------------------------------------------------
 
-// The N_MORE rows of MORE come after the N of ARRAY.
+// Appends the N_MORE rows of MORE to the N rows of ARRAY, which may move.
 static void *append_rows(void *array, int n, const void *more, int n_more, size_t size)
 {
     array = reallocate(array, (size_t)(n + n_more), size);

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From what is known of the air flow to the thickness of the boundary layer:
+//     Re = u L / nu,   Sc = nu / delta,
+//     Sh = 0.664 Re^(1/2) Sc^(1/3)     along a plate [K 3.6], up to Re = 5e5
+//     Sh = 2 + 0.6 Re^(1/2) Sc^(1/3)   around a sphere (Ranz and Marshall 1952), to 200
+//     beta = Sh delta / L,   epsilon = delta / beta.
+// The trap: K prints the inverse of Sc.
 #include "mass_transfer.h"
 
 #include <math.h>

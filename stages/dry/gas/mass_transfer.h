@@ -28,13 +28,14 @@ struct air_flow {
 struct mass_transfer {
     double coefficient; // beta, m/s
     double thickness;   // epsilon, m
-    double reynolds;    // u L / nu; 0 where the law has no need of it
-    double schmidt;     // nu / delta (K prints its inverse); likewise
-    double sherwood;    // likewise
+    double reynolds;    // u L / nu; 0 where the law does not need it
+    double schmidt;     // nu / delta (K prints its inverse); 0 likewise
+    double sherwood;    // 0 likewise
 };
 
-// Only what LAW has need of is looked at. STATUS_BAD_DATA: Re beyond the range of the
-// law, or a layer too thick or thin for numbers.
+// Reads only the members of FLOW that LAW needs. DIFFUSIVITY is delta of the vapour,
+// m2/s. STATUS_BAD_DATA: Re beyond the range of the law, or a thickness or coefficient
+// outside the range of normal numbers.
 enum status find_mass_transfer(enum transfer_law law, const struct air_flow *flow,
                                double diffusivity, struct mass_transfer *transfer,
                                struct reason *reason);

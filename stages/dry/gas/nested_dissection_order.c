@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Nested dissection by coordinates (George 1973). The columns begin..end-1 are halved
+// at the median of their widest axis; those of one half with neighbours in the other
+// are the separator and come last, then each half is dissected alike. So most columns
+// are eliminated in small fronts, and only the last separator, about sqrt(n) columns,
+// is wide.
 #include "nested_dissection_order.h"
 
 #include "basics/memory.h"
@@ -6,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Fewer are not parted any more.
+// Fewer columns are not dissected any further.
 enum { MIN_COLUMNS = 8 };
 
 struct placed {
@@ -86,8 +91,8 @@ static bool reaches_beyond(const struct dissection *dissection, int column)
     return false;
 }
 
-// Columns BEGIN..END-1 of the order: one side of a cut, the other, and last those of
-// the first that have neighbours in the other.
+// Orders columns BEGIN..END-1: the first half, the second, and last the separator,
+// which is the part of the first half with neighbours in the second.
 static void dissect(struct dissection *dissection, int begin, int end)
 {
     if (end - begin <= MIN_COLUMNS) return;

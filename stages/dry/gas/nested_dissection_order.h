@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In which order the columns of a boundary layer are best eliminated.
+// An order in which eliminating the columns of a boundary layer costs little.
 #ifndef CRAQUELURE_NESTED_DISSECTION_ORDER_H
 #define CRAQUELURE_NESTED_DISSECTION_ORDER_H
 
 #include "boundary_layer.h"
 
-// Nested dissection (George 1973): those that part the others come last, so that most
-// are eliminated while few feet are linked with each other. Indices into
-// layer->exposed; the caller frees them.
+// Nested dissection (George 1973): separators come last, so that most columns are
+// eliminated while few feet are linked with each other. Returns (layer->n_exposed)
+// indices into layer->exposed, a permutation; the caller frees it. O(n log^2 n).
 int *nested_dissection_order(const struct network *network,
                              const struct boundary_layer *layer);
 

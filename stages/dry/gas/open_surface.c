@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The region of the wall that is open to the air, as a polygon in the plane of the
+// wall. Its sides are the edges that belong to one face only: each edge of each face
+// is listed with the direction in which the face lies to its left, sorted by its two
+// nodes, and those that occur twice with opposite directions cancel. Coordinates are
+// in units of UNIT from the lower corner; axes follow the wall's normal cyclically, x
+// -> (y, z). Where the faces cover the whole rectangle there are no sides at all.
 #include "open_surface.h"
 
 #include "basics/memory.h"
@@ -10,8 +16,8 @@ static int lateral_axis(int wall, int k)
     return (wall / 2 + 1 + k) % 3;
 }
 
-// What of the box the network spans along AXIS; all of it where it repeats, or where
-// the network is flat.
+// The part of the box that the network spans along AXIS; the whole box where it is
+// periodic, or where the network is flat.
 static void find_span(const struct network *network, int axis, double *lower,
                       double *size)
 {
@@ -40,7 +46,8 @@ static struct planar place_of(const struct open_surface *face, struct vector at)
         (component(at, lateral_axis(face->wall, 1)) - face->corner.y) / face->unit};
 }
 
-// In a flat network, at the near side of the box all along: the same as in its middle.
+// Moves X into the rectangle. In a flat network all nodes come to lie on its lower
+// side, which gives the same areas as its middle would.
 static double within(double x, double size, bool periodic)
 {
     return periodic ? x - size * floor(x / size) : fmin(fmax(x, 0), size);
@@ -56,7 +63,7 @@ struct planar place_on_face(const struct open_surface *face, int node)
 
 // ---- the sides of the region --------------------------------------------------------
 
-// An edge of a face in the wall, which lies to its left on the way from AT[0] to AT[1].
+// An edge of a face in the wall. The face lies to the left of AT[0] -> AT[1].
 struct edge {
     int32_t low, high; // its nodes
     bool forward;      // from the lower to the higher
@@ -112,14 +119,15 @@ static bool near_end(double x, double y, double size)
            fmax(fabs(x - size), fabs(y - size)) < 1e-9 * size;
 }
 
-// Where the rectangle repeats one way, its ends the other way bound no loop.
+// Where the rectangle is periodic along one axis, sides at its ends along the other
+// close no loop: the rectangle itself bounds the region there.
 static bool lies_at_end(const struct rectangle *whole, const struct planar at[2])
 {
     if (whole->periodic_x && near_end(at[0].y, at[1].y, whole->size.y)) return true;
     return whole->periodic_y && near_end(at[0].x, at[1].x, whole->size.x);
 }
 
-// Edges with a face on one side only.
+// Keeps the edges with a face on one side only.
 static void keep_sides(const struct edges *edges, struct planar_region *region)
 {
     region->side = allocate((size_t)edges->n, sizeof *region->side);

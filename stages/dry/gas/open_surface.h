@@ -15,14 +15,16 @@ struct open_surface {
     struct planar_region region;
 };
 
-// What the faces in WALL cover; where there are none (a layer of grains, cells left
-// out, networks from elsewhere) the rectangle that the throats span. It repeats where
-// the box does; along an axis without extent it is as wide as the box. Lengths are in
-// units of UNIT (m). Keeps NETWORK. The caller frees it with open_surface_free.
+// The part of WALL that faces of the network cover; without such faces (a layer of
+// grains, cells left out, imported networks) the rectangle that the throats span. It is
+// periodic where the box is; along an axis without extent it is as wide as the box.
+// Lengths are in units of UNIT (m). Keeps NETWORK. The caller frees it with
+// open_surface_free.
 struct open_surface open_surface_of(const struct network *network, int wall,
                                     double unit);
 
-// Where NODE is on the face; its edge, for a node beyond.
+// Where NODE is on the face, in units of FACE->unit; a node beyond it is moved to its
+// edge, or to its periodic image.
 struct planar place_on_face(const struct open_surface *face, int node);
 
 void open_surface_free(struct open_surface *face);

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each cell is cut out of the rectangle by the perpendicular bisectors to the points
-// around, nearest bins first, until no point farther away could cut it. All in
-// coordinates about the cell's own point, so that small cells keep their digits.
+// Voronoi cells in a rectangle, each found on its own. Cell i starts as the rectangle
+// and is clipped by the perpendicular bisector to each neighbour j, nearest bins
+// first:
+//     (at - away/2) . away > 0   is nearer to j, where away = point[j] - point[i].
+// It is finished when the next ring of bins is farther away than twice its farthest
+// corner: no bisector beyond can reach it. All coordinates are relative to the cell's
+// own point, so that small cells keep their digits. Where the rectangle is periodic, a
+// cell is also bounded by the bisectors to its own images, half a period away.
 #include "planar_cells.h"
 
 #include "basics/memory.h"
@@ -90,7 +95,8 @@ static void begin_cell(struct cutting *cutting, struct planar at)
         cutting->cell.corner[k] = (struct corner){corner[k], -1, 0};
 }
 
-// How far beyond the bisector to the point at AWAY; at most 0 on this side.
+// Signed distance beyond the bisector to the point at AWAY, times |AWAY|; at most 0 on
+// the cell's own side.
 static double beyond(struct planar at, struct planar away)
 {
     return (at.x - away.x / 2) * away.x + (at.y - away.y / 2) * away.y;
@@ -109,7 +115,7 @@ static void add_corner(struct polygon *cell, struct planar at,
     cell->corner[cell->n++] = (struct corner){at, side->neighbour, side->distance};
 }
 
-// Takes away what is nearer to the point at AWAY, NEIGHBOUR or an image of it.
+// Removes the part of the cell nearer to the point at AWAY: NEIGHBOUR or its image.
 static void cut(struct polygon *cell, struct planar away, int neighbour)
 {
     bool reaches = false;
@@ -149,8 +155,8 @@ static double farthest_corner(const struct polygon *cell)
     return farthest;
 }
 
-// The bin at PLACE along an axis, which may be beyond the rectangle; how far its image
-// is moved there. False when nothing is there.
+// Maps the bin at PLACE along an axis, which may lie beyond the rectangle, to its
+// periodic image inside; MOVED is the offset. False if there is no such bin.
 static bool find_image(int *place, int count, double edge, bool periodic, double *moved)
 {
     const int image = (int)floor((double)*place / count);
@@ -177,7 +183,7 @@ static void cut_by_bin(struct cutting *cutting, int i, int x, int y)
     }
 }
 
-// How near a point of ring RING around a bin may be to one in it.
+// Lower bound of the distance from a point in a bin to one in ring RING around it.
 static double nearest_in_ring(const struct cutting *cutting, int ring)
 {
     const struct bins *bins = &cutting->bins;
@@ -205,7 +211,7 @@ static void cut_cell(struct cutting *cutting, int i)
         }
 }
 
-// Of the finished cell, in the region where that ENDS within it.
+// Area of the finished cell; only its part in the region if that ENDS within the cell.
 static double area_of(const struct cutting *cutting, int i, bool ends)
 {
     static const struct planar_region whole = {0};
@@ -219,7 +225,8 @@ static double area_of(const struct cutting *cutting, int i, bool ends)
     return area;
 }
 
-// Those of the finished cell to higher points: the others have been told from there.
+// Adds the finished cell's edges to points of higher index; those to lower ones were
+// added by the other cell.
 static void add_edges(struct cutting *cutting, int i, bool ends)
 {
     struct planar_cells *cells = cutting->cells;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Voronoi diagram of points in a region of a rectangle: what part of it is nearest
-// to each, and along which line each two neighbours share it.
+// The Voronoi diagram of points in a region of a rectangle: the area that is nearest to
+// each point, and the edge that each two neighbours share.
 #ifndef CRAQUELURE_PLANAR_CELLS_H
 #define CRAQUELURE_PLANAR_CELLS_H
 
@@ -21,9 +21,9 @@ struct planar_cells {
     struct planar_edge *edge; // (n_edge) by points, ascending
 };
 
-// POINT are N distinct ones in the rectangle, of which two may be as near as numbers
-// allow. Edges too narrow to tell from rounding are left out. Near O(n) where points
-// are spread evenly, also along one line. The caller frees it with planar_cells_free.
+// POINT are N distinct points in the rectangle, however close. Edges too narrow to tell
+// from rounding are left out. About O(n) for points spread evenly, also along one line.
+// The caller frees the result with planar_cells_free.
 struct planar_cells planar_cells_make(const struct planar *point, int n,
                                       const struct planar_region *region);
 

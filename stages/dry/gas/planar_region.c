@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The region is the sum of the triangles that its sides make with any point, those of
-// sides seen clockwise counted off. A convex polygon is cut by each.
+// Areas and lengths inside a polygonal region, without building the intersection. The
+// region is the sum of the triangles (origin, side[0], side[1]) over all its sides,
+// with a negative sign where the side is seen clockwise. So
+//     area(polygon in region) = sum of sign * area(polygon in triangle),
+// and a convex polygon is clipped by the three lines of each triangle (Sutherland and
+// Hodgman 1974). A line is split where it crosses sides, and each part counts if its
+// middle is inside. Sides are taken at their periodic image nearest to the origin,
+// which is right for polygons smaller than half the rectangle.
 #include "planar_region.h"
 
 #include "basics/memory.h"
@@ -38,7 +44,7 @@ static void find_side(const struct planar_region *region, int k, struct planar o
         side[end] = difference(side[end], moved);
 }
 
-// How much of what is not bounded by any side is in the region.
+// The winding number far from all sides: 1 where the loops surround what is missing.
 static int far_away(const struct planar_region *region)
 {
     const struct rectangle *whole = &region->rectangle;
@@ -53,8 +59,8 @@ static double polygon_area(const struct planar *corner, int n)
     return twice / 2;
 }
 
-// What of the polygon lies left of the line from A to B, into KEPT, which has room for
-// one more corner. Returns its corners.
+// Writes the part of the polygon left of the line from A to B to KEPT, which needs room
+// for one corner more. Returns the number of its corners.
 static int cut_left(const struct planar *corner, int n, struct planar a,
                     struct planar b, struct planar *kept)
 {
@@ -74,7 +80,8 @@ static int cut_left(const struct planar *corner, int n, struct planar a,
     return m;
 }
 
-// Of the part of the polygon in the triangle of the origin, A and B, counter-clockwise.
+// Area of the part of the polygon in the triangle (origin, A, B), counter-clockwise.
+// SCRATCH has room for 2 (n + 3) corners.
 static double area_in_triangle(const struct planar *corner, int n, struct planar a,
                                struct planar b, struct planar *scratch)
 {
@@ -102,8 +109,8 @@ double area_in_region(const struct planar_region *region, struct planar origin,
     return area;
 }
 
-// By the sides that cross a ray from AT along x: upwards they begin the region to their
-// left.
+// By the winding number: sides that cross the ray from AT along +x upwards count +1,
+// downwards -1.
 static bool is_in_region(const struct planar_region *region, struct planar origin,
                          struct planar at)
 {

@@ -24,16 +24,17 @@ struct planar_region {
     struct rectangle rectangle;
 };
 
-// Of the convex polygon of N corners, counter-clockwise and seen from ORIGIN, near it.
-// To rounding, so it may be a little below 0.
+// Area of the part of a convex polygon in the region. Its N corners are
+// counter-clockwise, relative to ORIGIN and near it. Rounding may make it a little
+// negative.
 double area_in_region(const struct planar_region *region, struct planar origin,
                       const struct planar *corner, int n);
 
-// Of the line between two points seen from ORIGIN.
+// Length of the part of the line from FROM to TO (relative to ORIGIN) in the region.
 double length_in_region(const struct planar_region *region, struct planar origin,
                         struct planar from, struct planar to);
 
-// Whether all that is nearer than DISTANCE to the origin is in the region.
+// Whether the whole disc of radius DISTANCE around ORIGIN is in the region.
 bool region_holds(const struct planar_region *region, struct planar origin,
                   double distance);
 

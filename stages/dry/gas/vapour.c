@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Vapour in the gas as a network of conductances [K 3.9]. With the scaled potential
+//     phi = ln((p_g - p_v) / (p_g - p_sat)) / ln((p_g - p_inf) / (p_g - p_sat)),
+// 0 above flat menisci and 1 in the drying air, inner nodes of the gas balance,
+//     sum_j conductance_ij (phi_i - phi_j) = 0,
+// so each can be eliminated as soon as it dries (star-mesh transformation,
+// elimination/kron_fronts.h). Then air_conductance[node] times the potential
+// difference, 1, is what a wet node evaporates; their sum is the rate. The levels of
+// the boundary layer are eliminated once, before the run.
 #include "vapour.h"
 
 #include "basics/memory.h"
@@ -24,7 +32,7 @@ static int level_site(const struct boundary_layer *layer, int n_node, int level,
     return level == 0 ? layer->exposed[i] : n_node + (level - 1) * layer->n_exposed + i;
 }
 
-// Along level LEVEL, and to the next.
+// Links of the lattice along LEVEL, and from it to the next.
 static void link_level(struct kron_fronts *mesh, const struct boundary_layer *layer,
                        int n_node, int level)
 {
@@ -64,9 +72,9 @@ static void add_by_columns(struct kron_fronts *mesh, const struct network *netwo
     free(order);
 }
 
-// Only its feet remain. What is linked at once while it is eliminated is a level, or
-// the columns that part it in two, about twice the root of their number: whichever is
-// less.
+// Eliminates the lattice down to its feet. The front is one level (n_exposed sites), or
+// the columns of a separator, about 2 sqrt(n_exposed) of them with all their layers:
+// the order with the smaller front is taken.
 static void add_boundary_layer(struct kron_fronts *mesh, const struct network *network,
                                const struct boundary_layer *layer)
 {

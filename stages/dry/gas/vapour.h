@@ -3,10 +3,11 @@
 // layer.
 //
 // With the potential ln(1 - p_v/p_g), K 3.9 is linear: a network of conductances, with
-// the potential scaled to 0 where the vapour is saturated and 1 in the drying air. Only
-// what wet nodes give off matters, so nodes of the gas are eliminated as they dry: what
-// is left links wet nodes with each other, through which nothing flows since all are at
-// 0, and with the air, at 1. What a wet node evaporates is its conductance to the air.
+// the potential scaled to 0 where the vapour is saturated and 1 in the drying air. The
+// run only needs what wet nodes evaporate, so nodes of the gas are eliminated as they
+// dry. The links that remain join wet nodes with each other, where nothing flows since
+// all are at 0, and with the air, at 1: a wet node evaporates its conductance to the
+// air.
 #ifndef CRAQUELURE_VAPOUR_H
 #define CRAQUELURE_VAPOUR_H
 
@@ -21,23 +22,24 @@ struct vapour {
     struct kron_fronts mesh;
 };
 
-// For a network that is full of liquid, under LAYER; with a TOLERANCE above 0 links on
-// large fronts are floats. Lengths are in units of LENGTH (m), conductances area over
-// length in the same. Where molecules meet the wall of a throat as often as each other,
-// at KNUDSEN_RADIUS (m), the diffusivity is halved; 0: nowhere.
+// For a network that is full of liquid, under LAYER (not kept). With a TOLERANCE above
+// 0 links on large fronts are floats. Lengths are in units of LENGTH (m), conductances
+// are area over length in these units. Throats of radius KNUDSEN_RADIUS (m) have half
+// the diffusivity, narrower ones less; 0: no Knudsen effect. The caller frees the
+// result with vapour_free.
 struct vapour vapour_make(const struct network *network, double length,
                           double knudsen_radius, const struct boundary_layer *layer,
                           double tolerance);
 
-// THROAT, from node A to node B, has emptied. NODE has gas and no liquid beside it any
-// more.
+// THROAT, from node A to node B, has emptied: vapour diffuses through it from now on.
+// NODE has no throat with liquid any more: it leaves the system.
 void vapour_open_throat(struct vapour *vapour, int throat, int a, int b);
 void vapour_dry_node(struct vapour *vapour, int node);
 
-// Into the drying air.
+// Rate into the drying air, scaled, if all menisci were flat.
 double vapour_rate(const struct vapour *vapour);
 
-// What a wet node gives off. Exactly 0 if no way leads from it to the drying air.
+// What wet NODE evaporates, scaled. Exactly 0 if no path leads from it to the air.
 double vapour_evaporation(const struct vapour *vapour, int node);
 
 void vapour_free(struct vapour *vapour);

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Discrete-event simulation of drying without viscous flow [K 3.4.2, steps 1-6]. The
+// throat of timer k loses liquid at a constant rate[k] between events:
+//     left(t) = left[k] + left_lost[k] - rate[k] (t - since[k]),
+//     end[k] = since[k] + left[k] / rate[k],
+// and the next event is at the smallest end[k]. Only the timers marked dirty are
+// advanced to now and get a new end, unless a node dries: that changes all rates.
+// left_lost is what rounding takes from left (two-sum), for a throat may be advanced
+// many times. Throats whose ends differ by rounding only (TIE of their volume) empty
+// together: else rounding would break the symmetry of a lattice.
 #include "emptying_times.h"
 
 #include "basics/memory.h"
@@ -15,7 +24,8 @@ static const double TIE = 1e-12;
 
 // --- who loses ---------------------------------------------------------------------
 
-// From the throat that the reservoir is to lose from.
+// Starts timer K at the throat from which its reservoir loses: the throat itself, or
+// the meniscus throat of the cluster that gas enters first.
 static void start_timer(struct emptying_times *times, int k)
 {
     const int owner = times->owner[k];
@@ -33,7 +43,7 @@ static void start_timer(struct emptying_times *times, int k)
     times->nothing[k] = TIE * times->occupancy->volume[throat];
 }
 
-// Two-sum: what is rounded off LEFT is kept beside it.
+// Brings LEFT up to now. Two-sum keeps what is rounded off in LEFT_LOST.
 static void advance_timer(struct emptying_times *times, int k)
 {
     const double left = times->left[k];
@@ -68,7 +78,8 @@ static void advance_all(struct emptying_times *times)
     times->now = 0;
 }
 
-// Infinite, or no number, without a rate.
+// When timer K ends. Infinite or NaN without a rate; both compare as later than any
+// end.
 static inline void find_end(struct emptying_times *times, int k)
 {
     const double each = 1 / times->rate[k], left = times->left[k];
@@ -88,7 +99,7 @@ static void end_timer(struct emptying_times *times, int k)
     times->unused[times->n_unused++] = k;
 }
 
-// The timers with other shares than before run on from now.
+// Gives timers whose shares have changed their new rates, from now on.
 static void renew_dirty(struct emptying_times *times)
 {
     for (int l = 0; l < times->n_dirty; l++) {
@@ -108,7 +119,8 @@ static void renew_dirty(struct emptying_times *times)
     times->n_dirty = 0;
 }
 
-// ALL_CHANGED: what each node evaporates.
+// New rates after an event. ALL_CHANGED: a node has dried, so that what every other
+// node evaporates has changed.
 static void set_rates(struct emptying_times *times, bool all_changed)
 {
     struct kron_fronts *mesh = &times->occupancy->vapour.mesh;
@@ -216,7 +228,7 @@ double emptying_times_imbalance(const struct emptying_times *times)
 
 // --- events ------------------------------------------------------------------------
 
-// INFINITY if none loses.
+// The earliest end; INFINITY if no throat loses. Sixteen minima side by side vectorise.
 static double first_end(const struct emptying_times *times)
 {
     enum { LANES = 16 };
@@ -245,7 +257,7 @@ static void end_throat(struct emptying_times *times, int k)
     times->ended[times->n_ended++] = times->throat[k];
 }
 
-// Those that have lost all. Blocks in which none has are passed over in few steps.
+// Ends all throats that have lost everything. Blocks without any are skipped quickly.
 static void end_throats(struct emptying_times *times)
 {
     enum { BLOCK = 128 };

@@ -3,15 +3,15 @@
 //
 // What a wet node evaporates is taken from the throats with liquid beside it, in
 // proportion to their cross-sections. Without viscosity a cluster loses all its shares
-// from its widest meniscus throat [K 3.4.2, steps 2 to 4]; immobile, each throat bears
-// its own. A throat that loses has a timer: the moment at which it will have emptied.
-// What is not beside the gas that reaches the air has none (discrete-event simulation).
+// from its widest meniscus throat [K 3.4.2, steps 2 to 4]; immobile, each throat loses
+// its own. A throat that loses has a timer: the moment at which it will have emptied
+// (discrete-event simulation). Liquid that no vapour leaves has none.
 #ifndef CRAQUELURE_EMPTYING_TIMES_H
 #define CRAQUELURE_EMPTYING_TIMES_H
 
 #include "dry/liquid/occupancy.h"
 
-// Of what a node evaporates, taken from a reservoir: a cluster, or a throat.
+// The part of a node's evaporation that one reservoir (cluster or throat) supplies.
 struct evaporation_share;
 
 struct emptying_times {
@@ -65,13 +65,13 @@ double emptying_times_advance(struct emptying_times *times);
 // Gas fills the ended throats. The timers run on with the rates that follow.
 void emptying_times_empty_ended(struct emptying_times *times);
 
-// Of a throat now: of its volume.
+// Saturation of THROAT now, from 0 to 1.
 double emptying_times_saturation(const struct emptying_times *times, int throat);
 
-// What the throats lose, all together, less what goes into the air; of the latter.
+// What all throats lose less what goes into the air, relative to the latter: rounding.
 double emptying_times_imbalance(const struct emptying_times *times);
 
-// Between two events.
+// Writes to STREAM, or restores from it, the state between two events.
 void emptying_times_state(struct emptying_times *times,
                           struct checkpoint_stream *stream);
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rate of each timer, kept up to date as nodes and throats change:
+//     rate[k] = sum over shares of k of part * air_conductance[node],
+//     part = section of the reservoir's throats at the node / section of all there.
+// Small changes are added to and subtracted from a compensated sum. Subtraction loses
+// digits when little is left of a large sum (MIN_PART); then all rates are summed
+// again, as positive numbers. share_incidence and share_place point at each other, so
+// that a share is found from the node and removed in O(1).
 #include "evaporation_shares.h"
 
 #include "dry/liquid/losses.h"
@@ -6,7 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-// Sums keep twice the digits of a number, so that all are left when this part is.
+// Compensated sums have twice the digits of a double: a sum that has shrunk to this
+// part still has all the digits of a double.
 static const double MIN_PART = 1e-10;
 
 void mark_dirty(struct emptying_times *times, int k)
@@ -16,7 +24,7 @@ void mark_dirty(struct emptying_times *times, int k)
     times->dirty[times->n_dirty++] = k;
 }
 
-// Of the reservoir; a new one has no throat yet.
+// The timer of a reservoir; a new one has no throat yet.
 static int timer_of(struct emptying_times *times, int owner)
 {
     if (times->timer[owner] >= 0) return times->timer[owner];
@@ -60,7 +68,7 @@ static void remove_share(struct emptying_times *times, int place)
     times->share_incidence[place] = times->share_incidence[last];
 }
 
-// To the reservoir's share of the node's, or as a new one.
+// Adds PART to the share that the reservoir has of NODE already, or makes a new share.
 static void add_share(struct emptying_times *times, int node, int incidence,
                       double part)
 {
@@ -80,7 +88,7 @@ static void add_share(struct emptying_times *times, int node, int incidence,
     times->share[times->n_share++] = (struct evaporation_share){part, node, timer};
 }
 
-// By the throats that hold liquid now: shares are proportional to their cross-sections.
+// Shares are proportional to the cross-sections of the throats that hold liquid now.
 void share_by_node(struct emptying_times *times, int node)
 {
     const struct occupancy *occupancy = times->occupancy;
@@ -119,8 +127,8 @@ static int most_shares(const struct emptying_times *times)
     return most;
 }
 
-// That of the liquid's largest piece, which gets about half of them, in eight parts:
-// each addition waits for the one before it.
+// The largest cluster has about half of all shares. Its sum is split in eight parts,
+// since each addition to one number waits for the previous one.
 void evaporation_shares_add_up(struct emptying_times *times)
 {
     enum { PARTS = 8 };

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What the vapour's system had at nodes that dry, recorded before they are eliminated.
+// The elimination of node i changes the matrix of the wet nodes by
+//     S_jk -= c_ij c_ik / total_i,   total_i = sum of all its links and to the air,
+// a downdate of rank one whose column is c_i / sqrt(total_i). If both ends of a throat
+// dry, the second is seen after the first is gone (see_through): its links grow by
+// c_12 c_1j / total_1. Bodies at the ends of the throat, and throats that change
+// cluster, are other bodies afterwards: their rows go.
 #include "dried_nodes.h"
 
 #include "basics/memory.h"
@@ -48,7 +55,7 @@ static void add_link(struct dried_nodes *dried, int site, double conductance)
     dried->link[dried->n_link++] = (struct dried_link){site, conductance};
 }
 
-// With all its links but that to SITE's neighbour BUT, which is returned.
+// Records SITE with all its links except that to BUT, which is returned.
 static double note_node(struct dried_nodes *dried, const struct kron_fronts *mesh,
                         int site, int but)
 {
@@ -73,7 +80,8 @@ static double note_node(struct dried_nodes *dried, const struct kron_fronts *mes
     return to_but;
 }
 
-// The second of two that dry, linked by BETWEEN, sees through the first what that sees.
+// Two nodes dry, linked by BETWEEN. The first is eliminated first, which gives the
+// second part of its links and of its total.
 static void see_through(struct dried_nodes *dried, double between)
 {
     struct dried_node *second = &dried->node[dried->n_node - 1];
@@ -85,8 +93,8 @@ static void see_through(struct dried_nodes *dried, double between)
     second->total += first->total * part;
 }
 
-// What is at the ends of the throat is another body from now on, so links to an end
-// that does not dry count only in the total.
+// Liquid at the ends of the throat is another body from now on, so links to an end that
+// does not dry count only in the total.
 static void note_dried(struct dried_nodes *dried, struct occupancy *occupancy,
                        int throat)
 {

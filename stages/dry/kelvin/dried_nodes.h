@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What throats that empty change in the balances of the other bodies of liquid: those
-// at the throats' ends, or that part, are others; nodes that dry leave the vapour.
+// What a throat that empties changes in the matrix of the bodies of liquid: bodies at
+// its ends, or that split, are replaced by others; nodes that dry are eliminated.
 #ifndef CRAQUELURE_DRIED_NODES_H
 #define CRAQUELURE_DRIED_NODES_H
 
@@ -20,7 +20,7 @@ struct dried_nodes {
     bool by_throat; // a throat is a body of liquid; else a cluster
     int n_throat;   // that have emptied
     int n_body;
-    int *body;  // (n_body) throats or clusters that are others now
+    int *body;  // (n_body) throats or clusters whose rows are no longer valid
     bool *seen; // (n_throat of the network) whether in BODY
     int n_node, node_capacity;
     struct dried_node *node; // (n_node)
@@ -34,13 +34,13 @@ struct dried_nodes {
 // with dried_nodes_free.
 struct dried_nodes dried_nodes_make(int n_throat, int n_site, bool by_throat);
 
-// THROAT is about to be emptied; it has been.
+// Call _note_before when THROAT is about to be emptied, _note_after when it has been.
 void dried_nodes_note_before(struct dried_nodes *dried, struct occupancy *occupancy,
                              int throat);
 void dried_nodes_note_after(struct dried_nodes *dried,
                             const struct occupancy *occupancy);
 
-// Forgets what has dried.
+// Forgets all that has been noted.
 void dried_nodes_clear(struct dried_nodes *dried);
 
 void dried_nodes_free(struct dried_nodes *dried);

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The equilibrated bodies evaporate nothing: with S of schur_rows.c, restricted to
+// them,
+//     S step = evaporation,   potential += step,
+// once, as evaporation is linear in the potentials; refinement removes rounding. The
+// factor is of the matrix scaled to a unit diagonal, D^-1/2 S D^-1/2 with root =
+// sqrt(D), in which a body that is not equilibrated has a row of the identity. It
+// follows
+//     bodies that join or leave    by cholmod_rowadd and cholmod_rowdel,
+//     nodes that dry               by one downdate each (dried_nodes.c),
+// and is made again after MAX_UPDATES emptied throats or when refinement stalls.
+// Without DIAGONAL_SHIFT it would be singular for a group without a path to the air.
 #include "equilibrated_menisci.h"
 
 #include "basics/memory.h"
@@ -12,19 +23,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Corrections at most; after some with a factor that has followed changes, it is made
-// anew.
+// At most so many corrections; after STALE_AFTER of them an updated factor is made
+// again.
 enum { REFINEMENTS = 4, STALE_AFTER = 2 };
 
-// A new order costs as much as the changes of some ten throats; by then they have
-// filled the factor.
+// A new ordering costs as much as updates for some ten throats; by then fill-in has
+// made the factor dense.
 enum { MAX_UPDATES = 16 };
 
-// What is added to the diagonal of one of the equilibrated menisci, of it: where vapour
-// cannot leave, all could be in equilibrium at any one potential.
+// Added to the unit diagonal: where vapour cannot leave, any common potential would be
+// an equilibrium.
 static const double DIAGONAL_SHIFT = 1e-12;
 
-// Part of the rate that equilibrated bodies may evaporate.
+// Equilibrated bodies may evaporate this part of the rate, in all.
 static const double FLUX_TOLERANCE = 1e-13;
 
 struct equilibrated_menisci {
@@ -127,7 +138,7 @@ static void make_row(struct equilibrated_menisci *equilibrated,
         diagonal > 0 ? sqrt(diagonal) : 1;
 }
 
-// Of the row at hand, that of BODY.
+// Entry of the current row, that of BODY, in the column of OTHER; scaled.
 static double entry(const struct equilibrated_menisci *equilibrated,
                     const struct kelvin_menisci *kelvin, int body, int other)
 {
@@ -147,7 +158,7 @@ static bool more_entries(struct equilibrated_menisci *equilibrated,
            cholmod_reallocate_triplet(2 * needed, entries, &equilibrated->common);
 }
 
-// Rows that come later add the entries with those before, whose roots they know.
+// Each row adds its entries with the rows before it, whose roots are known.
 static bool list_row(struct equilibrated_menisci *equilibrated,
                      const struct kelvin_menisci *kelvin,
                      const struct occupancy *occupancy, int body,
@@ -260,7 +271,7 @@ static bool take_row(struct equilibrated_menisci *equilibrated, int owner)
                           equilibrated->factor, &equilibrated->common);
 }
 
-// The factor has the equilibrated ones.
+// Updates the factor until it has exactly the rows of the equilibrated bodies.
 static bool update(struct equilibrated_menisci *equilibrated,
                    const struct kelvin_menisci *kelvin,
                    const struct occupancy *occupancy)
@@ -291,7 +302,8 @@ void equilibrated_empty_throat(struct equilibrated_menisci *equilibrated,
     if (equilibrated->factor) dried_nodes_note_after(&equilibrated->dried, occupancy);
 }
 
-// To COLUMN, by slots whose numbers in equilibrated->x it lists.
+// Adds the parts of the K-th wet node, times CONDUCTANCE, to equilibrated->x by slots,
+// and lists new slots in COLUMN.
 static void add_parts(struct equilibrated_menisci *equilibrated,
                       const struct kelvin_menisci *kelvin, int k, double conductance,
                       cholmod_sparse *column)
@@ -306,8 +318,7 @@ static void add_parts(struct equilibrated_menisci *equilibrated,
     }
 }
 
-// What bodies see of each other through a node that has dried comes from the product of
-// their links with it.
+// Eliminates a node that has dried: a downdate with the column of its links to bodies.
 static bool eliminate(struct equilibrated_menisci *equilibrated,
                       const struct kelvin_menisci *kelvin,
                       const struct occupancy *occupancy, const struct dried_node *node)
@@ -356,7 +367,7 @@ void equilibrated_follow(struct equilibrated_menisci *equilibrated,
 
 // --- all ---------------------------------------------------------------------------
 
-// Whether they evaporate nothing but rounding.
+// Whether the equilibrated bodies evaporate no more than rounding.
 static bool has_zero_flux(const struct kelvin_menisci *kelvin)
 {
     double evaporation = 0, noise = 0;

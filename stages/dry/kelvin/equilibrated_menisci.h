@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies of liquid whose menisci are flatter than their throats make them: at which
-// potentials they evaporate nothing.
+// Bodies of liquid whose menisci are flatter than their throats make them: the
+// potentials at which they evaporate nothing.
 //
-// Their system has a sparse Cholesky factor that follows them. Bodies that begin or
-// cease to be are rows that come and go, as are those whose nodes change; a node
-// that dries is eliminated from all others by one downdate.
+// Their system has a sparse Cholesky factor that is updated. A body that joins or
+// leaves adds or deletes a row, and so does one whose nodes change; a node that dries
+// is eliminated by one downdate.
 #ifndef CRAQUELURE_EQUILIBRATED_MENISCI_H
 #define CRAQUELURE_EQUILIBRATED_MENISCI_H
 
@@ -17,21 +17,21 @@ struct equilibrated_menisci;
 struct equilibrated_menisci *equilibrated_make(int n_throat, int n_site,
                                                bool by_throat);
 
-// Empties THROAT, as occupancy_empty_throat, and keeps what it changes.
+// Empties THROAT, as occupancy_empty_throat, and notes what that changes in the system.
 void equilibrated_empty_throat(struct equilibrated_menisci *equilibrated,
                                struct occupancy *occupancy, int throat);
 
-// Bodies have been listed, after N throats have emptied. Goes on from what was, if all
-// of them have by equilibrated_empty_throat.
+// Call after the bodies have been listed again, N throats having emptied. Updates the
+// factor, if all N were emptied by equilibrated_empty_throat; else forgets it.
 void equilibrated_follow(struct equilibrated_menisci *equilibrated,
                          const struct kelvin_menisci *kelvin,
                          const struct occupancy *occupancy, int n);
 
-// Nothing is gone on from.
+// Forgets the factor: the next solution makes it again.
 void equilibrated_forget(struct equilibrated_menisci *equilibrated);
 
-// The equilibrated come to where they evaporate nothing; the gains follow. False if
-// memory ran out.
+// Finds the potentials at which the bodies with kelvin->zero_flux evaporate nothing,
+// and what all bodies evaporate then. False if memory ran out.
 bool solve_zero_flux(struct kelvin_menisci *kelvin, const struct occupancy *occupancy);
 
 void equilibrated_free(struct equilibrated_menisci *equilibrated);

@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies of liquid beside gas, listed from the wet nodes: throats, or clusters where
+// the liquid has no viscosity. At wet node k body a has the
+//     part = section of its throats at k / section of all throats with liquid at k,
+// which weighs both the mean potential of the node and the shares of what it
+// evaporates: so the matrix of the bodies is symmetric. Gravity adds to the potential
+// of node k,
+//     gravity_potential[k] = sum_a part_a (potential(x_a + g M h / (R T))
+//                                          - potential(x_a)),
+// h the height of the node above the middle of the body's throat.
 #include "kelvin_bodies.h"
 
-// A throat that lacks less than this of its volume is full. In a step that rounding
-// makes, menisci lose as little, and to fill them would be a step of that kind again.
+// A throat that lacks less than this of its volume counts as full. Rounding makes steps
+// in which menisci lose as little; to fill them again would be another such step.
 static const double FULL_TOLERANCE = 1e-12;
 
 bool kelvin_is_full(const struct kelvin_menisci *kelvin,
@@ -11,7 +20,8 @@ bool kelvin_is_full(const struct kelvin_menisci *kelvin,
     return occupancy_saturation(occupancy, kelvin->throat[place]) > 1 - FULL_TOLERANCE;
 }
 
-// Its place. What was equilibrated when last found is likely to be so again.
+// The place of BODY in the lists; adds it if it is new. A body that was equilibrated
+// when last found starts so again, at the same potential.
 static int find_body(struct kelvin_menisci *kelvin, struct occupancy *occupancy,
                      int body)
 {
@@ -34,7 +44,8 @@ static int find_body(struct kelvin_menisci *kelvin, struct occupancy *occupancy,
     return place;
 }
 
-// To the shares from BEGIN on, of which END have been written.
+// Adds SECTION to the share of BODY among SHARE[BEGIN..END-1], or as a new one at END.
+// Returns the new end.
 static int add_share(struct share *share, int begin, int end, int body, double section)
 {
     int k = begin;
@@ -45,9 +56,9 @@ static int add_share(struct share *share, int begin, int end, int body, double s
     return k == end ? end + 1 : end;
 }
 
-// The shares of the K-th wet node come at kelvin->offset[k]. No more conducts vapour
-// from it than at first and in the throats that have emptied since: what is eliminated
-// only puts more in series.
+// Lists the shares of the K-th wet node from kelvin->offset[k] on. The conductance from
+// it to everything else is at most the initial one plus that of the throats that have
+// emptied at it since: elimination only puts more conductances in series.
 static void list_shares(struct kelvin_menisci *kelvin, struct occupancy *occupancy,
                         int k)
 {
@@ -73,7 +84,7 @@ static void list_shares(struct kelvin_menisci *kelvin, struct occupancy *occupan
     kelvin->offset[k + 1] = end;
 }
 
-// By throats, ascending.
+// Orders the bodies by their throats, ascending.
 static void rank_bodies(struct kelvin_menisci *kelvin, int n_throat)
 {
     for (int a = 0; a < kelvin->n; a++)
@@ -96,8 +107,7 @@ void kelvin_list_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupan
     rank_bodies(kelvin, occupancy->network->n_throat);
 }
 
-// What the potential at NODE is above that at the middle of the throat of a body, in
-// liquid at rest.
+// Potential at NODE above that at the middle of the body's throat, in liquid at rest.
 static double potential_over_middle(const struct kelvin_menisci *kelvin,
                                     const struct network *network, int node, int place)
 {

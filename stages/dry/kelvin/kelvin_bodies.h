@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which bodies of liquid are beside gas, and what each has of the wet nodes.
+// The bodies of liquid beside gas, and the share of each in the wet nodes.
 #ifndef CRAQUELURE_KELVIN_BODIES_H
 #define CRAQUELURE_KELVIN_BODIES_H
 
 #include "kelvin_menisci.h"
 
-// Lists them, and their shares, as OCCUPANCY are now.
+// Lists the bodies and their shares for the OCCUPANCY of now. O(throats at wet nodes).
 void kelvin_list_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy);
 
-// What gravity adds to the potential at each wet node, as curved as the bodies are.
+// What gravity adds to the potential at each wet node, for the exponents of the bodies.
 void kelvin_find_gravity_potentials(struct kelvin_menisci *kelvin,
                                     const struct occupancy *occupancy);
 
-// Whether the throat that gas enters the body at PLACE by is full.
+// Whether the throat where gas enters the body at PLACE is full, to rounding.
 bool kelvin_is_full(const struct kelvin_menisci *kelvin,
                     const struct occupancy *occupancy, int place);
 

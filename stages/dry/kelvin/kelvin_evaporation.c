@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What each body evaporates at given potentials of the bodies:
+//     level[node] = gravity_potential + sum_a part_a potential[a]    at wet nodes,
+//     flow[node] = air_conductance[node] (1 - level[node])
+//                  + sum_j link_node,j (level[j] - level[node]),
+//     evaporation[a] = sum over its wet nodes of part_a flow[node],
+// and rate is the sum of the first terms. Links between wet nodes may conduct a
+// million times more than the air does, so flows cancel: noise bounds the rounding
+// that remains.
 #include "kelvin_evaporation.h"
 
 #include <math.h>
 #include <string.h>
 
-// What flows between sites at different potentials is known to this part of conductance
-// times potential; less is nothing.
+// Relative rounding of a flow, of conductance times potential; less is no flow.
 static const double NOISE = 1e-15;
 
-// Adds to TO (n) what the bodies at the K-th wet node have of FLOW.
+// Adds FLOW at the K-th wet node to TO (n bodies), in proportion to their shares.
 static void share_flow(const struct kelvin_menisci *kelvin, int k, double flow,
                        double *to)
 {
@@ -16,7 +23,7 @@ static void share_flow(const struct kelvin_menisci *kelvin, int k, double flow,
         to[kelvin->share[i].body] += kelvin->share[i].part * flow;
 }
 
-// The mean over the menisci of each wet node.
+// The potential at each wet node: the mean over its menisci, and gravity.
 static void find_levels(struct kelvin_menisci *kelvin,
                         const struct occupancy *occupancy)
 {

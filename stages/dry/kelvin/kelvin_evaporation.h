@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What bodies of liquid evaporate at given potentials, and how well that is known.
+// What bodies of liquid evaporate at given potentials, and the rounding of it.
 #ifndef CRAQUELURE_KELVIN_EVAPORATION_H
 #define CRAQUELURE_KELVIN_EVAPORATION_H
 
 #include "kelvin_menisci.h"
 
-// Finds EVAPORATION of each body, and RATE into the air, from POTENTIAL.
+// Sets kelvin->evaporation of each body and kelvin->rate into the air, both scaled,
+// from kelvin->potential.
 void kelvin_find_evaporation(struct kelvin_menisci *kelvin,
                              const struct occupancy *occupancy);
 
-// Finds CONDUCTANCE_BOUND of each body from what its nodes conduct.
+// Sets kelvin->conductance_bound of each body from those of its nodes.
 void kelvin_find_conductance_bounds(struct kelvin_menisci *kelvin,
                                     const struct occupancy *occupancy);
 
-// Finds NOISE of each body: gains below it are rounding.
+// Sets kelvin->noise of each body: evaporation below it is rounding.
 void kelvin_find_noise(struct kelvin_menisci *kelvin);
 
 #endif

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Kelvin's law, p_v = p_sat exp(-x), where the exponent x = p_c M / (rho R T), as a
+// potential of the vapour that is 0 above a flat meniscus and 1 in the drying air:
+//     potential(x) = ln(1 + p_sat (1 - e^-x) / (p_g - p_sat)) / drop,
+//     drop = ln(1 + (p_sat - p_inf) / (p_g - p_sat)),
+//     slope = p_sat e^-x / ((p_g - p_sat + p_sat (1 - e^-x)) drop).
+// Under gravity x rises by g M / (R T) per metre of height. In wide throats x is tiny:
+// log1p and expm1 keep the digits of the potential, which would else be 1 - 1.
 #include "kelvin_law.h"
 
 #include <math.h>
@@ -22,7 +29,6 @@ struct kelvin_law kelvin_law(const struct drying_conditions *conditions)
             conditions->liquid == LIQUID_IMMOBILE ? 0 : conditions->gravity / heat};
 }
 
-// This form keeps its digits for wide throats.
 double kelvin_potential(const struct kelvin_law *law, double exponent)
 {
     return log1p(-law->saturation * expm1(-exponent) / law->air_pressure) / law->drop;

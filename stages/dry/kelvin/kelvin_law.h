@@ -16,19 +16,21 @@ struct kelvin_law {
     double exponent_per_height;      // rise of the exponent a metre upwards, 1/m
 };
 
-// Of the liquid, the gas and the temperature of CONDITIONS.
+// The law for the liquid, the gas and the temperature of CONDITIONS.
 struct kelvin_law kelvin_law(const struct drying_conditions *conditions);
 
-// Above a meniscus, how it rises with the exponent, and at which exponent it is so.
+// The potential above a meniscus of given exponent p_c M / (rho R T), its derivative by
+// the exponent, and the inverse of the first.
 double kelvin_potential(const struct kelvin_law *law, double exponent);
 double kelvin_slope(const struct kelvin_law *law, double exponent);
 double kelvin_exponent_at(const struct kelvin_law *law, double potential);
 
-// At which half of the gas beside saturated vapour would be vapour: below 0, bulging.
+// The exponent of the most bulging meniscus that is tried (below 0): its vapour leaves
+// half of the air that there is above a flat one.
 double kelvin_least_exponent(const struct kelvin_law *law);
 
-// STATUS_BAD_DATA with the throat whose meniscus has no more vapour than the air: it
-// never dries.
+// STATUS_BAD_DATA with a throat whose meniscus has no higher vapour pressure than the
+// drying air: it never dries. STATUS_OK without the Kelvin effect.
 enum status check_kelvin(const struct drying_conditions *conditions,
                          const struct network *network, struct reason *reason);
 

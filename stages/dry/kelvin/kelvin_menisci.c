@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inviscid and immobile liquid with the Kelvin effect: an obstacle problem for the
+// potentials of the bodies. In a full throat either
+//     potential = entry_potential,  evaporation >= 0     (as curved as its throat), or
+//     potential < entry_potential,  evaporation = 0      (flatter: zero_flux).
+// Each round solves for the equilibrated set (equilibrated_menisci.h) and revises it:
+// too much curved menisci leave, full ones with condensation join. First all change at
+// once, then one at a time, which always ends (Murty 1974). A throat partly empty may
+// condense: its loss is negative. The largest loss takes up the error of the balance,
+// which must stay below MAX_RESIDUAL.
 #include "kelvin_menisci.h"
 
 #include "basics/memory.h"
@@ -9,16 +18,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-// In the first rounds all menisci that break their condition change at once; from then
-// on only the first of them, which always comes to an end (Murty 1974).
+// In the first rounds all menisci that violate their condition change at once; after
+// that only the first of them, which always ends (Murty 1974).
 enum { ROUNDS_AT_ONCE = 10, MAX_ROUNDS = 1000 };
 
-// A meniscus this much more curved than its throat, of its potential, stays
-// equilibrated: hysteresis, for a body at the threshold would flip by rounding.
+// A meniscus stays equilibrated while its potential exceeds the entry potential by at
+// most this part: without hysteresis rounding would let a body at the threshold flip.
 static const double HYSTERESIS = 1e-10;
 
-// Largest part of the rate into the air that may be lost in that: late, wet nodes have
-// links that conduct a million times what leads to the air.
+// Largest error of the balance, relative to the rate into the air: late in a run, links
+// between wet nodes conduct a million times more than those to the air.
 static const double MAX_RESIDUAL = 1e-6;
 
 static void find_initial_conductances(struct kelvin_menisci *kelvin,
@@ -131,8 +140,8 @@ static double excess_curvature(const struct kelvin_menisci *kelvin, int a)
     return kelvin->potential[a] / entry_potential - 1;
 }
 
-// Those more curved than this cease to be equilibrated: not all that are too much so,
-// for others follow when the worst have.
+// The excess above which menisci leave the equilibrated set: half of the largest, for
+// the others often follow by themselves when the worst have left.
 static double most_excess(const struct kelvin_menisci *kelvin)
 {
     double worst = 0;
@@ -141,7 +150,7 @@ static double most_excess(const struct kelvin_menisci *kelvin)
     return fmax(HYSTERESIS, worst / 2);
 }
 
-// Which begin or cease to be equilibrated; no more than MOST.
+// Lets bodies join or leave the equilibrated set, at most MOST of them.
 static struct revision revise(struct kelvin_menisci *kelvin,
                               const struct occupancy *occupancy, int most)
 {
@@ -179,7 +188,7 @@ static void add_losses(const struct kelvin_menisci *kelvin,
     }
 }
 
-// The error of the balances is left to the largest.
+// Adds the error of the balance to the largest loss, and notes it as residual.
 static void balance(struct kelvin_menisci *kelvin, struct losses *losses)
 {
     struct compensated rest = {.value = kelvin->rate};
@@ -223,7 +232,7 @@ void kelvin_menisci_empty_throat(struct kelvin_menisci *kelvin,
     equilibrated_empty_throat(kelvin->equilibrated, occupancy, throat);
 }
 
-// A throat has emptied.
+// A throat has emptied: lists the bodies again, from what is known of them.
 static void relist_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy)
 {
     const int n_emptied = kelvin->listed_at - occupancy->n_liquid;

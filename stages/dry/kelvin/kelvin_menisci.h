@@ -2,18 +2,18 @@
 // Menisci with vapour pressures of their own (Kelvin): p_v = p_sat exp(-p_c M/(rho R
 // T)) above a meniscus of capillary pressure p_c = 2 sigma cos(theta) / r.
 //
-// What has one curvature is a body of liquid: a throat, where the liquid does not move;
-// a cluster, where it has no viscosity and so one pressure, that at which gas enters
-// its widest meniscus throat. Under gravity the pressure of a cluster falls with
-// height, and so does the vapour above it. A node between several bodies has the mean
-// of their potentials, by the sections of the throats, as it shares out what it
-// evaporates.
+// A body of liquid has one curvature: a throat, where the liquid does not move; a
+// cluster, where it has no viscosity and so one pressure, that at which gas enters its
+// widest meniscus throat. Under gravity the pressure of a cluster falls with height,
+// and so does the vapour pressure above it. A node between several bodies has the mean
+// of their potentials, weighted by the sections of the throats, just as its evaporation
+// is shared out.
 //
-// So vapour goes from wide menisci to narrow ones, and may condense there: a throat
-// partly empty then fills. Where that which gas enters is full the menisci of the body
-// become flatter until it neither takes nor gives: its pressure is unknown, and found
-// so that nothing condenses and no meniscus is more curved than its throat makes it (an
-// obstacle problem).
+// So vapour diffuses from wide menisci to narrow ones, and may condense there: a throat
+// partly empty then fills. If the throat where gas would enter is full, the menisci of
+// the body become flatter until it neither evaporates nor condenses. Its pressure is
+// unknown: nothing may condense, and no meniscus may be more curved than its throat
+// makes it (an obstacle problem).
 #ifndef CRAQUELURE_KELVIN_MENISCI_H
 #define CRAQUELURE_KELVIN_MENISCI_H
 
@@ -35,13 +35,13 @@ struct kelvin_menisci {
     double *entry_potential; // (n_throat) potential above its meniscus: 0 flat, 1 as in
                              // the air
     double rate;             // into the air, scaled
-    double residual;         // largest so far of the balances, of that rate
+    double residual;         // largest error of a balance so far, relative to the rate
     struct kelvin_law law;
     struct equilibrated_menisci *equilibrated;
-    bool *had_zero_flux; // (n_throat) by throat or cluster: did, when last found
+    bool *had_zero_flux; // (n_throat) by throat or cluster: zero_flux when last found
     double *zero_flux_potential; // (n_throat) its potential then
 
-    // Of the bodies beside gas, as they were when so many throats held liquid.
+    // The bodies beside gas, listed when so many throats held liquid.
     int listed_at; // -1: not yet
     int n;
     int *body;                 // (n) throat or cluster
@@ -70,26 +70,28 @@ struct kelvin_menisci {
 struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
                                           const struct drying_conditions *conditions);
 
-// What each body loses, or takes up (negative), with OCCUPANCY as they are, by throats.
-// LOSSES come in ascending throats.
+// Sets LOSSES to what each body loses, or takes up (negative), in ascending throats,
+// for the OCCUPANCY of now; kelvin->rate is their sum.
 //
 // STATUS_NOT_CONVERGED if the menisci are not found.
 enum status kelvin_menisci_find(struct kelvin_menisci *kelvin,
                                 struct occupancy *occupancy, struct losses *losses,
                                 struct reason *reason);
 
-// Empties THROAT, as occupancy_empty_throat, which does as well: then less can be gone
-// on from.
+// Empties THROAT, as occupancy_empty_throat. That may be called instead, but then the
+// factor of the equilibrated menisci is lost.
 void kelvin_menisci_empty_throat(struct kelvin_menisci *kelvin,
                                  struct occupancy *occupancy, int throat);
 
-// Next time bodies are listed anew and nothing is gone on from but the state.
+// Forgets what is kept only for speed: the next call starts from what
+// kelvin_menisci_state keeps.
 void kelvin_menisci_forget(struct kelvin_menisci *kelvin);
 
-// The same in steps, for viscous liquid: lists the bodies, of which those are given
-// that are throats of a cluster of several; finds the others from what is given, and
-// what all evaporate; adds to LOSSES, which has those of the given, what the others
-// lose, and makes all of it equal to what goes into the air.
+// The same in three steps, for viscous liquid, where throats of clusters of several
+// have potentials given by their flow (kelvin->flows). _begin lists the bodies.
+// _find_others finds the others' potentials, and what all evaporate. _end adds what the
+// others lose to LOSSES, which has those of the given, and makes the sum equal to the
+// rate.
 void kelvin_menisci_begin(struct kelvin_menisci *kelvin, struct occupancy *occupancy);
 enum status kelvin_menisci_find_others(struct kelvin_menisci *kelvin,
                                        const struct occupancy *occupancy,
@@ -98,8 +100,8 @@ enum status kelvin_menisci_end(struct kelvin_menisci *kelvin,
                                const struct occupancy *occupancy, struct losses *losses,
                                struct reason *reason);
 
-// What drives vapour from the widest meniscus into the air, of what would from a flat
-// one.
+// The potential difference from the widest meniscus to the air, relative to that from a
+// flat one.
 double kelvin_drive(const struct kelvin_menisci *kelvin);
 
 void kelvin_menisci_state(struct kelvin_menisci *kelvin, const struct network *network,

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How much more a meniscus evaporates when its pressure rises: the derivative that
+// couples flow and vapour. With single the conductance from its nodes to everything
+// else, lumped that to everything but its own cluster, and slope = d potential / d
+// pressure,
+//     alone = slope single,   part = alone / (alone + conductance),
+//     response = slope (lumped + part (single - lumped)):
+// where the throat conducts well (part near 0) the cluster's pressures change together
+// and only exchange with others counts; where it conducts badly the meniscus changes
+// alone. Only an estimate: it sets how fast the fixed point converges, not where.
 #include "kelvin_response.h"
 
 #include "basics/memory.h"
@@ -6,8 +15,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Of the conductance of its throat: less and the flow settles what evaporates in a few
-// rounds.
+// Relative to the conductance of the throat: with less, the fixed point converges in a
+// few rounds without a response.
 static const double MIN_RESPONSE = 1e-2;
 
 int throat_of(const struct kelvin_viscous *coupling, int k)
@@ -21,7 +30,7 @@ static int cluster_of(const struct kelvin_menisci *kelvin,
     return occupancy->clusters.of_throat[kelvin->throat[share->body]];
 }
 
-// Part of the K-th wet node that is of the cluster of SHARE.
+// The part of the K-th wet node that belongs to the cluster of SHARE.
 static double part_of_cluster(const struct kelvin_menisci *kelvin,
                               const struct occupancy *occupancy, int k,
                               const struct share *share)
@@ -34,7 +43,7 @@ static double part_of_cluster(const struct kelvin_menisci *kelvin,
     return part;
 }
 
-// The cluster of which the K-th wet node is alone; a number of its own if of several.
+// The cluster that has all of the K-th wet node; -1 - k if several share it.
 static int group_of(const struct kelvin_menisci *kelvin,
                     const struct occupancy *occupancy, int k)
 {
@@ -50,8 +59,8 @@ struct links {
     double *link; // (n_site) room, 0 between calls
 };
 
-// Conductance from the K-th wet node to others and the air: to all in ALL, but to those
-// of its group in APART.
+// Conductance from the K-th wet node to the air and to other nodes: to all of them
+// (ALL), and without those of its own group (APART).
 static void find_degrees(const struct occupancy *occupancy, struct links *links, int k,
                          double *all, double *apart)
 {
@@ -108,7 +117,7 @@ void find_response_bounds(struct kelvin_viscous *coupling,
     free(place);
 }
 
-// What the K-th evaporates alone rises with its pressure by this.
+// d evaporation / d pressure of the K-th meniscus if only its own pressure changes.
 static double rise_alone(const struct kelvin_viscous *coupling, int k, double *slope)
 {
     const struct kelvin_menisci *kelvin = coupling->kelvin;
@@ -117,8 +126,8 @@ static double rise_alone(const struct kelvin_viscous *coupling, int k, double *s
     return *slope * coupling->single[k];
 }
 
-// Of each cluster, whether a response is needed: none of its menisci moves, or one
-// evaporates so much more with its pressure that the flow is felt.
+// Which clusters need a response: no meniscus of them moves, or one evaporates so much
+// more with its pressure that the flow changes. (n_id); the caller frees it.
 static bool *find_responsive(const struct kelvin_viscous *coupling,
                              const struct occupancy *occupancy)
 {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How what menisci evaporate falls with their potentials: bounds, from the conductances
-// of the vapour's links.
+// How what menisci evaporate decreases with their potentials: bounds, from the
+// conductances of the vapour's links, and the response of the flow made of them.
 #ifndef CRAQUELURE_KELVIN_RESPONSE_H
 #define CRAQUELURE_KELVIN_RESPONSE_H
 
 #include "kelvin_viscous.h"
 
-// Of the K-th meniscus at hand that flows.
+// The throat of the K-th of the coupling's menisci.
 int throat_of(const struct kelvin_viscous *coupling, int k);
 
-// Fills LUMPED and SINGLE for the menisci as they are listed.
+// Sets coupling->lumped and coupling->single for the menisci that are listed.
 void find_response_bounds(struct kelvin_viscous *coupling,
                           const struct occupancy *occupancy);
 
-// Of the flow, at the exponents of now: where liquid flows easily menisci rise and fall
-// with their cluster, else alone.
+// Sets flow->response at the present exponents: where liquid flows easily, menisci
+// change together with their cluster, else alone.
 void set_responses(struct kelvin_viscous *coupling, const struct occupancy *occupancy);
 
 #endif

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Flow and vapour together, as a fixed point of the menisci's potentials x:
+//     set_potentials   exponents and potentials of all menisci from x,
+//     find_others      what all evaporate at these potentials (kelvin_menisci.h),
+//     find_flow        pressures for that evaporation (viscous.h), where evaporation
+//                      already responds to the pressure (kelvin_response.h),
+//     mapped = x - slope unit (found - excess)    the potentials of these pressures.
+// x = mapped is found by Anderson mixing, and after MIXING_ROUNDS by Newton's method
+// with a Jacobian of differences (GSL). Around this, the states of the menisci are
+// revised: full moving ones that would take up liquid stop, stationary ones more
+// curved than their throat begin to move; at first all at once, then one by one (Murty
+// 1974). The trap is a cluster where next to nothing flows: then only the mean over a
+// node's menisci is determined, and how they share it is not.
 #include "kelvin_viscous.h"
 
 #include "basics/memory.h"
@@ -10,32 +22,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What menisci evaporate in the gas and what flows to them in the liquid may differ by
-// this part of the rate into the air, added up.
+// Sum of the differences between what menisci evaporate in the gas and what flows to
+// them in the liquid, relative to the rate into the air.
 static const double COUPLING_TOLERANCE = 1e-12;
 
-// As many times more are enough where that is not found at once.
+// So many times more are accepted when mixing has not converged.
 static const double TOLERANCE_SLACK = 10;
 
-// By mixing; in all.
+// Rounds of Anderson mixing, and in all.
 enum { MIXING_ROUNDS = 60, MAX_ROUNDS = 200 };
 
-// Part of a potential by which it is changed to see what follows.
+// Relative change of a potential for a column of the Jacobian.
 static const double DIFFERENCE = 1e-4;
 
-// In the first revisions all menisci that must stop do, and those begin to move that
-// lack at least this part of what the worst of their cluster does; from then on only
+// In the first revisions all menisci that must stop do, and those begin to move whose
+// shortfall is at least BEGIN_FRACTION of the largest in their cluster; after that only
 // the first of them (Murty 1974).
 enum { REVISIONS_AT_ONCE = 30, MAX_REVISIONS = 200 };
 static const double BEGIN_FRACTION = 0.5;
 
-// From then on one may stay that is more curved than its throat by this part: where
-// next to nothing flows only the mean of a node's menisci is given, and none of the
-// ways to share it may fit to the last digit.
+// After that a stationary meniscus may be more curved than its throat by this part:
+// where next to nothing flows only the mean of a node's menisci is determined, and no
+// way to share it may fit to the last digit.
 static const double HYSTERESIS = 0.01;
 
-// A meniscus on its way to be more curved than its throat by this part begins to move
-// at once.
+// A meniscus that is this part more curved than its throat before the fixed point has
+// converged begins to move at once.
 static const double CURVATURE_MARGIN = 0.1;
 
 struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
@@ -90,7 +102,7 @@ static double entry_exponent(const struct kelvin_viscous *coupling, int throat)
            coupling->flow->network->throat_radius[throat];
 }
 
-// Those in throats partly empty move, those that are new, and else as they did.
+// Menisci that are new or in throats partly empty move; the others keep their state.
 static void list_menisci(struct kelvin_viscous *coupling, struct occupancy *occupancy)
 {
     struct kelvin_menisci *kelvin = coupling->kelvin;
@@ -107,8 +119,8 @@ static void list_menisci(struct kelvin_viscous *coupling, struct occupancy *occu
     }
 }
 
-// Of a cluster of which none moves and which did not wait, the one begins that gas
-// enters most easily.
+// In each cluster without a moving meniscus that did not wait before, the meniscus that
+// gas enters most easily begins to move.
 static void begin_lone(struct kelvin_viscous *coupling, struct occupancy *occupancy)
 {
     bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
@@ -124,9 +136,8 @@ static void begin_lone(struct kelvin_viscous *coupling, struct occupancy *occupa
     free(any);
 }
 
-// On the way menisci may bulge, but not so far that the gas would be all vapour, or be
-// more curved than their throats can hold, but not so that it would be dry (where
-// vapour rounds to none, neither).
+// Iterates may bulge, or be more curved than their throats can hold, but only so far
+// that the gas is never all vapour, nor without vapour.
 static void set_potentials(struct kelvin_viscous *coupling)
 {
     struct kelvin_menisci *kelvin = coupling->kelvin;
@@ -148,7 +159,7 @@ static void set_potentials(struct kelvin_viscous *coupling)
     }
 }
 
-// The flow's answer, by the slope of the potential.
+// The potential for the pressure that the flow has found, linear in the pressure.
 static double potential_found(const struct kelvin_viscous *coupling, int k)
 {
     const struct liquid_flow *flow = coupling->flow;
@@ -184,7 +195,7 @@ static enum status find_flow(struct kelvin_viscous *coupling,
 
 // --- which move --------------------------------------------------------------------
 
-// The largest lack of each cluster.
+// The largest shortfall of each cluster, (n_id); the caller frees it.
 static double *find_most(const struct kelvin_viscous *coupling,
                          const struct occupancy *occupancy)
 {
@@ -231,7 +242,7 @@ static double coupling_tolerance(const struct kelvin_viscous *coupling)
                 coupling->kelvin->all_noise);
 }
 
-// No less than what evaporates would change by, added up.
+// Upper bound of the change in evaporation from x to mapped, summed over the menisci.
 static double coupling_residual(const struct kelvin_viscous *coupling)
 {
     double sum = 0;
@@ -250,7 +261,7 @@ static enum status evaluate(struct kelvin_viscous *coupling,
     return status ? status : find_flow(coupling, occupancy, losses, reason);
 }
 
-// How image less x of those menisci falls, in MATRIX (n,n), by differences.
+// MATRIX (n,n): minus the Jacobian of mapped - x for the menisci WHICH, by differences.
 static enum status find_jacobian(struct kelvin_viscous *coupling,
                                  const struct occupancy *occupancy, const int *which,
                                  gsl_matrix *matrix, struct losses *losses,
@@ -279,7 +290,7 @@ static enum status find_jacobian(struct kelvin_viscous *coupling,
     return status;
 }
 
-// X + MATRIX^-1 (image - x).
+// x += MATRIX^-1 (mapped - x).
 static enum status add_step(struct kelvin_viscous *coupling, const int *which,
                             gsl_matrix *matrix, struct reason *reason)
 {
@@ -305,8 +316,8 @@ static enum status add_step(struct kelvin_viscous *coupling, const int *which,
                   coupling->n);
 }
 
-// Newton's: where hardly anything flows, menisci of one node may share what it has in
-// nearly any way, and mixing does not find which.
+// A Newton step. Where hardly anything flows, how the menisci of one node share its
+// evaporation is nearly undetermined, and mixing does not converge.
 static enum status newton_step(struct kelvin_viscous *coupling,
                                const struct occupancy *occupancy, struct losses *losses,
                                struct reason *reason)
@@ -333,7 +344,8 @@ static void mix(struct kelvin_viscous *coupling)
         coupling->x[k] += step[k];
 }
 
-// For menisci of which it is known which move, but for those that are far from it.
+// Solves the fixed point for given states of the menisci; if REVISES, states that are
+// far from consistent change on the way.
 static enum status solve_coupling(struct kelvin_viscous *coupling,
                                   const struct occupancy *occupancy, bool revises,
                                   struct losses *losses, struct reason *reason)
@@ -372,7 +384,7 @@ static enum status solve_coupling(struct kelvin_viscous *coupling,
                   coupling->n, apart / kelvin->rate, kelvin_drive(kelvin));
 }
 
-// A full throat that loses no more than the rate is agreed to loses nothing.
+// Drops losses of full throats that are below the tolerance of the fixed point.
 static void drop_noise(const struct kelvin_viscous *coupling,
                        const struct occupancy *occupancy, struct losses *losses)
 {

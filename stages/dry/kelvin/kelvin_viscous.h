@@ -8,11 +8,11 @@
 // out what it evaporates. What evaporates follows from the pressures, the flow from
 // what evaporates: a fixed point.
 //
-// Near it what a meniscus evaporates rises with its pressure, and the flow is solved
-// with that response: so it is found with any viscosity. A throat by itself is left to
-// kelvin_menisci.h: nothing flows in it, and it waits where it would take up vapour. So
-// does a cluster of which no meniscus moves: the response of its menisci says at which
-// pressure.
+// What a meniscus evaporates rises with its pressure, and the flow is solved with that
+// response: so the iteration converges for any viscosity. A cluster of one throat is
+// left to kelvin_menisci.h: nothing flows in it, and it waits where vapour would
+// condense. A cluster of several waits too if none of its menisci moves: then their
+// response determines its pressure.
 #ifndef CRAQUELURE_KELVIN_VISCOUS_H
 #define CRAQUELURE_KELVIN_VISCOUS_H
 
@@ -23,17 +23,17 @@
 struct kelvin_viscous {
     struct kelvin_menisci *kelvin;
     struct liquid_flow *flow;
-    double *excess; // (n_throat) of its meniscus, as in FLOW, when last found; -1: none
-    bool *waited;   // (n_throat) none of its cluster moved
+    double *excess; // (n_throat) flow->excess when last found; -1: no meniscus yet
+    bool *waited;   // (n_throat) no meniscus of its cluster moved then
     double unit;    // p_c M / (rho R T) where p_c is the flow's unit of pressure
     int64_t rounds; // in which flow and vapour were found
 
-    // Of the menisci at hand that flow.
+    // The menisci whose pressure the flow determines.
     int n;
     int *body;          // (n) place in KELVIN
-    double *x, *mapped; // (n) surpluses
-    double *lumped;     // (n) fall of what evaporates with the potential, all of its
-    double *single;     // cluster changing alike; or it alone
+    double *x, *mapped; // (n) potentials, and what the fixed-point map makes of them
+    double *lumped; // (n) -d evaporation / d potential, if all of its cluster change
+    double *single; // (n) the same if it changes alone
     struct anderson anderson;
 };
 
@@ -41,8 +41,8 @@ struct kelvin_viscous {
 struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
                                           struct liquid_flow *flow);
 
-// What each throat loses, or takes up (negative), with OCCUPANCY as they are. LOSSES
-// come in ascending throats.
+// Sets LOSSES to what each throat loses, or takes up (negative), in ascending throats,
+// for the OCCUPANCY of now.
 //
 // STATUS_NOT_CONVERGED if flow and vapour are not found.
 enum status kelvin_viscous_find(struct kelvin_viscous *coupling,

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of the matrix S = -d evaporation / d potential of the bodies,
+//     S_ab = sum over wet nodes k of part_ak air_conductance[k] part_bk
+//            + sum over links (k,l) of c_kl (part_ak - part_al) (part_bk - part_bl),
+// the Laplacian of the wet nodes projected on the bodies. In this order a link inside
+// one body (part_ak = part_al) adds exactly 0: written as differences of sums,
+// conductances a million times that to the air would leave their rounding.
 #include "schur_rows.h"
 
 #include "basics/memory.h"
@@ -64,9 +70,8 @@ static void add_shares(struct schur_rows *rows, const struct kelvin_menisci *kel
 }
 
 // A link of conductance c between nodes of which BODY has the parts p and q adds
-// c (p - q) times the difference of all parts: here those of the K-th wet node, with
-// those of the other if it is not one of BODY's, which would add them itself. So links
-// inside a body leave nothing to go off.
+// c (p - q) times the difference of all parts. Here node AT adds its own parts, and
+// those of the other node unless BODY has that too: then it adds them itself.
 static void add_node(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
                      const struct occupancy *occupancy, int body, struct at_node at)
 {

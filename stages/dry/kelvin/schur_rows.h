@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How what a body of liquid evaporates falls with the potentials of all: the rows of a
-// symmetric matrix, positive semidefinite and sparse, for most links are throats.
+// How what a body of liquid evaporates decreases with the potentials of all bodies: the
+// rows of a symmetric, positive semidefinite matrix. It is sparse, for most links are
+// throats.
 #ifndef CRAQUELURE_SCHUR_ROWS_H
 #define CRAQUELURE_SCHUR_ROWS_H
 
@@ -29,11 +30,11 @@ struct schur_rows {
 // with schur_rows_free.
 struct schur_rows schur_rows_make(int n_throat, int n_site);
 
-// Bodies have been listed.
+// Call after the bodies have been listed: lists the wet nodes of each.
 void schur_rows_list(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
                      const struct occupancy *occupancy);
 
-// Makes the row of BODY; clears it.
+// Makes the row of BODY in N, COLUMN and VALUE; _clear must follow before the next.
 void schur_rows_take(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
                      const struct occupancy *occupancy, int body);
 void schur_rows_clear(struct schur_rows *rows);

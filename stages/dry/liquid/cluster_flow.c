@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses the solver of one cluster and checks its result: the updated factor first,
+// and if its balances do not close to FLOW_TOLERANCE, as with conductances many
+// decades apart, elimination without cancellation.
 #include "cluster_flow.h"
 
 #include <math.h>

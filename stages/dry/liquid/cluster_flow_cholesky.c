@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flow in a large cluster, from what it was at the step before.
+// Flow in a large cluster, starting from its potentials at the previous step:
+//     sum_j conductance_ij (potential_j - potential_i)
+//         + sum over arms of conductance (level - potential_i) + source_i = 0
+// in each node i, where arms lead to menisci of known potential and source is minus
+// what stationary menisci take. Potentials are relative to the throat that gas enters
+// most easily: when that changes, all are shifted. Iterative refinement: residuals
+// come from potentials in two parts, each correction from the updated factor, at most
+// REFINEMENTS times.
 #include "cluster_flow.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// A cluster of at least this many nodes has a graph, which is made anew when this part
-// of its nodes have left.
+// A cluster of at least GRAPH_NODES nodes has a graph, which is made again when more
+// than MAX_LEFT_SHARE of its nodes have left.
 enum { GRAPH_NODES = 150, REFINEMENTS = 8 };
 static const double MAX_LEFT_SHARE = 0.06;
 
@@ -29,7 +36,7 @@ static int list_links(struct liquid_flow *flow, const struct cluster_problem *pr
     return n_link;
 }
 
-// The nodes are listed.
+// Makes the graph of the nodes that are listed, with their potentials of before.
 static bool make_graph(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
@@ -74,7 +81,7 @@ struct cluster_laplacian *find_graph(struct liquid_flow *flow,
     return memory->graph;
 }
 
-// Potentials are above that of another throat now.
+// Shifts all potentials to the new reference throat.
 static void change_reference(struct liquid_flow *flow,
                              const struct cluster_problem *problem)
 {
@@ -88,7 +95,7 @@ static void change_reference(struct liquid_flow *flow,
     memory->reference = problem->reference;
 }
 
-// What menisci take that stay, and the arms to those that move or respond.
+// Sources of stationary menisci, and arms to those that move or respond.
 static void set_boundary_conditions(struct liquid_flow *flow,
                                     const struct cluster_problem *problem,
                                     struct cluster_laplacian *graph)
@@ -125,7 +132,7 @@ static void set_boundary_conditions(struct liquid_flow *flow,
     cluster_laplacian_set_arms(graph, n_arm, solver->arm);
 }
 
-// Movers, what responds, and arms come in one order.
+// Arms come in the order of the movers and then of the menisci that respond.
 static void collect_inflow(struct liquid_flow *flow,
                            const struct cluster_laplacian *graph)
 {
@@ -144,8 +151,8 @@ static void collect_inflow(struct liquid_flow *flow,
     }
 }
 
-// What the worst balance lacks, of the largest flow; 0 where nothing flows, as between
-// menisci that are all alike.
+// Largest error of a balance, relative to the largest flow; 0 where nothing flows, as
+// between menisci of equal potential.
 static double graph_error(struct liquid_flow *flow, struct cluster_problem *problem,
                           struct cluster_laplacian *graph)
 {

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flow in a cluster that is small, or whose conductances are too far apart.
+// Flow in a cluster that is small, or whose conductances are many decades apart. All
+// nodes are eliminated (Kron reduction, elimination/kron.h), which leaves direct links
+// between menisci and hands them what stationary menisci extract at the nodes:
+//     inflow[a] = sum_b link_ab (potential_b - potential_a) - extracted[a].
+// Elimination only adds, multiplies and divides positive numbers, and differences of
+// potentials come from the radii (menisci_potential): so flows keep their digits
+// however far apart the conductances are.
 #include "cluster_flow.h"
 
 #include <math.h>
@@ -42,7 +48,8 @@ static void link_end(struct liquid_flow *flow, int k)
                                       : response_arm(flow, throat, n));
 }
 
-// Returns by how much what flows to the menisci differs from what is taken on the way.
+// Sets the inflow of each end. Returns by how much their sum differs from what is
+// extracted in the cluster.
 static double find_inflow(struct liquid_flow *flow,
                           const struct cluster_problem *problem)
 {
@@ -80,7 +87,8 @@ static void keep_potentials(struct liquid_flow *flow,
     memory->reference = problem->reference;
 }
 
-// The nodes are listed. Returns the error of the balance.
+// As cluster_flow.h says. Throats with a moving meniscus conduct through their arms
+// only.
 double solve_cluster_elimination(struct liquid_flow *flow,
                                  struct cluster_problem *problem)
 {

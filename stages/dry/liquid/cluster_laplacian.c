@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The residual and the correction of the balances of one cluster: in node i
+//     residual_i = source_i + sum_j conductance_ij (potential_j - potential_i)
+//                  + sum over arms of conductance (level - potential_i),
+//     (L + diag(ground)) correction = residual,
+// L the graph Laplacian of the links, ground the sum of each node's arms. Potentials
+// have two parts (struct compensated): across a wide throat they differ by less than
+// the last digit of a double. A uniform rise of the whole cluster is taken out first
+// (level_potentials), the rest is solved by conjugate gradients, preconditioned with
+// the updated factor. Rows of nodes that have left stay, multiplied by present = 0.
 #include "cluster_laplacian.h"
 
 #include "basics/memory.h"
@@ -8,7 +17,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// When conjugate gradients take more steps than this, the factor has drifted away.
+// If conjugate gradients take more steps than this, the factor has become inaccurate.
 enum { MAX_STEPS = 30 };
 
 // --- the rows ------------------------------------------------------------------------
@@ -159,8 +168,8 @@ static void precondition(void *context, const double *residual, double *z)
         z[i] *= graph->present[i];
 }
 
-// Raises all potentials alike until what the balances lack adds up to nothing. Mostly a
-// cluster rises or falls nearly as one, and the rest is found with more digits then.
+// Raises all potentials alike until the residuals add up to nothing. A cluster mostly
+// rises or falls nearly as one, and the rest is then found with more digits.
 static void level_potentials(struct cluster_laplacian *graph)
 {
     double residual = 0, ground = 0;

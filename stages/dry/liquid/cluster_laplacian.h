@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The balances of a large cluster: nodes that liquid fills, links of conductances
-// between them, and arms from them to menisci at given potentials.
+// The balances of a large cluster [K 3.10]: nodes filled with liquid, links of given
+// conductance between them, and arms from nodes to menisci at given potentials.
 //
 // Its Cholesky factor follows the graph as it changes, by updates and downdates of rank
 // one (CHOLMOD), and preconditions conjugate gradients. Nodes that leave stay in the
-// factor as rows without links; when many have, the graph is worth making anew.
+// factor as rows without links; when many have left, the graph should be made again.
 #ifndef CRAQUELURE_CLUSTER_LAPLACIAN_H
 #define CRAQUELURE_CLUSTER_LAPLACIAN_H
 
@@ -53,12 +53,12 @@ struct cluster_laplacian *cluster_laplacian_make(cholmod_common *common, int n,
                                                  const struct graph_link *link,
                                                  int *row, int *entry);
 
-// Gives the link at ENTRY another conductance.
+// Gives the link at ENTRY another conductance, 0 or more.
 void cluster_laplacian_set(struct cluster_laplacian *graph, int entry,
                            double conductance);
 
-// The node of ROW has left: to another cluster, with those it is still linked to; or
-// for gas, and is cut off from all others.
+// The node of ROW has left: _leave: to another cluster, together with the nodes it is
+// linked to; _cut: gas has entered it, and all its links are set to 0.
 void cluster_laplacian_leave(struct cluster_laplacian *graph, int row);
 void cluster_laplacian_cut(struct cluster_laplacian *graph, int row);
 
@@ -66,11 +66,13 @@ void cluster_laplacian_cut(struct cluster_laplacian *graph, int row);
 void cluster_laplacian_set_arms(struct cluster_laplacian *graph, int n_arm,
                                 const struct graph_arm *arm);
 
-// What the balances lack: the source, less what flows off. Returns the largest.
+// Fills graph->residual: the source plus what flows in. Returns the largest absolute
+// value; INFINITY if any is not a number.
 double cluster_laplacian_residual(struct cluster_laplacian *graph);
 
-// Adds to the potentials what the balances lack, until the norm of the lack is about
-// TOLERANCE, or nearer to it. False if the matrix is not positive definite to rounding.
+// Corrects the potentials for graph->residual (overwritten), until the norm of the
+// residual is about TOLERANCE or conjugate gradients stop. False if the matrix is not
+// positive definite to rounding.
 bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance);
 
 void cluster_laplacian_free(struct cluster_laplacian *graph);

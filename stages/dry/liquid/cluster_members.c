@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Two doubly linked lists of throats for each cluster, menisci and others, so that a
+// throat moves from list to list in O(1) when its cluster splits or gas reaches it.
 #include "cluster_members.h"
 
 #include "basics/memory.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The throats of each cluster in two lists: those that gas touches, and the others. As
-// a throat empties, only those lists change that it or its neighbours are on.
+// The throats of each cluster in two lists: those that gas touches, and the others.
+// When a throat empties only the lists of its neighbours and of moved throats change.
 #ifndef CRAQUELURE_CLUSTER_MEMBERS_H
 #define CRAQUELURE_CLUSTER_MEMBERS_H
 
@@ -21,7 +21,7 @@ struct cluster_members {
 struct cluster_members cluster_members_make(const struct clusters *clusters,
                                             int n_throat);
 
-// Puts THROAT where CLUSTERS has it now.
+// Moves THROAT to the list where CLUSTERS has it now; off all lists once it is empty.
 void cluster_members_follow(struct cluster_members *members,
                             const struct clusters *clusters, int throat);
 

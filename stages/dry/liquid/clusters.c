@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Connected clusters of liquid as throats empty, without searching the whole network
+// at each event. When a throat empties its cluster can only split at its two nodes.
+// Breadth- first searches start from each neighbouring throat and advance by one
+// throat in turn (Even and Shiloach 1981 interleave searches alike). Two that meet are
+// united; one that is exhausted has found a new cluster; when one search is left its
+// throats keep the old identity. So an event costs O(size of the smaller parts), and
+// most cost O(1), since neighbours soon meet.
 #include "clusters.h"
 
 #include "basics/memory.h"
@@ -7,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What one search has found, in order; those before NEXT have been looked around from.
+// The throats that one search has found, in order; those before NEXT are expanded.
 struct search {
     int *throat;
     int n, next, capacity;
@@ -112,7 +119,7 @@ static int unite(struct clusters *clusters, int a, int b)
     return 1;
 }
 
-// Looks around from one more throat. Returns how many searches were united.
+// Expands one more throat. Returns how many searches were united with this one.
 static int advance_search(struct clusters *clusters, int search)
 {
     const int throat = clusters->search[search].throat[clusters->search[search].next++];
@@ -133,7 +140,7 @@ static int advance_search(struct clusters *clusters, int search)
     return united;
 }
 
-// What the searches united in ROOT have found becomes a cluster.
+// Makes a cluster of the throats that the searches united in ROOT have found.
 static void found_cluster(struct clusters *clusters, int root, int old)
 {
     const int cluster = new_cluster(clusters);
@@ -154,7 +161,7 @@ static void found_cluster(struct clusters *clusters, int root, int old)
     }
 }
 
-// The searches take turns until at most one piece is left unfinished; it stays OLD.
+// Advances the searches in turn until at most one part is unfinished; it stays OLD.
 static void split(struct clusters *clusters, int old)
 {
     int unfinished = clusters->n_search;
@@ -240,7 +247,7 @@ static void rank_throats(struct clusters *clusters, const double *entry_priority
         clusters->rank[clusters->throat_at_rank[k]] = k;
 }
 
-// Every piece of the full network, by a search that nothing interrupts.
+// The clusters of the full network, each by one complete search.
 static void find_clusters(struct clusters *clusters)
 {
     const int none = -1, unassigned = 0;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The connected pieces of liquid, kept as throats empty, and where gas can enter each.
+// The connected clusters of liquid, kept up to date as throats empty, and the throat
+// where gas enters each [K 3.4.2, steps 1 and 2].
 //
 // Liquid throats are connected through nodes. When one empties, only its neighbours can
-// be separated: searches start from each of them and take turns; those that meet are
-// united, one that runs dry has found a new cluster, and the last keeps the old
-// identity unsearched. So a split costs as much as its smaller parts.
+// be separated: searches start from each of them and advance in turn; those that meet
+// are united, one that is exhausted has found a new cluster, and the last keeps the old
+// identity without a search to its end. So a split costs as much as its smaller parts.
 #ifndef CRAQUELURE_CLUSTERS_H
 #define CRAQUELURE_CLUSTERS_H
 
@@ -25,7 +26,7 @@ struct search; // one of the searches that take turns
 struct clusters {
     const struct network *network;
     const struct incidence *incidence;
-    bool gas_parts;         // whether gas in a node parts the liquid on its sides
+    bool gas_parts;         // whether gas in a node separates the liquid around it
     bool *joins;            // (n_node) liquid is connected through this node
     int *of_throat;         // (n_throat) its cluster, -1 if it holds no liquid
     bool *meniscus;         // (n_throat) gas touches one of its ends
@@ -36,11 +37,11 @@ struct clusters {
     int *unused;            // identities to give out again
     int n_unused, capacity, unused_capacity;
 
-    int *rank;           // (n_throat) place by ease, largest first; ties by index
+    int *rank;           // (n_throat) 0: gas enters it first; ties by index
     int *throat_at_rank; // (n_throat)
 
     int n_moved, moved_capacity;
-    int *moved; // (n_moved) throats that have changed cluster, at the last that emptied
+    int *moved; // (n_moved) throats that changed cluster when the last throat emptied
 
     int *found_by; // (n_throat) search that has been there, -1: none
     struct search *search;
@@ -58,13 +59,15 @@ struct clusters clusters_make(const struct network *network,
 // liquid is connected through it as before.
 void clusters_add_menisci(struct clusters *clusters, int node);
 
-// THROAT has emptied and gas fills both its nodes.
+// THROAT has emptied and gas fills both its nodes: splits its cluster, lists the
+// throats of new clusters in MOVED, adds menisci at both nodes. O(smaller parts).
 void clusters_empty_throat(struct clusters *clusters, int throat);
 
-// The meniscus throat of CLUSTER that gas enters first; -1 if no gas touches the
-// cluster.
+// The meniscus throat of CLUSTER that gas enters first; -1 if no gas touches it.
+// Removes outdated entries from the heap: amortised O(log n).
 int clusters_invasion_throat(struct clusters *clusters, int cluster);
 
+// Writes the clusters to STREAM, or restores them. Ranks and searches are not in it.
 void clusters_state(struct clusters *clusters, struct checkpoint_stream *stream);
 
 void clusters_free(struct clusters *clusters);

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What a cluster's flow needs from step to step, and the conductances at menisci. In a
+// throat with n liquid ends (1, or 2 where it empties from its middle), filled to the
+// saturation S, the meniscus is linked to each end by
+//     arm = n conductance / S,
+// since only S L of its length is filled [K 3.10]. If vapour follows the pressure, so
+// that evaporation rises by response with the potential behind the meniscus, arm and
+// response / n are in series:
+//     arm (response / n) / (arm + response / n),
+// and the given evaporation is reduced alike (through_arm). Graph, potentials and
+// lists of a cluster are kept in cluster_memory and follow it when it splits.
 #include "flow_solver.h"
 
 #include "basics/memory.h"
@@ -6,8 +16,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Of the flow that a response would make of all of a potential: what rounding leaves is
-// FLOW_TARGET of this.
+// Response times potential is a flow that cancels: this part of it enters the scale of
+// flows, so that its rounding is below FLOW_TARGET of the scale.
 static const double ROUNDING_SHARE = 1e-2;
 
 // --- one throat, one cluster ---------------------------------------------------------
@@ -39,7 +49,8 @@ double meniscus_arm(const struct liquid_flow *flow, int throat, int n)
            occupancy_saturation(flow->solver->occupancy, throat);
 }
 
-// Half of the response is at either end of a throat that has two.
+// arm / (arm + response / n): half of the response is at either end of a throat with
+// two.
 static double through_arm(const struct liquid_flow *flow, int throat, int n)
 {
     if (!flow->response) return 1;
@@ -125,7 +136,7 @@ static void reserve(struct flow_solver *solver, int n_id)
     }
 }
 
-// NODE is gas now.
+// Gas has entered NODE: it leaves the cluster's graph.
 static void cut_node(struct flow_solver *solver, struct cluster_memory *memory,
                      int node)
 {
@@ -134,7 +145,7 @@ static void cut_node(struct flow_solver *solver, struct cluster_memory *memory,
     solver->row[node] = -1;
 }
 
-// The ends of THROAT have left with it for a new cluster.
+// THROAT belongs to a new cluster: its nodes keep their potentials but leave the graph.
 static void part_with(struct flow_solver *solver, const struct network *network,
                       struct cluster_memory *memory, int throat)
 {

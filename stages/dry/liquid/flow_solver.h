@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of the flow in clusters from event to event, and room to find it in.
+// What is remembered of the flow in clusters from event to event, and the workspace of
+// its solvers. Potentials are liquid pressure plus weight, in the units of meniscus.h.
 #ifndef CRAQUELURE_FLOW_SOLVER_H
 #define CRAQUELURE_FLOW_SOLVER_H
 
@@ -9,18 +10,18 @@
 #include "sparse/cholmod_serial.h"
 #include "viscous.h"
 
-// Error of a node's balance that is aimed at, relative to the largest flow in its
-// cluster.
+// Target of the error of a node's balance, relative to the largest flow in its cluster.
+// FLOW_TOLERANCE (cluster_flow.h) is what is still accepted.
 static const double FLOW_TARGET = 5e-13;
 
-// What is known of a cluster from before.
+// What is known of a cluster from previous steps.
 struct cluster_memory {
     struct cluster_laplacian *graph; // NULL: none
     int *node;                       // (graph->n) of its rows
-    int reference;     // potentials are above that at which gas enters this throat, -1:
-                       // there are none
-    double resistance; // at least that of all its throats one after the other,
-    int size;          // of as many
+    int reference;     // potentials are relative to the entry potential of this throat;
+                       // -1: there are no potentials
+    double resistance; // at least that of all its throats in series,
+    int size;          // when it had so many throats
 };
 
 struct flow_solver {
@@ -37,9 +38,9 @@ struct flow_solver {
     struct compensated *potential; // (n_node) where no graph has it
     double *inflow;                // (n_throat) to each meniscus that moves
 
-    // Of the cluster at hand.
-    int n_mover, *mover;   // (n_mover) throats whose meniscus moves, and after them, to
-    int n_end;             // (n_end), those that stay and whose vapour responds
+    // The cluster being solved.
+    int n_mover, *mover;   // (n_mover) throats whose meniscus moves, and after them, up
+    int n_end;             // to n_end, stationary ones whose evaporation responds
     struct graph_arm *arm; // from liquid ends to them, in their order
     int n_node, *node;
     int *site; // (n_node of the network) in kron, -1: none
@@ -47,15 +48,15 @@ struct flow_solver {
     struct graph_link *link;
 };
 
-// A cluster of liquid at this step. Its unknowns are the potentials at nodes that
-// liquid fills and passes through.
+// The flow problem of one cluster at this step. Its unknowns are the potentials at
+// nodes that are filled with liquid and join at least two throats of it.
 struct cluster_problem {
     int cluster, n_throat;
-    int reference;      // throat that gas enters most easily: potentials are above its
-    double evaporation; // of all its throats
-    double turnover;    // the same, what they take up added to what they evaporate
-    int n_meniscus, n_partial; // of them, in throats partly empty
-    double margin;             // of the reference over the next throat that gas enters
+    int reference;      // throat that gas enters most easily: zero of the potentials
+    double evaporation; // of all its throats, condensation subtracted
+    double turnover;    // the same with condensation added: a scale, never cancelled
+    int n_meniscus, n_partial; // menisci; those of them in throats partly empty
+    double margin;             // entry potential of the reference above the next one's
     double flow;               // scale of the flows in it
 };
 
@@ -67,10 +68,11 @@ void flow_solver_free(struct flow_solver *solver);
 double flow_scale(const struct liquid_flow *flow,
                   const struct cluster_problem *problem);
 
-// Nothing is remembered of the clusters as they were.
+// Forgets all clusters: the next solution starts from scratch, as after a restart.
 void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occupancy);
 
-// THROAT has emptied.
+// THROAT has emptied and OCCUPANCY has followed: moves what is remembered to the
+// clusters of now.
 void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occupancy,
                         int throat);
 
@@ -80,26 +82,28 @@ bool throat_is_full(const struct occupancy *occupancy, int throat);
 // The nodes at a throat's liquid ends; returns how many there are.
 int liquid_ends(const struct liquid_flow *flow, int throat, int end[2]);
 
-// From the meniscus of THROAT to each of its N liquid ends.
+// Conductance from the meniscus of THROAT to each of its N liquid ends.
 double meniscus_arm(const struct liquid_flow *flow, int throat, int n);
 
-// The same where the vapour responds, up to where the meniscus would evaporate
-// EVAPORATION; what is taken from each of its N liquid ends; potential there.
+// For a meniscus whose evaporation responds to the pressure: conductance from each of
+// its N liquid ends to the potential at which it evaporates solver->evaporation; the
+// part of that evaporation extracted from each end (all of 1/N without response); that
+// potential.
 double response_arm(const struct liquid_flow *flow, int throat, int n);
 double extracted_from_end(const struct liquid_flow *flow, int throat, int n);
 double end_potential(const struct liquid_flow *flow, int throat, int reference);
 
-// Of NODE in CLUSTER.
+// Potential of NODE in CLUSTER, relative to the cluster's reference throat.
 double node_potential(const struct flow_solver *solver, int cluster, int node);
 
 // Lists the cluster's nodes in the solver's NODE.
 void list_nodes(struct liquid_flow *flow, const struct cluster_problem *problem);
 
-// Of the cluster at hand, on either list; -1: none.
+// First throat of the cluster on LIST; -1: none. The solver's members have the next.
 int first_throat(const struct flow_solver *solver,
                  const struct cluster_problem *problem, enum throat_list list);
 
-// The potentials go to the solver's, and the graph is gone, if there was one.
+// Frees the cluster's graph, if it has one; its potentials are kept in the solver.
 void free_graph(struct flow_solver *solver, struct cluster_memory *memory);
 
 #endif

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What each throat loses while the gas stays as it is:
+//     evaporation[t] = sum over its wet nodes of vapour_evaporation(node) *
+//                      section[t] / sum of sections with liquid at the node,
+// then the flow moves liquid from throat to throat within clusters (viscous.h), and
+// what is left is the loss: positive where a meniscus recedes, negative where a throat
+// refills.
 #include "losses.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which throats of viscous liquid lose it while the gas stays as it is, and how fast.
+// Which throats of viscous liquid lose or gain it between two events, and how fast.
 #ifndef CRAQUELURE_LOSSES_H
 #define CRAQUELURE_LOSSES_H
 
@@ -15,7 +15,7 @@ struct losses {
     int n;
     struct loss *loss; // (n) ascending throats
     // Workspace, all zero between calls.
-    double *evaporation; // (n_throat) what each throat is charged with
+    double *evaporation; // (n_throat) what each throat evaporates
     int n_evaporating;
     int *evaporating; // (n_evaporating) throats
 };
@@ -24,14 +24,16 @@ struct losses {
 struct losses losses_make(int n_throat);
 
 // Shares what the wet nodes evaporate among the throats with liquid beside them, in
-// proportion to their cross-sections, and finds with FLOW which throats it empties.
+// proportion to their cross-sections, and finds with FLOW the loss of each throat.
+// STATUS_NOT_CONVERGED as liquid_flow_find.
 enum status losses_find(struct losses *losses, struct occupancy *occupancy,
                         struct liquid_flow *flow, struct reason *reason);
 
-// By throats, ascending.
+// Sorts the losses by throats, ascending.
 void losses_sort(struct losses *losses);
 
-// Proportional to the cross-section of THROAT; 0 if it holds no liquid.
+// The weight of THROAT in the shares of a node: its volume over its length, which is
+// proportional to its cross-section; 0 if it holds no liquid.
 double liquid_section(const struct occupancy *occupancy, int throat);
 
 void losses_free(struct losses *losses);

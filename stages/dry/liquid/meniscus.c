@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Capillary pressure of each throat, and the potential at which gas enters it:
+//     entry potential = weight height - tension / radius,
+//     tension = 2 sigma cos(theta), weight = rho g, height of the throat's middle.
+// The unit of pressure is that in which Poiseuille's law has no viscosity,
+//     nu rate / length^3  (viscous), or 2 sigma / length  (else).
+// The trap: potentials of two throats nearly equal in radius differ by little. So they
+// are always differences to a reference throat, tension (r - s) / (r s), exactly 0 for
+// equals.
 #include "meniscus.h"
 
 #include "basics/memory.h"
@@ -6,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// In scaled lengths above the floor of the box.
+// Height above the lower z side of the box, in scaled lengths.
 static double height_of_node(const struct menisci *menisci, int node)
 {
     const struct network *network = menisci->network;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// At which pressure of the liquid gas enters a throat: below that of the gas by the
-// capillary pressure 2 sigma cos(theta) / r, and lower down under gravity by less.
+// The pressure of the liquid at which gas enters a throat: that of the gas less the
+// capillary pressure 2 sigma cos(theta) / r. Under gravity the liquid's pressure rises
+// downwards, so lower throats are entered later.
 #ifndef CRAQUELURE_MENISCUS_H
 #define CRAQUELURE_MENISCUS_H
 
@@ -18,9 +19,9 @@ struct menisci {
     double pressure; // Pa, the unit
 };
 
-// What CONDITIONS say of the throats of NETWORK. Without viscosity the unit of pressure
-// is the capillary pressure of a throat one mean length wide. The caller frees it with
-// menisci_free.
+// The throats of NETWORK (kept) under CONDITIONS. Without viscosity the unit of
+// pressure is the capillary pressure of a throat one mean length in radius. The caller
+// frees it with menisci_free.
 struct menisci menisci_make(const struct network *network,
                             const struct drying_conditions *conditions,
                             const struct drying_scale *scale);
@@ -33,8 +34,8 @@ double menisci_potential(const struct menisci *menisci, int throat, int referenc
 // Pressure at NODE, above that at the middle of THROAT, of liquid at rest.
 double menisci_weight(const struct menisci *menisci, int throat, int node);
 
-// ENTRY_PRIORITY (n_throat): the potentials at which gas enters the throats, for
-// clusters_make.
+// Fills ENTRY_PRIORITY (n_throat) with the potentials at which gas enters the throats,
+// for clusters_make: gas enters where it is largest.
 void menisci_entry_priority(const struct menisci *menisci, double *entry_priority);
 
 void menisci_free(struct menisci *menisci);

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Where gas and liquid are, and everything that an emptied throat changes [K 3.4.2,
+// step 6]: vapour diffuses through it, its cluster may split, its two nodes fill with
+// gas. A node with gas and liquid beside it is wet: it evaporates. A node without
+// liquid beside it is dry and is eliminated from the vapour's system. Breakthrough is
+// gas at a closed wall opposite an open one.
 #include "occupancy.h"
 
 #include "basics/memory.h"
@@ -60,7 +65,7 @@ static enum status expose_surface(struct occupancy *occupancy, struct reason *re
     return STATUS_OK;
 }
 
-// Lower and upper change places.
+// The walls opposite WALLS: the bits of the lower and upper wall of each axis swapped.
 static unsigned opposite(unsigned walls)
 {
     const unsigned lower = WALL_X_LOWER | WALL_Y_LOWER | WALL_Z_LOWER;

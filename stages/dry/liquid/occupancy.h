@@ -41,10 +41,10 @@ struct occupancy_form {
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and
-// wet. Takes over LAYER. The caller frees OCCUPANCY with
-// occupancy_free, also after a failure.
+// wet. Takes over LAYER, keeps NETWORK. The caller frees OCCUPANCY with occupancy_free,
+// also after a failure.
 //
-// STATUS_BAD_DATA if a piece of the network has no way to an open wall.
+// STATUS_BAD_DATA with a throat if no path leads from it to an open wall.
 enum status occupancy_make(const struct network *network, unsigned open_walls,
                            const struct occupancy_form *form,
                            struct boundary_layer layer, struct occupancy *occupancy,
@@ -53,7 +53,8 @@ enum status occupancy_make(const struct network *network, unsigned open_walls,
 // THROAT has lost its last liquid: gas fills it and both its nodes.
 void occupancy_empty_throat(struct occupancy *occupancy, int throat);
 
-// Of THROAT, where the occupancy tells it: at the start, and in viscous liquid.
+// Saturation of THROAT, from 0 to 1. Only at the start and in viscous or Kelvin runs:
+// else emptying_times_saturation knows it.
 double occupancy_saturation(const struct occupancy *occupancy, int throat);
 
 void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stream);

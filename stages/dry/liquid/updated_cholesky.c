@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// L D L' of the cluster's matrix, updated instead of factorised again. A link whose
+// conductance grows by c changes the matrix by c (e_a - e_b)(e_a - e_b)', an arm by c
+// e_a e_a': each is a column sqrt(|c|) (..) of one CHOLMOD update or downdate.
+// Increases come before decreases, so that the matrix stays positive definite. The
+// ordering is found once, from the pattern of all links the cluster may ever have.
+// Rounding accumulates: the factor only preconditions, and is made again when
+// conjugate gradients need many steps or more than MAX_CHANGES entries change at once.
 #include "updated_cholesky.h"
 
 #include "basics/memory.h"
@@ -9,16 +16,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-// More changes than this at once are factorised.
+// With more changes than this at once the matrix is factorised again.
 enum { MAX_CHANGES = 300, SCRATCH_ARRAYS = 4 };
 
-// Up to so many arms are followed closely; more, when they have changed by this part of
-// what the factor has.
+// Up to FEW_ARMS arms every change is followed; with more arms, only changes of more
+// than ARM_CHANGE relative to the value in the factor.
 enum { FEW_ARMS = 100 };
 static const double ARM_CHANGE = 0.1;
 
-// Part of a row's conductance that it is grounded with, so that it stays positive
-// definite without links.
+// Each diagonal entry is raised by this part of itself: so the matrix stays positive
+// definite even if no arm grounds it.
 static const double GROUND = 1e-13;
 
 struct updated_cholesky {
@@ -149,7 +156,7 @@ void updated_cholesky_note(struct updated_cholesky *factor, int entry)
     factor->noted[factor->n_noted++] = entry;
 }
 
-// Adds or takes the N changes in CHANGE that have the sign of UP.
+// Applies those of the N changes that are increases (UP) or decreases.
 static bool change_rank(struct updated_cholesky *factor, const struct rank_one *change,
                         int n, bool up)
 {
@@ -179,7 +186,8 @@ static bool change_rank(struct updated_cholesky *factor, const struct rank_one *
     return good;
 }
 
-// Returns how many there are; more than MAX_CHANGES if not all found room.
+// Lists the links that have changed. Returns their number; MAX_CHANGES + 1 if there are
+// more than fit.
 static int link_changes(struct updated_cholesky *factor,
                         const struct cluster_laplacian *graph, struct rank_one *change)
 {

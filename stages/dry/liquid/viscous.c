@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Which menisci move, cluster by cluster [K 3.10]. For given moving menisci the
+// potentials p solve node balances with
+//     p = entry potential                    at a moving meniscus (first kind),
+//     inflow = evaporation                   at a stationary one (second kind),
+// and the states must be consistent:
+//     p behind a stationary meniscus >= its entry potential   (else it begins to move),
+//     inflow <= evaporation in a full throat that moves       (else it stops).
+// This is an obstacle problem with an M-matrix: revising states in this order raises
+// pressures only, so it ends. loss = evaporation - inflow, negative where a throat
+// refills. Many clusters need no solution: if all that evaporates, through all throats
+// in series, drops the potential by less than the margin between the two easiest
+// menisci, only the easiest one moves (only_one_moves).
 #include "viscous.h"
 
 #include "basics/memory.h"
@@ -8,12 +20,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Rounds in which menisci are found; from the second on none can come back, so this is
-// far more than any network needs.
+// Rounds in which the states of menisci are found. From the second on no meniscus
+// changes back, so this is far more than any network needs.
 enum { MAX_ROUNDS = 200 };
 
-// Menisci begin to move at once that lack at least this part of what the worst does;
-// all that must after so many rounds, as when a viscous cluster begins to dry.
+// In the first rounds only menisci begin to move whose shortfall is at least this part
+// of the largest; after that all that must, as when a viscous cluster begins to dry.
 enum { SELECTIVE_ROUNDS = 20 };
 static const double BEGIN_FRACTION = 0.9;
 
@@ -92,7 +104,8 @@ static double entry(const struct liquid_flow *flow,
     return menisci_potential(&flow->menisci, throat, problem->reference);
 }
 
-// Potential behind a meniscus to which as much flows as evaporates.
+// Potential behind a stationary meniscus: mean of its ends, less the drop in its
+// throat.
 static double potential_at_mouth(const struct liquid_flow *flow,
                                  const struct cluster_problem *problem, int throat)
 {
@@ -118,8 +131,8 @@ static bool must_stop(const struct liquid_flow *flow,
                -FLOW_TARGET * problem->flow;
 }
 
-// Menisci as they were, those in throats partly empty, and if that is none, that which
-// gas enters most easily.
+// Initial guess: menisci that moved before, those in throats partly empty, and if there
+// is none, the one that gas enters most easily.
 static void start_menisci(struct liquid_flow *flow,
                           const struct cluster_problem *problem)
 {
@@ -138,8 +151,8 @@ static double shortfall(const struct liquid_flow *flow,
     return entry(flow, problem, throat) - potential_at_mouth(flow, problem, throat);
 }
 
-// Those that must stop do, and of those that must begin, those that must most: as they
-// do, the pressure rises for the others. Returns how many have changed.
+// Stops all menisci that must stop, and starts those that fall short most: this raises
+// the pressure behind the others. Returns how many have changed.
 static int revise_menisci(struct liquid_flow *flow,
                           const struct cluster_problem *problem, double begin_fraction)
 {
@@ -186,7 +199,8 @@ static void add_loss(struct loss *loss, int *n_loss, int throat, double rate)
     if (rate != 0) loss[(*n_loss)++] = (struct loss){throat, rate};
 }
 
-// What each moving meniscus loses. The error of the balances is left to the largest.
+// Losses of the moving menisci. The largest takes up the error of the balances, so that
+// a cluster loses exactly what it evaporates.
 static void collect_losses(const struct liquid_flow *flow,
                            const struct cluster_problem *problem, struct loss *loss,
                            int *n_loss)
@@ -210,7 +224,8 @@ static void collect_losses(const struct liquid_flow *flow,
         loss[largest].rate += problem->evaporation - sum;
 }
 
-// At REST: as in a cluster that does not flow, at the verge of its widest meniscus.
+// Pressures at the nodes, relative to the gas. AT_REST: nothing flows, and the pressure
+// is that at which gas enters the reference throat.
 static void write_pressures(struct liquid_flow *flow,
                             const struct cluster_problem *problem, bool at_rest)
 {
@@ -226,8 +241,7 @@ static void write_pressures(struct liquid_flow *flow,
     }
 }
 
-// Counts the menisci, and those in throats partly empty; finds where gas enters first
-// and second.
+// Counts menisci, and those in throats partly empty; finds the two easiest to enter.
 static void count_menisci(const struct liquid_flow *flow,
                           struct cluster_problem *problem)
 {
@@ -249,8 +263,8 @@ static void count_menisci(const struct liquid_flow *flow,
     if (second >= 0) problem->margin = -entry(flow, problem, second);
 }
 
-// Of all throats of a cluster one after the other. As throats only leave, what it was
-// some time ago is no less.
+// Upper bound of the resistance of any path: all throats in series. Throats only leave
+// a cluster, so an older value is still a bound.
 static double resistance_of(struct liquid_flow *flow,
                             const struct cluster_problem *problem)
 {
@@ -267,8 +281,8 @@ static double resistance_of(struct liquid_flow *flow,
     return memory->resistance;
 }
 
-// Whether only the meniscus that gas enters most easily can move: all that evaporates
-// falls by less than the margin to the next on any way through the cluster.
+// Whether only the easiest meniscus can move: along any path the potential drops by
+// less than its margin over the next.
 static bool only_one_moves(struct liquid_flow *flow,
                            const struct cluster_problem *problem)
 {
@@ -285,7 +299,7 @@ static void move_reference(struct liquid_flow *flow,
     flow->moving[problem->reference] = true;
 }
 
-// As they are where the vapour responds, and what evaporates then.
+// Where vapour responds: results for each meniscus, and what the cluster evaporates.
 static void keep_menisci(struct liquid_flow *flow, struct cluster_problem *problem)
 {
     const struct flow_solver *solver = flow->solver;
@@ -313,7 +327,7 @@ static void keep_as_is(struct liquid_flow *flow, const struct cluster_problem *p
         flow->found[t] = flow->excess[t];
 }
 
-// Where the vapour responds: with menisci as they are given.
+// Where vapour responds: solves for the menisci states that are given.
 static enum status find_given(struct liquid_flow *flow, struct cluster_problem *problem,
                               struct loss *loss, int *n_loss, struct reason *reason)
 {

@@ -11,9 +11,9 @@
 // pressure. In a full one the meniscus stays at the mouth while the pressure behind it
 // is above that, and liquid flows to it as fast as it evaporates; otherwise it recedes,
 // losing more than flows in. Which do is an obstacle problem with a symmetric M-matrix:
-// it has one solution. From the first round on those that must stop do, and those that
-// must most begin; as either only raises pressures, none comes back (Hintermueller, Ito
-// and Kunisch 2002 change all at once, and most of those would stop again).
+// it has one solution. In each round all menisci that must stop do, and those begin to
+// move that fall short most. Either only raises pressures, so none changes back
+// (Hintermueller, Ito and Kunisch 2002 change all at once; most would stop again).
 #ifndef CRAQUELURE_VISCOUS_H
 #define CRAQUELURE_VISCOUS_H
 
@@ -29,12 +29,12 @@ struct liquid_flow {
     double *conductance; // (n_throat) of a full throat, scaled
     double *resistance;  // (n_throat) its inverse
     bool *moving;        // (n_throat) its meniscus, when last solved for
-    // Where vapour follows the pressure of menisci, else NULL. (n_throat)
-    double *response; // of one that stays: rise of what evaporates with the pressure
-    double
-        *excess;   // pressure over that at which it moves, where EVAPORATION evaporates
-    double *found; // what that is then; of one that moves: what it loses
-    bool wants_pressures; // where they decide nothing, too
+    // (n_throat) each, where vapour follows the pressure of menisci, else NULL.
+    double *response; // of a stationary one: d evaporation / d pressure
+    double *excess; // its pressure above the entry pressure, for which the evaporation
+                    // is given
+    double *found;  // its excess as found; of one that moves: its loss
+    bool wants_pressures; // also of clusters whose losses are known without them
     double *pressure; // (n_node) of the liquid less that of the gas, in menisci's unit,
                       // 0 in gas: if they were wanted
     double residual;  // largest so far, of what flows
@@ -47,7 +47,7 @@ struct liquid_flow {
 struct liquid_flow liquid_flow_make(const struct occupancy *occupancy, double length,
                                     struct menisci menisci);
 
-// THROAT has emptied, and OCCUPANCY have followed.
+// THROAT has emptied, and OCCUPANCY has followed.
 void liquid_flow_follow(struct liquid_flow *flow, const struct occupancy *occupancy,
                         int throat);
 
@@ -55,8 +55,8 @@ void liquid_flow_follow(struct liquid_flow *flow, const struct occupancy *occupa
 // EVAPORATION[throat]: LOSS, with room for one entry a throat, and their number N_LOSS,
 // in no order. The losses of a cluster add up to what it evaporates.
 //
-// Where vapour follows pressure MOVING is given, partly empty throats among them, and
-// throats by themselves are left out: in them nothing flows.
+// Where vapour follows pressure, flow->moving is given and must include all throats
+// partly empty; clusters of a single throat are left out: nothing flows in them.
 //
 // STATUS_NOT_CONVERGED if menisci are not found or the balance does not close.
 enum status liquid_flow_find(struct liquid_flow *flow,
@@ -64,8 +64,8 @@ enum status liquid_flow_find(struct liquid_flow *flow,
                              const double *evaporation, struct loss *loss, int *n_loss,
                              struct reason *reason);
 
-// What is remembered from call to call only to be faster is not any more: the next
-// goes on from the menisci alone.
+// Forgets what is remembered only for speed: the next call starts from the menisci
+// alone, as a run does that continues from a checkpoint.
 void liquid_flow_forget(struct liquid_flow *flow, const struct occupancy *occupancy);
 
 // From now on vapour follows the pressure of menisci that stay.

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Checks a restored state part by part. Each function compares a list with what it is
+// derived from: sizes with members, places with what stands there, flags with counts.
+// A state that passes cannot lead the run outside its arrays or into an endless loop.
 #include "check_state.h"
 
 #include "basics/disjoint_sets.h"
@@ -10,7 +13,7 @@
 
 // ---- clusters ----------------------------------------------------------------------
 
-// Each identity has the throats it counts, or is listed once as unused.
+// Each identity has as many throats as its size says, or is listed once as unused.
 static bool identities_fit(const struct clusters *clusters)
 {
     const int n = clusters->n_id, n_throat = clusters->network->n_throat;
@@ -30,7 +33,7 @@ static bool identities_fit(const struct clusters *clusters)
     return fits;
 }
 
-// A cluster is one connected piece, and all of it.
+// A cluster is one connected component of the liquid, and all of it.
 static bool pieces_fit(const struct clusters *clusters)
 {
     const struct incidence *incidence = clusters->incidence;
@@ -95,7 +98,7 @@ static bool menisci_fit(const struct clusters *clusters)
 
 // ---- occupancy ---------------------------------------------------------------------
 
-// Liquid is counted where it is.
+// The counts of throats with liquid are right, in all and at each node.
 static bool liquid_fits(const struct occupancy *occupancy)
 {
     const struct network *network = occupancy->network;
@@ -136,7 +139,7 @@ static bool wet_nodes_fit(const struct occupancy *occupancy)
 
 // ---- timers ------------------------------------------------------------------------
 
-// A timer belongs to an reservoir that has no other, and to a throat of it with liquid;
+// A timer belongs to a reservoir that has no other, and to a throat of it with liquid;
 // or it is listed once as unused.
 static bool owners_fit(const struct emptying_times *times)
 {
@@ -165,7 +168,7 @@ static bool owners_fit(const struct emptying_times *times)
            running == times->n_losing;
 }
 
-// The throats that lose, in their order, are those of the timers.
+// The throats that lose are those of the timers, in ascending order.
 static bool losing_fit(const struct emptying_times *times)
 {
     for (int l = 0; l < times->n_losing; l++) {
@@ -238,7 +241,7 @@ static bool history_fits(const struct recorder *recorder)
 // ---- the run -----------------------------------------------------------------------
 
 // Throats that have ended since the last step are listed once each. FLAGGED: is_ended
-// says of all whether they are; else they have no liquid any more.
+// marks exactly these; else they must be empty.
 static bool ended_fit(const struct run *run, bool flagged)
 {
     const int n_throat = run->occupancy.network->n_throat;
@@ -255,7 +258,7 @@ static bool ended_fit(const struct run *run, bool flagged)
     return fits;
 }
 
-// In ascending order, of throats with liquid.
+// Losses are of throats with liquid, in ascending order.
 static bool losses_fit(const struct run *run)
 {
     for (int k = 0; k < run->losses.n; k++) {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the parts of a state that was read fit each other. The stream sees that a
-// number lies in its bounds (checkpoint/stream.h); what one says of another must hold
-// as well, for the run trusts it: who is in a list once, who counts whom, which two
-// point at each other.
+// Whether the parts of a restored state agree with each other. The stream checks that
+// each number lies in its bounds (checkpoint/stream.h); the run also relies on
+// relations between them: lists without repetition, counts, indices that point at each
+// other.
 #ifndef CRAQUELURE_DRY_CHECK_STATE_H
 #define CRAQUELURE_DRY_CHECK_STATE_H
 
 #include "run.h"
 
+// Whether RUN, just restored, is consistent. O(network + history).
 bool run_fits(const struct run *run);
 
 #endif

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The run itself [K 3.4.2]: vapour, losses, the throat that empties first, and again.
+// The run, from event to event [K 3.4.2]. An event is the moment at which the next
+// throat has emptied (or, in viscous liquid, filled or changed by saturation_step):
+//     rates from the vapour -> loss of each throat -> time to the first event
+//     -> gas fills what has emptied -> rates ...
+// Three kinds of step do this: event times (inviscid, immobile), flow (viscous), and
+// menisci with the Kelvin effect. All start from the same occupancy, record through the
+// same recorder and end at stop_saturation, where truncate_history cuts the last step.
 #include "drying.h"
 
 #include "basics/memory.h"
@@ -68,7 +74,7 @@ static void summarise(const struct run *run, struct drying_history *history)
                          run->conditions->stop_saturation);
 }
 
-// Takes the liquid that is not there at the start.
+// Removes the liquid that is missing at the start, and records it as step 0's changes.
 static enum status start(struct run *run, struct reason *reason)
 {
     const struct drying_conditions *conditions = run->conditions;
@@ -89,7 +95,7 @@ static enum status start(struct run *run, struct reason *reason)
     return status;
 }
 
-// What the liquid needs, and the first step.
+// Makes what the kind of liquid needs, for the occupancy of now.
 static void prepare(struct run *run)
 {
     const struct network *network = run->occupancy.network;
@@ -115,7 +121,7 @@ static void prepare(struct run *run)
         run->saturation[t] = occupancy_saturation(&run->occupancy, t);
 }
 
-// How easily gas enters each throat against gravity. The caller frees it.
+// The order of entry under gravity, for clusters_make. The caller frees it.
 static double *find_entry_priority(const struct network *network,
                                    const struct drying_conditions *conditions,
                                    const struct drying_scale *scale)
@@ -156,7 +162,7 @@ static enum status make_occupancy(const struct network *network, struct run *run
     return status;
 }
 
-// At the start, or where another run was when its state was kept.
+// At the start, or from the checkpoint of another run.
 static enum status begin_run(struct run *run, const struct keeper *keeper,
                              struct reason *reason)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pore-network drying [K 3.4, 3.3.5, 5.4]: which throat empties when, as vapour leaves
-// a network of liquid-filled throats through its open walls.
+// Pore-network drying [K 3.4, 3.3.5, 5.4]: when each throat empties, as vapour leaves a
+// network of liquid-filled throats through its open walls.
 //
 // Model. Vapour diffuses, quasi-steadily and isothermally, through the throats that are
 // completely empty and through a boundary layer above the open wall [K 3.9]. A node
@@ -73,7 +73,8 @@ struct drying_history {
     int64_t flow_solutions, flow_rounds; // clusters solved, and rounds to find menisci
 };
 
-// Told now and then how far the run is, as the fraction of all throats that is empty.
+// Who follows the run: REPORT is called after each event with the fraction of throats
+// that have emptied.
 struct drying_progress {
     void (*report)(void *context, double fraction); // may be NULL
     void *context;

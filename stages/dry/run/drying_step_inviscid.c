@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liquid without viscosity, or immobile: on to the moment at which the next throat has
-// emptied.
+// Liquid without viscosity, or immobile: advances to the moment at which the next
+// throat has emptied [K 3.4.2, steps 5 and 6]. Of the throats that lose, only the
+// saturations that differ from the last recorded step are written, in ascending order:
+// the losing throats and those that have emptied are merged as two sorted lists.
 #include "run.h"
 
 #include <math.h>
@@ -13,7 +15,7 @@ static void record_change(struct run *run, int throat)
     run->saturation[throat] = saturation;
 }
 
-// Of all throats that lose or have lost since the last step, in ascending order.
+// Records all throats that lose or have lost since the last step, in ascending order.
 static void record_changes(struct run *run)
 {
     const struct emptying_times *times = &run->times;

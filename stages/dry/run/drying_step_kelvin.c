@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Menisci with vapour pressures of their own: on to the moment at which a throat has
-// emptied or filled, or changed.
+// Menisci with vapour pressures of their own: advances to the moment at which a throat
+// has emptied or filled, or has changed by saturation_step. The losses are found at the
+// end of a step, not at its beginning: the rate that is recorded with the step is
+// theirs.
 #include "run.h"
 
 enum status find_kelvin_losses(struct run *run, struct reason *reason)

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscous liquid: on to the moment at which a throat has emptied or filled, or changed.
+// Viscous liquid: advances to the moment at which a throat has emptied or filled, or
+// has changed by saturation_step. Losses are constant in between:
+//     duration = min over throats of left / loss   (or lacking / -loss where it fills),
+//     liquid -= loss duration.
+// The conductances follow the filled length, so saturation_step is the accuracy in
+// time; at 1 the flow is only found again at events, as K does. Throats that empty or
+// fill within TIE of their volume do so together.
 #include "run.h"
 
 #include "basics/memory.h"
@@ -10,7 +16,7 @@
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
 
-// When the first throat has emptied or filled, or changed by saturation_step.
+// Time until the first throat has emptied or filled, or changed by saturation_step.
 static double time_to_first(const struct run *run)
 {
     double shortest = INFINITY;
@@ -27,8 +33,8 @@ static double time_to_first(const struct run *run)
     return shortest;
 }
 
-// THROAT loses AMOUNT, or all it has if that is all but TIE of its volume: then it ties
-// with the first. Likewise one that fills.
+// THROAT loses AMOUNT (negative: gains). If less than TIE of its volume would be left,
+// or be missing, it empties, or fills, exactly.
 static void lose(struct occupancy *occupancy, int throat, double amount)
 {
     struct compensated *liquid = &occupancy->liquid[throat];
@@ -46,7 +52,7 @@ static void lose(struct occupancy *occupancy, int throat, double amount)
     }
 }
 
-// Time passes until the first throat has emptied.
+// Lets all throats lose for DURATION, and notes which have changed.
 static void advance(struct run *run, double duration)
 {
     struct occupancy *occupancy = &run->occupancy;
@@ -60,7 +66,7 @@ static void advance(struct run *run, double duration)
     }
 }
 
-// Of all throats that have lost or filled since the last step, in ascending order.
+// Records all throats that have lost or filled since the last step, in ascending order.
 static void record_changes(struct run *run)
 {
     sort_ended(run);
@@ -134,7 +140,7 @@ void keep_pressures(struct run *run)
         keep_pressures_once(run);
 }
 
-// Throats may refill in turn, but not for ever.
+// Throats may refill in turn, but not endlessly.
 enum status note_idle(struct run *run, bool idle, struct reason *reason)
 {
     run->n_idle = idle ? run->n_idle + 1 : 0;

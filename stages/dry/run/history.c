@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The growing arrays of a history, and how a checkpoint keeps them.
 #include "history.h"
 
 #include "basics/memory.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes down the run, step by step.
+// Records the run, step by step, in a struct drying_history (drying.h).
 #ifndef CRAQUELURE_HISTORY_H
 #define CRAQUELURE_HISTORY_H
 
 #include "checkpoint/stream.h"
 #include "drying.h"
 
-// A history that grows; it has no step yet.
+// A history that grows, and the capacities of its arrays.
 struct recorder {
     struct drying_history *history;
     int step_capacity;
@@ -24,10 +24,11 @@ void recorder_add_event(struct recorder *recorder, double time, int throat,
 void recorder_add_step(struct recorder *recorder, double time, double saturation,
                        double rate, int clusters);
 
-// Of the step added last.
+// Sets the rate of the step added last.
 void recorder_set_last_rate(struct recorder *recorder, double rate);
 
-// For a network of N_THROAT throats. Pressures are not in it.
+// Writes the history to STREAM, or restores it, for a network of N_THROAT throats. All
+// but its pressures: resume.c keeps these.
 void recorder_state(struct recorder *recorder, int n_throat,
                     struct checkpoint_stream *stream);
 

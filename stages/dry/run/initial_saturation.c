@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How the liquid of a partly filled network is distributed at the start: by invasion
+// percolation from the exposed nodes (network/invasion.h), in the same order of
+// throats that the drying uses, or as in a recorded run at the moment of the given
+// saturation. Invaded throats are emptied one after the other until (1 - saturation)
+// capacity has left; the last one only in part, so that the saturation is met exactly.
 #include "initial_saturation.h"
 
 #include "basics/memory.h"
@@ -8,13 +13,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Of all liquid, in which rounding may end when all that can leave has left.
+// Rounding error that is accepted of the saturation when all that can leave has left.
 static const double MIN_REST = 1e-12;
 
 // --- by invasion -------------------------------------------------------------------
 
-// As gas sees it here: in place of walls, nodes that are exposed and those on far
-// walls.
+// The invasion starts at exposed nodes, and liquid leaves at those on far walls: these
+// bits replace the bits of walls.
 enum { INLET = 1, OUTLET = 2 };
 
 static uint8_t *inlets_and_outlets(const struct occupancy *occupancy)

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Replays the changes of a history once, stops at each level, and measures the liquid:
+// saturation by slices over the depth, of the surface, and the sizes of clusters.
+// Clusters are found with a disjoint-set forest: liquid throats at a node belong
+// together unless gas has entered the node.
 #include "profiles.h"
 
 #include "basics/disjoint_sets.h"
@@ -20,7 +24,7 @@ struct snapshot {
     bool *gas;   // (n_node)
 };
 
-// 0 at an open wall, 1 at the one opposite. With several open, of the first.
+// 0 at the open wall, 1 at the one opposite; with several open, from the first.
 static double depth_of(const struct snapshot *snapshot, int throat)
 {
     const struct network *network = snapshot->network;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the liquid is at chosen saturations of the network, from the history of a run:
-// profiles over the depth [K Figs. 3.31b, 3.48b], the surface, sizes of clusters,
-// snapshots of all throats.
+// The distribution of liquid at chosen saturations of the network, from the history of
+// a run: profiles over the depth [K Figs. 3.31b, 3.48b], saturation of the surface,
+// sizes of clusters, and snapshots of all throats.
 #ifndef CRAQUELURE_PROFILES_H
 #define CRAQUELURE_PROFILES_H
 

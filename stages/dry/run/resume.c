@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One visitor, run_state, both keeps and restores, so that the two cannot differ. What
+// is kept only for speed (factors, graphs) is not in the state: it is forgotten every
+// STEPS_BETWEEN_CUTS steps, in runs with and without checkpoints alike, so that a run
+// that continues makes the same bytes.
 #include "resume.h"
 
 #include "basics/memory.h"
@@ -6,7 +10,7 @@
 
 #include <limits.h>
 
-// A factorisation costs as much as some ten steps.
+// Forgetting costs a factorisation, as much as some ten steps.
 enum { STEPS_BETWEEN_CUTS = 256 };
 
 static void pressures_state(struct run *run, struct checkpoint_stream *stream)
@@ -44,8 +48,7 @@ static void steps_state(struct run *run, struct checkpoint_stream *stream)
     stream_numbers(stream, run->saturation, n_throat);
 }
 
-// Of menisci with vapour pressures of their own they are found before the state is
-// kept.
+// Kelvin effect: the losses of the next step have been found before the state is kept.
 static void losses_state(struct losses *losses, int n_throat,
                          struct checkpoint_stream *stream)
 {
@@ -82,7 +85,7 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
 
 static const char streams[] = "drying";
 
-// Timers are cut anywhere.
+// Runs with timers forget nothing and can be kept after any step (n_flow_step stays 0).
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every way of drying asks of a run and records of it.
+// What all drying steps ask of a run and record of it. Between two recorded steps the
+// rate is their mean, so that the recorded rates integrate to what has evaporated.
 #include "run.h"
 
 #include "basics/sorted.h"
@@ -7,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// From 1 at the start to exactly 0 at the end.
+// total_liquid is a sum of many differences, so its rounding is kept out of [0,1].
 double network_saturation(const struct run *run)
 {
     if (run->occupancy.n_liquid == 0) return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run on its way, and what its two ways of going on share.
+// The state of a run, and what its three kinds of step share.
 #ifndef CRAQUELURE_RUN_H
 #define CRAQUELURE_RUN_H
 
@@ -16,11 +16,11 @@ struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
     struct occupancy occupancy;
-    struct emptying_times times;    // of liquid without viscosity, or immobile
-    struct liquid_flow flow;        // of viscous liquid
-    struct kelvin_menisci kelvin;   // of menisci with vapour pressures of their own
-    struct kelvin_viscous coupling; // of the last two
-    struct losses losses;           // of the last three
+    struct emptying_times times;    // inviscid or immobile liquid, no Kelvin effect
+    struct liquid_flow flow;        // viscous liquid
+    struct kelvin_menisci kelvin;   // Kelvin effect
+    struct kelvin_viscous coupling; // both
+    struct losses losses;           // viscous liquid or Kelvin effect
     int n_idle;                     // viscous: steps since a throat has emptied
     int64_t n_flow_step;            // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
@@ -39,20 +39,21 @@ struct run {
     double *saturation; // (n_throat) at that step
 };
 
-// Of the throats' volume, from 1 at the start to exactly 0 when all is dry.
+// Liquid over the throats' volume, from 1 when full to exactly 0 when all is dry.
 double network_saturation(const struct run *run);
 
-// Whether there is liquid, and more than where the run is to stop.
+// Whether there is liquid, and the saturation is above stop_saturation.
 bool goes_on(const struct run *run);
 
-// Into the drying air, scaled; 0 when all is dry.
+// Rate into the drying air, scaled; 0 when all is dry.
 double rate_now(const struct run *run);
 
-// Whether the pressures of viscous liquid are asked for now.
+// Whether the saturation has reached the next snapshot of the pressures of viscous
+// liquid.
 bool snapshot_is_due(const struct run *run);
 
-// Whether this moment is to be recorded. Where events have been passed over, the rate
-// of the last step becomes the mean until now.
+// Whether this moment is to be recorded, by step_interval. If events have been skipped,
+// the rate of the last recorded step becomes the mean until now.
 bool step_is_due(struct run *run);
 
 // Puts the ended in ascending order.
@@ -64,27 +65,30 @@ void record_state(struct run *run);
 // Keeps the saturation when gas first reaches the wall opposite the open one.
 void note_breakthrough(struct run *run);
 
-// Until the first throat has emptied or filled, or changed by saturation_step, all lose
-// as run->losses say; gas fills what has emptied.
+// Advances time with run->losses until the first throat has emptied or filled, or has
+// changed by saturation_step; gas fills the throats that have emptied.
 void carry_out_losses(struct run *run);
 
-// With menisci that have vapour pressures of their own: finds the losses of now.
+// Kelvin effect: finds run->losses for the present menisci. Statuses as
+// kelvin_menisci_find and kelvin_viscous_find.
 enum status find_kelvin_losses(struct run *run, struct reason *reason);
 
-// Keeps the pressures of viscous liquid as often as they are due.
+// Adds the pressures of viscous liquid to the history, once for each snapshot that is
+// due.
 void keep_pressures(struct run *run);
 
-// Records the step that follows if it is time for one; with losses.
+// Records a step if it is due; for runs with losses.
 void record_losses(struct run *run);
 
-// STATUS_NOT_CONVERGED: no throat loses any more, and some are wet.
+// STATUS_NOT_CONVERGED with a message: liquid is left, but no throat loses any.
 enum status refuse_standstill(const struct run *run, struct reason *reason);
 
-// STATUS_NOT_CONVERGED if throats refill in turn for ever. IDLE: none has emptied.
+// Counts steps in which no throat has emptied (IDLE). STATUS_NOT_CONVERGED after so
+// many that throats must be refilling each other endlessly.
 enum status note_idle(struct run *run, bool idle, struct reason *reason);
 
-// One event on: liquid without viscosity, or immobile; viscous liquid; menisci with
-// vapour pressures of their own, the losses being those of now.
+// Advance the run by one event: liquid without viscosity, or immobile; viscous liquid;
+// Kelvin effect, where run->losses must be those of now.
 // STATUS_NOT_CONVERGED: nothing evaporates any more, or the flow is not found.
 enum status drying_step_inviscid(struct run *run, struct reason *reason);
 enum status drying_step_viscous(struct run *run, struct reason *reason);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts the last step at the share of it at which the saturation was reached: time,
+// changes and what has evaporated are linear within a step.
 #include "truncate_history.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// What changed in the last step is only SHARE of the way.
+// Scales the changes of the last step by SHARE.
 static void cut_changes(struct drying_history *history, const struct network *network,
                         double share)
 {
