@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Merging of short throats, the shortest first [K 3.3.7]. Two nodes at x_a and x_b,
+// means of w_a and w_b of the original nodes, become one at
+//     x = (w_a x_a + w_b x_b) / (w_a + w_b),   weight w_a + w_b,
+// where only the node on more walls counts if they differ, and x is moved exactly onto
+// all their walls. So merging is a greedy clustering whose order is that of a queue by
+// length (merge_state.h): lengths change with the nodes, so a throat that was long may
+// come up next. A throat from wall to opposite wall, or around a periodic box, is
+// kept: its two nodes cannot be one point.
 #include "merge.h"
 
 #include "basics/memory.h"
@@ -14,7 +22,7 @@ static double mean(const double *values, int count)
     return count ? sum / count : 0;
 }
 
-// Throats but those of the boundary layer, and their mean length.
+// Number of throats, those of the boundary layer left out, and their mean length.
 static int count_throats(const struct network *network, double *length)
 {
     int n = 0;
@@ -28,15 +36,15 @@ static int count_throats(const struct network *network, double *length)
     return n;
 }
 
-// What thresholds are relative to stays that of the first time, so that merging again
-// changes nothing.
+// Relative thresholds refer to the network before its first merging, so that merging it
+// again changes nothing.
 static void remember_unmerged(struct network *network)
 {
     if (network->unmerged_throats) return;
     network->unmerged_throats = count_throats(network, &network->unmerged_length);
 }
 
-// The length below which throats go, and how many may go at most.
+// The length below which throats are merged, and how many may be removed at most.
 static void limits(const struct network *network, enum merge_measure measure,
                    double threshold, double *length, int *most)
 {
@@ -72,7 +80,8 @@ static bool spans_box(uint8_t walls)
            (walls & 192) == 192;
 }
 
-// Nodes may also face a wall from afar: then there is nowhere to move them to.
+// Whether AT is on WALL. A node with the wall's bit may lie away from it (where cells
+// were left out): it must not be moved there.
 static bool is_on_wall(const struct network *network, int wall, struct vector at)
 {
     const struct packing *packing = &network->packing;
@@ -80,7 +89,7 @@ static bool is_on_wall(const struct network *network, int wall, struct vector at
            1e-9 * distance(packing->lower, packing->upper);
 }
 
-// Moves the node at ROOT, where the box repeats, into the box.
+// Moves the node at ROOT into a periodic box, and notes the image it was in.
 static void wrap(struct merging *merging, int root)
 {
     const struct packing *packing = &merging->network->packing;
@@ -95,8 +104,8 @@ static void wrap(struct merging *merging, int root)
     }
 }
 
-// Moves the first node of ENDS to where the union of both belongs; the second one is
-// part of it from now on.
+// Moves the first node of ENDS to the place of their union; the second becomes part of
+// it.
 static void unite(struct merging *merging, struct merging_ends ends)
 {
     const int root = ends.node[0], other = ends.node[1];
@@ -122,8 +131,8 @@ static void unite(struct merging *merging, struct merging_ends ends)
                 nearest_on_wall(&network->packing, wall, merging->position[root]);
 }
 
-// Unites the two nodes of throat T. False when it has to stay. What of its volume no
-// throat was there to take is added to LOST.
+// Unites the two nodes of throat T. False when it must stay. If no throat is left to
+// take its volume, that is added to LOST.
 static bool merge_ends(struct merging *merging, int t, double *lost)
 {
     struct merging_ends ends = merging_ends(merging, t);

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The state of merging: a union-find of nodes with periodic images (each node knows in
+// which image of its parent it lies, and path halving adds these up), the throats of
+// each root, and a binary heap of throats by length. A throat whose length changes is
+// pushed again with a higher stamp; older entries are skipped when they come up, which
+// is simpler than moving them. When two nodes unite, the shorter list of throats moves
+// to the other, and a throat that has become parallel to another is fused with it.
 #include "merge_state.h"
 
 #include "basics/memory.h"
@@ -62,7 +68,7 @@ bool merging_shortest(struct merging *merging, int *throat, double *length)
 
 // ---- nodes and throats --------------------------------------------------------------
 
-// The node that NODE is part of now, and in which repetition.
+// The root of NODE, and the image of it that NODE lies in. Halves the path.
 static int root_of(struct merging *merging, int node, struct image *image)
 {
     int *parent = merging->parent;
@@ -100,7 +106,7 @@ struct merging_ends merging_reversed(struct merging_ends ends)
                                  image_opposite(ends.image)};
 }
 
-// Seen from ROOT, one of the two.
+// The ends of THROAT as seen from ROOT, which is one of them.
 static struct merging_ends ends_from(struct merging *merging, int root, int throat)
 {
     const struct merging_ends ends = merging_ends(merging, throat);
@@ -158,7 +164,8 @@ double merging_share_volume(struct merging *merging, int root, double volume)
     return row->count ? 0 : volume;
 }
 
-// A tessellation unites nodes on walls, and so may bring throats that are parallel.
+// Fuses throats that are parallel at the start: a tessellation unites nodes on walls,
+// and imported networks may have any.
 static void fuse_parallel(struct merging *merging)
 {
     for (int t = 0; t < merging->network->n_throat; t++) {
@@ -231,7 +238,7 @@ static int parallel_to(struct merging *merging, const struct throat_row *row, in
     return -1;
 }
 
-// Where the box repeats, two nodes may have been joined on both sides.
+// Whether THROAT is in ROW: in a periodic box two nodes may be joined on both sides.
 static bool holds(const struct throat_row *row, int throat)
 {
     for (int k = 0; k < row->count; k++)
@@ -265,7 +272,8 @@ void merging_move_throats(struct merging *merging, int root, int other, bool mov
 
 // ---- writing back -------------------------------------------------------------------
 
-// Gives every node its new NUMBER, and in MERGING->image the repetition in which it is.
+// Gives every node its new NUMBER, and in merging->image the image it lies in of the
+// new node. Returns how many nodes remain.
 static int renumber_nodes(struct merging *merging, int *number)
 {
     const int n_node = merging->network->n_node;
@@ -296,7 +304,8 @@ static void write_nodes(struct merging *merging, const int *number, int kept)
     network->n_node = kept;
 }
 
-// The lower node first; of a throat from a node to its own image the way that leads up.
+// Writes the ends of a throat, the lower node first; a throat from a node to its own
+// image in the direction whose image number is positive.
 static void write_ends(struct merging *merging, const int *number, int throat, int kept)
 {
     struct network *network = merging->network;
@@ -330,7 +339,7 @@ static void write_throats(struct merging *merging, const int *number)
     network->n_throat = kept;
 }
 
-// A closed way along nodes, and where the box repeats the image of each; else NULL.
+// A closed path along nodes, and the image of each node (NULL if nothing is periodic).
 struct loop {
     int32_t *node;
     struct image *image;
@@ -343,7 +352,7 @@ static bool same_corner(const struct loop *loop, int a, int b)
            (!loop->image || same_image(loop->image[a], loop->image[b]));
 }
 
-// Takes out repeats, and spikes (there and back again).
+// Removes repeated corners, and spikes (a corner between two equal ones).
 static void clean_loop(struct loop *loop)
 {
     for (bool changed = true; changed && loop->count > 0;) {
@@ -362,8 +371,8 @@ static void clean_loop(struct loop *loop)
     }
 }
 
-// The loop of the face that began at BEGIN, moved to END (which never overtakes what is
-// still read).
+// The loop of the face that began at BEGIN, renumbered and moved to END (which never
+// overtakes what is still to be read).
 static struct loop move_loop(struct merging *merging, const int *number, int64_t begin,
                              int64_t end, int count)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bookkeeping behind merge_nodes: which nodes are one, which throats they have,
+// The state behind merge_nodes: which nodes are one, which throats they have, and
 // which throat is the shortest.
 #ifndef CRAQUELURE_MERGE_STATE_H
 #define CRAQUELURE_MERGE_STATE_H
@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-// Throats at one node, those removed since still among them.
+// Throats at one node; some may have been removed since.
 struct throat_row {
     int *throat;
     int count, capacity;
@@ -38,38 +38,41 @@ struct merging {
     int removed;
 };
 
-// All throats of NETWORK in the queue; merging_finish gives it back.
+// Starts with all throats of NETWORK in the queue, parallel ones fused. NETWORK is in
+// use until merging_finish.
 struct merging merging_begin(struct network *network);
 
-// The two nodes that a throat joins now, and where the box repeats the second as seen
-// from the first.
+// The two nodes that a throat joins now, and the image of the box in which the first
+// sees the second.
 struct merging_ends {
     int node[2];
     struct image image;
 };
 struct merging_ends merging_ends(struct merging *merging, int throat);
 
-// The same, seen from the second.
+// The same as seen from the second node.
 struct merging_ends merging_reversed(struct merging_ends ends);
 
-// From the first of ENDS to the second.
+// The vector from the first of ENDS to the second, m.
 struct vector merging_vector(const struct merging *merging, struct merging_ends ends);
 
-// Takes the shortest throat left off the queue. False when none is left.
+// Takes the shortest throat off the queue, LENGTH in m. False when none is left.
 bool merging_shortest(struct merging *merging, int *throat, double *length);
 
-// From now on the throat is gone.
+// Removes the throat.
 void merging_remove(struct merging *merging, int throat);
 
-// Hands the VOLUME of a throat that is gone to those at ROOT, in proportion to what
-// they have (equally where they have none). Returns what no throat was there to take.
+// Gives the VOLUME (m3) of a removed throat to the throats at ROOT, in proportion to
+// theirs (equally if they have none). Returns what is lost: all of it, if ROOT has no
+// throats, else 0.
 double merging_share_volume(struct merging *merging, int root, double volume);
 
-// Gives the throats of OTHER to ROOT, fusing those that have become parallel, and
-// measures again what has changed: the moved ones, and all of ROOT if it MOVED itself.
+// Gives the throats of OTHER to ROOT, fuses those that have become parallel, and
+// measures the lengths that have changed: of the throats given, and of all of ROOT if
+// it MOVED.
 void merging_move_throats(struct merging *merging, int root, int other, bool moved);
 
-// Writes what is left back into the network, renumbered in the old order, and frees.
+// Writes the merged network back, renumbered in the old order, and frees MERGING.
 void merging_finish(struct merging *merging);
 
 #endif

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Histograms before and after merging, with the same classes, so that they can be
+// drawn in one figure. Volumes are of all throats.
 #include "report.h"
 
 #include "basics/memory.h"
@@ -36,7 +38,7 @@ void census_free(struct census *census)
     *census = (struct census){0};
 }
 
-// How many nodes have 0, 1, 2, ... throats.
+// The number of nodes with 0, 1, 2, ... throats.
 static json_t *coordination_json(const struct census *census)
 {
     int *nodes = NEW_ARRAY(int, census->max_throats + 1);
@@ -51,7 +53,8 @@ static json_t *coordination_json(const struct census *census)
                      "nodes", list);
 }
 
-// COUNT values from 0 to MOST in CLASSES equal classes.
+// Histogram of COUNT values from 0 to MOST in CLASSES equal classes, with mean and
+// standard deviation.
 static json_t *classes_json(const double *value, int count, double most)
 {
     gsl_histogram *histogram = gsl_histogram_alloc(CLASSES);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What merging did to the distributions of coordination, length and radius, as JSON
-// [K Figs. 3.24, 3.25].
+// How merging changed the distributions of coordination, length and radius, as JSON [K
+// Figs. 3.24, 3.25].
 #ifndef CRAQUELURE_MERGE_NODES_REPORT_H
 #define CRAQUELURE_MERGE_NODES_REPORT_H
 
@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-// Of a network as it is: copies of what is to be counted.
+// Copies of what is counted, of a network as it is.
 struct census {
     int n_node, n_throat, max_throats; // at one node
     int *coordination;                 // (n_node)
@@ -20,8 +20,8 @@ struct census {
 struct census take_census(const struct network *network);
 void census_free(struct census *census);
 
-// {"merged":…, "before":{…}, "after":{…}}; classes of length and of radius are the same
-// before and after. The caller owns it.
+// {"merged":…, "before":{…}, "after":{…}}; the classes of length and of radius are the
+// same before and after; lengths in m. The caller owns it.
 json_t *merging_json(const struct merge_report *report, const struct census *before,
                      const struct census *after);
 

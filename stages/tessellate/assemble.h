@@ -7,7 +7,7 @@
 #include "generators.h"
 #include "nodes.h"
 
-// All that is known when throats and faces are read off.
+// What throats and faces are made from.
 struct assembly {
     const struct generators *generators;
     const struct triangulation *triangulation;
@@ -17,7 +17,7 @@ struct assembly {
     struct sphere_cells grains; // in units
 };
 
-// Fills the throats of the network.
+// Fills the throats of the network, sorted by their nodes; radii and lengths in m.
 void assemble_throats(const struct assembly *assembly, struct network *network);
 
 // Fills the faces: each a loop of nodes, normal pointing from its first side to its

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Groups cells by a counting sort over their first corner: the corner of the lowest
+// base, taken at that base, so that all copies of a cell fall in one group. Cells
+// without a grain among their corners are left out.
 #include "cell_groups.h"
 
 #include "basics/memory.h"
@@ -11,7 +14,7 @@ static bool is_base(const struct generators *generators, int32_t i)
            same_image(generators->origin[i].image, (struct image){0});
 }
 
-// Which generator each base is.
+// The generator that is each base itself, not a copy.
 static int32_t *find_bases(const struct generators *generators)
 {
     int32_t *base = NEW_ARRAY(int32_t, generators->n_base);
@@ -20,7 +23,7 @@ static int32_t *find_bases(const struct generators *generators)
     return base;
 }
 
-// The first corner of a cell, or another of its base; -1 when no corner is a grain.
+// The corner of a cell with the lowest base; -1 when no corner is a grain.
 static int32_t first_corner(const struct generators *generators,
                             const int32_t vertex[4])
 {

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts the network by the surface of a convex body [K 3.3.1, step 3]. A throat from
+// end[0] to end[1] meets the surface at the times span[0] and span[1] of body_span; a
+// node is added there. Each face is then walked corner by corner, and the part on the
+// side that stays becomes the new face, closed by the chord between where it leaves
+// and comes back. The chords of one grain, joined end to end, are its face on the
+// wall. So cells stay closed, and their surface on the wall is a polygon: the volume
+// between chords and wall is missing, of order (grain radius / wall radius)^2. Around
+// a body that is cut out, what stays of a face need not be one piece, so each part is
+// closed by itself.
 #include "cut.h"
 
 #include "basics/memory.h"
@@ -8,7 +17,7 @@
 
 #include <stdlib.h>
 
-// Where a loop crosses the wall: not, into what stays, or out of it.
+// How a loop crosses the wall at a corner: not, into the part that stays, or out of it.
 enum crosses { CROSSES_NOT, CROSSES_IN, CROSSES_OUT };
 
 struct step {
@@ -16,7 +25,7 @@ struct step {
     enum crosses crosses;
 };
 
-// A piece of the rim of what a grain has of the wall, seen from that grain.
+// One edge of a grain's face on the wall, counter-clockwise as seen from outside.
 struct chord {
     struct corner from, to;
 };
@@ -66,7 +75,7 @@ static void find_ends(const struct cut *cut, int t, struct vector end[2])
                  image_offset(&network->packing, throat_image(cut, t)));
 }
 
-// A node at TIME along throat T, moved into the box where it repeats.
+// Adds a node at TIME (0 to 1) along throat T, moved into a periodic box.
 static int32_t add_node(struct cut *cut, int t, const struct vector end[2], double time)
 {
     struct network *network = cut->network;
@@ -120,8 +129,8 @@ static void cross_throat(struct cut *cut, int t)
     if (meets) cut->near[node[0]] = cut->near[node[1]] = true;
 }
 
-// The throat between two corners of a face; FORWARD when A is its first node, of one
-// that joins a node to its own image the first end.
+// The throat between two corners of a face. FORWARD: A is its first node (or its first
+// end, if it joins a node to its own image).
 static int throat_of(const struct cut *cut, struct corner a, struct corner b,
                      bool *forward)
 {
@@ -154,7 +163,7 @@ static struct corner corner_of(const struct network *network, int64_t k)
     return corner;
 }
 
-// From corner A to B: what of it stays, and where it crosses.
+// Adds the steps from corner A to B: corners that stay, and crossings of the wall.
 static void walk_edge(struct cut *cut, struct corner a, struct corner b)
 {
     bool forward = true, staying = stays(cut, a.node);
@@ -200,8 +209,8 @@ static void add_chord(struct cut *cut, int32_t grain, struct corner from,
     cut->chord[cut->n_chord++] = (struct chord){from, to};
 }
 
-// A face ends in the chord from where it meets the wall to where it comes back; the
-// faces on the wall go the other way.
+// A face is closed by the chord from where it leaves to where it comes back; the faces
+// on the wall of both its grains get the chord in the opposite sense.
 static void add_chords(struct cut *cut, int f, struct corner from, struct corner to)
 {
     const int32_t *side = cut->network->face_particles[f];
@@ -261,9 +270,9 @@ static void add_to_path(struct cut *cut, struct corner corner)
     cut->path[cut->n_path++] = corner;
 }
 
-// What stays of a convex face within a convex body is one piece, and chords join where
-// it leaves to where it comes in next. Around the body it may be several, each with a
-// chord from where it leaves to where it came in.
+// Within a convex body what stays of a convex face is one part, and chords join where
+// it leaves to where it enters next. Around the body there may be several parts, each
+// with a chord from where it leaves to where it entered.
 static void cut_face(struct cut *cut, int f)
 {
     walk_face(cut, f);
@@ -313,7 +322,7 @@ static int next_chord(const struct cut *cut, int32_t grain, struct corner corner
     return -1;
 }
 
-// The faces on the wall: around each, chord after chord.
+// Makes the faces on the wall, joining the chords of each grain end to end.
 static void close_cells(struct cut *cut)
 {
     cut->chord_row = sort_rows(cut->chord_row, cut->n_chord);

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From a packing to its network. The diagram of the grains and of their images (mirror
+// images in walls, copies in periodic directions) contains, seen from the grains
+// alone, the diagram in the box. How many images are needed is not known in advance:
+// the reach starts small and doubles until no cell of a grain could change
+// (nodes.complete). Then throats and faces are read off the triangulation, bodies cut
+// the network, cut cells are removed, and a layer is reduced to its plane.
 #include "diagram.h"
 
 #include "assemble.h"
@@ -14,7 +20,7 @@
 static const double FIRST_REACH = 2;
 
 // Whether a larger reach would give no more images: each grain is reflected in each
-// wall, and copied as far as can be told.
+// wall, and copied as far as image numbers allow.
 static bool all_images(const struct generators *generators)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -58,7 +64,7 @@ static int count_hidden(const struct generators *generators,
     return hidden;
 }
 
-// Takes in images from ever farther until none that is left out could cut the cell of a
+// Doubles the reach of the images until none that is left out could cut the cell of a
 // grain: until those cells lie inside the walls, and clear of the images left out.
 static enum status triangulate_in_box(const struct packing *packing, bool power,
                                       struct generators *generators,
@@ -85,7 +91,7 @@ static enum status triangulate_in_box(const struct packing *packing, bool power,
     }
 }
 
-// Grains outside a box that repeats are moved into it: images are told from there.
+// Moves grains into a periodic box: the images of nodes are relative to these places.
 static void move_inside(struct packing *packing)
 {
     for (int i = 0; i < packing->n_particle; i++)
@@ -110,7 +116,7 @@ static void copy_packing(const struct packing *from, struct packing *to)
     move_inside(to);
 }
 
-// Hands the nodes over, in m.
+// Moves the nodes to the network, in m.
 static void move_nodes(struct nodes *nodes, const struct generators *generators,
                        struct network *network)
 {
@@ -137,7 +143,7 @@ static int count_closed(const struct network *network)
     return closed;
 }
 
-// PACKING in units, its grains where the generators have them.
+// The grains of PACKING in units, at the rounded positions of the generators.
 static struct sphere_cells cells_in_units(const struct generators *generators,
                                           const struct packing *packing)
 {

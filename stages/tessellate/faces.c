@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces: what separates two grains, or a grain from a wall, dual to the edges of the
-// triangulation.
+// Faces: polygons between two grains, or a grain and a wall, dual to the edges of the
+// triangulation. The corners of the face of edge (p, q) are the nodes of all cells
+// around the edge, found by walking from cell to cell across the facets that contain
+// it. Corners at one place are counted once; a face with fewer than three has closed up
+// on a wall. Each face is found once: by the part of the cells that contains the first
+// of those around its edge, and in a periodic box only for the copy whose first side is
+// a grain itself.
 #include "assemble.h"
 
 #include "basics/memory.h"
@@ -34,7 +39,7 @@ struct face_list {
     int n_node, node_capacity;
 };
 
-// Which of the six edges of a cell does not end at two of its corners, as a bit.
+// The bit of the edge of a cell that is opposite the edge between two of its corners.
 static const uint8_t OPPOSITE_EDGE[4][4] = {
     {0, 1, 2, 4}, {1, 0, 8, 16}, {2, 8, 0, 32}, {4, 16, 32, 0}};
 
@@ -52,10 +57,10 @@ static void append_corner(struct loop *loop, int32_t node, struct image image)
     loop->image[loop->count++] = image;
 }
 
-// Turns around the edge of cell START that does not end at its corners OUT and STAYS,
-// first across the facet opposite OUT, gathers the nodes passed, and marks the edge as
-// seen in the cells of the part. False when the way leaves the finite cells, or passes
-// an earlier part, to which the face belongs.
+// Walks around the edge of cell START opposite the corners OUT and STAYS, first across
+// the facet opposite OUT, gathers the nodes passed, and marks the edge as seen in the
+// cells of the part. False when the walk leaves the finite cells, or meets a cell of an
+// earlier part, to which the face then belongs.
 static bool walk_around_edge(const struct triangulation *cells, struct part part,
                              int start, int out, int stays, struct loop *loop)
 {
@@ -67,7 +72,7 @@ static bool walk_around_edge(const struct triangulation *cells, struct part part
         append_corner(loop, cells->node[at], node_image(cells, at));
         const int32_t next = here->neighbour[out], kept = here->vertex[stays];
         if (next < part.begin || ++steps > MAX_AROUND) return false;
-        // What stayed is left next, what is new stays.
+        // The corner that stayed is left next; the new one stays.
         out = index_among(cells->cell[next].vertex, kept);
         stays = index_among(cells->cell[next].neighbour, at);
         at = next;
@@ -78,8 +83,9 @@ static bool walk_around_edge(const struct triangulation *cells, struct part part
     return true;
 }
 
-// Whose face it is: a grain and a grain, or a grain and the wall it is reflected in. Of
-// many copies the one counts whose first side is a grain itself: P comes first.
+// Whether the edge from P to Q is a face, and its sides: two grains, or a grain and the
+// wall it is reflected in. Of many copies the one counts whose first side, P, is a
+// grain itself.
 static bool is_face(const struct generators *generators, int32_t p, int32_t q,
                     struct row *row)
 {
@@ -132,7 +138,7 @@ static void append_face(struct face_list *faces, const struct row *row,
     faces->n_node += loop->count;
 }
 
-// Those around the edges of one cell that were not seen from another.
+// Finds the faces around the edges of one cell that no other cell has found.
 static void find_faces(const struct assembly *assembly, struct part part, int cell,
                        struct loop *loop, struct face_list *faces)
 {
@@ -224,8 +230,8 @@ static void allocate_faces(struct network *network, const struct row *row,
     network->face_node_image = NEW_ARRAY(struct image, n_node);
 }
 
-// Into the network, sorted by the grains they separate. What comes next is somewhere
-// else: asked for in time.
+// Stores the faces in the network, sorted by the grains they separate. Later rows are
+// prefetched, since they are scattered in memory.
 static void store(const struct face_list *lists, const struct row *row,
                   const int32_t *order, struct network *network)
 {

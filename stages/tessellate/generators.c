@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Grains and their images on a grid. All positions are rounded to a power of two,
+// 2^-42 mean diameters: then reflections (2 wall - x) and copies (x + k box) are exact
+// in double precision, a lattice is exactly degenerate, and the exact predicates of
+// the triangulation make no slivers out of rounding noise. Reflections come before
+// copies, so that mirror images are copied too. A round wall reflects each grain in
+// the tangent plane of a wall larger by ROUND_CLEARANCE; the walls of the box that it
+// touches make way for it.
 #include "generators.h"
 
 #include "basics/memory.h"
@@ -31,8 +38,8 @@ static double mean_diameter(const struct packing *packing)
     return sum / packing->n_particle;
 }
 
-// The unit of length, m: the mean grain diameter, or the edge of a grain's share of the
-// box where that is larger. Far larger or smaller ones would cost digits.
+// The unit of length, m: the mean grain diameter, or the cube root of the box volume
+// per grain where that is larger. A unit far from both would cost digits.
 static double unit_of_length(const struct packing *packing)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
@@ -49,7 +56,7 @@ static struct vector scaled(const struct packing *packing, struct vector x, doub
                            from_corner.z / unit};
 }
 
-// The round wall around the grains, which the walls of the box then make way for.
+// Finds the round wall around the grains; along its round axes the box has no walls.
 static void place_walls(const struct packing *packing, struct generators *generators)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -158,7 +165,7 @@ static void grow(struct generators *generators)
         reallocate(generators->origin, capacity, sizeof *generators->origin);
 }
 
-// Room for one more, with all that is the same as for generator FROM.
+// Adds a generator, as a copy of generator FROM.
 static int add_like(struct generators *generators, int from)
 {
     if (generators->n == generators->capacity) grow(generators);
@@ -192,7 +199,8 @@ static void add_round_reflections(struct generators *generators, double grid)
     }
 }
 
-// Of the grains, and of their images beyond a round wall, which stay such images.
+// Reflects the grains in the walls of the box, and also their images beyond a round
+// wall, which keep WALL_OUTER as their wall.
 static void add_reflections(struct generators *generators)
 {
     const int before = generators->n;
@@ -235,7 +243,7 @@ static void add_copies(struct generators *generators)
     }
 }
 
-// Into the box where it repeats; in m, so that grains one box apart come to one place.
+// AT moved into a periodic box; in m, so that grains one box apart come to one place.
 static struct vector wrapped(const struct packing *packing, struct vector at)
 {
     for (int axis = 0; axis < 3; axis++) {

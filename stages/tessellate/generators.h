@@ -55,11 +55,11 @@ enum status place_generators(const struct packing *packing, double reach, bool p
                              struct generators *generators, struct reason *reason);
 void generators_free(struct generators *generators);
 
-// Of two grains in one place only one would get a cell, whichever came first:
-// STATUS_BAD_DATA.
+// STATUS_BAD_DATA if two grains have the same centre: only one of them would get a
+// cell.
 enum status check_distinct(const struct generators *generators, struct reason *reason);
 
-// POSITION in another repetition of the box.
+// POSITION in another image of the box.
 struct vector position_in_image(const struct generators *generators,
                                 struct vector position, struct image image);
 
@@ -77,8 +77,8 @@ static inline bool is_grain(const struct generators *generators, int32_t i)
             same_image(generators->origin[i].image, (struct image){0}));
 }
 
-// Orders generators by their bases, then by the repetition: so do all their copies with
-// each other.
+// Orders generators by their bases, then by their images. Copies of two generators,
+// moved alike, compare alike.
 static inline int compare_generators(const struct generators *generators, int32_t a,
                                      int32_t b)
 {

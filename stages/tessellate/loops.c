@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Collects faces and throats in any order, sorts both, and writes them to the network:
+// each face begins with its lowest node, equal throats become one with the least
+// radius, and nodes that are no corner of a face are removed.
 #include "loops.h"
 
 #include "basics/memory.h"
@@ -71,7 +74,7 @@ static void store_faces(const struct loops *loops, struct network *network)
     }
 }
 
-// Once each, with the least radius; keeps the index of that at the row.
+// Makes equal throats one; its row keeps the index of the smallest radius.
 static void fuse_throats(struct loops *loops)
 {
     struct row *row = loops->throat;
@@ -105,7 +108,7 @@ static void store_throats(const struct loops *loops, struct network *network)
     }
 }
 
-// The new number of each node, -1 for those that are no corner.
+// Removes nodes that are no corner. Returns the new number of each node, -1: removed.
 static int *number_corners(const struct loops *loops, struct network *network)
 {
     int *number = NEW_ARRAY(int, network->n_node);

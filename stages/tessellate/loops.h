@@ -6,7 +6,7 @@
 #include "network/network.h"
 #include "sort_rows.h"
 
-// A node, in the repetition of the box that the first grain of the face sees it in.
+// A node, in the image of the box in which the first grain of the face sees it.
 struct corner {
     int32_t node;
     struct image image;
@@ -30,14 +30,14 @@ struct loops {
 void loops_append(struct loops *loops, const int32_t side[2], struct image image,
                   const struct corner *corner, int count);
 
-// Adds a throat, RADIUS and LENGTH in m. Of one that is added more than once the least
+// Adds a throat, RADIUS and LENGTH in m. If it is added more than once, the least
 // radius counts.
 void loops_add_throat(struct loops *loops, struct corner a, struct corner b,
                       double radius, double length);
 
-// Gives the network these faces, in the order of their sides, and those of the throats
-// that join corners of them; takes away nodes that are no corner. All throats are of
-// kind network. Empties LOOPS.
+// Replaces the faces of NETWORK by these, in the order of their sides, and its throats
+// by those that join corners of them; removes nodes that are no corner. All throats get
+// the kind THROAT_NETWORK. Empties LOOPS.
 void loops_to_network(struct loops *loops, struct network *network);
 
 #endif

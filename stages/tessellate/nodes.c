@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes of the diagram: the point c of equal power to the four corners of each cell of
+// the triangulation (vertex of the power or Voronoi diagram, Aurenhammer 1987),
+//     2 (x_k - x_0) . c = |x_k - x_0|^2 - w_k + w_0,   k = 1, 2, 3,
+// relative to x_0, by Cramer's rule with one refinement; where the determinant is
+// small, exactly (exact_power_centre). Cells that are copies of each other must get
+// one node: a cell is named after the bases of its sorted corners and where they lie
+// relative to the first, and each name gets one place. Reflection makes nodes on walls
+// degenerate on purpose: places on a wall that coincide are united (union-find over
+// neighbouring cells). Numbering follows the names, not the triangulation, so that it
+// is reproducible.
 #include "nodes.h"
 
 #include "basics/memory.h"
@@ -14,7 +24,7 @@
 // coincide; in units. A thousand times what rounding the generators does.
 static const double COINCIDENCE = 1e-9;
 
-// Determinants below this, of the product of the edges, lose digits that matter.
+// Determinants below this part of the product of the edges have lost too many digits.
 static const double MIN_DETERMINANT = 1e-3;
 
 static bool repeats(const struct generators *generators)
@@ -22,8 +32,8 @@ static bool repeats(const struct generators *generators)
     return generators->repeats[0] || generators->repeats[1] || generators->repeats[2];
 }
 
-// The point of equal power to the four corners: 2 (x_k - x_0).c = |x_k - x_0|^2 - w_k +
-// w_0 for c relative to corner 0, so that no large numbers are subtracted.
+// The point of equal power to the four corners, relative to corner 0: so no large
+// numbers are subtracted.
 static struct vector power_centre(const struct generators *generators,
                                   const int32_t corner[4])
 {
@@ -44,7 +54,7 @@ static struct vector power_centre(const struct generators *generators,
     const double determinant = dot(row[0], across[0]);
     if (determinant * determinant < squares) return exact_power_centre(p);
     struct vector centre = {0};
-    // The second pass takes off what the first left by rounding.
+    // The second pass removes the rounding error of the first.
     for (int pass = 0; pass < 2; pass++) {
         struct vector correction = {0};
         double residual[3];
@@ -98,9 +108,9 @@ static void sort_corners(const struct generators *generators, const int32_t cell
     order_pair(generators, &corner[1], &corner[2]);
 }
 
-// A cell is named after the bases of its corners in order, and where they are relative
-// to the first: cells that are copies of each other have one name. False when that does
-// not fit.
+// The name of a cell: the bases of its sorted corners, and their images relative to the
+// first. Cells that are copies of each other have the same name. False when the images
+// are too far apart to be encoded.
 static bool name_cell(const struct generators *generators, const int32_t corner[4],
                       struct row *name)
 {
@@ -119,7 +129,7 @@ static bool name_cell(const struct generators *generators, const int32_t corner[
 
 // ---- what was left out --------------------------------------------------------------
 
-// The cell of a grain among its corners is unbounded.
+// Whether a corner is a grain whose cell is unbounded.
 static bool is_open(const struct generators *generators, const struct cell *cell)
 {
     for (int k = 0; k < 4; k++)
@@ -128,8 +138,9 @@ static bool is_open(const struct generators *generators, const struct cell *cell
     return false;
 }
 
-// An image left out is farther from the box than the reach; it could change a cell only
-// from inside the sphere around its node, AT, that no generator has less power to.
+// Whether images that were left out cannot change the cell. They are farther from the
+// box than the reach, and could change it only from inside the sphere around its node,
+// AT, in which a generator would have less power to AT than the corners.
 static bool is_complete(const struct generators *generators, const struct cell *cell,
                         struct vector at)
 {
@@ -151,20 +162,20 @@ static bool is_complete(const struct generators *generators, const struct cell *
 
 // ---- places -------------------------------------------------------------------------
 
-// One for all cells of one name, and those united with it on a wall. Numbered in the
-// order of the names; the other cells of a name take up numbers that are no place's.
+// One place for all cells of one name, and those united with it on a wall. Numbered in
+// the order of the names; other cells of a name leave their numbers unused.
 enum { NO_PLACE = -1 };
 
 struct places {
     int n;
-    int32_t *back;           // to a place before that it coincides with; 0: to none
+    int32_t *back;           // how many places back the one it coincides with; 0: none
     struct image *of_parent; // the repetition of the box in which it does
     struct vector *position;
     uint8_t *walls;
 };
 
-// Gives cell C place I, which is in repetition IMAGE of the box, seen from there. False
-// when an image that was left out could change it.
+// Gives cell C place I, seen in image IMAGE of the box. False when an image of a grain
+// that was left out could change the cell.
 static bool put_cell(const struct generators *generators, const struct places *places,
                      int i, struct image image, struct triangulation *triangulation,
                      int c)
@@ -176,8 +187,8 @@ static bool put_cell(const struct generators *generators, const struct places *p
                        position_in_image(generators, places->position[i], image));
 }
 
-// Where the first cell of a name has its node, when its first corner is one of the
-// bases themselves; then moved into the box. Returns the repetition that was in.
+// The node of the first cell of a name, computed for its first corner at its base, then
+// moved into the box. Returns the image of the box that it was in.
 static struct image find_place(const struct generators *generators,
                                const int32_t corner[4], struct places *places, int i,
                                bool *outside)
@@ -202,7 +213,7 @@ struct named {
     int32_t (*corner)[4];
 };
 
-// Gives the cells of group G their places. False when one has no name.
+// Gives the cells of group G their places. False when one has no name (name_cell).
 static bool place_group(const struct generators *generators,
                         const struct cell_groups *groups, int g,
                         struct triangulation *triangulation, struct named named,
@@ -237,8 +248,7 @@ static bool place_group(const struct generators *generators,
     return true;
 }
 
-// Groups are near each other, their cells less so, their places anywhere: asked for in
-// time.
+// Prefetches what a later group needs: its cells and places are scattered in memory.
 PREFETCHING prefetch_group(const struct generators *generators,
                            const struct cell_groups *groups,
                            const struct places *places,
@@ -290,7 +300,7 @@ static bool find_places(const struct generators *generators,
     return all_named;
 }
 
-// The place that I is united with, and the repetition in which it is I.
+// The root of place I, and the image of the box in which the root lies at I.
 static int root_of(const struct places *places, int i, struct image *image)
 {
     *image = (struct image){0};
@@ -337,9 +347,9 @@ static void unite_on_walls(const struct generators *generators,
     }
 }
 
-// Those places become nodes that are not united with one before, in the order of the
-// names. Takes over what PLACES holds of them, and leaves there for each place its node
-// and the repetition of the box in which that is the place.
+// Makes nodes of the places that are not united with an earlier one, in the order of
+// the names. NODES takes over the arrays of PLACES; there, back becomes the node of
+// each place, and of_parent the image of the box in which the node lies at the place.
 static void number_nodes(struct places *places, struct nodes *nodes)
 {
     for (int i = 0; i < places->n; i++) {

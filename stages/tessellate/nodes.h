@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The nodes of the diagram: where the power to four generators is equal.
+// The nodes of the diagram: the points of equal power to four generators [K 3.3.4].
 #ifndef CRAQUELURE_NODES_H
 #define CRAQUELURE_NODES_H
 
@@ -14,10 +14,11 @@ struct nodes {
     bool complete; // no image that was left out could have changed the cell of a grain
 };
 
-// Gives the cells that have a grain among their corners their nodes, in the order of
-// the grains they lie between. Those that coincide on a wall are one, and so are those
-// that are copies of each other. STATUS_BAD_DATA when a box that repeats is too narrow.
-// The caller frees with nodes_free.
+// Gives each cell with a grain among its corners its node: fills triangulation->node
+// and
+// ->image, and NODES in the order of the grains they lie between. Nodes that coincide
+// on a wall are one, and so are copies of each other. STATUS_BAD_DATA when a periodic
+// box is too narrow. The caller frees with nodes_free.
 enum status find_nodes(const struct generators *generators,
                        struct triangulation *triangulation, struct nodes *nodes,
                        struct reason *reason);

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Removal of parts of a network: what is kept is marked first (grains, then their
+// faces, nodes and throats), then nodes, throats and faces are compacted in place, in
+// their old order. Elimination keeps whole cells only; a plane keeps what lies in the
+// lower wall y.
 #include "remove_cells.h"
 
 #include "basics/memory.h"
@@ -8,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-// What stays.
+// Marks of what is kept.
 struct kept_parts {
     bool *grain, *face, *throat;
-    int *node; // its new number; -1: does not stay
+    int *node; // its new number; -1: removed
 };
 
 static bool is_along_y(int32_t side)
@@ -50,7 +54,7 @@ static void keep_neighbours(const struct network *network, struct kept_parts *ke
     kept->throat = throats_beside(network, kept->grain);
 }
 
-// The throats of the boundary layer that begin at what stays.
+// Keeps throats of the boundary layer that begin at a node that is kept.
 static void keep_boundary_layer(const struct network *network, struct kept_parts *kept)
 {
     for (int t = 0; t < network->n_throat; t++) {
@@ -125,7 +129,7 @@ static struct kept_parts keep_nothing(const struct network *network)
     return kept;
 }
 
-// Leaves in the network what stays; frees KEPT.
+// Removes all that is not kept from the network; frees KEPT.
 static void remove_rest(struct network *network, struct kept_parts *kept)
 {
     compact_nodes(network, kept->node);

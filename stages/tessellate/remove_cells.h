@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is left out of a network once all of it is known.
+// Removal of cells from a complete network, and its reduction to a plane.
 #ifndef CRAQUELURE_REMOVE_CELLS_H
 #define CRAQUELURE_REMOVE_CELLS_H
 
@@ -21,8 +21,8 @@ int eliminate_cut_cells(struct network *network, bool layer);
 // cells, each with that wall as its second side.
 void reduce_to_plane(struct network *network);
 
-// Takes away nodes whose NUMBER, (n_node), is negative; of the others it becomes the
-// new one.
+// Removes the nodes whose NUMBER (n_node) is negative; for the others NUMBER becomes
+// the new index.
 void compact_nodes(struct network *network, int *number);
 
 #endif

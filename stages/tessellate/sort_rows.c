@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Counting sort by the first key, then a comparison sort in each of its short groups,
+// in parallel. Rows themselves are not moved: their indices are.
 #include "sort_rows.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of a few whole numbers, put in order in linear time.
+// Sorting of rows of a few integers, in linear time if few rows share their first key.
 #ifndef CRAQUELURE_ROWS_H
 #define CRAQUELURE_ROWS_H
 
@@ -16,10 +16,10 @@ struct row {
 // first key, so that it is O(count) where few rows share one. The caller frees it.
 int32_t *order_rows(struct row *rows, int count);
 
-// The rows, which it takes over, in that order. The caller frees what it returns.
+// Returns the rows in that order; frees ROWS. The caller frees the result.
 struct row *sort_rows(struct row *rows, int count);
 
-// The same where they are, for few.
+// Sorts a few rows in place, in the same order.
 void sort_few_rows(struct row *rows, int count);
 
 #endif

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Which wall a node at the outer surface belongs to when cells beyond are left out [K
+// 3.3.5]. For each grain beyond, the area vectors of its faces with grains that stay
+// are summed, and of the walls that cut its cell the one most nearly along this sum is
+// taken.
 #include "surface_marks.h"
 
 #include "basics/memory.h"
@@ -18,7 +22,7 @@ static uint8_t *find_cuts(const struct network *network, bool layer)
     return cuts;
 }
 
-// From the first side of the face to the second.
+// Area vector of a face, pointing from its first side to its second.
 static struct vector face_area(const struct network *network, int face)
 {
     const int64_t begin = network->face_offset[face];
@@ -30,7 +34,8 @@ static struct vector face_area(const struct network *network, int face)
     return scale(0.5, area);
 }
 
-// Of walls that are not flat, which direction they lie in is not asked.
+// Of the WALLS (bits) the one that OUTWARDS points to most; a round wall has no
+// direction and is only taken if there is no flat one.
 static int wall_faced(unsigned walls, struct vector outwards)
 {
     int best = walls ? 31 - __builtin_clz(walls) : -1;
@@ -44,7 +49,7 @@ static int wall_faced(unsigned walls, struct vector outwards)
     return best;
 }
 
-// Of each face between what stays and what does not, the grain beyond; else -1.
+// If the face separates a grain that stays from one that does not, the latter; else -1.
 static int grain_beyond(const struct network *network, const bool *stay, int face)
 {
     const int32_t *side = network->face_particles[face];
@@ -52,8 +57,8 @@ static int grain_beyond(const struct network *network, const bool *stay, int fac
     return side[stay[side[0]]];
 }
 
-// Walls by all faces of each grain beyond: single ones may be too small to have a
-// direction.
+// The wall of each grain beyond, from all its faces together: a single face may be too
+// small to have a reliable direction.
 static int *find_walls(const struct network *network, const bool *stay, bool layer)
 {
     const int n = network->packing.n_particle;

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Throats: the edges of the diagram, dual to the facets of the triangulation.
+// Throats: the edges of the diagram, dual to the facets of the triangulation. A facet
+// between cells c and d is a throat from node(c) to node(d), with the
+//     radius = least over grains of (distance to the throat - grain radius)
+//     [K 3.7, 3.8].
+// A facet is seen from both cells, from copies where the box is periodic, and in walls
+// from several images of a grain. Each throat must be counted once: from the cell of
+// its lower node, from the copy whose first corner is a grain itself, and throats in a
+// wall with the same nodes are fused. Two passes, count and fill, so that each thread
+// writes to places of its own and the result does not depend on the number of threads.
 #include "assemble.h"
 
 #include "basics/memory.h"
@@ -13,8 +21,8 @@ struct candidate {
     double radius, length; // in units; the radius may be below 0 where grains overlap
 };
 
-// Of nodes that several cells may share: those of node i from offset[i] to
-// offset[i + 1]. The others have those of their one cell.
+// Candidates of nodes that several cells may share: those of node i from offset[i] to
+// offset[i + 1]. Other nodes have only the candidates of their one cell.
 struct candidates {
     int *offset; // (n_node + 2)
     struct candidate *at;
@@ -35,8 +43,8 @@ static double facet_clearance(const struct assembly *assembly, int cell, int k,
     return least_clearance(&assembly->grains, end, way);
 }
 
-// Each facet has many copies where the box repeats: the one whose first corner is a
-// grain itself counts. Where nothing repeats, that is each facet with a grain.
+// In a periodic box each facet has many copies: the one whose first corner is a grain
+// itself counts. Without copies every facet with a grain counts.
 static bool facet_counts(const struct assembly *assembly, int cell, int k)
 {
     const struct generators *generators = assembly->generators;
@@ -54,9 +62,9 @@ static bool facet_counts(const struct assembly *assembly, int cell, int k)
     return is_grain(generators, first);
 }
 
-// The facets of cell C, as bits, from which a throat is seen whose first node is that
-// of the cell. A throat that joins a node to its own image, around the box, is seen
-// from where the number of that image is above 0.
+// The facets of cell C, as bits, whose throat has the cell's node as its first. A
+// throat that joins a node to its own image, around the box, counts where the number of
+// that image is above 0.
 static int find_facets(const struct assembly *assembly, int c)
 {
     const struct triangulation *cells = assembly->triangulation;
@@ -92,7 +100,7 @@ static void count_throats(const struct assembly *assembly, int *count, int *shar
     }
 }
 
-// Where cell C has its node.
+// Position of the node of cell C, in the image that the cell sees.
 static struct vector node_of(const struct assembly *assembly, int c)
 {
     const struct triangulation *cells = assembly->triangulation;
@@ -101,7 +109,7 @@ static struct vector node_of(const struct assembly *assembly, int c)
                         : at;
 }
 
-// What is seen from the facets of a cell, and how many.
+// The candidates from the facets of a cell. Returns how many.
 static int gather(const struct assembly *assembly, int c, struct candidate at[4])
 {
     const struct triangulation *cells = assembly->triangulation;
@@ -165,8 +173,8 @@ static void sort_candidates(struct candidate *at, int count)
     }
 }
 
-// A throat in a wall is seen from the facets of several images: one throat, as wide as
-// the narrowest of them says, which comes first. Returns how many of COUNT stay.
+// A throat in a wall is seen from the facets of several images: it becomes one throat
+// with the smallest radius, which comes first. Returns how many of COUNT remain.
 static int fuse_in_walls(const uint8_t *walls, int node, struct candidate *at,
                          int count)
 {
@@ -221,8 +229,7 @@ static void fuse_candidates(const struct assembly *assembly,
     }
 }
 
-// Nodes come in any order in space: where they are, and where their throats go, is
-// asked for in time.
+// Prefetches nodes and throats of later cells, which are scattered in memory.
 PREFETCHING prefetch_nodes(const struct assembly *assembly, int c, const int *begin,
                            const struct network *network)
 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Throats found by their two nodes, with a binary search.
 #include "throats_beside.h"
 
 #include "basics/memory.h"
@@ -24,8 +25,8 @@ int first_throat_between(const struct network *network, const int32_t ends[2])
     return low;
 }
 
-// The throats between two corners of a face; of several between the same nodes those
-// that join the same images.
+// Marks the throats between two corners of a face; of several between the same nodes
+// only those that join the same images.
 static void keep_throats(const struct network *network, int64_t from, int64_t to,
                          bool *stays)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Throats of a network in the order of tessellate: those between two nodes, those
-// beside grains.
+// Look-up of throats in a network whose throats are sorted by their nodes, as
+// tessellate writes them.
 #ifndef CRAQUELURE_THROATS_BESIDE_H
 #define CRAQUELURE_THROATS_BESIDE_H
 
@@ -9,8 +9,9 @@
 // The first throat whose nodes do not come before these two.
 int first_throat_between(const struct network *network, const int32_t ends[2]);
 
-// (n_throat) whether one of GRAINS, (n_particle), is beside the throat. In a network
-// whose throats are in the order of tessellate. The caller frees it.
+// Whether one of GRAINS (n_particle) is beside each throat (n_throat): whether the
+// throat is an edge of a face of such a grain. The caller frees it. O(corners log
+// n_throat).
 bool *throats_beside(const struct network *network, const bool *grains);
 
 #endif
