@@ -40,12 +40,14 @@ static struct cost cost_of_step(const struct dem *dem)
 {
     const unsigned features = dem->features;
     const struct cost pair = features & FEATURE_PARALLEL_BOND ? bonded_pair
-                             : !(features & FEATURE_TURN)     ? smooth_pair
+                             : !(features & FEATURE_ROTATION) ? smooth_pair
                              : features & FEATURE_HERTZ       ? hertz_pair
                                                               : gripping_pair;
-    const struct cost grain = features & FEATURE_TURN ? turning_grain : smooth_grain;
+    const struct cost grain =
+        features & FEATURE_ROTATION ? turning_grain : smooth_grain;
     const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
-    const double as_needed = (dem->is_pulled ? 32 : 0) + (dem->moves_alike ? 0 : 16) +
+    const double as_needed = (dem->has_external ? 32 : 0) +
+                             (dem->equal_mobility ? 0 : 16) +
                              (dem->n_wall_pair > 0 ? 4 : 0);
     return (struct cost){grain.flops + pairs * pair.flops,
                          grain.bytes + as_needed + pairs * pair.bytes};

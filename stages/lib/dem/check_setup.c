@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cannot be, in a setup, and why.
+// Refuses an impossible setup: one line that names what is wrong, the row, the rule and
+// the value. Everything is checked as given, in SI, before it is scaled.
 #include "dem/engine.h"
 
 #include <math.h>

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a packing and materials in SI to an engine in its own units.
+//
+// Units: length is the mean radius, mass the mean grain mass, stiffness the largest
+// that any pair can have, and time = sqrt(mass / stiffness). So the stiffest mean pair
+// has k = m = 1, and the critical step of [K 4.47], 2 sqrt(m/k), is 2 for it.
+//
+// Order matters: materials and grains first, as they decide which features the pair
+// sweep needs; then walls and liquid, as they decide how far pairs are sought; then
+// grains are numbered along the curve, pairs are found, and last the time step, which
+// depends on the pairs.
 #include "dem/engine.h"
 
 #include "basics/cpu_features.h"
@@ -24,7 +33,7 @@ static double bond_radius(const struct dem_setup *setup, int bond)
 }
 
 // The largest translational stiffness between two grains, or a grain and a wall, N/m,
-// of linear contacts and bonds.
+// of linear contacts and bonds. Two equal springs in series make half of one.
 static double largest_linear_stiffness(const struct dem_setup *setup)
 {
     double normal_stiffness = 0, shear_stiffness = 0;
@@ -46,7 +55,7 @@ static double largest_linear_stiffness(const struct dem_setup *setup)
     return largest;
 }
 
-// [G 2] with the heaviest pair, or grain and wall; and the heaviest grain as such.
+// Stiffness of [G 2] for the heaviest pair, or the heaviest grain at a wall.
 static double largest_timed_stiffness(const struct dem_setup *setup, double heaviest)
 {
     double logarithm = 0;
@@ -60,8 +69,8 @@ static double largest_timed_stiffness(const struct dem_setup *setup, double heav
     return mass * (M_PI * M_PI + logarithm * logarithm) / (t * t);
 }
 
-// Of the stiffest material at the largest overlap expected: 2 E* sqrt(R* U), against a
-// rigid wall the most.
+// Hertz: tangent 2 E* sqrt(R* U) of the stiffest material at the largest overlap
+// expected. The stiffest partner is a rigid wall.
 static double largest_hertz_stiffness(const struct dem_setup *setup, double mean_radius,
                                       double largest_radius)
 {
@@ -130,20 +139,20 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
     dem->no_tensile_damping = setup->no_tensile_damping;
     const double area = length * length;
     dem->bond_kind = setup->bond.kind;
-    dem->bond_moments = 1 - setup->bond.moments_left_out;
+    dem->moment_contribution = 1 - setup->bond.moments_left_out;
     dem->bond_normal_stiffness = setup->bond.normal_stiffness * area / stiffness;
     dem->bond_shear_stiffness = setup->bond.shear_stiffness * area / stiffness;
 }
 
 static void new_grains(struct dem *dem, int n)
 {
-    const size_t with_nobody = (size_t)n + 1;
+    const size_t n_with_dummy = (size_t)n + 1;
     dem->n_particle = n;
-    dem->identity = NEW_ARRAY(int32_t, n);
-    dem->number = NEW_ARRAY(int32_t, n);
+    dem->id = NEW_ARRAY(int32_t, n);
+    dem->index = NEW_ARRAY(int32_t, n);
     dem->start = NEW_ARRAY(struct vector, n);
-    dem->place = allocate_aligned(with_nobody, sizeof *dem->place);
-    dem->motion = allocate_aligned(with_nobody, sizeof *dem->motion);
+    dem->place = allocate_aligned(n_with_dummy, sizeof *dem->place);
+    dem->motion = allocate_aligned(n_with_dummy, sizeof *dem->motion);
     dem->external = allocate_aligned((size_t)n, sizeof *dem->external);
     dem->mobility = allocate((size_t)n, sizeof *dem->mobility);
     dem->mass = NEW_ARRAY(double, n);
@@ -151,23 +160,24 @@ static void new_grains(struct dem *dem, int n)
     dem->material_of = NEW_ARRAY(uint8_t, n);
     dem->wall_offset = NEW_ARRAY(int, n + 1);
     dem->pair_offset = NEW_ARRAY(int, n + 1);
-    dem->is_late = NEW_ARRAY(uint8_t, n);
-    dem->late = NEW_ARRAY(int32_t, n);
-    dem->late_row = NEW_ARRAY(int32_t, n + 1);
+    dem->is_shared = NEW_ARRAY(uint8_t, n);
+    dem->shared_grain = NEW_ARRAY(int32_t, n);
+    dem->first_row = NEW_ARRAY(int32_t, n + 1);
     dem->first_group = NEW_ARRAY(int, n);
     dem->last_group = NEW_ARRAY(int, n);
     dem->place_at_search = NEW_ARRAY(struct vector, n);
     if (dem->balance_energy)
-        dem->grain_books = allocate((size_t)n, sizeof *dem->grain_books);
+        dem->grain_ledger = allocate((size_t)n, sizeof *dem->grain_ledger);
 }
 
 static void take_box(struct dem *dem, const struct packing *packing)
 {
-    double furthest = 1;
+    double largest_distance = 1;
     for (int i = 0; i < dem->n_particle; i++)
         for (int axis = 0; axis < 3; axis++)
-            furthest = fmax(furthest, fabs(component(dem->start[i], axis)));
-    dem->coordinate_error = 16 * 0x1p-53 * furthest;
+            largest_distance =
+                fmax(largest_distance, fabs(component(dem->start[i], axis)));
+    dem->coordinate_error = 16 * 0x1p-53 * largest_distance;
     for (int axis = 0; axis < 3; axis++) {
         dem->box_lower[axis] = component(packing->lower, axis) / dem->unit.length;
         dem->box_upper[axis] = component(packing->upper, axis) / dem->unit.length;
@@ -183,7 +193,7 @@ static void take_grains(struct dem *dem, const struct dem_setup *setup)
     new_grains(dem, packing->n_particle);
     for (int i = 0; i < dem->n_particle; i++) {
         const struct vector x = packing->position[i];
-        dem->identity[i] = dem->number[i] = i;
+        dem->id[i] = dem->index[i] = i;
         dem->start[i] = (struct vector){x.x / length, x.y / length, x.z / length};
         dem->place[i].radius = packing->radius[i] / length;
         if (setup->material_of) dem->material_of[i] = setup->material_of[i];
@@ -195,7 +205,7 @@ static void take_grains(struct dem *dem, const struct dem_setup *setup)
     static const uint8_t none[1];
     uint8_t *fixed = NEW_ARRAY(uint8_t, dem->n_particle);
     if (setup->fixed) memcpy(fixed, setup->fixed, (size_t)dem->n_particle);
-    weigh_grains(dem, dem->n_particle > 0 ? fixed : none);
+    set_masses(dem, dem->n_particle > 0 ? fixed : none);
     free(fixed);
     set_external(dem);
     take_box(dem, packing);
@@ -275,9 +285,9 @@ static unsigned choose_features(const struct dem *dem, const struct dem_setup *s
     for (int k = 0; k < dem->n_material * dem->n_material; k++)
         grip = grip || dem->pair_friction[k] > 0;
     unsigned features = 0;
-    if (grip) features |= FEATURE_TURN;
+    if (grip) features |= FEATURE_ROTATION;
     if (dem->kind == DEM_HERTZ) features |= FEATURE_HERTZ;
-    if (!pairs_are_alike(dem)) features |= FEATURE_OWN;
+    if (!pairs_are_alike(dem)) features |= FEATURE_PAIR_LAWS;
     if (dem->n_bond > 0)
         features |= dem->bond_kind == DEM_CONTACT_BOND ? FEATURE_CONTACT_BOND
                                                        : FEATURE_PARALLEL_BOND;
@@ -298,10 +308,11 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
                          : setup->time_step_safety * 2 * sqrt(fmin(lightest, 1));
 }
 
-// Each pair must meet in one image only.
+// Each pair must be near in one image only.
 static enum status check_periods(const struct dem *dem, struct reason *reason)
 {
-    const double least = 2 * (2 * dem->largest_radius + FIRST_SKIN + bridge_reach(dem));
+    const double least =
+        2 * (2 * dem->largest_radius + FIRST_SKIN + bridge_cutoff(dem));
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] != 0 && !(dem->period[axis] >= least))
             return refuse(reason, STATUS_BAD_DATA,
@@ -320,7 +331,7 @@ static enum status check_pairs(const struct dem *dem, struct reason *reason)
             dem->pairs.group[p / PAIRS_IN_GROUP].distance[p % PAIRS_IN_GROUP];
         if (distance <= 1e-9 * (dem->place[end[0]].radius + dem->place[end[1]].radius))
             return refuse(reason, STATUS_BAD_DATA, "grains %d and %d coincide",
-                          dem->identity[end[0]], dem->identity[end[1]]);
+                          dem->id[end[0]], dem->id[end[1]]);
         n_bonded += bond_of_pair(dem, p) >= 0;
     }
     if (n_bonded != dem->n_bond)
@@ -329,9 +340,9 @@ static enum status check_pairs(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
-// From now on the overlaps that there are do not push. Where there are none, nothing is
-// taken off.
-static void lie_at_rest(struct dem *dem)
+// Takes the overlaps of the start as reference gaps: they do not push from now on.
+// Grains apart keep their distance.
+static void set_reference_gaps(struct dem *dem)
 {
     for (int k = 0; k < dem->pairs.n_group; k++)
         for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
@@ -381,7 +392,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     dem->balance_energy = setup->balance_energy;
     dem->friction_feels_dashpot = setup->friction_feels_dashpot;
     dem->skin = FIRST_SKIN;
-    dem->least_gap = 1e-6;
+    dem->min_inactive_gap = 1e-6;
     dem->expected_overlap = setup->largest_overlap > 0 ? setup->largest_overlap : 0.01;
     take_materials(dem, setup);
     take_grains(dem, setup);
@@ -397,7 +408,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     find_pairs(dem);
     status = check_pairs(dem, reason);
     if (status != STATUS_OK) return status;
-    if (setup->unstressed) lie_at_rest(dem);
+    if (setup->unstressed) set_reference_gaps(dem);
     if (dem->liquid) form_bridges(dem);
     dem->time_step_limit = stability_limit(dem, false);
     choose_time_step(dem, setup);

@@ -1,5 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cycle, and what acts on it from outside.
+//
+// One cycle is one step of leapfrog [K 4.1-4.6]. Forces F belong to time t, velocities
+// v to t - dt/2, displacements u to t:
+//     F = F(u, v) from pairs, walls and outside,
+//     v += dt F / m,   omega += dt M / I,   u += dt v.
+// So forces are known at the places before the last displacement, and velocities are
+// half a step behind the displacements. energy.c and observe.c account for that.
+//
+// A team of threads runs cycles together until pairs must be sought again. Each thread
+// sweeps its chunks of pair groups and, close behind, moves the grains that are
+// finished. After a barrier the threads move the shared grains (engine.h). After a
+// second barrier the first thread ends the cycle and begins the next.
 #include "dem/engine.h"
 
 #include "basics/barrier.h"
@@ -16,8 +28,8 @@ void dem_free(struct dem *dem)
     void *const owned[] = {dem->material,
                            dem->pair_friction,
                            dem->pair_restitution,
-                           dem->identity,
-                           dem->number,
+                           dem->id,
+                           dem->index,
                            dem->start,
                            dem->place,
                            dem->motion,
@@ -36,14 +48,14 @@ void dem_free(struct dem *dem)
                            dem->wall_offset,
                            dem->pair_offset,
                            dem->pair_of,
-                           dem->is_late,
-                           dem->late,
+                           dem->is_shared,
+                           dem->shared_grain,
                            dem->first_group,
                            dem->last_group,
-                           dem->late_row,
+                           dem->first_row,
                            dem->sum,
                            dem->place_at_search,
-                           dem->grain_books,
+                           dem->grain_ledger,
                            dem->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
@@ -57,7 +69,7 @@ void dem_set_force(struct dem *dem, const struct vector *force)
     const double unit = dem->unit.stiffness * dem->unit.length;
     if (!dem->applied) dem->applied = NEW_ARRAY(struct vector, dem->n_particle);
     for (int i = 0; i < dem->n_particle; i++) {
-        const struct vector f = force[dem->identity[i]];
+        const struct vector f = force[dem->id[i]];
         dem->applied[i] = (struct vector){f.x / unit, f.y / unit, f.z / unit};
     }
     set_external(dem);
@@ -76,7 +88,7 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
 {
     const double unit = dem->unit.length / dem->unit.time;
     for (int i = 0; i < dem->n_particle; i++) {
-        const int32_t who = dem->identity[i];
+        const int32_t who = dem->id[i];
         for (int axis = 0; axis < 3 && dem->mobility[i][0] > 0; axis++) {
             if (velocity)
                 dem->motion[i].linear[axis] = component(velocity[who], axis) / unit;
@@ -90,14 +102,14 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
 void dem_stop(struct dem *dem, const bool *which)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        for (int axis = 0; axis < 3 && which[dem->identity[i]]; axis++)
+        for (int axis = 0; axis < 3 && which[dem->id[i]]; axis++)
             dem->motion[i].linear[axis] = dem->motion[i].angular[axis] = 0;
 }
 
 void dem_set_friction(struct dem *dem, double friction)
 {
     dem->pair_friction[0] = dem->law.friction = friction;
-    for (int p = 0; dem->pairs.own && p < dem->pairs.n_pair; p++)
+    for (int p = 0; dem->pairs.laws && p < dem->pairs.n_pair; p++)
         set_pair_law(dem, p);
     set_wall_laws(dem);
 }
@@ -114,17 +126,18 @@ static int smaller(int a, int b)
 
 struct outcome {
     int n_broken;
-    struct pace pace;
+    struct max_speed max_speed;
 };
 
-static void add_pace(struct outcome *outcome, struct pace pace)
+static void merge_max_speed(struct outcome *outcome, struct max_speed speed)
 {
-    if (pace.largest > outcome->pace.largest) outcome->pace.largest = pace.largest;
-    outcome->pace.sound = outcome->pace.sound && pace.sound;
+    if (speed.square > outcome->max_speed.square)
+        outcome->max_speed.square = speed.square;
+    outcome->max_speed.valid = outcome->max_speed.valid && speed.valid;
 }
 
-// Groups BEGIN..END-1, and behind them the grains they finish.
-static struct outcome sweep_share(struct dem *dem, int begin, int end)
+// Sweeps groups BEGIN..END-1 and moves the grains that these finish.
+static struct outcome sweep_chunk(struct dem *dem, int begin, int end)
 {
     enum { BLOCK = 32 }; // groups, few enough for what they touch to stay cached
     struct outcome outcome = {0, {0, true}};
@@ -132,41 +145,41 @@ static struct outcome sweep_share(struct dem *dem, int begin, int end)
         begin > 0 ? first_not_below(dem->last_group, dem->n_particle, begin) : 0;
     for (int block = begin; block < end; block += BLOCK) {
         const int next = block + BLOCK < end ? block + BLOCK : end;
-        if (dem->liquid) wet_groups(dem, block, next);
+        if (dem->liquid) update_bridges(dem, block, next);
         outcome.n_broken += dem->sweep(dem, block, next);
         const int finished = first_not_below(dem->last_group, dem->n_particle, next);
-        add_pace(&outcome, move_grains(dem, grain, finished));
+        merge_max_speed(&outcome, move_grains(dem, grain, finished));
         grain = finished;
     }
     return outcome;
 }
 
-// Threads that go through cycles together, and what each did in the last.
-struct crew {
+// The threads that run cycles together, and what each did in the last cycle.
+struct team {
     struct barrier barrier;
     struct outcome *part; // (barrier.size)
 };
 
-// Shares of equal size; then, when all are done, as much of the late grains each. Of
-// each the parts of thread ME.
-static struct outcome sweep_part(struct dem *dem, struct crew *crew, int me)
+// Work of thread ME in one cycle: its chunks of groups, and then, when all threads are
+// there, its part of the shared grains.
+static struct outcome sweep_chunks(struct dem *dem, struct team *team, int me)
 {
-    const int n = dem->pairs.n_group, share = groups_in_share(dem);
-    const int n_share = dem->n_share,
-              late_share = (dem->n_late + n_share - 1) / n_share;
+    const int n = dem->pairs.n_group, share = groups_in_chunk(dem);
+    const int n_chunk = dem->n_chunk,
+              shared_in_chunk = (dem->n_shared + n_chunk - 1) / n_chunk;
     struct outcome mine = {0, {0, true}};
-    if (n == 0 && me == 0) mine.pace = move_grains(dem, 0, dem->n_particle);
-    for (int t = me; t < n_share; t += crew->barrier.size) {
+    if (n == 0 && me == 0) mine.max_speed = move_grains(dem, 0, dem->n_particle);
+    for (int t = me; t < n_chunk; t += team->barrier.size) {
         const int begin = smaller(t * share, n);
-        const struct outcome part = sweep_share(dem, begin, smaller(begin + share, n));
+        const struct outcome part = sweep_chunk(dem, begin, smaller(begin + share, n));
         mine.n_broken += part.n_broken;
-        add_pace(&mine, part.pace);
+        merge_max_speed(&mine, part.max_speed);
     }
-    barrier_wait(&crew->barrier);
-    for (int t = me; t < n_share && n_share > 1; t += crew->barrier.size) {
-        const int begin = smaller(t * late_share, dem->n_late);
-        const int end = smaller(begin + late_share, dem->n_late);
-        add_pace(&mine, move_late_grains(dem, begin, end));
+    barrier_wait(&team->barrier);
+    for (int t = me; t < n_chunk && n_chunk > 1; t += team->barrier.size) {
+        const int begin = smaller(t * shared_in_chunk, dem->n_shared);
+        const int end = smaller(begin + shared_in_chunk, dem->n_shared);
+        merge_max_speed(&mine, move_shared_grains(dem, begin, end));
     }
     return mine;
 }
@@ -211,7 +224,7 @@ static double fastest_wall(const struct dem *dem)
     return fastest;
 }
 
-static enum status refuse_pace(const struct dem *dem, struct reason *reason)
+static enum status report_divergence(const struct dem *dem, struct reason *reason)
 {
     const double step = dem_time_step(dem), limit = dem_time_step_limit(dem);
     const bool is_stable = step <= limit;
@@ -219,94 +232,99 @@ static enum status refuse_pace(const struct dem *dem, struct reason *reason)
                   "diverged in cycle %lld: a grain or its surface would move more than "
                   "%g mean radii in one time step of %g s, %s the stability limit of "
                   "%g s%s",
-                  (long long)dem->cycle, FURTHEST_STEP, step,
-                  is_stable ? "within" : "past", limit,
+                  (long long)dem->cycle, MAX_STEP, step, is_stable ? "within" : "past",
+                  limit,
                   is_stable ? ": too long for such a speed, try a smaller "
                               "time_step_safety"
                             : "");
 }
 
-// Cycles asked for, and how they go.
-struct course {
+// A run: cycles wanted and done, and how it stands.
+struct run_control {
     int64_t cycles, done;
     enum status status;
     struct reason *reason;
     bool pairs_are_due; // to be sought before the next
 };
 
-// What comes before the pairs are looked at.
-static void approach_cycle(struct dem *dem, struct course *course)
+// Before the pairs of a cycle are swept: which pairs can be left out, and whether pairs
+// must be sought.
+static void prepare_cycle(struct dem *dem, struct run_control *control)
 {
-    rest_or_wake(dem, course->cycles - course->done, course->done == 0);
-    course->pairs_are_due = pairs_are_due(dem);
+    update_inactive_pairs(dem, control->cycles - control->done, control->done == 0);
+    control->pairs_are_due = pairs_are_due(dem);
 }
 
-static void begin_cycle(struct dem *dem, const struct course *course)
+static void begin_cycle(struct dem *dem, const struct run_control *control)
 {
-    dem->keeps_loads = course->done == course->cycles - 1; // for who looks after it
+    dem->keeps_loads = control->done == control->cycles - 1; // for who looks after it
     sweep_walls(dem);
 }
 
-static void end_cycle(struct dem *dem, struct outcome outcome, struct course *course)
+static void end_cycle(struct dem *dem, struct outcome outcome,
+                      struct run_control *control)
 {
     if (outcome.n_broken > 0) record_cracks(dem);
-    if (dem->liquid) settle_bridges(dem);
+    if (dem->liquid) publish_bridge_counts(dem);
     move_walls(dem);
-    const double fastest = fmax(sqrt(outcome.pace.largest), fastest_wall(dem));
+    const double fastest = fmax(sqrt(outcome.max_speed.square), fastest_wall(dem));
     dem->last_travel = dem->time_step * fastest;
     dem->travelled += dem->last_travel;
-    if (!outcome.pace.sound) {
-        wake_pairs(dem);
-        course->status = refuse_pace(dem, course->reason);
+    if (!outcome.max_speed.valid) {
+        reactivate_pairs(dem);
+        control->status = report_divergence(dem, control->reason);
         return;
     }
     dem->cycle++;
-    course->done++;
+    control->done++;
 }
 
-static bool goes_on(const struct course *course)
+static bool is_running(const struct run_control *control)
 {
-    return course->done < course->cycles && course->status == STATUS_OK;
+    return control->done < control->cycles && control->status == STATUS_OK;
 }
 
-// The first thread does what all wait for.
-static void follow(struct dem *dem, struct crew *crew, int me, struct course *course)
+// Runs cycles as thread ME until the run ends or pairs must be sought. What is not
+// shared among threads, the first thread does while the others wait.
+static void run_cycles(struct dem *dem, struct team *team, int me,
+                       struct run_control *control)
 {
     do {
-        crew->part[me] = sweep_part(dem, crew, me);
-        barrier_wait(&crew->barrier);
+        team->part[me] = sweep_chunks(dem, team, me);
+        barrier_wait(&team->barrier);
         if (me == 0) {
-            struct outcome total = crew->part[0];
-            for (int t = 1; t < crew->barrier.size; t++) { // in any order the same
-                total.n_broken += crew->part[t].n_broken;
-                add_pace(&total, crew->part[t].pace);
+            struct outcome total = team->part[0];
+            for (int t = 1; t < team->barrier.size; t++) { // in any order the same
+                total.n_broken += team->part[t].n_broken;
+                merge_max_speed(&total, team->part[t].max_speed);
             }
-            end_cycle(dem, total, course);
-            if (goes_on(course)) approach_cycle(dem, course);
-            if (goes_on(course) && !course->pairs_are_due) begin_cycle(dem, course);
+            end_cycle(dem, total, control);
+            if (is_running(control)) prepare_cycle(dem, control);
+            if (is_running(control) && !control->pairs_are_due)
+                begin_cycle(dem, control);
         }
-        barrier_wait(&crew->barrier);
-    } while (goes_on(course) && !course->pairs_are_due);
+        barrier_wait(&team->barrier);
+    } while (is_running(control) && !control->pairs_are_due);
 }
 
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
 {
-    struct course course = {.cycles = cycles, .reason = reason};
-    if (goes_on(&course)) approach_cycle(dem, &course);
-    while (goes_on(&course)) {
-        if (course.pairs_are_due) renew_pairs(dem); // by threads of its own
-        begin_cycle(dem, &course);
-        struct crew crew = {.barrier = {.size = dem->n_share},
-                            .part = NEW_ARRAY(struct outcome, dem->n_share)};
-#pragma omp parallel num_threads(dem->n_share)
+    struct run_control control = {.cycles = cycles, .reason = reason};
+    if (is_running(&control)) prepare_cycle(dem, &control);
+    while (is_running(&control)) {
+        if (control.pairs_are_due) renew_pairs(dem); // by threads of its own
+        begin_cycle(dem, &control);
+        struct team team = {.barrier = {.size = dem->n_chunk},
+                            .part = NEW_ARRAY(struct outcome, dem->n_chunk)};
+#pragma omp parallel num_threads(dem->n_chunk)
         {
 #pragma omp single
-            crew.barrier.size = omp_get_num_threads(); // may be fewer than asked for
-            follow(dem, &crew, omp_get_thread_num(), &course);
+            team.barrier.size = omp_get_num_threads(); // may be fewer than asked for
+            run_cycles(dem, &team, omp_get_thread_num(), &control);
         }
-        free(crew.part);
+        free(team.part);
     }
-    return course.status;
+    return control.status;
 }
 
 enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,

@@ -2,17 +2,17 @@
 // Discrete elements [K 4]: spherical grains, in space or in a plane, with linear [K
 // 4.22], timed [G 2] or Hertz-Mindlin [K 4.23] contacts, Coulomb slip [K 4.25-4.26],
 // contact dashpots [K 4.27-4.30], breakable contact and parallel bonds [K 4.31-4.44]
-// and walls that may move, moved by leapfrog [K 4.1-4.6].
+// and walls that may move, integrated by leapfrog [K 4.1-4.6].
 //
-// SI outside. Inside, lengths are counted in mean radii, masses in mean grain masses
-// and stiffnesses in the largest pair stiffness, and every grain is followed by its
-// displacement from where it began, so scenes of equal dimensionless numbers give equal
-// digits and an overlap of 1e-9 radii keeps all of its own. The results are the same
+// SI outside. Inside, lengths are in mean radii, masses in mean grain masses and
+// stiffnesses in the largest pair stiffness, and every grain is followed by its
+// displacement from where it began. So scenes of equal dimensionless numbers give equal
+// digits, and an overlap of 1e-9 radii keeps all of its own. The results are the same
 // bytes for any number of threads, with AVX2 and with AVX-512.
 //
-// Only what the scene needs is computed: without friction and bonds grains neither turn
-// nor keep a history of shear, and with one radius and one material no pair has numbers
-// of its own (pair_kernel.h).
+// Only what the scene needs is computed: without friction and bonds grains do not
+// rotate and keep no shear history, and with one radius and one material all pairs
+// share their coefficients (pair_kernel.h).
 #ifndef CRAQUELURE_DEM_H
 #define CRAQUELURE_DEM_H
 
@@ -31,7 +31,7 @@ enum dem_law {
     DEM_HERTZ   // Hertz-Mindlin [K 4.23], damped to a restitution for any speed
 };
 
-// What grains or walls are made of. Which members count depends on the law.
+// Material of grains or walls. Which members count depends on the law.
 struct dem_material {
     double density; // kg/m3, > 0
     // Linear: N/m of a grain, >= 0; two in series make a contact [K 4.22].
@@ -40,10 +40,10 @@ struct dem_material {
     double friction;      // >= 0; the smaller of two counts [K 4.25]
     double damping_ratio; // linear: zeta of [K 4.28], >= 0
     // Local damping: each component of the net force and moment on a grain is made
-    // smaller by this share of itself while the grain moves its way, and larger while
-    // it moves against it, so that whatever oscillates comes to rest (dashpots do not
-    // see grains that roll on each other). Not physical: for statics. In [0,1). That of
-    // the first material counts for all.
+    // smaller by this share of itself while the grain moves with it, and larger while
+    // it moves against it. So whatever oscillates comes to rest, rolling included,
+    // which dashpots do not see. Not physical: for statics. In [0,1). That of the first
+    // material counts for all.
     double local_damping;
     double contact_time;  // timed: s, > 0; that of the first material counts for all
     double restitution;   // timed, Hertz: in (0,1]; the smaller of two counts
@@ -69,16 +69,16 @@ struct dem_bond_material {
     enum dem_bond_kind kind;
 };
 
-// Liquid bridges between grains [G 2]: one forms where two touch and lasts until it
-// ruptures, for the models at the distance of [G 2]. Walls hold none.
+// Liquid bridges between grains [G 2]: one forms where two grains touch and lasts until
+// it ruptures, with any model at the distance of [G 2]. Walls hold none.
 struct dem_liquid {
     enum bridge_model model; // not BRIDGE_EXACT; BRIDGE_TABLE is as good and takes
                              // seconds to make [bridges/ratios.h]
     double surface_tension;  // N/m, > 0
     double contact_angle;    // rad, in [0,pi)
     double volume;           // m3, > 0: of each bridge [G 4.1], or on each grain
-    bool shared;             // each grain parts its own volume evenly among its bridges
-    bool pulls_in_contact;   // false: only apart [G 4]; true: also in overlap, as at 0
+    bool shared;           // each grain divides its own volume evenly among its bridges
+    bool pulls_in_contact; // false: only apart [G 4]; true: also in overlap, as at 0
 };
 
 enum dem_wall_shape {
@@ -111,8 +111,7 @@ struct dem_wall {
     double servo_largest_speed; // m/s, > 0 with a servo
 };
 
-// What dem_create builds from. Nothing of it is kept: the caller may free it
-// afterwards.
+// Setup of dem_create. It is copied: the caller may free it afterwards.
 struct dem_setup {
     const struct packing *packing; // with the bonds listed in it
     enum dem_law law;
@@ -130,7 +129,7 @@ struct dem_setup {
     int n_wall;
     const struct dem_wall *wall; // (n_wall)
     struct vector gravity;       // m/s2
-    // For statics: every grain is given the inertia of the mean one, so that small ones
+    // For statics: every grain gets the inertia of the mean one, so that small grains
     // do not shorten the time step. Weights stay what they are.
     bool density_scaling;
     // Time step over the critical one of [K 4.47], > 0; NAN: half the stability limit
@@ -143,13 +142,13 @@ struct dem_setup {
     // Grains that overlap at the start, or a plane, cylinder or sphere, do so at rest:
     // only what they come closer pushes (the reference gap of PFC).
     bool unstressed;
-    // Friction carries its share of the whole normal force while that pushes, dashpot
-    // included, as in LIGGGHTS; otherwise of the spring's [K 4.25].
+    // Friction is limited by the whole normal force while that pushes, dashpot
+    // included, as in LIGGGHTS; otherwise by that of the spring [K 4.25].
     bool friction_feels_dashpot;
-    // Dashpots do not pull grains that part, or one off a wall: the normal force of a
-    // contact that no bond holds is never below 0 [G 3]. Grains then rebound faster.
+    // Dashpots never pull: the normal force of a contact that no bond holds is never
+    // below 0 [G 3]. Grains then rebound faster.
     bool no_tensile_damping;
-    bool balance_energy; // keep the books that dem_energy reports
+    bool balance_energy; // keep the ledger that dem_energy reports
     int threads;         // >= 1; used where there is enough to share
 };
 
@@ -162,7 +161,7 @@ struct dem_crack {
     struct vector position; // m, the contact point
 };
 
-// A pair that touches, is bonded or holds a liquid bridge, as it was in the last cycle.
+// A pair that touches, is bonded or has a liquid bridge, as it was in the last cycle.
 struct dem_contact {
     int32_t particle[2]; // lower first; the second is -1-w for wall w
     int32_t bond;        // the intact bond between them, or -1
@@ -175,7 +174,7 @@ struct dem_contact {
     double bridge_force;    // N, > 0 when it pulls; part of FORCE
 };
 
-// kinetic + elastic + what was lost = what it began with + what was put in.
+// Energies, J. Balance: kinetic + elastic + lost = initial + gained.
 struct dem_energy {
     double kinetic; // J, translation and rotation
     double elastic; // J, contacts and bonds
@@ -217,23 +216,23 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
 // Takes all motion from the grains that WHICH (n_particle) marks.
 void dem_stop(struct dem *dem, const bool *which);
 
-// From the next cycle on.
+// These count from the next cycle on.
 void dem_set_gravity(struct dem *dem, struct vector gravity);
 void dem_set_wall_motion(struct dem *dem, int wall, struct vector velocity,
                          struct vector spin);
 void dem_set_servo(struct dem *dem, int wall, double force); // N; 0 stops it
-// Of material 0 and so of all grains, when pairs have no numbers of their own.
+// Friction of material 0, and so of all grains when pairs share their coefficients.
 void dem_set_friction(struct dem *dem, double friction);
 void dem_set_local_damping(struct dem *dem, double share);
 
-// The box with all centres, stretched along x, y and z about its lower corner, and all
-// radii by GROWTH; densities stay. Velocities and shear forces stay as they are. Only
-// without bonds and liquid. O(pairs).
+// Stretches the box with all centres along x, y and z about its lower corner, and
+// scales all radii by GROWTH; densities stay. Velocities and shear forces stay as they
+// are. Only without bonds and liquid. O(pairs).
 void dem_rescale(struct dem *dem, const double stretch[3], double growth);
 
-// CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would move
-// a tenth of the mean radius in one step, or a number is not finite); what is asked for
-// later is finite but means nothing.
+// Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
+// move a tenth of the mean radius in one step, or a number is not finite); what is
+// asked for later is finite but has no meaning.
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason);
 
 // Runs until dem_unbalanced_ratio is below TOLERANCE, which is looked at every 16
@@ -243,14 +242,15 @@ enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,
 
 int64_t dem_cycle(const struct dem *dem);    // cycles completed
 double dem_time_step(const struct dem *dem); // s
-// s, stable below, for the pairs near each other at the start (stability.c). Grains
-// that gather more neighbours later may need less: dem_time_step_limit_now looks at
-// those of the moment, in O(pairs).
+// Stability limit of the step, s, for the pairs near each other at the start
+// (stability.c). Grains that gather more neighbours later may need less:
+// dem_time_step_limit_now looks at the pairs of the moment, in O(pairs).
 double dem_time_step_limit(const struct dem *dem);
 double dem_time_step_limit_now(const struct dem *dem);
 
-// Mean |F_i| over the grains that are not fixed, over mean |F_ij| over the contacts
-// [K 4.20]; 0 when nothing pulls, infinite when nothing resists. O(pairs).
+// Unbalanced ratio [K 4.20]: mean |F_i| over the grains that are not fixed, over mean
+// |F_ij| over the contacts; 0 when no net force acts, infinite when no contact carries
+// any. O(pairs).
 double dem_unbalanced_ratio(const struct dem *dem);
 struct dem_energy dem_energy(const struct dem *dem);
 
@@ -261,12 +261,13 @@ struct dem_bridge {
     double separation;   // m, < 0 in overlap
     double force;        // N, > 0 when it pulls
 };
-// All, by first, then second grain; a new array of *COUNT that the caller frees.
+// All bridges, by first, then second grain; a new array of *COUNT that the caller
+// frees.
 struct dem_bridge *dem_bridges(const struct dem *dem, int *count);
 struct dem_momentum dem_momentum(const struct dem *dem);
 
-// How grains touch each other, in the last cycle, and the stress that they and walls
-// put on each other. O(pairs).
+// Contacts in the last cycle, and the stress that grains and walls put on each other.
+// O(pairs).
 struct dem_census {
     int contacts;                         // touching or bonded
     double mean_overlap, largest_overlap; // over the mean radius
@@ -275,8 +276,8 @@ struct dem_census {
 };
 struct dem_census dem_census(const struct dem *dem);
 
-// What the grains do to a wall: force and moment about its POINT, as of the last cycle;
-// how far its POINT has moved, m.
+// Load of the grains on a wall in the last cycle: force and moment about its POINT; and
+// the displacement of its POINT, m.
 struct dem_wall_state {
     struct vector force, moment, displacement;
 };

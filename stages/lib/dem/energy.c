@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy, its books, and momentum, in SI. Energies are of the moment of the last force
-// evaluation, momenta of the half step before, like velocities.
+// Energy, the ledger of what was gained and lost, and momentum, in SI.
+//
+// Kinetic: 1/2 m v^2 + 1/2 I omega^2, with I = 2/5 m R^2 and velocities brought to the
+// time of the forces (half a step back), as leapfrog has them half a step ahead.
+// Elastic, of a contact with overlap U, shear force F^s and the bond's F^n, F^s, M^n,
+// M^s:
+//     linear 1/2 k_n U^2, Hertz 2/5 k_n U^(5/2), and F^s.F^s / (2 k_s);
+//     bond   1/2 k^n A stretch^2 + F^s.F^s / (2 k^s A) + M^s.M^s / (2 k^n I)
+//            + (M^n)^2 / (2 k^s J).
+// Ledger: pairs book their losses by pair (pair_contact.h), grains theirs in
+// grain_ledger; what belongs to pairs that are gone is in energy_ledger. Momentum is of
+// the half step before, like velocities.
 #include "dem/engine.h"
 
 #include <math.h>
 
-// The motion at the moment of the forces: half a step back from the last.
+// Velocities at the time of the forces: half a step back.
 static struct motion motion_with_forces(const struct dem *dem, int particle)
 {
     struct motion now = dem->motion[particle];
@@ -24,7 +34,7 @@ static double inertia(const struct dem *dem, int particle) // of a ball: Theta [
     return 0.4 * dem->mass[particle] * radius * radius;
 }
 
-// SQUARE / (2 STIFFNESS), the energy of a spring from its force squared.
+// Energy of a spring from the SQUARE of its force.
 static double spring_energy(double square, double stiffness)
 {
     return stiffness > 0 ? 0.5 * square / stiffness : 0;
@@ -50,10 +60,10 @@ static double bond_energy(const struct dem *dem, int pair, double stretch)
 static double pair_energy(const struct dem *dem, int pair)
 {
     const struct contact_law law = law_of_pair(dem, pair);
-    const struct pair_geometry lie = pair_geometry(dem, pair, places_ahead(dem));
-    const bool held = is_held(dem, pair);
-    const bool pulls = held && dem->features & FEATURE_CONTACT_BOND;
-    const double overlap = pulls ? lie.overlap : fmax(lie.overlap, 0);
+    const struct pair_geometry geometry = pair_geometry(dem, pair, places_ahead(dem));
+    const bool bonded = is_bonded(dem, pair);
+    const bool pulls = bonded && dem->features & FEATURE_CONTACT_BOND;
+    const double overlap = pulls ? geometry.overlap : fmax(geometry.overlap, 0);
     const bool hertz = dem->features & FEATURE_HERTZ;
     const double root = hertz ? sqrt(overlap) : 1;
     double energy =
@@ -63,36 +73,36 @@ static double pair_energy(const struct dem *dem, int pair)
             dem->pairs.shear[pair / PAIRS_IN_GROUP].force, pair % PAIRS_IN_GROUP);
         energy += spring_energy(dot(shear, shear), law.shear_stiffness * root);
     }
-    if (held && !pulls) energy += bond_energy(dem, pair, lie.stretch);
+    if (bonded && !pulls) energy += bond_energy(dem, pair, geometry.stretch);
     return energy;
 }
 
-static struct dem_energy energy_in_books(const struct dem *dem)
+static struct dem_energy ledger_totals(const struct dem *dem)
 {
-    struct dem_energy books = dem->books;
+    struct dem_energy ledger = dem->energy_ledger;
     for (int p = 0; dem->pairs.loss && p < dem->pairs.n_pair; p++) {
         const struct loss_group *loss = &dem->pairs.loss[p / PAIRS_IN_GROUP];
-        books.dashpots += loss->dashpots[p % PAIRS_IN_GROUP];
-        books.slip += loss->slip[p % PAIRS_IN_GROUP];
-        books.broken += loss->broken[p % PAIRS_IN_GROUP];
-        books.bridges += loss->bridges[p % PAIRS_IN_GROUP];
+        ledger.dashpots += loss->dashpots[p % PAIRS_IN_GROUP];
+        ledger.slip += loss->slip[p % PAIRS_IN_GROUP];
+        ledger.broken += loss->broken[p % PAIRS_IN_GROUP];
+        ledger.bridges += loss->bridges[p % PAIRS_IN_GROUP];
     }
-    for (int i = 0; dem->grain_books && i < dem->n_particle; i++) {
-        // The places are a step ahead of the other energies.
+    for (int i = 0; dem->grain_ledger && i < dem->n_particle; i++) {
+        // Displacements are one step ahead of the other energies.
         const double ahead =
             dem->mobility[i][0] > 0
                 ? places_ahead(dem) * dem->time_step *
                       dot(as_vector(dem->external[i]), as_vector(dem->motion[i].linear))
                 : 0;
-        books.gained += dem->grain_books[i][0] - ahead;
-        books.local_damping += dem->grain_books[i][1];
+        ledger.gained += dem->grain_ledger[i][0] - ahead;
+        ledger.local_damping += dem->grain_ledger[i][1];
     }
-    return books;
+    return ledger;
 }
 
 struct dem_energy dem_energy(const struct dem *dem)
 {
-    struct dem_energy energy = energy_in_books(dem);
+    struct dem_energy energy = ledger_totals(dem);
     for (int i = 0; i < dem->n_particle; i++) {
         const struct motion now = motion_with_forces(dem, i);
         const struct vector v = as_vector(now.linear), w = as_vector(now.angular);

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is inside struct dem; for the files of this folder only. All in scaled units.
+// What is inside struct dem; for the files of this folder only. All in scaled units
+// (dem.h).
 //
 // A cycle sweeps pairs and grains together. The pair sweep (pair_kernel.h) reads the
-// records of both grains, advances the history of the pair and adds what each of the
-// two feels to the sum of that grain, pair after pair in the order of the list. As
-// pairs are sorted by their first grain, no pair after those of grain g has to do with
-// g any more: the grain sweep (grains.c) follows close behind, moves each grain by its
-// sum and clears that, while everything is still in the cache.
+// records of both grains, advances the history of the pair and adds the load to the
+// sums of both grains, pair after pair in the order of the list. Pairs are sorted by
+// their first grain, so after those of grain g no pair involves g any more. So the
+// grain sweep (grains.c) follows close behind: it moves each grain by its sum and
+// clears that, while everything is still in the cache.
 //
-// Each thread does so with its share of the groups. Grains that another thread's pairs
-// have to do with too are late: each of their pairs has a row of its own, and when all
-// threads are done their sums are made of those, in the same order. So the order of
-// every sum is fixed, whoever makes it.
+// Each thread does so with its chunk of the groups. A grain with pairs in the chunks of
+// several threads is shared (a boundary row of the sum): each of its pairs has a row of
+// its own, and when all threads are done its sum is made of those rows, in the order of
+// pairs. So the order of every sum is fixed, for any number of threads.
 //
-// Grains of large scenes are numbered along a space-filling curve (order.c), so that
-// the partners of a grain are near it in memory too. `identity` tells their names.
+// Grains of large scenes are numbered along a space-filling curve
+// (space_filling_order.c), so that the partners of a grain are near it in memory. `id`
+// is their index in the packing, `index` the inverse.
 #ifndef CRAQUELURE_DEM_ENGINE_H
 #define CRAQUELURE_DEM_ENGINE_H
 
@@ -28,24 +30,24 @@
 // the start, later tuned to how fast grains move (neighbours.c).
 #define FIRST_SKIN 0.2
 // No grain may move further than this (in mean radii) in one time step.
-#define FURTHEST_STEP 0.1
-// Of the stability limit, what a time step is that nobody chose.
+#define MAX_STEP 0.1
+// Share of the stability limit that an automatic time step is.
 #define AUTOMATIC_SHARE 0.5
 // Fewer pairs are left to one thread: starting others would cost more.
-enum { LEAST_TO_SHARE = 5000 };
+enum { MIN_PARALLEL_PAIRS = 5000 };
 
 // What a scene needs; the bits choose a compiled pair sweep.
 enum feature {
-    FEATURE_TURN = 1,  // grains turn and contacts have a history of shear
-    FEATURE_HERTZ = 2, // stiffness grows with the overlap
-    FEATURE_OWN = 4,   // pairs differ in stiffness, damping or friction
+    FEATURE_ROTATION = 1,  // grains turn and contacts have a history of shear
+    FEATURE_HERTZ = 2,     // stiffness grows with the overlap
+    FEATURE_PAIR_LAWS = 4, // pairs differ in stiffness, damping or friction
     FEATURE_CONTACT_BOND = 8,
     FEATURE_PARALLEL_BOND = 16,
     FEATURE_BOND = FEATURE_CONTACT_BOND | FEATURE_PARALLEL_BOND
 };
 enum { FEATURE_SETS = 32 };
 
-// Where a grain is: its displacement from where it began, and its radius as the fourth.
+// Place of a grain: its displacement from where it began; the radius fills the record.
 struct place {
     _Alignas(32) double displacement[3];
     double radius;
@@ -64,13 +66,13 @@ struct material {
     double young_modulus, poisson_ratio;                     // Hertz
 };
 
-// The liquid of a wet scene, and what holds for all of it.
+// The liquid of a wet scene, and what holds for all bridges.
 struct liquid {
     struct dem_liquid is;        // scaled
     struct bridge_ratios *table; // of BRIDGE_TABLE
-    double reach;                // the longest gap that any bridge can have
-    // (n_particle) bridges of each grain, at the end of the last cycle and as they come
-    // and go in this one; whether the two differ.
+    double cutoff;               // the longest gap that any bridge can have
+    // (n_particle) number of bridges of each grain, at the end of the last cycle and as
+    // they come and go in this one; whether the two differ.
     int32_t *bridges, *next;
     int changed;
 };
@@ -98,7 +100,7 @@ struct units {
     double length, mass, stiffness, time;
 };
 
-// The sweep over groups BEGIN..END-1; how many bonds broke.
+// The pair sweep over groups BEGIN..END-1; returns how many bonds broke.
 typedef int pair_sweep(const struct dem *dem, int begin, int end);
 // The sets of features that can occur: bonds always turn, contact bonds are linear.
 #define EACH_SET(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(9) DO(13)
@@ -119,10 +121,11 @@ struct dem {
     double *pair_friction;     // (n_material^2)
     double *pair_restitution;
     double contact_time;
-    struct contact_law law;       // of every pair, unless FEATURE_OWN
+    struct contact_law law;       // of every pair, unless FEATURE_PAIR_LAWS
     double bond_normal_stiffness; // per area
     double bond_shear_stiffness;
-    double bond_moments; // share of moments that stresses of parallel bonds count
+    double
+        moment_contribution; // share of moments that stresses of parallel bonds count
     enum dem_bond_kind bond_kind;
     double local_damping;
     bool no_tensile_damping;
@@ -135,17 +138,17 @@ struct dem {
     pair_sweep *sweep;
 
     int n_particle;
-    int32_t *identity;      // (n_particle) number in the packing
-    int32_t *number;        // (n_particle) the inverse
+    int32_t *id;            // (n_particle) index in the packing
+    int32_t *index;         // (n_particle) the inverse
     struct vector *start;   // (n_particle) where each began
     struct place *place;    // (n_particle+1), the last is the grain that is not there
     struct motion *motion;  // (n_particle+1) half a step behind the places
     double (*external)[4];  // (n_particle) force, weight included
-    bool is_pulled;         // by any of them
+    bool has_external;      // some external force is not 0
     struct vector *applied; // (n_particle) without weight; NULL: none
     struct vector gravity;
     double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed
-    bool moves_alike;      // they are all the same
+    bool equal_mobility;   // all mobilities are the same
     double *mass;          // (n_particle) inertia
     double *weight;        // (n_particle) mass that gravity pulls
     uint8_t *material_of;  // (n_particle)
@@ -163,8 +166,9 @@ struct dem {
     double *bond_strength[2];    // (n_bond) by enum dem_crack_mode; -1 once broken
 
     struct pair_list pairs;
-    struct resting *resting; // what is left out of them for now; NULL: nothing
-    double least_gap;      // of two grains that may rest; tuned, never seen in results
+    struct inactive_pairs *inactive; // what is not swept for now; NULL: nothing
+    double
+        min_inactive_gap;  // of two grains that may rest; tuned, never seen in results
     struct liquid *liquid; // NULL: dry
     int n_wall;
     struct rigid_wall *wall;
@@ -175,13 +179,13 @@ struct dem {
     int32_t *pair_of;            // (2 n_pair) the pairs of each grain, in their order
     int *first_group;            // (n_particle) with a pair of the grain
     int *last_group;             // (n_particle) with a pair whose first is <= the grain
-    int n_share;                 // of the groups, for as many threads
-    uint8_t *is_late;            // (n_particle)
-    int n_late;
-    int32_t *late;     // (n_late)
-    int32_t *late_row; // (n_late+1) of `sum`, the first of each
-    // Rows of 4 or, if grains turn, 8: force and moment; 0 between cycles. One for each
-    // grain and for the one that is not there, then one for each pair of a late grain.
+    int n_chunk;                 // of the groups, for as many threads
+    uint8_t *is_shared;          // (n_particle)
+    int n_shared;
+    int32_t *shared_grain; // (n_shared)
+    int32_t *first_row;    // (n_shared+1) of `sum`, the first of each
+    // Rows of 4 or, if grains turn, 8 doubles: force and moment; 0 between cycles. One
+    // for each grain and for the dummy, then one for each pair of a shared grain.
     double *sum;
     bool keeps_loads; // of all pairs, in this cycle
 
@@ -194,14 +198,14 @@ struct dem {
     int searches_in_order;          // since grains were last renumbered
 
     bool balance_energy;
-    struct dem_energy books;  // the parts that only grow, of pairs that are gone
-    double (*grain_books)[2]; // (n_particle) gained, lost to local damping
+    struct dem_energy energy_ledger; // the parts that only grow, of pairs that are gone
+    double (*grain_ledger)[2];       // (n_particle) gained, lost to local damping
 
     int n_crack, crack_capacity;
     struct dem_crack *crack;
 };
 
-// Nothing in the setup that cannot be [check_setup.c].
+// Refuses a setup that cannot be [check_setup.c].
 enum status check_setup(const struct dem_setup *setup, struct reason *reason);
 
 // Material KIND of the setup, 0 the first.
@@ -216,60 +220,63 @@ static inline bool has_direction(enum dem_wall_shape shape)
     return shape == DEM_PLANE || shape == DEM_CYLINDER || shape == DEM_RING;
 }
 
-// Seeks the pairs anew, with the history of those that stay [neighbours.c].
+// Finds the pairs; those that were there keep their history [neighbours.c].
 void find_pairs(struct dem *dem);
-// Makes these the pairs, sorted, with all that is told from them; takes over both
-// arrays. Those that were there before keep their history [pairs.c].
+// Makes these the pairs, sorted, and all that depends on them; takes over both arrays.
+// Those that were there before keep their history [pairs.c].
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
-// Whether they must be sought, as a grain may have moved further than half the skin.
+// Whether pairs must be found again, as a grain may have moved further than half the
+// skin.
 bool pairs_are_due(struct dem *dem);
 void renew_pairs(struct dem *dem);
-// Makes rows to add up in for the pairs that are swept [sums.c].
+// Lays out the rows of `sum` for the pairs that are swept [sums.c].
 void arrange_sums(struct dem *dem);
-// Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them in again
-// before they can, and for the last cycle [resting.c].
-void rest_or_wake(struct dem *dem, int64_t left, bool begins);
-void wake_pairs(struct dem *dem);
-// Adds the losses of all pairs to the books and clears them.
-void close_pair_books(struct dem *dem);
-// Empty lists of N_PAIR pairs, with what the scene needs; takes over both arrays.
+// Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them back
+// before they can, and for the last cycle; BEGINS at the start of a run
+// [inactive_pairs.c].
+void update_inactive_pairs(struct dem *dem, int64_t left, bool begins);
+void reactivate_pairs(struct dem *dem);
+// Adds the losses of all pairs to the energy ledger and clears them.
+void close_pair_ledger(struct dem *dem);
+// Allocates lists of N_PAIR pairs, with what the scene needs; takes over both arrays.
 void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
-// Sets how the pair in lane LANE of GROUP lies as of where its grains began.
+// Sets separation, distance and overlap of the pair in lane LANE of GROUP, as of where
+// its grains began.
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);
-// Makes lane PAIR one that holds no pair.
-void set_nobody(struct dem *dem, int pair);
-// Sets the numbers of its own of pair PAIR.
+// Makes lane PAIR a pair of the dummy grain, which does nothing.
+void set_dummy_pair(struct dem *dem, int pair);
+// Sets the coefficients of pair PAIR where pairs differ.
 void set_pair_law(struct dem *dem, int pair);
 
-// Numbers the grains along a curve, pairs and bonds too [order.c].
+// Numbers grains along a curve, and pairs and bonds with them [space_filling_order.c].
 void renumber_grains(struct dem *dem);
-// Numbers them so that number k is grain IDENTITY[k] of the packing, each once; what
-// pairs point to is left to whoever makes them anew.
-void number_grains(struct dem *dem, const int32_t *identity);
+// Gives grains the order in which grain k is ID[k] of the packing, each once. What
+// pairs point to is left to whoever makes them again.
+void set_grain_order(struct dem *dem, const int32_t *id);
 
-// What two grains, or a grain and a wall (-1: rigid), do to each other [materials.c].
+// Coefficients of the contact of two grains, or of a grain and a wall [materials.c].
 struct contact_law pair_law(const struct dem *dem, int i, int j);
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall);
-// Masses, mobilities and the common law, from radii and materials; FIXED as in the
-// setup, by number, or NULL to keep those that are fixed.
-void weigh_grains(struct dem *dem, const uint8_t *fixed);
-// External forces from what is applied and gravity.
+// Sets masses, mobilities and the common law from radii and materials. FIXED is as in
+// the setup, by index in the packing; NULL keeps those that are fixed.
+void set_masses(struct dem *dem, const uint8_t *fixed);
+// Sets external forces from what is applied and gravity.
 void set_external(struct dem *dem);
-void compare_mobilities(struct dem *dem); // sets moves_alike
+void set_equal_mobility(struct dem *dem); // sets equal_mobility
 
 // Liquid bridges [liquid.c]; all but the first two only in wet scenes.
-double bridge_reach(const struct dem *dem); // 0 in dry ones
-void free_liquid(struct liquid *liquid);    // or NULL
+double bridge_cutoff(const struct dem *dem); // 0 in dry ones
+void free_liquid(struct liquid *liquid);     // or NULL
 // Scales LIQUID; before pairs are sought.
 enum status take_liquid(struct dem *dem, const struct dem_liquid *liquid,
                         struct reason *reason);
 void set_bridge_radius(const struct dem *dem, int pair);
 void form_bridges(struct dem *dem);  // where grains touch as they lie
 void count_bridges(struct dem *dem); // of each grain, from the pairs
-// Makes, keeps and ruptures the bridges of groups BEGIN..END-1 and finds how they pull;
+// Forms, keeps and ruptures the bridges of groups BEGIN..END-1 and finds how they pull;
 // before the pair sweep.
-void wet_groups(const struct dem *dem, int begin, int end);
-void settle_bridges(struct dem *dem); // at the end of a cycle
+void update_bridges(const struct dem *dem, int begin, int end);
+void publish_bridge_counts(struct dem *dem); // at the end of a cycle
 struct dem_bridge bridge_of_pair(const struct dem *dem, int pair); // no volume: none
 
 // Walls [walls.c].
@@ -277,10 +284,10 @@ void find_wall_pairs(struct dem *dem);
 void list_walls_of_grains(struct dem *dem); // sets wall_offset
 void sweep_walls(struct dem *dem);
 void move_walls(struct dem *dem);
-// How far any wall has moved since the pairs were sought: as with grains, not more than
-// half the skin.
+// How far any wall has moved since pairs were found: as with grains, at most half the
+// skin.
 double wall_travel(const struct dem *dem);
-// Gives the wall pairs the numbers of their contacts anew.
+// Sets the coefficients of wall pairs again.
 void set_wall_laws(struct dem *dem);
 // Elastic energy as of the last force.
 double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair);
@@ -296,20 +303,20 @@ struct wall_geometry {
 };
 struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back);
 
-// The largest square of a speed, that of a largest grain's surface from turning
-// included; SOUND is false when a grain, or its surface, would have moved too far to be
-// true, which then stays where it was.
-struct pace {
-    double largest;
-    bool sound;
+// The largest squared speed, or an upper bound with that of a largest grain's surface
+// from rotation included. VALID is false when a grain, or its surface, would have moved
+// too far to be true; such a grain stayed where it was.
+struct max_speed {
+    double square;
+    bool valid;
 };
 
-// Moves the grains BEGIN..END-1 except for those that are late, and of those the ones
-// that are listed there [grains.c].
-struct pace move_grains(struct dem *dem, int begin, int end);
-struct pace move_late_grains(struct dem *dem, int begin, int end);
+// Moves the grains BEGIN..END-1 that are not shared, or entries BEGIN..END-1 of the
+// list of shared ones [grains.c].
+struct max_speed move_grains(struct dem *dem, int begin, int end);
+struct max_speed move_shared_grains(struct dem *dem, int begin, int end);
 
-// Force and moment on a grain in the last cycle, from outside too, if loads were kept.
+// Force and moment on a grain in the last cycle, external ones too, if loads were kept.
 struct motion load_on_grain(const struct dem *dem, int particle);
 
 // The largest stable time step [stability.c]: of all pairs in the list, or if NOW only
@@ -317,12 +324,12 @@ struct motion load_on_grain(const struct dem *dem, int particle);
 double stability_limit(const struct dem *dem, bool now);
 // AUTOMATIC_SHARE of it, or of that of two equal grains that meet, if that is less.
 double automatic_time_step(const struct dem *dem);
-// An automatic step that is too long for the pairs that have been found.
+// Shortens an automatic step that is too long for the pairs that have been found.
 void shorten_time_step(struct dem *dem);
 
-static inline int groups_in_share(const struct dem *dem)
+static inline int groups_in_chunk(const struct dem *dem)
 {
-    return (dem->pairs.n_group + dem->n_share - 1) / dem->n_share;
+    return (dem->pairs.n_group + dem->n_chunk - 1) / dem->n_chunk;
 }
 
 static inline struct vector as_vector(const double a[3])
@@ -341,10 +348,11 @@ static inline double places_ahead(const struct dem *dem)
     return dem->cycle > 0 ? 1 : 0;
 }
 
-// The numbers of pair PAIR, its own or those of all.
+// Coefficients of pair PAIR, its own or those of all.
 struct contact_law law_of_pair(const struct dem *dem, int pair);
 
-// An overlap at the start, as it counts; one of the rounding of coordinates is none.
+// An overlap at the start, as it counts: one within the rounding of coordinates is
+// none.
 static inline double given_overlap(const struct dem *dem, double overlap)
 {
     if (dem->unstressed && overlap > 0) return 0;
@@ -357,7 +365,7 @@ static inline int bond_of_pair(const struct dem *dem, int pair)
     return dem->pairs.bond ? dem->pairs.bond[pair] : -1;
 }
 
-static inline bool is_held(const struct dem *dem, int pair)
+static inline bool is_bonded(const struct dem *dem, int pair)
 {
     return dem->pairs.bonds && dem->pairs.bonds[pair / PAIRS_IN_GROUP]
                                        .normal_strength[pair % PAIRS_IN_GROUP] >= 0;
@@ -370,7 +378,7 @@ static inline bool is_bridged(const struct dem *dem, int pair)
            dem->pairs.liquid[pair / PAIRS_IN_GROUP].volume[pair % PAIRS_IN_GROUP] > 0;
 }
 
-// How pair P lies when its grains are at BACK time steps before now.
+// Geometry of pair P when its grains are at BACK time steps before now.
 struct pair_geometry {
     struct vector normal;
     double stretch; // distance less the distance at the start

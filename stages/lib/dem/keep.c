@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The state of the engine and of its stage, given to a keeper (checkpoint/keeper.h).
 #include "dem/keep.h"
 
 void keep_state(const struct keeper *keeper, const struct dem *dem,

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a long run of the discrete elements keeps its state on the way.
+// How a long run of discrete elements keeps its state at intervals.
 #ifndef CRAQUELURE_DEM_KEEP_H
 #define CRAQUELURE_DEM_KEEP_H
 
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
 
-// Gives KEEPER, whose time it is, the state of DEM and STAGE, which it frees.
+// Gives KEEPER, whose time it is, the state of DEM and of the stage. Frees STAGE.
 void keep_state(const struct keeper *keeper, const struct dem *dem,
                 struct array_list stage);
 
-// Cycles that may pass between two questions: some tenths of a second's work. Where a
-// run is cut makes no difference to it.
+// Cycles between two looks at the keeper's clock: some tenths of a second of work.
+// Where a run is cut makes no difference to its results.
 int64_t cycles_between_questions(int n_particle);
 
 #endif

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liquid bridges between grains [G 2]: made where two touch, kept until they rupture.
-// Before the pair sweep comes to a group, how its bridges pull is found here, many at
-// once; the sweep takes that off the normal force.
+// Liquid bridges between grains [G 2]: they form where two grains touch and last until
+// they rupture [G 4]. With r = 2 / (1/a + 1/b) the effective radius of radii a and b,
+//     volume = V / r^3,  gap = (d - a - b) / r,  pull = gamma r f(volume, gap),
+// where f is the chosen model or table (bridges/). Before the pair sweep comes to a
+// group, update_bridges finds `pull` of its pairs, many at once; the sweep subtracts it
+// from the normal force. `gap` has the digits of the overlap (pair_kinematics.h): it is
+// found from displacements, not from a difference of distances.
 //
-// Who shares liquid with how many is taken as of the end of the cycle before, so that
-// the order in which bridges come and go, and with it the number of threads, does not
-// matter.
+// The grains among which liquid is shared are counted as of the end of the cycle
+// before. So the order in which bridges come and go, and with it the number of threads,
+// does not matter.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -16,22 +20,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Groups at once: few enough for what they touch to stay cached.
+// Pairs at once: few enough for their data to stay in the cache.
 enum { BATCH = 32 * PAIRS_IN_GROUP };
 
-// Bridges that pull; lengths in effective radii [G 1].
+// Bridges that pull in this batch; lengths in effective radii [G 1].
 struct pulling {
     int count;
     int pair[BATCH];
     double asymmetry[BATCH], volume[BATCH], gap[BATCH], force[BATCH];
 };
 
-double bridge_reach(const struct dem *dem)
+double bridge_cutoff(const struct dem *dem)
 {
-    return dem->liquid ? dem->liquid->reach : 0;
+    return dem->liquid ? dem->liquid->cutoff : 0;
 }
 
-// In effective radii [G 2]; of the table, where the exact bridge ruptures.
+// Rupture gap in effective radii [G 2]; with the table, where the exact bridge
+// ruptures.
 static double rupture_gap(const struct liquid *liquid, double asymmetry, double volume)
 {
     if (liquid->table) return bridge_ratios_rupture(liquid->table, asymmetry, volume);
@@ -40,7 +45,7 @@ static double rupture_gap(const struct liquid *liquid, double asymmetry, double 
     return bridge_rupture_distance(&bridge);
 }
 
-// What grain I gives to each of its bridges; all of it to the first.
+// Volume that grain I gives to each of its bridges; all of it if it has none yet.
 static double share_of(const struct liquid *liquid, int i)
 {
     const int bridges = liquid->bridges[i];
@@ -75,12 +80,11 @@ static void count_bridge(struct liquid *liquid, int i, int j, int by)
     liquid->changed = 1;
 }
 
-// How far the surfaces are apart in effective radii, with the digits of the overlap
-// (pair_meet.h). Without branches: the compiler makes vectors of it.
+// Gaps in effective radii. Without branches, so that the compiler vectorises it.
 static void gaps_of(const struct dem *dem, const struct pair_group *group,
                     const struct liquid_group *liquid, double gap[PAIRS_IN_GROUP])
 {
-    double square[PAIRS_IN_GROUP] = {0}, grown[PAIRS_IN_GROUP] = {0};
+    double square[PAIRS_IN_GROUP] = {0}, square_change[PAIRS_IN_GROUP] = {0};
     for (int axis = 0; axis < 3; axis++)
         for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
             const double start = group->separation[axis][lane];
@@ -89,32 +93,32 @@ static void gaps_of(const struct dem *dem, const struct pair_group *group,
                 dem->place[first_grain(group, lane)].displacement[axis];
             const double now = start + apart;
             square[lane] += now * now;
-            grown[lane] += apart * (start + now);
+            square_change[lane] += apart * (start + now);
         }
     for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
         const double sum = sqrt(square[lane]) + group->distance[lane];
-        gap[lane] =
-            (grown[lane] - group->overlap[lane] * sum) / (sum * liquid->radius[lane]);
+        gap[lane] = (square_change[lane] - group->overlap[lane] * sum) /
+                    (sum * liquid->radius[lane]);
     }
 }
 
-// Makes, keeps or ruptures the bridge in lane LANE of group K, at GAP; lists it if it
-// pulls.
-static void keep_bridge(const struct dem *dem, int k, int lane, double gap,
-                        struct pulling *pulling)
+// Forms, keeps or ruptures the bridge in lane LANE of group K, at GAP; adds it to
+// PULLING if it pulls.
+static void update_bridge(const struct dem *dem, int k, int lane, double gap,
+                          struct pulling *pulling)
 {
     struct liquid_group *liquid = &dem->pairs.liquid[k];
     const struct dem_liquid *is = &dem->liquid->is;
     const int i = first_grain(&dem->pairs.group[k], lane);
     const int j = second_grain(&dem->pairs.group[k], lane);
-    const bool were = liquid->volume[lane] > 0;
-    const bool are = gap <= 0 || (were && gap <= liquid->rupture[lane]);
-    if (are != were) count_bridge(dem->liquid, i, j, are - were);
-    if (!are)
+    const bool existed = liquid->volume[lane] > 0;
+    const bool exists = gap <= 0 || (existed && gap <= liquid->rupture[lane]);
+    if (exists != existed) count_bridge(dem->liquid, i, j, exists - existed);
+    if (!exists)
         liquid->volume[lane] = 0;
-    else if (!were || is->shared)
+    else if (!existed || is->shared)
         set_volume(dem, liquid, lane, i, j);
-    if (!are || (gap <= 0 && !is->pulls_in_contact)) return;
+    if (!exists || (gap <= 0 && !is->pulls_in_contact)) return;
     pulling->pair[pulling->count] = k * PAIRS_IN_GROUP + lane;
     pulling->asymmetry[pulling->count] = liquid->asymmetry[lane];
     pulling->volume[pulling->count] = liquid->volume[lane];
@@ -131,7 +135,7 @@ static void find_forces(const struct liquid *liquid, struct pulling *pulling)
                             pulling->volume, pulling->gap, pulling->force);
 }
 
-static void wet_batch(const struct dem *dem, int begin, int end)
+static void update_bridge_batch(const struct dem *dem, int begin, int end)
 {
     struct pulling pulling;
     pulling.count = 0;
@@ -140,7 +144,7 @@ static void wet_batch(const struct dem *dem, int begin, int end)
         gaps_of(dem, &dem->pairs.group[k], &dem->pairs.liquid[k], gap);
         memset(dem->pairs.liquid[k].pull, 0, sizeof dem->pairs.liquid[k].pull);
         for (int lane = 0; lane < PAIRS_IN_GROUP; lane++)
-            keep_bridge(dem, k, lane, gap[lane], &pulling);
+            update_bridge(dem, k, lane, gap[lane], &pulling);
     }
     find_forces(dem->liquid, &pulling);
     for (int k = 0; k < pulling.count; k++) {
@@ -151,14 +155,14 @@ static void wet_batch(const struct dem *dem, int begin, int end)
     }
 }
 
-void wet_groups(const struct dem *dem, int begin, int end)
+void update_bridges(const struct dem *dem, int begin, int end)
 {
     const int step = BATCH / PAIRS_IN_GROUP;
     for (int k = begin; k < end; k += step)
-        wet_batch(dem, k, k + step < end ? k + step : end);
+        update_bridge_batch(dem, k, k + step < end ? k + step : end);
 }
 
-void settle_bridges(struct dem *dem)
+void publish_bridge_counts(struct dem *dem)
 {
     struct liquid *liquid = dem->liquid;
     if (!liquid->changed) return;
@@ -177,7 +181,7 @@ void count_bridges(struct dem *dem)
             count_bridge(liquid, end[0], end[1], 1);
     }
     liquid->changed = 1;
-    settle_bridges(dem);
+    publish_bridge_counts(dem);
 }
 
 void set_bridge_radius(const struct dem *dem, int pair)
@@ -193,14 +197,15 @@ void set_bridge_radius(const struct dem *dem, int pair)
 
 void form_bridges(struct dem *dem)
 {
-    for (int turn = 0; turn < 2; turn++) { // the second with everybody's shares
-        wet_groups(dem, 0, dem->pairs.n_group);
-        settle_bridges(dem);
+    for (int turn = 0; turn < 2; turn++) { // the second pass with known shares
+        update_bridges(dem, 0, dem->pairs.n_group);
+        publish_bridge_counts(dem);
     }
 }
 
-// Of a bridge, and least among grains that all touch as many others as find room about
-// the largest: so many smallest ones at four a square of their radius.
+// Range of radii and of bridge volumes for the table. Shared volume is least where a
+// largest grain touches as many smallest ones as fit around it: about four a square of
+// their radius.
 static struct bridge_sizes sizes_of(const struct dem *dem, const struct liquid *liquid)
 {
     const double small = dem->smallest_radius, large = dem->largest_radius;
@@ -211,21 +216,22 @@ static struct bridge_sizes sizes_of(const struct dem *dem, const struct liquid *
                                   liquid->is.shared ? 2 * volume : volume}};
 }
 
-// The longest gap that a bridge of any two grains can have: equal ones hold it longest
-// for their effective radius, and from the smallest to the largest some are looked at.
+// The longest gap that a bridge of any two grains can have. For an effective radius
+// equal grains hold a bridge longest, so radii from the smallest to the largest are
+// sampled.
 static double longest_gap(const struct dem *dem, const struct liquid *liquid)
 {
     enum { LOOKED_AT = 64 };
-    const double between = 1.001; // those looked at
+    const double between = 1.001; // covers what lies between samples
     const double ratio = dem->largest_radius / dem->smallest_radius;
     const double volume = (liquid->is.shared ? 2 : 1) * liquid->is.volume;
-    double reach = 0;
+    double cutoff = 0;
     for (int k = 0; k <= LOOKED_AT; k++) {
         const double radius = dem->smallest_radius * pow(ratio, k / (double)LOOKED_AT);
         const double gap = rupture_gap(liquid, 0, volume / (radius * radius * radius));
-        reach = fmax(reach, radius * gap);
+        cutoff = fmax(cutoff, radius * gap);
     }
-    return ratio > 1 ? between * reach : reach;
+    return ratio > 1 ? between * cutoff : cutoff;
 }
 
 enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
@@ -244,7 +250,7 @@ enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
             bridge_ratios_create(&sizes, is->contact_angle, &liquid->table, reason);
         if (status) return status;
     }
-    liquid->reach = longest_gap(dem, liquid);
+    liquid->cutoff = longest_gap(dem, liquid);
     return STATUS_OK;
 }
 
@@ -263,8 +269,8 @@ struct dem_bridge bridge_of_pair(const struct dem *dem, int pair)
     const int lane = pair % PAIRS_IN_GROUP;
     const struct liquid_group *group = &dem->pairs.liquid[pair / PAIRS_IN_GROUP];
     const double length = dem->unit.length, radius = group->radius[lane] * length;
-    const int32_t a = dem->identity[dem->pairs.particle[pair][0]];
-    const int32_t b = dem->identity[dem->pairs.particle[pair][1]];
+    const int32_t a = dem->id[dem->pairs.particle[pair][0]];
+    const int32_t b = dem->id[dem->pairs.particle[pair][1]];
     return (struct dem_bridge){
         .particle = {a < b ? a : b, a < b ? b : a},
         .volume = group->volume[lane] * radius * radius * radius,

@@ -1,30 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What two materials make of a contact.
+// What two materials make of a contact, and masses from densities.
+//
+// Each law gives the coefficients of `struct contact_law` for a pair with effective
+// mass m = m_i m_j / (m_i + m_j) and radius R* = R_i R_j / (R_i + R_j); at a wall
+// m and R* are those of the grain. The force at overlap U and relative velocity V is
+// (pairs.h)
+//     F^n = k_n U - c_n V^n  (Hertz: k_n U^1.5 and c_n U^0.25),
+//     F^s from k_s and c_s, at most friction times the normal force.
+// Linear [K 4.22, 4.27-4.30], timed [G 2], Hertz-Mindlin [K 4.23] with Tsuji's damping.
 #include "dem/engine.h"
 
 #include <math.h>
 
-// What meets: materials, effective mass m_ij and radius R_i R_j / (R_i + R_j).
-struct encounter {
+// Two partners: materials, effective mass m_ij and radius R_i R_j / (R_i + R_j).
+struct contact_partners {
     int first, second; // materials; second is -1 for a rigid wall
     double mass, radius;
 };
 
-static int pair_of(const struct dem *dem, const struct encounter *e)
+static int pair_of(const struct dem *dem, const struct contact_partners *e)
 {
     return e->first * dem->n_material + (e->second < 0 ? e->first : e->second);
 }
 
-// Springs in series, exactly half of two equal ones; a rigid wall leaves the grain's
-// own.
+// Two springs in series, exactly half for two equal ones. A rigid wall leaves the
+// grain's.
 static double in_series(double a, double b, bool rigid)
 {
     if (rigid) return a;
     return a == b ? 0.5 * a : a * b / (a + b);
 }
 
-// [K 4.22, 4.27-4.30]; damping ratios count by their mean.
-static struct contact_law linear_law(const struct dem *dem, const struct encounter *e)
+// [K 4.22, 4.27-4.30]: c = 2 zeta sqrt(m k), with the mean of the two damping ratios.
+static struct contact_law linear_law(const struct dem *dem,
+                                     const struct contact_partners *e)
 {
     const bool rigid = e->second < 0;
     const struct material *a = &dem->material[e->first];
@@ -41,7 +50,8 @@ static struct contact_law linear_law(const struct dem *dem, const struct encount
 
 // [G 2]: k_n = m (pi^2 + ln^2 e) / t_c^2, c_n = -2 m ln e / t_c, and 2/7 of each
 // across.
-static struct contact_law timed_law(const struct dem *dem, const struct encounter *e)
+static struct contact_law timed_law(const struct dem *dem,
+                                    const struct contact_partners *e)
 {
     const double logarithm = log(dem->pair_restitution[pair_of(dem, e)]);
     const double t = dem->contact_time;
@@ -67,7 +77,8 @@ static double shear_compliance(const struct material *m)
 
 // k = 4/3 E* sqrt(R*), shear stiffness 8 G* sqrt(R* U), and damping to a restitution
 // that no speed changes (Tsuji 1992; the factor sqrt(5/6) of Antypov & Elliott 2011).
-static struct contact_law hertz_law(const struct dem *dem, const struct encounter *e)
+static struct contact_law hertz_law(const struct dem *dem,
+                                    const struct contact_partners *e)
 {
     const bool rigid = e->second < 0;
     const struct material *a = &dem->material[e->first];
@@ -87,7 +98,8 @@ static struct contact_law hertz_law(const struct dem *dem, const struct encounte
                                 .shear_damping = damping * sqrt(across * e->mass)};
 }
 
-static struct contact_law meet(const struct dem *dem, const struct encounter *e)
+static struct contact_law contact_law_between(const struct dem *dem,
+                                              const struct contact_partners *e)
 {
     struct contact_law law = dem->kind == DEM_HERTZ   ? hertz_law(dem, e)
                              : dem->kind == DEM_TIMED ? timed_law(dem, e)
@@ -100,17 +112,17 @@ struct contact_law pair_law(const struct dem *dem, int i, int j)
 {
     const double mi = dem->mass[i], mj = dem->mass[j];
     const double ri = dem->place[i].radius, rj = dem->place[j].radius;
-    const struct encounter e = {dem->material_of[i], dem->material_of[j],
-                                mi * mj / (mi + mj), ri * rj / (ri + rj)};
-    return meet(dem, &e);
+    const struct contact_partners e = {dem->material_of[i], dem->material_of[j],
+                                       mi * mj / (mi + mj), ri * rj / (ri + rj)};
+    return contact_law_between(dem, &e);
 }
 
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall)
 {
-    const struct encounter e = {dem->material_of[i],
-                                wall->material > 0 ? wall->material : -1, dem->mass[i],
-                                dem->place[i].radius};
-    struct contact_law law = meet(dem, &e);
+    const struct contact_partners e = {dem->material_of[i],
+                                       wall->material > 0 ? wall->material : -1,
+                                       dem->mass[i], dem->place[i].radius};
+    struct contact_law law = contact_law_between(dem, &e);
     if (wall->has_friction) law.friction = wall->friction;
     return law;
 }
@@ -129,15 +141,15 @@ static void set_mobility(struct dem *dem, int i)
     dem->mobility[i][1] = 1 / (0.4 * dem->mass[i] * radius * radius);
 }
 
-void compare_mobilities(struct dem *dem)
+void set_equal_mobility(struct dem *dem)
 {
-    dem->moves_alike = true;
-    for (int i = 1; i < dem->n_particle && dem->moves_alike; i++)
-        dem->moves_alike = dem->mobility[i][0] == dem->mobility[0][0] &&
-                           dem->mobility[i][1] == dem->mobility[0][1];
+    dem->equal_mobility = true;
+    for (int i = 1; i < dem->n_particle && dem->equal_mobility; i++)
+        dem->equal_mobility = dem->mobility[i][0] == dem->mobility[0][0] &&
+                              dem->mobility[i][1] == dem->mobility[0][1];
 }
 
-void weigh_grains(struct dem *dem, const uint8_t *fixed)
+void set_masses(struct dem *dem, const uint8_t *fixed)
 {
     const int n = dem->n_particle;
     double sum = 0;
@@ -151,7 +163,7 @@ void weigh_grains(struct dem *dem, const uint8_t *fixed)
     }
     for (int i = 0; i < n; i++) {
         const bool holds =
-            fixed ? fixed[dem->identity[i]]
+            fixed ? fixed[dem->id[i]]
                   : dem->mass[i] > 0 && dem->mobility[i][0] <= 0; // as it was
         dem->mass[i] = dem->density_scaling ? sum / n : dem->weight[i];
         if (holds)
@@ -159,18 +171,18 @@ void weigh_grains(struct dem *dem, const uint8_t *fixed)
         else
             set_mobility(dem, i);
     }
-    compare_mobilities(dem);
+    set_equal_mobility(dem);
     if (n > 0) dem->law = pair_law(dem, 0, 0);
 }
 
 void set_external(struct dem *dem)
 {
-    dem->is_pulled = false;
+    dem->has_external = false;
     for (int i = 0; i < dem->n_particle; i++)
         for (int axis = 0; axis < 3; axis++) {
             dem->external[i][axis] =
                 (dem->applied ? component(dem->applied[i], axis) : 0) +
                 dem->weight[i] * component(dem->gravity, axis);
-            if (dem->external[i][axis] != 0) dem->is_pulled = true;
+            if (dem->external[i][axis] != 0) dem->has_external = true;
         }
 }

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pairs are near enough to touch before the next search. Bonded pairs stay
-// whatever their distance.
+// The search for pairs that may touch before the next search: those whose surfaces are
+// nearer than `skin` (Verlet's list). Bonded pairs stay in the list at any distance.
+//
+// A search is due when a grain may have moved half the skin. How deep the skin should
+// be: with a rate of approach of two grains per cycle, searches come every skin / rate
+// cycles, and a deeper skin holds more pairs to sweep. Per grain and cycle
+//     cost = 4 skin + 75 rate / skin,  least at  skin = sqrt(75/4 rate).
+// The rate is that since the last search. No clock is read, so every run does the same.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -16,13 +22,13 @@ struct candidates {
     int32_t *bond;          // or -1
 };
 
-static int32_t (*seek_near(const struct dem *dem, int *count))[2]
+static int32_t (*find_near_pairs(const struct dem *dem, int *count))[2]
 {
     struct vector *position = NEW_ARRAY(struct vector, dem->n_particle);
     double *reach = NEW_ARRAY(double, dem->n_particle);
     for (int i = 0; i < dem->n_particle; i++) {
         position[i] = position_now(dem, i);
-        reach[i] = dem->place[i].radius + 0.5 * (dem->skin + bridge_reach(dem));
+        reach[i] = dem->place[i].radius + 0.5 * (dem->skin + bridge_cutoff(dem));
     }
     struct spheres spheres = {.count = dem->n_particle,
                               .position = position,
@@ -58,10 +64,10 @@ static struct bonded *sorted_bonds(const struct dem *dem)
 }
 
 // Near pairs and bonded pairs, each once, sorted.
-static struct candidates seek(const struct dem *dem)
+static struct candidates find_candidates(const struct dem *dem)
 {
     int n_near;
-    int32_t(*near)[2] = seek_near(dem, &n_near);
+    int32_t(*near)[2] = find_near_pairs(dem, &n_near);
     struct candidates found = {.particle = near};
     if (dem->n_bond == 0) {
         found.count = n_near;
@@ -92,51 +98,50 @@ static struct candidates seek(const struct dem *dem)
     return found;
 }
 
-// A search costs as much as sweeping some 75 pairs a grain, and the next layer of the
-// skin holds about 4 pairs a grain for each radius of depth.
-static const double search_over_pairs = 75.0 / 4;
+// A search costs as much as sweeping some 75 pairs a grain, and the skin holds about 4
+// pairs a grain for each mean radius of depth.
+static const double SEARCH_COST = 75.0 / 4;
 
 static double cycles_since_search(const struct dem *dem)
 {
     return (double)(dem->cycle - dem->search_cycle);
 }
 
-// The depth that makes sweeping and searching together cheapest if grains go on as fast
-// as they did since the last search. No clock is asked, so that every run does the
-// same.
+// The cheapest depth (head of this file) if grains go on as fast as since the last
+// search.
 static double best_skin(const struct dem *dem)
 {
     const double deepest = 0.6, shallowest = 0.05;
     const double rate = 2 * dem->travelled / cycles_since_search(dem);
-    return fmin(fmax(sqrt(search_over_pairs * rate), shallowest), deepest);
+    return fmin(fmax(sqrt(SEARCH_COST * rate), shallowest), deepest);
 }
 
-// Whether the pairs that the best skin would spare in as many cycles again cost more
-// than a search now.
+// Whether sweeping the pairs that the best skin would leave out costs more, in as many
+// cycles again, than a search now.
 static bool skin_is_too_deep(const struct dem *dem)
 {
     const double cycles = cycles_since_search(dem);
     return dem->n_bond == 0 && cycles > 0 &&
-           cycles * (dem->skin - best_skin(dem)) > search_over_pairs;
+           cycles * (dem->skin - best_skin(dem)) > SEARCH_COST;
 }
 
 static void tune_skin(struct dem *dem)
 {
     if (cycles_since_search(dem) <= 0 || dem->n_bond > 0) return;
     const double best = best_skin(dem);
-    double skin = fmin(best, sqrt(dem->skin * best)); // deeper in small steps only
+    double skin = fmin(best, sqrt(dem->skin * best)); // deeper only in small steps
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] > 0)
             skin = fmin(skin, 0.5 * dem->period[axis] - 2 * dem->largest_radius -
-                                  bridge_reach(dem));
+                                  bridge_cutoff(dem));
     dem->skin = fmax(skin, 1e-3);
 }
 
 void find_pairs(struct dem *dem)
 {
     tune_skin(dem);
-    close_pair_books(dem);
-    const struct candidates found = seek(dem);
+    close_pair_ledger(dem);
+    const struct candidates found = find_candidates(dem);
     take_pairs(dem, found.count, found.particle, found.bond);
     find_wall_pairs(dem);
     for (int i = 0; i < dem->n_particle; i++)
@@ -147,22 +152,23 @@ void find_pairs(struct dem *dem)
 
 bool pairs_are_due(struct dem *dem)
 {
-    double furthest = wall_travel(dem);
-    const bool is_near = fmax(dem->travelled, furthest) <= 0.5 * dem->skin;
+    double largest_distance = wall_travel(dem);
+    const bool is_near = fmax(dem->travelled, largest_distance) <= 0.5 * dem->skin;
     if (is_near && !skin_is_too_deep(dem)) return false;
     for (int i = 0; i < dem->n_particle; i++)
-        furthest = fmax(furthest, distance(as_vector(dem->place[i].displacement),
-                                           dem->place_at_search[i]));
-    // Walls come as near as grains.
-    furthest = fmax(furthest + dem->closed_in, wall_travel(dem));
-    dem->travelled = furthest;
-    // So near the limit that looking again soon would cost more than a search.
-    return !(furthest <= 0.9 * 0.5 * dem->skin) || skin_is_too_deep(dem);
+        largest_distance =
+            fmax(largest_distance, distance(as_vector(dem->place[i].displacement),
+                                            dem->place_at_search[i]));
+    // Walls approach as grains do.
+    largest_distance = fmax(largest_distance + dem->closed_in, wall_travel(dem));
+    dem->travelled = largest_distance;
+    // So near the limit, looking again soon would cost more than a search.
+    return !(largest_distance <= 0.9 * 0.5 * dem->skin) || skin_is_too_deep(dem);
 }
 
 void renew_pairs(struct dem *dem)
 {
-    wake_pairs(dem);
+    reactivate_pairs(dem);
     enum { SEARCHES_IN_ORDER = 64 };
     if (++dem->searches_in_order > SEARCHES_IN_ORDER) renumber_grains(dem);
     find_pairs(dem);

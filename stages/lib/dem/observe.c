@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What can be asked of a running assembly, in SI. Forces and histories are those of the
-// last force evaluation, at the places before the last displacement.
+// What a caller can ask of a running assembly, in SI. Forces and histories are those of
+// the last force evaluation, at the places before the last displacement.
+//
+// Stress of dem_census, compression positive, over the volume V of the box:
+//     sigma_kl = 1/V sum over contacts of (R_i + R_j - U) n_k F_l,
+// with F on the second grain; walls add arm n_k F_l, with F on the wall.
+// dem_unbalanced_ratio [K 4.20]: mean |F_i| of free grains over mean |F_ij| of
+// contacts.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -21,7 +27,7 @@ double dem_time_step(const struct dem *dem)
 void dem_positions(const struct dem *dem, struct vector *position)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        position[dem->identity[i]] =
+        position[dem->id[i]] =
             scale(dem->unit.length,
                   add(dem->start[i], as_vector(dem->place[i].displacement)));
 }
@@ -29,7 +35,7 @@ void dem_positions(const struct dem *dem, struct vector *position)
 void dem_displacements(const struct dem *dem, struct vector *displacement)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        displacement[dem->identity[i]] =
+        displacement[dem->id[i]] =
             scale(dem->unit.length, as_vector(dem->place[i].displacement));
 }
 
@@ -37,14 +43,13 @@ void dem_velocities(const struct dem *dem, struct vector *velocity)
 {
     const double unit = dem->unit.length / dem->unit.time;
     for (int i = 0; i < dem->n_particle; i++)
-        velocity[dem->identity[i]] = scale(unit, as_vector(dem->motion[i].linear));
+        velocity[dem->id[i]] = scale(unit, as_vector(dem->motion[i].linear));
 }
 
 void dem_spins(const struct dem *dem, struct vector *spin)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        spin[dem->identity[i]] =
-            scale(1 / dem->unit.time, as_vector(dem->motion[i].angular));
+        spin[dem->id[i]] = scale(1 / dem->unit.time, as_vector(dem->motion[i].angular));
 }
 
 void dem_loads(const struct dem *dem, struct vector *force, struct vector *moment)
@@ -52,16 +57,15 @@ void dem_loads(const struct dem *dem, struct vector *force, struct vector *momen
     const double unit = dem->unit.stiffness * dem->unit.length;
     for (int i = 0; i < dem->n_particle; i++) {
         const struct motion load = load_on_grain(dem, i);
-        force[dem->identity[i]] = scale(unit, as_vector(load.linear));
-        moment[dem->identity[i]] =
-            scale(unit * dem->unit.length, as_vector(load.angular));
+        force[dem->id[i]] = scale(unit, as_vector(load.linear));
+        moment[dem->id[i]] = scale(unit * dem->unit.length, as_vector(load.angular));
     }
 }
 
 void dem_radii(const struct dem *dem, double *radius)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        radius[dem->identity[i]] = dem->unit.length * dem->place[i].radius;
+        radius[dem->id[i]] = dem->unit.length * dem->place[i].radius;
 }
 
 void dem_bonds_intact(const struct dem *dem, uint8_t *intact)
@@ -82,42 +86,44 @@ static struct vector pair_force(const struct dem *dem, int pair)
                        pair % PAIRS_IN_GROUP);
 }
 
-static bool touches(const struct dem *dem, int pair, const struct pair_geometry *lie)
+static bool touches(const struct dem *dem, int pair,
+                    const struct pair_geometry *geometry)
 {
-    return lie->overlap >= 0 || is_held(dem, pair);
+    return geometry->overlap >= 0 || is_bonded(dem, pair);
 }
 
 static struct dem_contact pair_contact(const struct dem *dem, int pair,
-                                       const struct pair_geometry *lie)
+                                       const struct pair_geometry *geometry)
 {
-    const int32_t a = dem->identity[dem->pairs.particle[pair][0]];
-    const int32_t b = dem->identity[dem->pairs.particle[pair][1]];
+    const int32_t a = dem->id[dem->pairs.particle[pair][0]];
+    const int32_t b = dem->id[dem->pairs.particle[pair][1]];
     const double unit = dem->unit.stiffness * dem->unit.length;
     const struct dem_bridge bridge = bridge_of_pair(dem, pair);
-    return (struct dem_contact){.particle = {a < b ? a : b, a < b ? b : a},
-                                .bond = is_held(dem, pair) ? dem->pairs.bond[pair] : -1,
-                                .overlap = lie->overlap * dem->unit.length,
-                                .force =
-                                    scale(a < b ? unit : -unit, pair_force(dem, pair)),
-                                .position = scale(dem->unit.length, lie->position),
-                                .bridge_volume = bridge.volume,
-                                .bridge_force = bridge.force};
+    return (struct dem_contact){
+        .particle = {a < b ? a : b, a < b ? b : a},
+        .bond = is_bonded(dem, pair) ? dem->pairs.bond[pair] : -1,
+        .overlap = geometry->overlap * dem->unit.length,
+        .force = scale(a < b ? unit : -unit, pair_force(dem, pair)),
+        .position = scale(dem->unit.length, geometry->position),
+        .bridge_volume = bridge.volume,
+        .bridge_force = bridge.force};
 }
 
 static struct dem_contact wall_contact(const struct dem *dem,
                                        const struct wall_pair *pair,
-                                       const struct wall_geometry *lie)
+                                       const struct wall_geometry *geometry)
 {
     const int i = pair->particle;
     const struct vector centre =
         subtract(position_now(dem, i), scale(places_ahead(dem) * dem->time_step,
                                              as_vector(dem->motion[i].linear)));
     return (struct dem_contact){
-        .particle = {dem->identity[i], -1 - pair->wall},
+        .particle = {dem->id[i], -1 - pair->wall},
         .bond = -1,
-        .overlap = lie->overlap * dem->unit.length,
+        .overlap = geometry->overlap * dem->unit.length,
         .force = scale(-dem->unit.stiffness * dem->unit.length, pair->load),
-        .position = scale(dem->unit.length, add(centre, scale(lie->arm, lie->normal)))};
+        .position = scale(dem->unit.length,
+                          add(centre, scale(geometry->arm, geometry->normal)))};
 }
 
 // Pairs first, then walls, each by its two numbers.
@@ -139,15 +145,15 @@ struct dem_contact *dem_contacts(const struct dem *dem, int *count)
         NEW_ARRAY(struct dem_contact, dem->pairs.n_pair + dem->n_wall_pair);
     int n = 0;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
-        const struct pair_geometry lie = pair_geometry(dem, p, places_ahead(dem));
-        if (touches(dem, p, &lie) || is_bridged(dem, p))
-            contact[n++] = pair_contact(dem, p, &lie);
+        const struct pair_geometry geometry = pair_geometry(dem, p, places_ahead(dem));
+        if (touches(dem, p, &geometry) || is_bridged(dem, p))
+            contact[n++] = pair_contact(dem, p, &geometry);
     }
     for (int k = 0; k < dem->n_wall_pair; k++) {
         const struct wall_pair *pair = &dem->wall_pair[k];
-        const struct wall_geometry lie =
+        const struct wall_geometry geometry =
             wall_geometry(dem, pair->particle, pair->wall, places_ahead(dem));
-        if (lie.overlap >= 0) contact[n++] = wall_contact(dem, pair, &lie);
+        if (geometry.overlap >= 0) contact[n++] = wall_contact(dem, pair, &geometry);
     }
     qsort(contact, (size_t)n, sizeof *contact, by_particles);
     *count = n;
@@ -169,24 +175,25 @@ struct dem_census dem_census(const struct dem *dem)
         volume *= dem->box_upper[axis] - dem->box_lower[axis];
     const double unit = dem->unit.stiffness / dem->unit.length / volume;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
-        const struct pair_geometry lie = pair_geometry(dem, p, places_ahead(dem));
-        if (!touches(dem, p, &lie) && !is_bridged(dem, p)) continue;
-        if (touches(dem, p, &lie)) count_contact(&census, lie.overlap);
+        const struct pair_geometry geometry = pair_geometry(dem, p, places_ahead(dem));
+        if (!touches(dem, p, &geometry) && !is_bridged(dem, p)) continue;
+        if (touches(dem, p, &geometry)) count_contact(&census, geometry.overlap);
         const int32_t *end = dem->pairs.particle[p];
         const double branch =
-            dem->place[end[0]].radius + dem->place[end[1]].radius - lie.overlap;
+            dem->place[end[0]].radius + dem->place[end[1]].radius - geometry.overlap;
         const struct vector force = pair_force(dem, p);
         for (int k = 0; k < 9; k++)
-            census.stress[k / 3][k % 3] +=
-                unit * branch * component(lie.normal, k / 3) * component(force, k % 3);
+            census.stress[k / 3][k % 3] += unit * branch *
+                                           component(geometry.normal, k / 3) *
+                                           component(force, k % 3);
     }
     for (int p = 0; p < dem->n_wall_pair; p++) {
         const struct wall_pair *pair = &dem->wall_pair[p];
-        const struct wall_geometry lie =
+        const struct wall_geometry geometry =
             wall_geometry(dem, pair->particle, pair->wall, places_ahead(dem));
         for (int k = 0; k < 9; k++)
-            census.stress[k / 3][k % 3] -= unit * lie.arm *
-                                           component(lie.normal, k / 3) *
+            census.stress[k / 3][k % 3] -= unit * geometry.arm *
+                                           component(geometry.normal, k / 3) *
                                            component(pair->load, k % 3);
     }
     if (census.contacts > 0) census.mean_overlap /= census.contacts;
@@ -210,7 +217,7 @@ double dem_unbalanced_ratio(const struct dem *dem)
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         const double size = norm(pair_force(dem, p));
         force += size;
-        n_contact += size > 0 || is_held(dem, p);
+        n_contact += size > 0 || is_bonded(dem, p);
     }
     for (int k = 0; k < dem->n_wall_pair; k++) {
         const double size = norm(dem->wall_pair[k].load);

@@ -1,26 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bonds, parallel ones and those of contacts; for pair_kernel.h.
+// Bonds [K 4.31-4.44]; for pair_kernel.h. A parallel bond of radius R has area A = pi
+// R^2, I = pi R^4 / 4 and J = 2 I. With stretch, V^s and the relative spin of one step,
+//     tension = k^n A stretch,            F^s -= k^s A V^s dt,
+//     M^n -= k^s J omega^n dt,            M^s -= k^n I omega^s dt,
+// after F^s and M^s were rotated into the new plane. It breaks when
+//     sigma = tension / A + beta |M^s| R / I  or  tau = |F^s| / A + beta |M^n| R / J
+// reaches a strength. Contact bonds pull with the springs of the contact instead [K
+// 4.2].
 #include "dem/pair_contact.h"
 
 #include <math.h>
 
-// What the stiffness of parallel bonds makes of a stretch and, in one time step, of
-// velocities; times R^2 for forces (A = pi R^2), times R^4 for moments (4 I = 2 J =
-// A R^2). The same for all, and kept for all of a sweep.
+// Factors of the increments above, the same for all bonds: times R^2 for forces, times
+// R^4 for moments.
 struct bond_law {
-    lanes tension, shear, twist, bending;
+    doublew tension, shear, twist, bending;
 };
 
-INLINE struct bond_law bond_law(const struct dem *dem, lanes time_step)
+SIMD_INLINE struct bond_law bond_law(const struct dem *dem, doublew time_step)
 {
-    const lanes along = splat(M_PI * dem->bond_normal_stiffness);
-    const lanes across = splat(M_PI * dem->bond_shear_stiffness);
+    const doublew along = splat(M_PI * dem->bond_normal_stiffness);
+    const doublew across = splat(M_PI * dem->bond_shear_stiffness);
     return (struct bond_law){along, across * time_step, 0.5 * across * time_step,
                              0.25 * along * time_step};
 }
 
-// A bond broke in lane LANE: rare. Of two modes in one step the one that is further
-// past its strength counts.
+// Breaks the bond in lane LANE (rare). Of two modes in one step, the one further past
+// its strength counts.
 static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
                                                  bool by_normal, bool by_shear,
                                                  double normal, double shear)
@@ -34,12 +40,12 @@ static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
     b->shear_strength[lane] = -1;
 }
 
-// Those of the lanes BY_NORMAL or BY_SHEAR; how many.
-INLINE int break_bonds(struct bond_group *b, int at, mask by_normal, mask by_shear,
-                       lanes normal_load, lanes shear_load)
+// Breaks the bonds of the lanes BY_NORMAL or BY_SHEAR; returns how many.
+SIMD_INLINE int break_bonds(struct bond_group *b, int at, maskw by_normal,
+                            maskw by_shear, doublew normal_load, doublew shear_load)
 {
     int count = 0;
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < SIMD_WIDTH; lane++) {
         const bool normal = holds_in(by_normal, lane), shear = holds_in(by_shear, lane);
         if (!normal && !shear) continue;
         break_bond(b, at + lane, normal, shear, normal_load[lane], shear_load[lane]);
@@ -48,31 +54,32 @@ INLINE int break_bonds(struct bond_group *b, int at, mask by_normal, mask by_she
     return count;
 }
 
-// What parallel bonds carry: tension and twist along n, the others across it.
-struct carried {
-    lanes tension, twist;
-    struct lanes3 shear, bending;
+// Forces of parallel bonds: tension and twist along n, the others across it.
+struct bond_forces {
+    doublew tension, twist;
+    struct vectorw shear, bending;
 };
 
 // SQUARE is R^2.
-INLINE lanes bond_energy(const struct dem *dem, const struct carried *c, lanes square)
+SIMD_INLINE doublew bond_energy(const struct dem *dem, const struct bond_forces *c,
+                                doublew square)
 {
-    const lanes zero = {0};
-    const struct lanes3 nothing = {zero, zero, zero};
+    const doublew zero = {0};
+    const struct vectorw nothing = {zero, zero, zero};
     const double along = M_PI * dem->bond_normal_stiffness;
     const double across = M_PI * dem->bond_shear_stiffness;
-    const lanes stretched = along * square, sheared = across * square;
-    const lanes bent = 0.25 * stretched * square, twisted = 0.5 * sheared * square;
-    return spring_loss((struct lanes3){c->tension, zero, zero}, stretched, nothing,
+    const doublew stretched = along * square, sheared = across * square;
+    const doublew bent = 0.25 * stretched * square, twisted = 0.5 * sheared * square;
+    return spring_loss((struct vectorw){c->tension, zero, zero}, stretched, nothing,
                        stretched) +
            spring_loss(c->shear, sheared, nothing, sheared) +
            spring_loss(c->bending, bent, nothing, bent) +
-           spring_loss((struct lanes3){c->twist, zero, zero}, twisted, nothing,
+           spring_loss((struct vectorw){c->twist, zero, zero}, twisted, nothing,
                        twisted);
 }
 
-// All but in the lanes WHOLE.
-INLINE void let_go(struct carried *c, mask whole)
+// Keeps the forces of the lanes WHOLE, clears the others.
+SIMD_INLINE void keep_intact(struct bond_forces *c, maskw whole)
 {
     c->tension = only_where(whole, c->tension);
     c->twist = only_where(whole, c->twist);
@@ -80,57 +87,62 @@ INLINE void let_go(struct carried *c, mask whole)
     c->bending = only_where3(whole, c->bending);
 }
 
-// Breaks the bonds of the lanes HELD that carry more than they can; how many. Stresses
-// are compared times A R: sigma_max A R = -F^n R + 4 beta |M^s| as A R^2 = 4 I,
-// and tau_max A R = |F^s| R + 2 beta |M^n| as A R^2 = 2 J. Squares spare the roots.
-INLINE int break_overloaded(struct carried *c, const struct dem *dem, int k, int at,
-                            mask held, lanes radius)
+// Breaks the bonds of the lanes BONDED that carry more than they can; returns how many.
+// Stresses are compared times A R: sigma A R = tension R + 4 beta |M^s|, as A R^2 = 4
+// I, and tau A R = |F^s| R + 2 beta |M^n|, as A R^2 = 2 J. Squares spare the roots.
+SIMD_INLINE int break_overloaded(struct bond_forces *c, const struct dem *dem, int k,
+                                 int at, maskw bonded, doublew radius)
 {
     struct bond_group *g = dem->pairs.bonds + k;
-    const lanes square = radius * radius;
-    const lanes bending_left =
-        less_fused(c->tension, radius, load(g->normal_strength + at));
-    const double beta = dem->bond_moments;
-    const lanes twist_size = magnitude(c->twist);
-    const lanes shear_left =
-        less_fused(splat(2 * beta), twist_size, load(g->shear_strength + at));
-    const lanes bending_square = 16.0 * beta * beta * dot3(c->bending, c->bending);
-    const lanes shear_square = square * dot3(c->shear, c->shear);
-    // Also where nothing is left: then the right side is not positive.
-    const mask by_normal =
-        both(held, at_least(bending_square, bending_left * magnitude(bending_left)));
-    const mask by_shear =
-        both(held, at_least(shear_square, shear_left * magnitude(shear_left)));
-    const mask broken = either(by_normal, by_shear);
+    const doublew square = radius * radius;
+    const doublew bending_left =
+        fnmadd(c->tension, radius, load(g->normal_strength + at));
+    const double beta = dem->moment_contribution;
+    const doublew twist_size = magnitude(c->twist);
+    const doublew shear_left =
+        fnmadd(splat(2 * beta), twist_size, load(g->shear_strength + at));
+    const doublew bending_square = 16.0 * beta * beta * dot3(c->bending, c->bending);
+    const doublew shear_square = square * dot3(c->shear, c->shear);
+    // Also where tension alone exceeds the strength: then the right side is not
+    // positive.
+    const maskw by_normal =
+        both(bonded, at_least(bending_square, bending_left * magnitude(bending_left)));
+    const maskw by_shear =
+        both(bonded, at_least(shear_square, shear_left * magnitude(shear_left)));
+    const maskw broken = either(by_normal, by_shear);
     if (!any(broken)) return 0;
-    const lanes normal_load = square_root(bending_square) + c->tension * radius;
-    const lanes shear_load = 2.0 * beta * twist_size + square_root(shear_square);
+    const doublew normal_load = square_root(bending_square) + c->tension * radius;
+    const doublew shear_load = 2.0 * beta * twist_size + square_root(shear_square);
     const int count = break_bonds(g, at, by_normal, by_shear, normal_load, shear_load);
     if (dem->pairs.loss)
-        book(dem->pairs.loss[k].broken + at, broken, bond_energy(dem, c, square));
-    let_go(c, without(held, broken));
+        add_to_ledger(dem->pairs.loss[k].broken + at, broken,
+                      bond_energy(dem, c, square));
+    keep_intact(c, without(bonded, broken));
     return count;
 }
 
-// Adds the bonds of the lanes HELD, and breaks them [K 4.31-4.44].
-INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, int at,
-                         const struct meeting *m, mask held, const struct bond_law *law)
+// Adds the bonds of the lanes BONDED to TOTAL, and breaks them [K 4.31-4.44].
+SIMD_INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k,
+                              int at, const struct pair_motion *m, maskw bonded,
+                              const struct bond_law *law)
 {
     struct bond_group *g = dem->pairs.bonds + k;
-    const struct lanes3 n = m->turning.normal;
-    const lanes radius = load(g->radius + at), square = radius * radius;
-    const lanes fourth = square * square;
-    const lanes twisting = dot3(m->turning_apart, n);
+    const struct vectorw n = m->rotation.normal;
+    const doublew radius = load(g->radius + at), square = radius * radius;
+    const doublew fourth = square * square;
+    const doublew twisting = dot3(m->relative_spin, n);
 
-    struct carried c = {
+    struct bond_forces c = {
         .tension = law->tension * square * m->stretch,
-        .twist = less_fused(law->twist * fourth, twisting, load(g->twist + at)),
-        .shear = turn(m->turning, load3(g->shear_force, at), FEATURE_PARALLEL_BOND),
-        .bending = turn(m->turning, load3(g->bending, at), FEATURE_PARALLEL_BOND)};
+        .twist = fnmadd(law->twist * fourth, twisting, load(g->twist + at)),
+        .shear = rotate_history(m->rotation, load3(g->shear_force, at),
+                                FEATURE_PARALLEL_BOND),
+        .bending =
+            rotate_history(m->rotation, load3(g->bending, at), FEATURE_PARALLEL_BOND)};
     c.shear = subtract_scaled3(c.shear, law->shear * square, m->shear_velocity);
     c.bending = subtract_scaled3(c.bending, law->bending * fourth,
-                                 subtract_scaled3(m->turning_apart, twisting, n));
-    const int count = break_overloaded(&c, dem, k, at, held, radius);
+                                 subtract_scaled3(m->relative_spin, twisting, n));
+    const int count = break_overloaded(&c, dem, k, at, bonded, radius);
 
     store3(g->shear_force, at, c.shear);
     store3(g->bending, at, c.bending);
@@ -142,46 +154,48 @@ INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k, 
 }
 
 // Contact bonds pull with the springs of the contact; those past a strength break and
-// leave what friction allows [K 4.2]. HELD loses the lanes that broke.
-INLINE int break_contact_bonds(struct law *law, const struct dem *dem, int k, int at,
-                               const struct meeting *m, mask touch, mask *held,
-                               lanes time_step, unsigned features)
+// leave what friction allows [K 4.2]. BONDED loses the lanes that broke.
+SIMD_INLINE int break_contact_bonds(struct lane_law *law, const struct dem *dem, int k,
+                                    int at, const struct pair_motion *m, maskw touch,
+                                    maskw *bonded, doublew time_step, unsigned features)
 {
-    const lanes zero = {0};
+    const doublew zero = {0};
     struct bond_group *g = dem->pairs.bonds + k;
-    const lanes stiffness = features & FEATURE_OWN
-                                ? load(dem->pairs.own[k].normal_stiffness + at)
-                                : splat(dem->law.normal_stiffness);
-    const lanes spring = stiffness * m->overlap;
-    struct lanes3 shear =
-        turn(m->turning, load3(dem->pairs.shear[k].force, at), features);
+    const doublew stiffness = features & FEATURE_PAIR_LAWS
+                                  ? load(dem->pairs.laws[k].normal_stiffness + at)
+                                  : splat(dem->law.normal_stiffness);
+    const doublew spring = stiffness * m->overlap;
+    struct vectorw shear =
+        rotate_history(m->rotation, load3(dem->pairs.shear[k].force, at), features);
     shear =
         subtract3(shear, scale3(law->shear_stiffness * time_step, m->shear_velocity));
-    const lanes normal_strength = load(g->normal_strength + at);
-    const lanes shear_strength = load(g->shear_strength + at);
-    const lanes square = dot3(shear, shear);
-    const mask by_normal = both(*held, at_least(-spring, normal_strength));
-    const mask by_shear =
-        both(*held, at_least(square, shear_strength * shear_strength));
-    const mask broken = either(by_normal, by_shear);
+    const doublew normal_strength = load(g->normal_strength + at);
+    const doublew shear_strength = load(g->shear_strength + at);
+    const doublew square = dot3(shear, shear);
+    const maskw by_normal = both(*bonded, at_least(-spring, normal_strength));
+    const maskw by_shear =
+        both(*bonded, at_least(square, shear_strength * shear_strength));
+    const maskw broken = either(by_normal, by_shear);
     int count = 0;
     if (any(broken)) {
-        const lanes shear_load = square_root(square);
+        const doublew shear_load = square_root(square);
         count = break_bonds(g, at, by_normal, by_shear, -spring, shear_load);
-        // In tension all is lost; otherwise what slips from now on is slip's.
-        const mask apart = without(broken, touch);
+        // In tension the shear force is lost too; in compression friction keeps its
+        // part.
+        const maskw apart = without(broken, touch);
         double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
-        const struct lanes3 was = load3(history, at);
-        const mask all = at_least(zero, zero);
+        const struct vectorw was = load3(history, at);
+        const maskw all = at_least(zero, zero);
         store3(history, at, only_where3(without(all, apart), was));
         if (dem->pairs.loss) {
-            const struct lanes3 nothing = {zero, zero, zero};
-            const lanes across = law->shear_stiffness;
-            book(dem->pairs.loss[k].broken + at, apart,
-                 0.5 * spring * m->overlap + spring_loss(was, across, nothing, across));
+            const struct vectorw nothing = {zero, zero, zero};
+            const doublew across = law->shear_stiffness;
+            add_to_ledger(dem->pairs.loss[k].broken + at, apart,
+                          0.5 * spring * m->overlap +
+                              spring_loss(was, across, nothing, across));
         }
-        *held = without(*held, broken);
+        *bonded = without(*bonded, broken);
     }
-    law->spring = only_where(either(touch, *held), spring);
+    law->spring = only_where(either(touch, *bonded), spring);
     return count;
 }

@@ -17,81 +17,83 @@
 // energy out of nothing (Elata & Berryman 1996). U_old = U + V^n dt, by leapfrog.
 #include "dem/pair_kinematics.h"
 
-// The numbers of a contact as they are at its overlap.
-struct law {
-    lanes spring; // normal force
-    lanes shear_stiffness, normal_damping, shear_damping, friction;
-    // Hertz: what is left of the shear force of the step before, and the shear
+// Coefficients of a contact at its overlap.
+struct lane_law {
+    doublew spring; // normal force
+    doublew shear_stiffness, normal_damping, shear_damping, friction;
+    // Hertz: factor that the shear force of the step before keeps, and the shear
     // stiffness that it had.
-    lanes forget, shear_stiffness_before;
+    doublew shear_retained, shear_stiffness_before;
 };
 
-INLINE struct law law_at(const struct dem *dem, int k, int at, const struct meeting *m,
-                         mask touch, lanes time_step, unsigned features)
+SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
+                                   const struct pair_motion *m, maskw touch,
+                                   doublew time_step, unsigned features)
 {
     const struct contact_law *all = &dem->law;
-    const struct own_group *own = dem->pairs.own + k;
-    const bool differ = features & FEATURE_OWN;
-    const lanes stiffness =
-        differ ? load(own->normal_stiffness + at) : splat(all->normal_stiffness);
-    struct law law = {.shear_stiffness = differ ? load(own->shear_stiffness + at)
-                                                : splat(all->shear_stiffness),
-                      .normal_damping = differ ? load(own->normal_damping + at)
-                                               : splat(all->normal_damping),
-                      .shear_damping = differ ? load(own->shear_damping + at)
-                                              : splat(all->shear_damping),
-                      .friction =
-                          differ ? load(own->friction + at) : splat(all->friction)};
+    const struct law_group *laws = dem->pairs.laws + k;
+    const bool differ = features & FEATURE_PAIR_LAWS;
+    const doublew stiffness =
+        differ ? load(laws->normal_stiffness + at) : splat(all->normal_stiffness);
+    struct lane_law law = {.shear_stiffness = differ ? load(laws->shear_stiffness + at)
+                                                     : splat(all->shear_stiffness),
+                           .normal_damping = differ ? load(laws->normal_damping + at)
+                                                    : splat(all->normal_damping),
+                           .shear_damping = differ ? load(laws->shear_damping + at)
+                                                   : splat(all->shear_damping),
+                           .friction = differ ? load(laws->friction + at)
+                                              : splat(all->friction)};
     if (!(features & FEATURE_HERTZ)) {
         law.spring = only_where(touch, stiffness * m->overlap);
         law.shear_stiffness_before = law.shear_stiffness;
         return law;
     }
-    const lanes overlap = only_where(touch, m->overlap);
-    const lanes root = square_root(overlap), fourth = square_root(root);
-    const lanes before = m->overlap + time_step * m->normal_velocity;
-    const mask was = above(before, splat(0));
+    const doublew overlap = only_where(touch, m->overlap);
+    const doublew root = square_root(overlap), fourth = square_root(root);
+    const doublew before = m->overlap + time_step * m->normal_velocity;
+    const maskw was = above(before, splat(0));
     law.spring = stiffness * overlap * root;
     law.shear_stiffness_before =
         law.shear_stiffness * square_root(only_where(was, before));
     law.shear_stiffness *= root;
     law.normal_damping *= fourth;
     law.shear_damping *= fourth;
-    const mask unloads = both(was, above(before, overlap));
-    law.forget =
+    const maskw unloads = both(was, above(before, overlap));
+    law.shear_retained =
         choose(unloads, square_root(overlap / choose(was, before, splat(1))), splat(1));
     return law;
 }
 
-// What a pair feels: along n, in the contact plane, and moments carried by the bond.
+// Load of a pair: along n, in the contact plane, and moments carried by the bond.
 struct pair_load {
-    lanes normal;
-    struct lanes3 shear;
-    struct lanes3 moment;
+    doublew normal;
+    struct vectorw shear;
+    struct vectorw moment;
 };
 
-INLINE void book(double *account, mask where, lanes amount)
+SIMD_INLINE void add_to_ledger(double *entry, maskw where, doublew amount)
 {
-    store(account, load(account) + only_where(where, amount));
+    store(entry, load(entry) + only_where(where, amount));
 }
 
 // Energy that the shear spring loses when its force and stiffness go from BEFORE and
 // STIFFNESS_BEFORE to AFTER and STIFFNESS; a stiffness of 0 holds none.
-INLINE lanes spring_loss(struct lanes3 before, lanes stiffness_before,
-                         struct lanes3 after, lanes stiffness)
+SIMD_INLINE doublew spring_loss(struct vectorw before, doublew stiffness_before,
+                                struct vectorw after, doublew stiffness)
 {
-    const lanes had =
+    const doublew had =
         only_where(above(stiffness_before, splat(0)),
                    dot3(before, before) / choose(above(stiffness_before, splat(0)),
                                                  stiffness_before, splat(1)));
-    const lanes has = only_where(
+    const doublew has = only_where(
         above(stiffness, splat(0)),
         dot3(after, after) / choose(above(stiffness, splat(0)), stiffness, splat(1)));
     return 0.5 * (had - has);
 }
 
-// The normal force that friction goes by; PUSH is that of spring and dashpot.
-INLINE lanes pressing(const struct dem *dem, const struct law *law, lanes push)
+// The normal force that limits friction; PUSH is that of spring and dashpot.
+SIMD_INLINE doublew friction_normal_force(const struct dem *dem,
+                                          const struct lane_law *law, doublew push)
 {
     if (!dem->friction_feels_dashpot) return law->spring;
     return only_where(above(push, splat(0)), push);
@@ -99,67 +101,71 @@ INLINE lanes pressing(const struct dem *dem, const struct law *law, lanes push)
 
 // The shear spring of the contact, slip at LIMIT included [K 4.12-4.16, 4.25-4.26];
 // SLIPS says where.
-INLINE struct lanes3 shear_spring(const struct dem *dem, int k, int at,
-                                  const struct meeting *m, const struct law *law,
-                                  lanes limit, mask touch, mask held, lanes time_step,
-                                  unsigned features, mask *slips)
+SIMD_INLINE struct vectorw shear_spring(const struct dem *dem, int k, int at,
+                                        const struct pair_motion *m,
+                                        const struct lane_law *law, doublew limit,
+                                        maskw touch, maskw bonded, doublew time_step,
+                                        unsigned features, maskw *slips)
 {
     double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
-    const mask acts = features & FEATURE_CONTACT_BOND ? either(touch, held) : touch;
-    const struct lanes3 turned = turn(m->turning, load3(history, at), features);
-    struct lanes3 kept = dem->pairs.loss ? only_where3(acts, turned) : turned;
-    if (features & FEATURE_HERTZ) kept = scale3(law->forget, kept);
-    const struct lanes3 trial =
+    const maskw acts = features & FEATURE_CONTACT_BOND ? either(touch, bonded) : touch;
+    const struct vectorw turned =
+        rotate_history(m->rotation, load3(history, at), features);
+    struct vectorw kept = dem->pairs.loss ? only_where3(acts, turned) : turned;
+    if (features & FEATURE_HERTZ) kept = scale3(law->shear_retained, kept);
+    const struct vectorw trial =
         only_where3(acts, subtract_scaled3(kept, law->shear_stiffness * time_step,
                                            m->shear_velocity));
 
-    const lanes square = dot3(trial, trial);
+    const doublew square = dot3(trial, trial);
     *slips = above(square, limit * limit);
-    if (features & FEATURE_CONTACT_BOND) *slips = without(*slips, held);
-    struct lanes3 shear = trial;
+    if (features & FEATURE_CONTACT_BOND) *slips = without(*slips, bonded);
+    struct vectorw shear = trial;
     if (any(*slips)) {
-        const lanes factor = limit / square_root(choose(*slips, square, splat(1)));
+        const doublew factor = limit / square_root(choose(*slips, square, splat(1)));
         shear = scale3(choose(*slips, factor, splat(1)), trial);
     }
     store3(history, at, shear);
     if (dem->pairs.loss) { // what a contact forgot, and what slip took: the mean force
                            // times the slip
-        const lanes now = law->shear_stiffness, before = law->shear_stiffness_before;
-        const lanes slip = dot3(add3(kept, shear), subtract3(trial, shear));
-        const lanes taken =
+        const doublew now = law->shear_stiffness, before = law->shear_stiffness_before;
+        const doublew slip = dot3(add3(kept, shear), subtract3(trial, shear));
+        const doublew taken =
             only_where(above(now, splat(0)),
                        0.5 * slip / choose(above(now, splat(0)), now, splat(1)));
-        book(dem->pairs.loss[k].slip + at, at_least(splat(0), splat(0)),
-             spring_loss(turned, before, kept, now) + taken);
+        add_to_ledger(dem->pairs.loss[k].slip + at, at_least(splat(0), splat(0)),
+                      spring_loss(turned, before, kept, now) + taken);
     }
     return shear;
 }
 
-// Contact and dashpots [K 4.11-4.16, 4.25-4.30]; TOUCH and HELD (by a bond) are masks.
-INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
-                                     const struct meeting *m, mask touch, mask held,
-                                     const struct law *law, lanes time_step,
-                                     unsigned features)
+// Contact and dashpots [K 4.11-4.16, 4.25-4.30]; TOUCH and BONDED (by a bond) are
+// masks.
+SIMD_INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
+                                          const struct pair_motion *m, maskw touch,
+                                          maskw bonded, const struct lane_law *law,
+                                          doublew time_step, unsigned features)
 {
-    const lanes dashpot = law->normal_damping * m->normal_velocity;
-    lanes damped = only_where(either(touch, held), dashpot);
+    const doublew dashpot = law->normal_damping * m->normal_velocity;
+    doublew damped = only_where(either(touch, bonded), dashpot);
     if (dem->no_tensile_damping)
-        damped = choose(without(above(damped, law->spring), held), law->spring, damped);
+        damped =
+            choose(without(above(damped, law->spring), bonded), law->spring, damped);
     struct pair_load load = {.normal = law->spring - damped};
     if (dem->pairs.loss)
-        book(dem->pairs.loss[k].dashpots + at, either(touch, held),
-             damped * m->normal_velocity * time_step);
-    if (!(features & FEATURE_TURN)) return load;
+        add_to_ledger(dem->pairs.loss[k].dashpots + at, either(touch, bonded),
+                      damped * m->normal_velocity * time_step);
+    if (!(features & FEATURE_ROTATION)) return load;
 
-    mask slips;
-    const lanes limit = law->friction * pressing(dem, law, load.normal);
-    const struct lanes3 shear = shear_spring(dem, k, at, m, law, limit, touch, held,
-                                             time_step, features, &slips);
-    const mask sticks = either(held, without(touch, slips));
-    const lanes damping = only_where(sticks, law->shear_damping);
+    maskw slips;
+    const doublew limit = law->friction * friction_normal_force(dem, law, load.normal);
+    const struct vectorw shear = shear_spring(dem, k, at, m, law, limit, touch, bonded,
+                                              time_step, features, &slips);
+    const maskw sticks = either(bonded, without(touch, slips));
+    const doublew damping = only_where(sticks, law->shear_damping);
     load.shear = subtract_scaled3(shear, damping, m->shear_velocity);
     if (dem->pairs.loss)
-        book(dem->pairs.loss[k].dashpots + at, sticks,
-             damping * dot3(m->shear_velocity, m->shear_velocity) * time_step);
+        add_to_ledger(dem->pairs.loss[k].dashpots + at, sticks,
+                      damping * dot3(m->shear_velocity, m->shear_velocity) * time_step);
     return load;
 }

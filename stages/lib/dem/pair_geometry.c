@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Distance, overlap and contact point of one pair, as pair_kinematics.h finds them for
+// many: for observers, energies and the stability limit. With x the separation now and
+// x0 at the start, du = x - x0,
+//     stretch = |x| - |x0| = du.(x0 + x) / (|x0| + |x|),  overlap = overlap at start -
+//     stretch.
 #include "dem/engine.h"
 
 struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
@@ -15,17 +20,18 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
     const struct vector separation = add(start, apart);
     const double length = norm(separation);
 
-    struct pair_geometry lie;
-    lie.normal = scale(1 / length, separation);
-    lie.stretch = dot(apart, add(start, separation)) / (length + g->distance[lane]);
-    lie.overlap = g->overlap[lane] - lie.stretch;
+    struct pair_geometry geometry;
+    geometry.normal = scale(1 / length, separation);
+    geometry.stretch =
+        dot(apart, add(start, separation)) / (length + g->distance[lane]);
+    geometry.overlap = g->overlap[lane] - geometry.stretch;
     const double radius = dem->place[i].radius;
     const double shared = dem->unstressed ? radius + dem->place[j].radius -
-                                                g->distance[lane] - lie.stretch
-                                          : lie.overlap;
+                                                g->distance[lane] - geometry.stretch
+                                          : geometry.overlap;
     const struct vector centre =
         subtract(add(dem->start[i], as_vector(dem->place[i].displacement)),
                  scale(back * dem->time_step, as_vector(dem->motion[i].linear)));
-    lie.position = add(centre, scale(radius - 0.5 * shared, lie.normal));
-    return lie;
+    geometry.position = add(centre, scale(radius - 0.5 * shared, geometry.normal));
+    return geometry;
 }

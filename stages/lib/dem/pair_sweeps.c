@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The compiled pair sweeps by what a scene needs.
+// The compiled pair sweeps, by the set of features that a scene needs (engine.h).
 #include "dem/engine.h"
 
 #define AVX2(features) [features] = sweep_avx2_##features,

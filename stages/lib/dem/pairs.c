@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The list of pairs: how each lies, what it is made of, and its history from list to
-// list.
+// The list of pairs in groups of eight: where each lies, its coefficients, and its
+// history carried from list to list.
+//
+// A pair (i, j), i < j, remembers the separation x_j - x_i of the places where both
+// began (nearest periodic image), its length and the overlap there. Displacements are
+// added to that, so a small overlap keeps its digits. Both lists are sorted, so
+// histories go over in one merge. A pair whose grains change order changes the sign of
+// its vectors.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -10,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// From grain I to J where they are now, to the nearest image.
+// Separation from grain I to J now, to the nearest image.
 static struct vector separation_now(const struct dem *dem, int i, int j)
 {
     struct vector apart = subtract(position_now(dem, j), position_now(dem, i));
@@ -53,24 +59,24 @@ void set_pair_law(struct dem *dem, int pair)
     const struct lane to = lane_of(pair);
     const struct contact_law law =
         pair_law(dem, dem->pairs.particle[pair][0], dem->pairs.particle[pair][1]);
-    struct own_group *own = &dem->pairs.own[to.group];
-    own->normal_stiffness[to.at] = law.normal_stiffness;
-    own->shear_stiffness[to.at] = law.shear_stiffness;
-    own->normal_damping[to.at] = law.normal_damping;
-    own->shear_damping[to.at] = law.shear_damping;
-    own->friction[to.at] = law.friction;
+    struct law_group *laws = &dem->pairs.laws[to.group];
+    laws->normal_stiffness[to.at] = law.normal_stiffness;
+    laws->shear_stiffness[to.at] = law.shear_stiffness;
+    laws->normal_damping[to.at] = law.normal_damping;
+    laws->shear_damping[to.at] = law.shear_damping;
+    laws->friction[to.at] = law.friction;
 }
 
 struct contact_law law_of_pair(const struct dem *dem, int pair)
 {
-    if (!dem->pairs.own) return dem->law;
+    if (!dem->pairs.laws) return dem->law;
     const struct lane at = lane_of(pair);
-    const struct own_group *own = &dem->pairs.own[at.group];
-    return (struct contact_law){.normal_stiffness = own->normal_stiffness[at.at],
-                                .shear_stiffness = own->shear_stiffness[at.at],
-                                .friction = own->friction[at.at],
-                                .normal_damping = own->normal_damping[at.at],
-                                .shear_damping = own->shear_damping[at.at]};
+    const struct law_group *laws = &dem->pairs.laws[at.group];
+    return (struct contact_law){.normal_stiffness = laws->normal_stiffness[at.at],
+                                .shear_stiffness = laws->shear_stiffness[at.at],
+                                .friction = laws->friction[at.at],
+                                .normal_damping = laws->normal_damping[at.at],
+                                .shear_damping = laws->shear_damping[at.at]};
 }
 
 static void set_bond(struct dem *dem, struct lane to, int bond)
@@ -88,7 +94,7 @@ static void set_bond(struct dem *dem, struct lane to, int bond)
     bonds->shear_strength[to.at] = unit * dem->bond_strength[DEM_CRACK_SHEAR][bond];
 }
 
-void set_nobody(struct dem *dem, int pair)
+void set_dummy_pair(struct dem *dem, int pair)
 {
     const struct lane to = lane_of(pair);
     struct pair_group *group = &dem->pairs.group[to.group];
@@ -136,7 +142,7 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
         const struct lane to = lane_of(p);
         struct pair_group *group = &pairs->group[to.group];
         set_grains(group, to.at, pairs->particle[p][0], pairs->particle[p][1]);
-        if (pairs->own) set_pair_law(dem, p);
+        if (pairs->laws) set_pair_law(dem, p);
         if (pairs->liquid) set_bridge_radius(dem, p);
         if (pairs->bonds) set_bond(dem, to, pairs->bond[p]);
         int order = -1;
@@ -150,10 +156,10 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
             set_pair_place(dem, group, to.at);
     }
     for (int p = pairs->n_pair; p < PAIRS_IN_GROUP * pairs->n_group; p++)
-        set_nobody(dem, p);
+        set_dummy_pair(dem, p);
 }
 
-// Lists of what the scene needs, and of nothing else.
+// Allocates what the scene needs, and nothing else.
 void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond)
 {
     const int n_group = (n_pair + PAIRS_IN_GROUP - 1) / PAIRS_IN_GROUP;
@@ -166,14 +172,14 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
                                 .group = allocate_aligned(n, sizeof *pairs->group),
                                 .sum = allocate_aligned(n, sizeof *pairs->sum),
                                 .load = allocate_aligned(n, sizeof *pairs->load),
-                                .elsewhere = NEW_ARRAY(uint8_t, n),
+                                .has_shared_grain = NEW_ARRAY(uint8_t, n),
                                 .idle = NEW_ARRAY(uint8_t, n)};
-    if (dem->features & FEATURE_TURN) {
+    if (dem->features & FEATURE_ROTATION) {
         pairs->moment = allocate_aligned(n, sizeof *pairs->moment);
         pairs->shear = allocate_aligned(n, sizeof *pairs->shear);
     }
-    if (dem->features & FEATURE_OWN)
-        pairs->own = allocate_aligned(n, sizeof *pairs->own);
+    if (dem->features & FEATURE_PAIR_LAWS)
+        pairs->laws = allocate_aligned(n, sizeof *pairs->laws);
     if (dem->features & FEATURE_BOND)
         pairs->bonds = allocate_aligned(n, sizeof *pairs->bonds);
     if (dem->balance_energy) pairs->loss = allocate_aligned(n, sizeof *pairs->loss);
@@ -187,32 +193,32 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->group);
     free(pairs->sum);
     free(pairs->load);
-    free(pairs->elsewhere);
+    free(pairs->has_shared_grain);
     free(pairs->idle);
     free(pairs->moment);
     free(pairs->shear);
-    free(pairs->own);
+    free(pairs->laws);
     free(pairs->bonds);
     free(pairs->loss);
     free(pairs->liquid);
 }
 
-void close_pair_books(struct dem *dem)
+void close_pair_ledger(struct dem *dem)
 {
     if (!dem->pairs.loss) return;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         const struct lane at = lane_of(p);
         const struct loss_group *loss = &dem->pairs.loss[at.group];
-        dem->books.dashpots += loss->dashpots[at.at];
-        dem->books.slip += loss->slip[at.at];
-        dem->books.broken += loss->broken[at.at];
-        dem->books.bridges += loss->bridges[at.at];
+        dem->energy_ledger.dashpots += loss->dashpots[at.at];
+        dem->energy_ledger.slip += loss->slip[at.at];
+        dem->energy_ledger.broken += loss->broken[at.at];
+        dem->energy_ledger.bridges += loss->bridges[at.at];
     }
     memset(dem->pairs.loss, 0, (size_t)dem->pairs.n_group * sizeof *dem->pairs.loss);
 }
 
-// The pairs of each grain. As they are sorted, those of which it is the second come
-// first.
+// Lists the pairs of each grain. As pairs are sorted, those of which it is the second
+// come first.
 static void list_pairs_of_grains(struct dem *dem)
 {
     const int n = dem->n_particle, n_pair = dem->pairs.n_pair;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pairs of an engine as the kernel takes them: in groups of eight, each number of
-// all eight side by side. All in scaled units.
+// The pairs of an engine as the kernel takes them: in groups of eight, the same
+// quantity of all eight side by side (structure of arrays within a group). All in
+// scaled units (dem.h). Owner of the arrays is struct pair_list; free_pairs frees them.
 #ifndef CRAQUELURE_DEM_PAIRS_H
 #define CRAQUELURE_DEM_PAIRS_H
 
@@ -10,12 +11,12 @@
 #include <stdint.h>
 
 enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
-// Groups name grains and rows by so many times their number: processors find a record
-// of 32 or 64 bytes by that in one step.
-enum { NUMBER_STEP = 8 };
+// Groups store indices of grains and rows times this: processors then reach a record of
+// 32 or 64 bytes by one scaled address.
+enum { INDEX_SCALE = 8 };
 
-// Eight pairs as the kernel takes them. Unused ones at the end pair the grain that is
-// not there (index n_particle) with itself, far apart.
+// Eight pairs. Unused lanes at the end pair the dummy grain (index n_particle) with
+// itself, far apart.
 struct pair_group {
     _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
     uint32_t second[PAIRS_IN_GROUP];
@@ -31,9 +32,9 @@ struct sum_group {
     uint32_t second[PAIRS_IN_GROUP];
 };
 
-// What the pairs of a group did in the last cycle, if that is kept. Force on the second
-// grain, the first feels the opposite; of the moments, less that on the first and that
-// on the second.
+// What the pairs of a group did in the last cycle, if it is kept. FORCE acts on the
+// second grain, the first feels the opposite. The moment on the first grain is stored
+// with the opposite sign.
 struct load_group {
     _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
 };
@@ -42,11 +43,11 @@ struct moment_group {
     double second[3][PAIRS_IN_GROUP];
 };
 
-// What a group has besides, where the scene needs it.
+// What a group has besides, where the scene needs it. History of the shear force:
 struct shear_group {
     _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
 };
-struct own_group {
+struct law_group {
     _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
     double shear_stiffness[PAIRS_IN_GROUP];
     double normal_damping[PAIRS_IN_GROUP];
@@ -76,9 +77,9 @@ struct liquid_group {
     double rupture[PAIRS_IN_GROUP];   // the gap at which it ruptures, over the radius
 };
 
-// The numbers of a contact with overlap U. Linear: normal force = stiffness U, shear
-// stiffness and damping as they are. Hertz: stiffness U^1.5, shear stiffness times
-// U^0.5, both dampings times U^0.25.
+// Coefficients of a contact with overlap U. Linear: normal force = normal_stiffness U,
+// shear stiffness and damping as they are. Hertz: normal force = normal_stiffness
+// U^1.5, shear stiffness times U^0.5, both dampings times U^0.25.
 struct contact_law {
     double normal_stiffness; // of a contact, K^n_ij
     double shear_stiffness;
@@ -95,14 +96,14 @@ struct pair_list {
     struct pair_group *group; // (n_group)
     struct sum_group *sum;    // (n_group)
     struct load_group *load;  // (n_group)
-    // (n_group) with a late grain: `sum` says where loads are added up; otherwise at
-    // the grains' numbers.
-    uint8_t *elsewhere;
+    // (n_group) whether a grain of it is shared between threads: then `sum` says where
+    // loads are added up, otherwise they go to the rows of the grains.
+    uint8_t *has_shared_grain;
     uint8_t *idle; // (n_group) no pair touches or is bonded, and all loads kept are 0
     // (n_group) or NULL where not needed
     struct moment_group *moment;
     struct shear_group *shear;
-    struct own_group *own;
+    struct law_group *laws;
     struct bond_group *bonds;
     struct loss_group *loss;
     struct liquid_group *liquid;
@@ -110,18 +111,18 @@ struct pair_list {
 
 static inline int first_grain(const struct pair_group *group, int lane)
 {
-    return (int)(group->first[lane] / NUMBER_STEP);
+    return (int)(group->first[lane] / INDEX_SCALE);
 }
 
 static inline int second_grain(const struct pair_group *group, int lane)
 {
-    return (int)(group->second[lane] / NUMBER_STEP);
+    return (int)(group->second[lane] / INDEX_SCALE);
 }
 
 static inline void set_grains(struct pair_group *group, int lane, int first, int second)
 {
-    group->first[lane] = NUMBER_STEP * (uint32_t)first;
-    group->second[lane] = NUMBER_STEP * (uint32_t)second;
+    group->first[lane] = INDEX_SCALE * (uint32_t)first;
+    group->second[lane] = INDEX_SCALE * (uint32_t)second;
 }
 
 static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int lane)
@@ -129,10 +130,10 @@ static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int l
     return (struct vector){a[0][lane], a[1][lane], a[2][lane]};
 }
 
-// What it owns.
+// Frees what it owns, not the struct.
 void free_pairs(struct pair_list *pairs);
-// History and image of a pair that was there before, if SWAPPED with its grains in the
-// other order.
+// Copies history and image of a pair that was in the old list; SWAPPED: its grains are
+// in the other order now.
 void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
                 int old_pair, bool swapped);
 

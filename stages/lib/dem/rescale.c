@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boxes that shrink and grains that grow.
+// Boxes that shrink or stretch, and grains that grow.
+//
+// Centres move to lower + stretch (x - lower), radii grow by GROWTH. Afterwards grains
+// start anew: `start` is where they are and displacements are 0, so pairs get new
+// separations and overlaps but keep their histories. The list of pairs stays valid
+// until the approach of two surfaces, counted in closed_in, has used up the skin.
 #include "dem/engine.h"
 
 #include <math.h>
@@ -14,7 +19,7 @@ static struct vector stretched(const struct dem *dem, struct vector x,
     return x;
 }
 
-// Grains begin anew where they are.
+// Makes the present places the new starts.
 static void move_starts(struct dem *dem, const double stretch[3], double growth)
 {
     for (int i = 0; i < dem->n_particle; i++) {
@@ -41,16 +46,16 @@ void dem_rescale(struct dem *dem, const double stretch[3], double growth)
     move_starts(dem, stretch, growth);
     stretch_box(dem, stretch);
     if (growth != 1) {
-        weigh_grains(dem, NULL);
+        set_masses(dem, NULL);
         set_external(dem);
     }
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         set_pair_place(dem, &dem->pairs.group[p / PAIRS_IN_GROUP], p % PAIRS_IN_GROUP);
-        if (dem->pairs.own && growth != 1) set_pair_law(dem, p);
+        if (dem->pairs.laws && growth != 1) set_pair_law(dem, p);
     }
     if (growth != 1) set_wall_laws(dem);
 
-    // How much nearer two grains that do not touch may have come, half of it each.
+    // How much two grains that do not touch may have approached, half of it each.
     const double least = fmin(stretch[0], fmin(stretch[1], stretch[2]));
     const double reach = 2 * dem->largest_radius + dem->skin;
     const double nearer =

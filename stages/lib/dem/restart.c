@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state, as named arrays: out, and in again, checked. What follows from it and from
-// the setup is made anew.
+// The state as named arrays, written and read back with checks. What follows from the
+// state and the setup is computed again: coefficients, inverse distances, largest
+// radii.
+//
+// A run that is restored goes on to the same bytes as one that never stopped. So the
+// state has all that rounding depends on: the order of grains (`identity`) and pairs,
+// the skin, and the travel since the last search.
 #include "dem/state_columns.h"
 
 #include "basics/memory.h"
@@ -58,7 +63,7 @@ static const struct named_array *find(const struct saved *saved, const char *nam
                : NULL;
 }
 
-// How many rows of WIDTH there are, or -1.
+// Number of rows of WIDTH, or -1.
 static int rows_of(const struct saved *saved, const char *name, int width)
 {
     const struct named_array *array = find_array(saved->array, saved->count, name);
@@ -68,24 +73,24 @@ static int rows_of(const struct saved *saved, const char *name, int width)
     return -1;
 }
 
-// Every grain once.
+// Takes the order of grains, in which each must occur once.
 static enum status take_order(struct dem *dem, const struct saved *saved)
 {
     const int n = dem->n_particle;
     const struct named_array *array = find(saved, "identity", ARRAY_INT32, n, 0, n - 1);
     if (!array) return STATUS_BAD_DATA;
-    const int32_t *identity = array->data;
+    const int32_t *id = array->data;
     bool *seen = NEW_ARRAY(bool, n);
     int twice = -1;
     for (int i = 0; i < n; i++) {
-        if (seen[identity[i]]) twice = identity[i];
-        seen[identity[i]] = true;
+        if (seen[id[i]]) twice = id[i];
+        seen[id[i]] = true;
     }
     free(seen);
     if (twice >= 0)
         return refuse(saved->reason, STATUS_BAD_DATA, "identity: grain %d comes twice",
                       twice);
-    number_grains(dem, identity);
+    set_grain_order(dem, id);
     return STATUS_OK;
 }
 
@@ -101,7 +106,7 @@ static enum status take_broken(struct dem *dem, const struct saved *saved)
     return STATUS_OK;
 }
 
-// Sorted, each once, and with every bond where it belongs.
+// Checks that pairs are sorted, each once, with every bond between its grains.
 static enum status check_list(const struct dem *dem, int n,
                               const int32_t (*particle)[2], const int32_t *bond,
                               struct reason *reason)
@@ -208,7 +213,8 @@ static enum status check_rest(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
-// Of an earlier run that was to choose it; one chosen since is kept.
+// Takes a time step that the kept run had shortened, but only if this run chooses its
+// step too and it is shorter.
 static void take_time_step(struct dem *dem, double chosen)
 {
     if (!dem->step_was_shortened) return;
@@ -220,7 +226,7 @@ static void take_time_step(struct dem *dem, double chosen)
         dem->time_step = chosen;
 }
 
-// What follows from all that.
+// Computes what follows from the state.
 static void derive(struct dem *dem)
 {
     dem->largest_radius = 0;
@@ -237,13 +243,13 @@ static void derive(struct dem *dem)
         struct pair_group *group = &dem->pairs.group[p / PAIRS_IN_GROUP];
         const int lane = p % PAIRS_IN_GROUP;
         group->inverse_distance[lane] = 1 / group->distance[lane];
-        if (dem->pairs.own) set_pair_law(dem, p);
+        if (dem->pairs.laws) set_pair_law(dem, p);
     }
     set_wall_laws(dem);
     list_walls_of_grains(dem);
     if (dem->liquid) count_bridges(dem);
     set_external(dem);
-    compare_mobilities(dem);
+    set_equal_mobility(dem);
 }
 
 enum status dem_restore(struct dem *dem, const struct named_array *array, int count,

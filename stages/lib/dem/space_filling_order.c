@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains numbered along Hilbert's curve, so that those near each other in space are
-// near in memory. Small scenes lie in the cache in any order and keep the one they came
-// in.
+// Grains numbered along Hilbert's curve, so that neighbours in space are neighbours in
+// memory. Small scenes fit in the cache in any order and keep the one they came in.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -13,7 +12,7 @@
 
 enum { LEAST_TO_ORDER = 4096, BITS = 10 };
 
-// Place of a cell on the curve through 2^BITS cells along each axis (Skilling 2004).
+// Position of a cell on the curve through 2^BITS cells along each axis (Skilling 2004).
 static uint32_t hilbert_key(uint32_t x[3])
 {
     for (uint32_t q = 1u << (BITS - 1); q > 1; q >>= 1)
@@ -51,7 +50,7 @@ static int by_key(const void *a, const void *b)
     return order ? order : (p->grain > q->grain) - (p->grain < q->grain);
 }
 
-// In cubic cells, so that the curve does not prefer an axis.
+// Sorts grains along the curve, in cubic cells, so that no axis is preferred.
 static struct keyed *along_curve(const struct dem *dem)
 {
     const int n = dem->n_particle;
@@ -92,7 +91,7 @@ static void reorder(void *array, size_t size, const struct keyed *order, int n)
 
 static void reorder_grains(struct dem *dem, const struct keyed *order)
 {
-    REORDER(dem->identity);
+    REORDER(dem->id);
     REORDER(dem->start);
     REORDER(dem->place);
     REORDER(dem->motion);
@@ -103,12 +102,13 @@ static void reorder_grains(struct dem *dem, const struct keyed *order)
     REORDER(dem->weight);
     REORDER(dem->material_of);
     REORDER(dem->place_at_search);
-    REORDER(dem->grain_books);
+    REORDER(dem->grain_ledger);
     for (int k = 0; k < dem->n_particle; k++)
-        dem->number[dem->identity[k]] = k;
+        dem->index[dem->id[k]] = k;
 }
 
-// Sets PAIR to its grains' new numbers, lower first; whether they changed places.
+// Sets PAIR to the new indices of its grains, lower first; returns whether they changed
+// places.
 static bool relabel(int32_t pair[2], const int32_t *new_number)
 {
     const int32_t a = new_number[pair[0]], b = new_number[pair[1]];
@@ -123,8 +123,8 @@ struct moved_pair {
     bool swapped;
 };
 
-// The histories of all pairs in their new order. What they point to, slots and laws, is
-// left to the search that follows.
+// Histories of all pairs in their new order. Rows and laws are left to the search that
+// follows.
 static void reorder_pairs(struct dem *dem, const int32_t *new_number)
 {
     const int n = dem->pairs.n_pair;
@@ -177,17 +177,17 @@ void renumber_grains(struct dem *dem)
 {
     dem->searches_in_order = 0;
     if (dem->n_particle < LEAST_TO_ORDER) return;
-    close_pair_books(dem);
+    close_pair_ledger(dem);
     struct keyed *order = along_curve(dem);
     renumber(dem, order);
     free(order);
 }
 
-void number_grains(struct dem *dem, const int32_t *identity)
+void set_grain_order(struct dem *dem, const int32_t *id)
 {
     struct keyed *order = NEW_ARRAY(struct keyed, dem->n_particle);
     for (int k = 0; k < dem->n_particle; k++)
-        order[k].grain = dem->number[identity[k]];
+        order[k].grain = dem->index[id[k]];
     renumber(dem, order);
     free(order);
 }

@@ -2,13 +2,18 @@
 // The largest stable time step. Leapfrog with stiffness K, dashpots C that see the
 // velocity of half a step before, and masses M is stable if and only if no motion x has
 //     x.(dt^2 K + 2 dt C) x > 4 x.M x,
-// rotations included. The energy of one pair is a square of the difference of what its
-// two grains do, so it is at most twice the sum of what each does with the other at
-// rest. That bounds K and C by 6x6 blocks of single grains, exactly so on a bonded
-// cubic lattice; elsewhere the limit is on the safe side. Every pair in the list counts
-// as touching, as it may soon. [K 4.47] knows neither rotation, nor dashpots, nor that
-// a grain has several contacts. A Hertz contact counts with its stiffness at the
-// overlap it has, or is expected to have.
+// rotations included. The energy of a pair is a square of the difference between the
+// motions of its two grains. So it is at most twice the sum of what each grain would
+// give with the other at rest. That bounds K and C by one 6x6 block for each grain
+// (rows 0-2 translation, 3-5 rotation, scaled by sqrt of the mobilities):
+//     block = sum over contacts of weight (along n n^T + across (1 - n n^T) ...),
+// with weight 2, or 1 beside a grain or wall that cannot move. With k and c the largest
+// eigenvalues of the two blocks, dt solves dt^2 k + 2 dt c = 4.
+//
+// This is exact on a bonded cubic lattice and on the safe side elsewhere. Every pair in
+// the list counts as touching, as it may soon. [K 4.47] knows neither rotation, nor
+// dashpots, nor that a grain has several contacts. A Hertz contact counts with its
+// stiffness at the overlap that it has, or is expected to have.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -19,8 +24,8 @@ struct block {
     double a[6][6];
 };
 
-// What resists one grain at one contact, n outward: along n, across n at the end of
-// ARM, twisting about n and bending.
+// Stiffnesses (or dampings) that one grain feels at one contact, n outward: along n,
+// across n at the end of ARM, twisting about n, and bending.
 struct resistance {
     struct vector normal;
     double arm;
@@ -81,15 +86,15 @@ static double largest_eigenvalue(struct block block)
     return exp((logarithm + log(trace(&block))) / (1 << SQUARINGS));
 }
 
-// Springs and dashpots at slot S of a grain; the weight is 2 beside a grain that moves.
-struct joint {
+// Springs and dashpots of a grain at one contact; weight as in the head of this file.
+struct grain_stiffness {
     struct resistance spring, dashpot;
     double weight;
 };
 
 // The tangents of LAW at OVERLAP. Nothing shears without friction or a bond.
 static struct contact_law tangents(const struct dem *dem, struct contact_law law,
-                                   double overlap, bool held)
+                                   double overlap, bool bonded)
 {
     if (dem->features & FEATURE_HERTZ) {
         const double root = sqrt(overlap), fourth = sqrt(root);
@@ -98,75 +103,78 @@ static struct contact_law tangents(const struct dem *dem, struct contact_law law
         law.normal_damping *= fourth;
         law.shear_damping *= fourth;
     }
-    const bool bond_grips = held && dem->features & FEATURE_CONTACT_BOND;
+    const bool bond_grips = bonded && dem->features & FEATURE_CONTACT_BOND;
     if (!(law.friction > 0) && !bond_grips) law.shear_stiffness = 0;
-    if (!(law.friction > 0) && !held) law.shear_damping = 0;
+    if (!(law.friction > 0) && !bonded) law.shear_damping = 0;
     return law;
 }
 
 // The overlap that a contact is taken to have; negative when it does not count.
-static double overlap_of(const struct dem *dem, double overlap, bool held, bool now)
+static double overlap_of(const struct dem *dem, double overlap, bool bonded, bool now)
 {
-    if (now) return held ? fmax(overlap, 0) : overlap;
+    if (now) return bonded ? fmax(overlap, 0) : overlap;
     return fmax(overlap, dem->expected_overlap);
 }
 
-static struct joint pair_joint(const struct dem *dem, int pair, int particle, bool now)
+static struct grain_stiffness pair_stiffness(const struct dem *dem, int pair,
+                                             int particle, bool now)
 {
     const int32_t *const ends = dem->pairs.particle[pair];
     const bool is_first = ends[0] == particle;
     const int other = is_first ? ends[1] : ends[0];
-    const struct pair_geometry lie = pair_geometry(dem, pair, 0);
-    const bool held = is_held(dem, pair);
-    const double overlap = overlap_of(dem, lie.overlap, held, now);
-    if (overlap < 0) return (struct joint){.weight = 0};
+    const struct pair_geometry geometry = pair_geometry(dem, pair, 0);
+    const bool bonded = is_bonded(dem, pair);
+    const double overlap = overlap_of(dem, geometry.overlap, bonded, now);
+    if (overlap < 0) return (struct grain_stiffness){.weight = 0};
 
-    const struct contact_law law = tangents(dem, law_of_pair(dem, pair), overlap, held);
+    const struct contact_law law =
+        tangents(dem, law_of_pair(dem, pair), overlap, bonded);
     const double radius =
-        held ? dem->pairs.bonds[pair / PAIRS_IN_GROUP].radius[pair % PAIRS_IN_GROUP]
-             : 0;
+        bonded ? dem->pairs.bonds[pair / PAIRS_IN_GROUP].radius[pair % PAIRS_IN_GROUP]
+               : 0;
     const double area = M_PI * radius * radius, inertia = 0.25 * area * radius * radius;
     const double normal = dem->bond_normal_stiffness, shear = dem->bond_shear_stiffness;
-    const struct vector outward = scale(is_first ? 1 : -1, lie.normal);
-    const double arm = dem->place[particle].radius - 0.5 * lie.overlap;
-    return (struct joint){.spring = {.normal = outward,
-                                     .arm = arm,
-                                     .along = law.normal_stiffness + normal * area,
-                                     .across = law.shear_stiffness + shear * area,
-                                     .twist = shear * 2 * inertia,
-                                     .bending = normal * inertia},
-                          .dashpot = {.normal = outward,
-                                      .arm = arm,
-                                      .along = law.normal_damping,
-                                      .across = law.shear_damping},
-                          .weight = dem->mobility[other][0] > 0 ? 2 : 1};
+    const struct vector outward = scale(is_first ? 1 : -1, geometry.normal);
+    const double arm = dem->place[particle].radius - 0.5 * geometry.overlap;
+    return (struct grain_stiffness){
+        .spring = {.normal = outward,
+                   .arm = arm,
+                   .along = law.normal_stiffness + normal * area,
+                   .across = law.shear_stiffness + shear * area,
+                   .twist = shear * 2 * inertia,
+                   .bending = normal * inertia},
+        .dashpot = {.normal = outward,
+                    .arm = arm,
+                    .along = law.normal_damping,
+                    .across = law.shear_damping},
+        .weight = dem->mobility[other][0] > 0 ? 2 : 1};
 }
 
-static struct joint wall_joint(const struct dem *dem, const struct wall_pair *pair,
-                               bool now)
+static struct grain_stiffness wall_stiffness(const struct dem *dem,
+                                             const struct wall_pair *pair, bool now)
 {
     const double overlap = overlap_of(dem, pair->depth, false, now);
-    if (overlap < 0) return (struct joint){.weight = 0};
+    if (overlap < 0) return (struct grain_stiffness){.weight = 0};
     const struct contact_law law = tangents(dem, pair->law, overlap, false);
     const double arm = dem->place[pair->particle].radius;
-    return (struct joint){.spring = {.normal = pair->normal,
-                                     .arm = arm,
-                                     .along = law.normal_stiffness,
-                                     .across = law.shear_stiffness},
-                          .dashpot = {.normal = pair->normal,
-                                      .arm = arm,
-                                      .along = law.normal_damping,
-                                      .across = law.shear_damping},
-                          .weight = 1};
+    return (struct grain_stiffness){.spring = {.normal = pair->normal,
+                                               .arm = arm,
+                                               .along = law.normal_stiffness,
+                                               .across = law.shear_stiffness},
+                                    .dashpot = {.normal = pair->normal,
+                                                .arm = arm,
+                                                .along = law.normal_damping,
+                                                .across = law.shear_damping},
+                                    .weight = 1};
 }
 
-// dt^2 k + 2 dt c = 4; infinite when nothing resists.
+// Solves dt^2 k + 2 dt c = 4; infinite when nothing resists.
 static double largest_step(double k, double c)
 {
     return 4 / (c + sqrt(c * c + 4 * k));
 }
 
-// At most LEAST, that of other grains.
+// Limit of one grain, but at most LEAST, the limit of the others.
 static double grain_limit(const struct dem *dem, int particle, bool now, double least)
 {
     struct block stiffness = {{{0}}}, damping = {{{0}}};
@@ -175,15 +183,16 @@ static double grain_limit(const struct dem *dem, int particle, bool now, double 
     const struct wall_pair *walls = dem->wall_pair + dem->wall_offset[particle];
     const int n_wall = dem->wall_offset[particle + 1] - dem->wall_offset[particle];
     for (int k = 0; k < n_pair + n_wall; k++) {
-        const struct joint joint =
-            k < n_pair ? pair_joint(dem, dem->pair_of[offset[0] + k], particle, now)
-                       : wall_joint(dem, &walls[k - n_pair], now);
-        if (joint.weight <= 0) continue;
-        add_resistance(&stiffness, &joint.spring, joint.weight,
+        const struct grain_stiffness contact =
+            k < n_pair ? pair_stiffness(dem, dem->pair_of[offset[0] + k], particle, now)
+                       : wall_stiffness(dem, &walls[k - n_pair], now);
+        if (contact.weight <= 0) continue;
+        add_resistance(&stiffness, &contact.spring, contact.weight,
                        dem->mobility[particle]);
-        add_resistance(&damping, &joint.dashpot, joint.weight, dem->mobility[particle]);
+        add_resistance(&damping, &contact.dashpot, contact.weight,
+                       dem->mobility[particle]);
     }
-    // No eigenvalue is more than the trace, which is had for nothing.
+    // The trace bounds the eigenvalues and costs nothing.
     if (largest_step(trace(&stiffness), trace(&damping)) > least * (1 + 1e-9))
         return least;
     return fmin(least, largest_step(largest_eigenvalue(stiffness),
@@ -200,8 +209,8 @@ double stability_limit(const struct dem *dem, bool now)
     return limit / (1 + dem->local_damping);
 }
 
-// Of two grains like this one that touch, whether any is near or not.
-static double meeting_limit(const struct dem *dem, int particle)
+// Limit for two grains like this one in contact, whether any is near or not.
+static double two_grain_limit(const struct dem *dem, int particle)
 {
     const double radius = dem->place[particle].radius;
     const double *mobility = dem->mobility[particle];
@@ -218,7 +227,7 @@ double automatic_time_step(const struct dem *dem)
 {
     double limit = dem->time_step_limit;
     for (int i = 0; i < dem->n_particle; i++)
-        limit = fmin(limit, meeting_limit(dem, i) / (1 + dem->local_damping));
+        limit = fmin(limit, two_grain_limit(dem, i) / (1 + dem->local_damping));
     return AUTOMATIC_SHARE * (isinf(limit) ? 1 : limit);
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The list of all columns of the state, with type, shape, place in memory and range.
+// Both saving and restoring go through it (restart.c), so the two cannot differ. Names
+// are those in checkpoint files: they stay when a member is renamed.
 #include "dem/state_columns.h"
 
-// As the schemas have it: squares of what is larger would overflow.
+// The range of the schemas: squares of larger numbers would overflow.
 static const double largest = 1e150, smallest = 1e-150;
 static const double largest_count = 0x1p53;
 
@@ -52,7 +55,7 @@ static void add_scalars(struct column_list *list, struct dem *dem)
               {"gravity", ARRAY_FLOAT64, 3, &dem->gravity, -largest, largest},
               {"friction", ARRAY_FLOAT64, 1, dem->pair_friction, 0, largest},
               {"local_damping", ARRAY_FLOAT64, 1, &dem->local_damping, 0, 1},
-              {"books", ARRAY_FLOAT64, 8, &dem->books, -largest, largest}};
+              {"books", ARRAY_FLOAT64, 8, &dem->energy_ledger, -largest, largest}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++)
         add_column(list, (struct column){.name = of[k].name,
                                          .type = of[k].type,
@@ -100,7 +103,7 @@ static struct column *add_integers(struct column_list *list, const char *name,
 static void add_grains(struct column_list *list, struct dem *dem)
 {
     const int n = dem->n_particle;
-    add_integers(list, "identity", ARRAY_INT32, WHOLE(dem->identity), n, 0, n - 1);
+    add_integers(list, "identity", ARRAY_INT32, WHOLE(dem->id), n, 0, n - 1);
     add_numbers(list, "start", WHOLE(dem->start), 3, n);
     add_numbers(list, "displacement", OF(dem->place, struct place, displacement), 3, n);
     add_numbers(list, "radius", OF(dem->place, struct place, radius), 1, n)->least =
@@ -113,7 +116,7 @@ static void add_grains(struct column_list *list, struct dem *dem)
     add_numbers(list, "displacement_at_search", WHOLE(dem->place_at_search), 3, n);
     if (dem->applied) add_numbers(list, "applied_force", WHOLE(dem->applied), 3, n);
     if (dem->balance_energy)
-        add_numbers(list, "grain_books", WHOLE(dem->grain_books), 2, n);
+        add_numbers(list, "grain_books", WHOLE(dem->grain_ledger), 2, n);
 }
 
 static void add_walls(struct column_list *list, struct dem *dem)
@@ -180,26 +183,26 @@ static void add_pairs(struct column_list *list, struct dem *dem)
                      dem->n_bond - 1);
     add_integers(list, "group_idle", ARRAY_UINT8, WHOLE(pairs->idle), pairs->n_group, 0,
                  1);
-#define LANES(name, groups, type, member, width)                                       \
+#define PAIRS(name, groups, type, member, width)                                       \
     add_lanes(list, dem, name, OF(pairs->groups, type, member), width)
-    LANES("pair_separation", group, struct pair_group, separation, 3);
-    LANES("pair_distance", group, struct pair_group, distance, 1);
-    LANES("pair_overlap", group, struct pair_group, overlap, 1);
-    LANES("pair_force", load, struct load_group, force, 3);
-    LANES("pair_first_moment", moment, struct moment_group, first, 3);
-    LANES("pair_second_moment", moment, struct moment_group, second, 3);
-    LANES("pair_shear_force", shear, struct shear_group, force, 3);
-    LANES("bond_shear_force", bonds, struct bond_group, shear_force, 3);
-    LANES("bond_bending", bonds, struct bond_group, bending, 3);
-    LANES("bond_twist", bonds, struct bond_group, twist, 1);
-    LANES("loss_dashpots", loss, struct loss_group, dashpots, 1);
-    LANES("loss_slip", loss, struct loss_group, slip, 1);
-    LANES("loss_broken", loss, struct loss_group, broken, 1);
-    LANES("loss_bridges", loss, struct loss_group, bridges, 1);
-    LANES("bridge_pull", liquid, struct liquid_group, pull, 1);
-    LANES("bridge_volume", liquid, struct liquid_group, volume, 1);
-    LANES("bridge_rupture", liquid, struct liquid_group, rupture, 1);
-#undef LANES
+    PAIRS("pair_separation", group, struct pair_group, separation, 3);
+    PAIRS("pair_distance", group, struct pair_group, distance, 1);
+    PAIRS("pair_overlap", group, struct pair_group, overlap, 1);
+    PAIRS("pair_force", load, struct load_group, force, 3);
+    PAIRS("pair_first_moment", moment, struct moment_group, first, 3);
+    PAIRS("pair_second_moment", moment, struct moment_group, second, 3);
+    PAIRS("pair_shear_force", shear, struct shear_group, force, 3);
+    PAIRS("bond_shear_force", bonds, struct bond_group, shear_force, 3);
+    PAIRS("bond_bending", bonds, struct bond_group, bending, 3);
+    PAIRS("bond_twist", bonds, struct bond_group, twist, 1);
+    PAIRS("loss_dashpots", loss, struct loss_group, dashpots, 1);
+    PAIRS("loss_slip", loss, struct loss_group, slip, 1);
+    PAIRS("loss_broken", loss, struct loss_group, broken, 1);
+    PAIRS("loss_bridges", loss, struct loss_group, bridges, 1);
+    PAIRS("bridge_pull", liquid, struct liquid_group, pull, 1);
+    PAIRS("bridge_volume", liquid, struct liquid_group, volume, 1);
+    PAIRS("bridge_rupture", liquid, struct liquid_group, rupture, 1);
+#undef PAIRS
 }
 
 struct column_list list_columns(struct dem *dem)

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which numbers make up the state of the discrete elements, by name, and where they
-// are.
+// The state of the discrete elements as named columns, and where each lies in memory.
 #ifndef CRAQUELURE_STATE_COLUMNS_H
 #define CRAQUELURE_STATE_COLUMNS_H
 
 #include "dem/engine.h"
 
-// WIDTH numbers in each of ROWS rows; LEAST and MOST are what they may be.
+// WIDTH numbers in each of ROWS rows, each between LEAST and MOST.
 struct column {
     const char *name;
     enum array_type type;
@@ -23,10 +22,11 @@ struct column_list {
     int count;
 };
 
-// All of DEM but which bonds are intact; through the list they can be changed.
+// All state of DEM except which bonds are intact. The columns point into DEM and are
+// valid until its arrays change; DEM can be changed through them.
 struct column_list list_columns(struct dem *dem);
 
-// Of number K of ROW.
+// Address of number K of row ROW.
 char *column_address(const struct column *column, int64_t row, int k);
 
 #endif

@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How grains lie to walls: the nearest point of each shape.
+// Contact of a grain with a wall: the nearest point of each shape, the normal towards
+// it, and the overlap.
 //
-// As between grains, the overlap with what is flat or round is no difference of large
-// numbers: it is the one where both began plus what the displacements added. Rings and
-// blocks, whose nearest point wanders from faces to edges, go by positions.
+// With start, moved and now = start + moved the centre relative to the wall's point, a
+// plane has overlap = overlap at start - moved.n. A cylinder or sphere of radius a has
+//     overlap = overlap at start +- moved.(start + now) / (|start| + |now|),
+// inside +, outside -, across the axis. So as between grains, no two large numbers are
+// subtracted. Rings and blocks, whose nearest point moves from faces to edges, go by
+// positions.
 #include "dem/engine.h"
 
 #include <math.h>
 
-// A grain's centre as seen from the point of a wall, in the nearest image.
-struct sight {
+// A grain's centre relative to the point of a wall, in the nearest image.
+struct relative_position {
     struct vector start; // where both began
     struct vector moved; // since
     struct vector now;   // the sum of the two
 };
 
-static struct sight see(const struct dem *dem, int i, int w, double back)
+static struct relative_position position_from_wall(const struct dem *dem, int i, int w,
+                                                   double back)
 {
     const struct rigid_wall *wall = &dem->wall[w];
     const struct vector u = as_vector(dem->place[i].displacement);
     const struct vector v = as_vector(dem->motion[i].linear);
-    struct sight s = {
+    struct relative_position s = {
         .start = subtract(dem->start[i], wall->is.point),
         .moved = subtract(subtract(u, wall->displacement),
                           scale(back * dem->time_step, subtract(v, wall->velocity)))};
@@ -35,13 +40,13 @@ static struct sight see(const struct dem *dem, int i, int w, double back)
     return s;
 }
 
-// Without what is along the unit vector AXIS.
+// The part of A normal to the unit vector AXIS.
 static struct vector across(struct vector a, struct vector axis)
 {
     return subtract(a, scale(dot(a, axis), axis));
 }
 
-// Some unit vector at right angles to the unit vector AXIS.
+// Any unit vector normal to the unit vector AXIS.
 static struct vector some_perpendicular(struct vector axis)
 {
     const struct vector other =
@@ -50,18 +55,20 @@ static struct vector some_perpendicular(struct vector axis)
     return scale(1 / norm(found), found);
 }
 
-// Unit vectors towards the wall.
+// The functions below return unit normals towards the wall and set *OVERLAP.
 
-static struct vector meet_plane(const struct dem *dem, const struct dem_wall *wall,
-                                const struct sight *s, double radius, double *overlap)
+static struct vector plane_contact(const struct dem *dem, const struct dem_wall *wall,
+                                   const struct relative_position *s, double radius,
+                                   double *overlap)
 {
     *overlap = given_overlap(dem, radius - dot(s->start, wall->normal)) -
                dot(s->moved, wall->normal);
     return scale(-1, wall->normal);
 }
 
-static struct vector meet_round(const struct dem *dem, const struct dem_wall *wall,
-                                const struct sight *s, double radius, double *overlap)
+static struct vector round_contact(const struct dem *dem, const struct dem_wall *wall,
+                                   const struct relative_position *s, double radius,
+                                   double *overlap)
 {
     const bool is_cylinder = wall->shape == DEM_CYLINDER;
     const struct vector axis = is_cylinder ? wall->normal : (struct vector){0, 0, 1};
@@ -69,7 +76,7 @@ static struct vector meet_round(const struct dem *dem, const struct dem_wall *wa
     const struct vector moved = is_cylinder ? across(s->moved, axis) : s->moved;
     const struct vector now = add(start, moved);
     const double before = norm(start), length = norm(now), sum = before + length;
-    // length - before [pair_meet.h]
+    // length - before, without cancellation
     const double stretch = sum > 0 ? dot(moved, add(start, now)) / sum : 0;
     const double sign = wall->outside ? -1 : 1;
     *overlap =
@@ -78,18 +85,19 @@ static struct vector meet_round(const struct dem *dem, const struct dem_wall *wa
                       : scale(sign, some_perpendicular(axis));
 }
 
-// APART leads from the centre to the nearest point, or is 0 for a centre that lies in
-// what has no inside.
-static struct vector meet_point(struct vector apart, struct vector otherwise,
-                                double radius, double *overlap)
+// APART is the vector from the centre to the nearest point, or 0 for a centre on a
+// shape without an inside; then the normal is OTHERWISE.
+static struct vector point_contact(struct vector apart, struct vector otherwise,
+                                   double radius, double *overlap)
 {
     const double length = norm(apart);
     *overlap = radius - length;
     return length > 0 ? scale(1 / length, apart) : otherwise;
 }
 
-static struct vector meet_ring(const struct dem_wall *wall, const struct sight *s,
-                               double radius, double *overlap)
+static struct vector ring_contact(const struct dem_wall *wall,
+                                  const struct relative_position *s, double radius,
+                                  double *overlap)
 {
     const double height = dot(s->now, wall->normal);
     const struct vector flat = across(s->now, wall->normal);
@@ -99,11 +107,12 @@ static struct vector meet_ring(const struct dem_wall *wall, const struct sight *
         length > 0 ? scale(1 / length, flat) : some_perpendicular(wall->normal);
     const struct vector apart =
         subtract(scale(nearest - length, outward), scale(height, wall->normal));
-    return meet_point(apart, scale(-1, wall->normal), radius, overlap);
+    return point_contact(apart, scale(-1, wall->normal), radius, overlap);
 }
 
-static struct vector meet_block(const struct dem_wall *wall, const struct sight *s,
-                                double radius, double *overlap)
+static struct vector block_contact(const struct dem_wall *wall,
+                                   const struct relative_position *s, double radius,
+                                   double *overlap)
 {
     struct vector apart = {0, 0, 0}, inward = {0, 0, 0};
     double depth = INFINITY; // below the nearest face, inside
@@ -116,7 +125,7 @@ static struct vector meet_block(const struct dem_wall *wall, const struct sight 
         inward = (struct vector){0, 0, 0};
         set_component(&inward, axis, x < 0 ? 1 : -1);
     }
-    if (depth < 0) return meet_point(apart, inward, radius, overlap);
+    if (depth < 0) return point_contact(apart, inward, radius, overlap);
     *overlap = radius + depth;
     return inward;
 }
@@ -125,17 +134,17 @@ struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double b
 {
     const struct dem_wall *wall = &dem->wall[w].is;
     const double radius = dem->place[i].radius;
-    const struct sight s = see(dem, i, w, back);
-    struct wall_geometry lie;
+    const struct relative_position s = position_from_wall(dem, i, w, back);
+    struct wall_geometry contact;
     if (wall->shape == DEM_PLANE)
-        lie.normal = meet_plane(dem, wall, &s, radius, &lie.overlap);
+        contact.normal = plane_contact(dem, wall, &s, radius, &contact.overlap);
     else if (wall->shape == DEM_RING)
-        lie.normal = meet_ring(wall, &s, radius, &lie.overlap);
+        contact.normal = ring_contact(wall, &s, radius, &contact.overlap);
     else if (wall->shape == DEM_BLOCK)
-        lie.normal = meet_block(wall, &s, radius, &lie.overlap);
+        contact.normal = block_contact(wall, &s, radius, &contact.overlap);
     else
-        lie.normal = meet_round(dem, wall, &s, radius, &lie.overlap);
-    lie.arm = radius - 0.5 * lie.overlap;
-    lie.lever = add(s.now, scale(lie.arm, lie.normal));
-    return lie;
+        contact.normal = round_contact(dem, wall, &s, radius, &contact.overlap);
+    contact.arm = radius - 0.5 * contact.overlap;
+    contact.lever = add(s.now, scale(contact.arm, contact.normal));
+    return contact;
 }

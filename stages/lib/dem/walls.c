@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contacts with rigid walls: the law of the pairs, with the grain first and the wall
-// second. Where pairs turn their history by velocities, that of a wall goes from the
-// old normal to the new one, as walls may be curved.
+// second. With n towards the wall, v the velocity of the wall's surface relative to the
+// grain's [K 4.17], U the overlap and F^s the history,
+//     force on the wall = (k U - c v.n) n + F^s - c_s v_s,   |F^s| <= friction times k
+//     U,
+// and the grain feels the opposite. Pairs of grains rotate their history by velocities
+// (pair_kinematics.h); that of a wall goes from the old normal to the new one, as walls
+// may be curved and grains may pass an edge.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -31,13 +36,13 @@ void find_wall_pairs(struct dem *dem)
     dem->n_wall_pair = 0;
     for (int i = 0; i < dem->n_particle; i++)
         for (int w = 0; w < dem->n_wall; w++) {
-            const struct wall_geometry lie = wall_geometry(dem, i, w, 0);
-            if (!(lie.overlap >= -dem->skin)) continue;
+            const struct wall_geometry contact = wall_geometry(dem, i, w, 0);
+            if (!(contact.overlap >= -dem->skin)) continue;
             struct wall_pair pair = {.particle = i,
                                      .wall = w,
                                      .law = wall_law(dem, i, &dem->wall[w].is),
-                                     .normal = lie.normal,
-                                     .depth = lie.overlap};
+                                     .normal = contact.normal,
+                                     .depth = contact.overlap};
             while (last < end &&
                    (last->particle < i || (last->particle == i && last->wall < w)))
                 last++;
@@ -57,11 +62,12 @@ void find_wall_pairs(struct dem *dem)
 
 double wall_travel(const struct dem *dem)
 {
-    double furthest = 0;
+    double largest_distance = 0;
     for (int w = 0; w < dem->n_wall; w++)
-        furthest = fmax(furthest, distance(dem->wall[w].displacement,
-                                           dem->wall[w].displacement_at_search));
-    return furthest;
+        largest_distance =
+            fmax(largest_distance, distance(dem->wall[w].displacement,
+                                            dem->wall[w].displacement_at_search));
+    return largest_distance;
 }
 
 void set_wall_laws(struct dem *dem)
@@ -74,7 +80,7 @@ void set_wall_laws(struct dem *dem)
 
 // ---- the contact --------------------------------------------------------------------
 
-// The numbers at OVERLAP > 0, such that the normal force is stiffness times overlap
+// Coefficients at OVERLAP > 0, such that the normal force is stiffness times overlap
 // with both laws.
 static struct contact_law law_at(const struct dem *dem, const struct contact_law *law,
                                  double overlap)
@@ -105,44 +111,45 @@ double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair)
     return share * stiffness * pair->depth * pair->depth + shear_energy(dem, pair);
 }
 
-// The shear force as of the last time step, brought into the contact plane of now: from
-// normal to normal by the rotation that does no more than that, then by TURN about the
-// new one [K 4.13-4.15]. Onto another face of the wall it does not go along.
-static struct vector turned(const struct wall_pair *pair, struct vector normal,
-                            double turn)
+// The shear force of the last step in the contact plane of now: the smallest rotation
+// from the old normal to the new one, then ANGLE about the new one [K 4.13-4.15]. It is
+// dropped when the grain passes to another face.
+static struct vector rotated_shear(const struct wall_pair *pair, struct vector normal,
+                                   double angle)
 {
     const double cosine = dot(pair->normal, normal);
     if (!(cosine > 0)) return (struct vector){0, 0, 0};
     const struct vector f = pair->shear_force;
     const struct vector flat =
         subtract(f, scale(dot(f, normal) / (1 + cosine), add(pair->normal, normal)));
-    return add(scale(1 - 0.5 * turn * turn, flat), scale(turn, cross(normal, flat)));
+    return add(scale(1 - 0.5 * angle * angle, flat), scale(angle, cross(normal, flat)));
 }
 
-// A Hertz contact that opens loses springs, and what these held with them: otherwise
-// the same force would come to hold more energy than was put in.
-static double share_kept(const struct dem *dem, double before, double now)
+// Factor on the shear force of a Hertz contact that opens: its shear stiffness falls,
+// and without the factor the same force would come to hold more energy than was put in.
+static double shear_retained(const struct dem *dem, double before, double now)
 {
     const bool opens = dem->features & FEATURE_HERTZ && now < before;
     return opens ? sqrt(now / before) : 1;
 }
 
-// Brings the history of PAIR to where it lies now, with SLIDE the shear displacement of
-// the last time step and LIMIT what friction can carry. Returns whether it slips; adds
-// what that takes to *LOST.
+// Advances the history of PAIR, where SLIDE is the shear displacement of the last step
+// and LIMIT what friction can carry. Returns whether it slips; adds the energy lost to
+// *LOST.
 static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
-                          const struct wall_geometry *lie, struct vector slide,
-                          double turn, double limit, double *lost)
+                          const struct wall_geometry *contact, struct vector slide,
+                          double angle, double limit, double *lost)
 {
     *lost += shear_energy(dem, pair);
-    const struct vector before = scale(share_kept(dem, pair->depth, lie->overlap),
-                                       turned(pair, lie->normal, turn));
+    const struct vector before =
+        scale(shear_retained(dem, pair->depth, contact->overlap),
+              rotated_shear(pair, contact->normal, angle));
     pair->shear_force = before;
-    pair->normal = lie->normal;
-    pair->depth = lie->overlap;
+    pair->normal = contact->normal;
+    pair->depth = contact->overlap;
     *lost -= shear_energy(dem, pair); // turning loses nothing, opening and closing do
 
-    const double stiffness = law_at(dem, &pair->law, lie->overlap).shear_stiffness;
+    const double stiffness = law_at(dem, &pair->law, contact->overlap).shear_stiffness;
     const struct vector trial = subtract(before, scale(stiffness, slide));
     const double size = norm(trial);
     const bool slips = size >= limit;
@@ -156,7 +163,7 @@ static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
     return slips;
 }
 
-// What the grain of a pair does to the wall, and what is lost on the way.
+// Load of a grain on the wall, and the energy lost in this step.
 struct push {
     struct vector force;
     struct vector shear; // the part of it across the normal
@@ -164,35 +171,35 @@ struct push {
 };
 
 static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
-                             const struct wall_geometry *lie)
+                             const struct wall_geometry *contact)
 {
     const struct rigid_wall *wall = &dem->wall[pair->wall];
     const struct motion *grain = &dem->motion[pair->particle];
-    const bool turns = dem->features & FEATURE_TURN;
+    const bool turns = dem->features & FEATURE_ROTATION;
     const double dt = dem->cycle > 0 ? dem->time_step : 0; // see dem.c
-    const struct contact_law law = law_at(dem, &pair->law, lie->overlap);
-    const struct vector n = lie->normal, spin = as_vector(grain->angular);
+    const struct contact_law law = law_at(dem, &pair->law, contact->overlap);
+    const struct vector n = contact->normal, spin = as_vector(grain->angular);
 
     const struct vector v = subtract(
-        add(wall->velocity, cross(wall->spin, lie->lever)),
-        add(as_vector(grain->linear), scale(lie->arm, cross(spin, n)))); // [K 4.17]
+        add(wall->velocity, cross(wall->spin, contact->lever)),
+        add(as_vector(grain->linear), scale(contact->arm, cross(spin, n)))); // [K 4.17]
     const double normal_velocity = dot(v, n);
     const struct vector sideways = subtract(v, scale(normal_velocity, n));
-    const double spring = law.normal_stiffness * lie->overlap;
+    const double spring = law.normal_stiffness * contact->overlap;
     const double damping = -law.normal_damping * normal_velocity;
     const double dashpot = dem->no_tensile_damping ? fmax(damping, -spring) : damping;
 
     struct push push = {.force = scale(spring + dashpot, n)};
     push.dashpots = -dashpot * normal_velocity * dt;
     if (!turns) {
-        pair->depth = lie->overlap;
+        pair->depth = contact->overlap;
         return push;
     }
-    const double turn = 0.5 * dt * dot(add(spin, wall->spin), n);
-    const double pressing =
+    const double angle = 0.5 * dt * dot(add(spin, wall->spin), n);
+    const double friction_normal_force =
         dem->friction_feels_dashpot ? fmax(spring + dashpot, 0) : spring;
-    const bool slips = advance_shear(dem, pair, lie, scale(dt, sideways), turn,
-                                     law.friction * pressing, &push.slip);
+    const bool slips = advance_shear(dem, pair, contact, scale(dt, sideways), angle,
+                                     law.friction * friction_normal_force, &push.slip);
     push.shear = pair->shear_force;
     if (!slips) {
         push.shear = subtract(push.shear, scale(law.shear_damping, sideways));
@@ -202,7 +209,7 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
     return push;
 }
 
-// By how much the force on a wall grows in the next step for each unit of its velocity.
+// How much the force on a wall grows in the next step for each unit of its velocity.
 static double resistance(const struct dem *dem, const struct wall_pair *pair)
 {
     const double tangent = dem->features & FEATURE_HERTZ ? 1.5 : 1;
@@ -213,47 +220,48 @@ static double resistance(const struct dem *dem, const struct wall_pair *pair)
 static void touch_wall(struct dem *dem, struct wall_pair *pair)
 {
     const struct vector none = {0, 0, 0};
-    const struct wall_geometry lie = wall_geometry(dem, pair->particle, pair->wall, 0);
-    if (!(lie.overlap >= 0)) {
-        dem->books.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
+    const struct wall_geometry contact =
+        wall_geometry(dem, pair->particle, pair->wall, 0);
+    if (!(contact.overlap >= 0)) {
+        dem->energy_ledger.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
         pair->shear_force = none;
-        pair->depth = lie.overlap;
+        pair->depth = contact.overlap;
         pair->load = pair->moment = none;
         return;
     }
 
-    const struct push push = push_wall(dem, pair, &lie);
+    const struct push push = push_wall(dem, pair, &contact);
     // The grain feels the opposite.
     pair->load = scale(-1, push.force);
-    pair->moment = scale(-lie.arm, cross(lie.normal, push.shear));
+    pair->moment = scale(-contact.arm, cross(contact.normal, push.shear));
     struct rigid_wall *wall = &dem->wall[pair->wall];
     wall->force = add(wall->force, push.force);
-    wall->moment = add(wall->moment, cross(lie.lever, push.force));
+    wall->moment = add(wall->moment, cross(contact.lever, push.force));
     wall->resistance += resistance(dem, pair);
     if (!dem->balance_energy) return;
-    dem->books.dashpots += push.dashpots;
-    dem->books.slip += push.slip;
+    dem->energy_ledger.dashpots += push.dashpots;
+    dem->energy_ledger.slip += push.slip;
 }
 
 // ---- how walls move -----------------------------------------------------------------
 
-// A servo moves its wall by a quarter of what would bring the force in one step to
-// where it should be if the grains stayed where they are. To them it then is a dashpot,
-// and one that leapfrog bears: the recursion of a wall, a grain or three and a floor
-// has its spectral radius below 1 up to 0.96 of the limit of the time step, and with
-// damping ratios up to 1.5 up to 0.86. Without the damping in the divisor any ratio
-// above 2 omega dt would make it oscillate from step to step.
+// A servo moves its wall by a quarter of the step that would restore the wanted force
+// if the grains stayed. For them it is a dashpot, and a stable one: the recursion of a
+// wall, one or three grains and a floor has a spectral radius below 1 up to 0.96 of the
+// limit of the time step, and with damping ratios up to 1.5 up to 0.86. Without the
+// damping in the divisor, any ratio above 2 omega dt would make it oscillate from step
+// to step.
 static double servo_speed(const struct rigid_wall *wall)
 {
     const double share = 0.25, fastest = wall->is.servo_largest_speed;
-    const double pressing = -dot(wall->force, wall->is.normal);
-    const double missing = wall->is.servo_force - pressing;
+    const double friction_normal_force = -dot(wall->force, wall->is.normal);
+    const double missing = wall->is.servo_force - friction_normal_force;
     if (!(wall->resistance > 0)) return fastest;
     const double speed = share * missing / wall->resistance;
     return fmax(-fastest, fmin(speed, fastest));
 }
 
-// The part of what is asked for that leaves the shape where it is.
+// The part of the wanted spin that leaves the shape where it is.
 static struct vector surface_spin(const struct dem_wall *wall)
 {
     if (wall->shape == DEM_BLOCK) return (struct vector){0, 0, 0};
@@ -261,7 +269,7 @@ static struct vector surface_spin(const struct dem_wall *wall)
     return scale(dot(wall->spin, wall->normal), wall->normal);
 }
 
-// Half a step before the first, as velocities of grains are given.
+// Velocities of walls begin half a step before the first cycle, as those of grains.
 static void start_walls(struct dem *dem)
 {
     for (int w = 0; w < dem->n_wall; w++) {
@@ -286,7 +294,7 @@ void move_walls(struct dem *dem)
 
 // ---- the sweep ---------------------------------------------------------------------
 
-// What a wall does to grains in unit time, at its last velocity.
+// Power of a wall on the grains at its last velocity.
 static double power(const struct rigid_wall *wall)
 {
     return -dot(wall->force, wall->velocity) - dot(wall->moment, wall->spin);
@@ -300,14 +308,14 @@ void sweep_walls(struct dem *dem)
     // Work over the last time step: the mean of the forces at its two ends.
     for (int w = 0; w < dem->n_wall; w++) {
         struct rigid_wall *wall = &dem->wall[w];
-        dem->books.gained += half * power(wall);
+        dem->energy_ledger.gained += half * power(wall);
         wall->force = wall->moment = (struct vector){0, 0, 0};
         wall->resistance = 0;
     }
     for (int k = 0; k < dem->n_wall_pair; k++)
         touch_wall(dem, &dem->wall_pair[k]);
     for (int w = 0; w < dem->n_wall; w++)
-        dem->books.gained += half * power(&dem->wall[w]);
+        dem->energy_ledger.gained += half * power(&dem->wall[w]);
 }
 
 // ---- from outside ------------------------------------------------------------------

@@ -31,14 +31,14 @@ static void assert_same_state(const struct dem *a, const struct dem *b)
     free_arrays(q, m);
 }
 
-// How many of the pairs rest at the end.
-static int resting_now(struct dem *dem)
+// How many pairs are inactive at the end.
+static int inactive_now(struct dem *dem)
 {
     const int n = dem->pairs.n_pair;
-    rest_or_wake(dem, 1000, true);
-    const int rest = n - dem->pairs.n_pair;
-    wake_pairs(dem);
-    return rest;
+    update_inactive_pairs(dem, 1000, true);
+    const int inactive = n - dem->pairs.n_pair;
+    reactivate_pairs(dem);
+    return inactive;
 }
 
 static void check(const struct dem_setup *setup)
@@ -53,10 +53,11 @@ static void check(const struct dem_setup *setup)
             run(one_by_one, 1);
         assert_same_state(at_once, one_by_one);
     }
-    // Otherwise nothing was tested: pairs rested, and some of them touched again.
-    const double least_gap = at_once->least_gap;
-    assert_true(resting_now(at_once) > at_once->pairs.n_pair / 8);
-    assert_true(least_gap > 1e-7);
+    // Otherwise nothing was tested: pairs were inactive, and some of them touched
+    // again.
+    const double min_inactive_gap = at_once->min_inactive_gap;
+    assert_true(inactive_now(at_once) > at_once->pairs.n_pair / 8);
+    assert_true(min_inactive_gap > 1e-7);
     dem_free(at_once);
     dem_free(one_by_one);
 }
