@@ -68,10 +68,10 @@ CPPFLAGS = -Istages/lib -Istages $(HDF5_CPPFLAGS) -I/usr/include/suitesparse
 STATIC_LIBS = $(call once,STATIC_LIBS,tools/static-libraries '$(CC)' $(HDF5_LIBS))
 SHARED_LIBS = $(HDF5_LIBS) -lhdf5_hl -lhdf5 -lcholmod -lsuitesparseconfig
 LIBS = $(or $(STATIC_LIBS),$(SHARED_LIBS)) -lgsl -lgslcblas -ljansson -lcrypto -lstdc++ -lmpfr \
-	-lgmp -lm
+	-lgmp -lz -lm
 
 PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
-	libjansson-dev libssl-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
+	libjansson-dev libssl-dev zlib1g-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
 	libcmocka-dev perl python3-h5py python3-vtk9 hdf5-tools voro++ qhull-bin time
 
 # --- `make deps demo`: first things first ---------------------------------------------
@@ -101,7 +101,7 @@ object = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$(basename $1)))
 # A stage and a library may have folders of its own, one deep.
 library_sources := $(wildcard $(foreach d,* */*,$(addprefix stages/lib/$d/*.,c cpp S)))
 library_objects := $(call object,$(library_sources))
-stage_sources = $(wildcard stages/$1/*.c stages/$1/*/*.c)
+stage_sources = $(wildcard stages/$1/*.c stages/$1/*.S stages/$1/*/*.c)
 core_sources := $(filter-out %/main.c,$(foreach s,$(STAGES),$(call stage_sources,$s)))
 
 # A test is a C program; support_*.c beside it is linked into each.
@@ -144,6 +144,7 @@ $(BUILD)/obj/%.o: %.S $(BUILD)/flags
 own_flags =
 $(BUILD)/obj/stages/lib/%.o: own_flags = -DCRAQUELURE_VERSION='"$(VERSION)"'
 $(call object,stages/lib/artifacts/schemas.S): $(wildcard schemas/*.json)
+$(call object,stages/report/embedded.S): $(wildcard stages/report/page/*)
 
 # A stage: its objects, with its version compiled in, and its program.
 define stage_rules

@@ -17,11 +17,10 @@
 
 // Sections a scene may hold: the stages, whether this one or another, and what several
 // of them share.
-static const char *const sections[] = {"pack",   "tessellate",     "merge-nodes",
-                                       "dry",    "force-protocol", "dem-replay",
-                                       "deform", "crackstats",     "import-network",
-                                       "invade", "bridge",         "flow",
-                                       "check",  "conditions",     NULL};
+static const char *const sections[] = {
+    "pack",   "tessellate", "merge-nodes",    "dry",    "force-protocol", "dem-replay",
+    "deform", "crackstats", "import-network", "invade", "bridge",         "flow",
+    "check",  "report",     "conditions",     NULL};
 
 enum {
     KEY_THREADS = 256,
@@ -163,8 +162,11 @@ static char *help_filter(int key, const char *text, void *input)
         fprintf(stream, "\nParameters marked * may stand, once for all stages, in the "
                         "section\n\"conditions\" of the scene.\n");
     if (stage->notes) fprintf(stream, "\n%s\n", stage->notes);
-    fprintf(stream, "\nReads: %s\nWrites: %s (schemas/%s.json)\n",
-            stage->reads ? stage->reads : "nothing", stage->writes, stage->writes);
+    fprintf(stream, "\nReads: %s\n", stage->reads ? stage->reads : "nothing");
+    if (stage->writes_page)
+        fprintf(stream, "Writes: a page, HTML\n");
+    else
+        fprintf(stream, "Writes: %s (schemas/%s.json)\n", stage->writes, stage->writes);
     fprintf(stream, "\nK: Kharaghani's thesis on drying and cracking of aggregates.\n"
                     "\nExit status:\n"
                     "  0 done; 1 the answer is no; 3 not converged, or unstable;\n"

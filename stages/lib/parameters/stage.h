@@ -22,6 +22,7 @@ struct stage {
     const char *reports; // what --report FILE writes; NULL: there is no such option
     bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
     bool tells;          // without -o it tells people, in text, what it found
+    bool writes_page;    // for people, which has no schema
     bool transcribes;    // it writes what it read: what is wrong is wrong in the input
 };
 

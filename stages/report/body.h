@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The body as arrays: grains, throats, bonds, and the forces at some moments.
+#ifndef CRAQUELURE_REPORT_BODY_H
+#define CRAQUELURE_REPORT_BODY_H
+
+#include "course.h"
+
+struct shown_body {
+    json_t *scales;       // what whole numbers of the arrays are multiples of
+    double largest_load;  // on any grain at any time, N; 0: none
+    int heaviest;         // the grain under it
+    double heaviest_time; // s
+    int dry_throats;      // that never hold liquid: left out
+    int refilled;         // throats that emptied, filled and emptied again
+    int n_moment;         // loads that are shown
+};
+
+// Puts RUN into ARRAYS: lengths in steps of at most 1/500 of the smallest radius, so
+// that nothing is further off than a thousandth; forces in 1/127 of the largest.
+struct shown_body put_body(struct arrays *arrays, const struct run *run,
+                           const struct course *course, int most_moments);
+void shown_body_free(struct shown_body *body);
+
+#endif

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "facts.h"
+
+#include "html.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+// The number at a path of objects, "mean", "cracks", "total", NULL; NAN: none.
+static double number_in(const json_t *json, const char *const *path)
+{
+    for (; *path; path++)
+        json = json_object_get(json, *path);
+    return json_is_number(json) ? json_number_value(json) : NAN;
+}
+#define IN(json, ...) number_in(json, (const char *const[]){__VA_ARGS__, NULL})
+
+static double summary_of(const struct run *run, enum kind kind, const char *name)
+{
+    const struct artifact *artifact = run->of[kind];
+    return artifact && artifact_has_number(artifact, name)
+               ? artifact_get_number(artifact, name)
+               : NAN;
+}
+
+static void count_modes(const struct run *run, int count[2])
+{
+    count[0] = count[1] = 0;
+    for (int k = 0; k < run->n_crack; k++)
+        count[run->crack_mode[k]]++;
+}
+
+// ---- the headline -------------------------------------------------------------------
+
+static void say_modes(FILE *page, const struct run *run)
+{
+    int count[2];
+    count_modes(run, count);
+    const int total = count[0] + count[1];
+    const int more = count[1] >= count[0];
+    static const char *const mode[] = {"tension", "shear"};
+    if (count[!more] == 0)
+        put_line(page, ", %s in %s", total == 1 ? "it was" : "all", mode[more]);
+    else
+        put_line(page, ", %d in %s and %d in %s", count[more], mode[more], count[!more],
+                 mode[!more]);
+}
+
+static void say_repeated(FILE *page, const json_t *repeated)
+{
+    const double runs = IN(repeated, "runs"),
+                 total = IN(repeated, "mean", "cracks", "total");
+    const json_t *interval = json_object_get(
+        json_object_get(json_object_get(repeated, "confidence_interval"), "cracks"),
+        "total");
+    if (!json_is_array(interval) || isnan(total)) return;
+    put_line(page, " Over %g runs %.3g broke on average (%.3g to %.3g: %s).", runs,
+             total, fmax(0, json_number_value(json_array_get(interval, 0))),
+             json_number_value(json_array_get(interval, 1)),
+             json_string_value(json_object_get(repeated, "interval_of"))
+                 ? json_string_value(json_object_get(repeated, "interval_of"))
+                 : "confidence interval");
+}
+
+static void say_cracks(FILE *page, const struct run *run)
+{
+    const int bonds = run->packing.n_bond, n = run->n_crack;
+    if (!n) {
+        put_line(page, "None of the %d bonds broke.", bonds);
+        return;
+    }
+    put_line(page, "%d of %d bonds broke (%.2g %%)", n, bonds, 100.0 * n / bonds);
+    say_modes(page, run);
+    put_line(page, ": the first at a saturation of %.2g, half of them by %.2g.",
+             run->crack_saturation[0], run->crack_saturation[(n - 1) / 2]);
+}
+
+void put_headline(FILE *page, const struct run *run, const struct course *course)
+{
+    char time[40];
+    if (run->of[RESPONSE])
+        say_cracks(page, run);
+    else if (run->of[DRYING] && course->n_row)
+        put_line(page, "The liquid of %d grains dried to a saturation of %.2g in %s.",
+                 run->packing.n_particle, course->saturation[course->n_row - 1],
+                 with_unit(course->time[course->n_row - 1], "s", time));
+    else
+        put_line(page, "%d grains, %d bonds.", run->packing.n_particle,
+                 run->packing.n_bond);
+    if (run->repeated) say_repeated(page, run->repeated);
+}
+
+// ---- the list -----------------------------------------------------------------------
+
+// Where a fact can be seen: at a moment and a grain; -1: nowhere.
+struct where {
+    int64_t key, grain;
+};
+static const struct where nowhere = {-1, -1};
+
+static void put_fact(FILE *page, struct where where, const char *term,
+                     const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+static void put_fact(FILE *page, struct where where, const char *term,
+                     const char *format, ...)
+{
+    char text[600];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    fputs("<div><dt>", page);
+    put_text(page, term);
+    fputs("</dt><dd>", page);
+    put_text(page, text);
+    if (where.key >= 0) {
+        fprintf(page, " <button type=\"button\" class=\"go\" data-key=\"%lld\"",
+                (long long)where.key);
+        if (where.grain >= 0)
+            fprintf(page, " data-grain=\"%lld\"", (long long)where.grain);
+        fputs(" aria-label=\"Show: ", page);
+        put_text(page, term);
+        fputs("\">show</button>", page);
+    }
+    fputs("</dd></div>\n", page);
+}
+
+static void put_first_crack(FILE *page, const struct run *run,
+                            const struct course *course)
+{
+    static const char *const mode[] = {"tension", "shear"};
+    if (!run->n_crack) return;
+    const struct packing *packing = &run->packing;
+    const int32_t *bond = packing->bond[run->crack_bond[0]];
+    struct vector *place = artifact_get(run->of[RESPONSE], "/cracks/position", NULL);
+    const double height =
+        (place[0].z - packing->lower.z) / (packing->upper.z - packing->lower.z);
+    free(place);
+    char time[40];
+    put_fact(page, (struct where){key_of(course, run->crack_time[0]), bond[0]},
+             "First crack",
+             "at saturation %.3g (%s), in %s, between grains %d and %d, at %.0f %% of "
+             "the height of the box",
+             run->crack_saturation[0], with_unit(run->crack_time[0], "s", time),
+             mode[run->crack_mode[0]], bond[0], bond[1], 100 * height);
+}
+
+static void put_modes(FILE *page, const struct run *run)
+{
+    if (!run->of[RESPONSE]) return;
+    int count[2];
+    count_modes(run, count);
+    if (count[0] + count[1])
+        put_fact(page, nowhere, "Modes", "%d in tension, %d in shear (%.0f %%)",
+                 count[0], count[1], 100.0 * count[1] / (count[0] + count[1]));
+}
+
+static void put_rates(FILE *page, const struct run *run, const struct course *course)
+{
+    if (!course->rate || !course->n_row) return;
+    char time[40];
+    int row = 0;
+    while (row < course->n_row && course->rate[row] > course->rate[0] / 2)
+        row++;
+    if (row < course->n_row)
+        put_fact(page, (struct where){(int64_t)row * course->keys_a_row, -1},
+                 "Rate at half its start", "at saturation %.3g (%s)",
+                 course->saturation[row], with_unit(course->time[row], "s", time));
+    const double first = summary_of(run, DRYING, "/summary/first_period_end_time");
+    put_fact(page, (struct where){key_of(course, first), -1}, "First drying period",
+             "ends at saturation %.3g (%s)",
+             summary_of(run, DRYING, "/summary/first_period_end_saturation"),
+             with_unit(first, "s", time));
+    put_fact(page, nowhere, "Drying ends", "at saturation %.3g, after %s",
+             course->saturation[course->n_row - 1],
+             with_unit(course->time[course->n_row - 1], "s", time));
+    const double through = summary_of(run, DRYING, "/summary/breakthrough_saturation");
+    if (through > 0)
+        put_fact(page, nowhere, "Gas breaks through", "at saturation %.3g", through);
+}
+
+static void put_largest_contact(FILE *page, const struct run *run,
+                                const struct course *course)
+{
+    const struct artifact *response = run->of[RESPONSE];
+    if (!response) return;
+    int n_snapshot, n_contact;
+    int32_t(*pair)[2] = artifact_get(response, "/contacts/particles", &n_contact);
+    double *time = artifact_get(response, "/snapshots/time", &n_snapshot);
+    struct vector *force = artifact_get(response, "/snapshots/contact_force", NULL);
+    double most = 0;
+    size_t at = 0;
+    for (size_t k = 0; k < (size_t)n_snapshot * (size_t)n_contact; k++)
+        if (norm(force[k]) > most) {
+            most = norm(force[k]);
+            at = k;
+        }
+    if (most > 0) {
+        const int32_t *grains = pair[at % (size_t)n_contact];
+        const double when = time[at / (size_t)n_contact];
+        char text[40];
+        put_fact(page, (struct where){key_of(course, when), grains[0]},
+                 "Largest contact force",
+                 "%s between grains %d and %d, at saturation %.3g (of %d snapshots)",
+                 with_unit(most, "N", text), grains[0], grains[1],
+                 saturation_at(course, when), n_snapshot);
+    }
+    free(pair);
+    free(time);
+    free(force);
+}
+
+static void put_forces(FILE *page, const struct run *run, const struct course *course,
+                       const struct shown_body *body)
+{
+    char text[40];
+    if (body->largest_load > 0)
+        put_fact(
+            page, (struct where){key_of(course, body->heaviest_time), body->heaviest},
+            "Carries most", "grain %d: the liquid pulls it with %s at saturation %.3g",
+            body->heaviest, with_unit(body->largest_load, "N", text),
+            saturation_at(course, body->heaviest_time));
+    const double suction = summary_of(run, FORCES, "/summary/capillary_pressure");
+    if (suction > 0)
+        put_fact(page, nowhere, "Suction", "%s", with_unit(suction, "Pa", text));
+    put_largest_contact(page, run, course);
+}
+
+static void put_pieces(FILE *page, const struct run *run)
+{
+    const double pieces = IN(run->counted, "mean", "fragments", "count");
+    if (!isnan(pieces))
+        put_fact(page, nowhere, "Pieces at the end", "%.0f, the largest of %.0f grains",
+                 pieces, IN(run->counted, "mean", "fragments", "largest"));
+    const double largest = IN(run->counted, "mean", "clusters", "largest");
+    if (!isnan(largest))
+        put_fact(page, nowhere, "Connected cracks",
+                 "%.0f clusters, the largest of %.0f bonds",
+                 IN(run->counted, "mean", "clusters", "count"), largest);
+    const double shrinkage = IN(run->counted, "mean", "shrinkage", "largest");
+    if (!isnan(shrinkage))
+        put_fact(page, nowhere, "Shrinkage", "at most %.3g %% of the volume",
+                 100 * shrinkage);
+}
+
+static void put_makeup(FILE *page, const struct run *run)
+{
+    const struct packing *packing = &run->packing;
+    if (!packing->n_particle) return;
+    double least = packing->radius[0], most = least;
+    for (int i = 1; i < packing->n_particle; i++) {
+        least = fmin(least, packing->radius[i]);
+        most = fmax(most, packing->radius[i]);
+    }
+    char low[40], high[40], all[100];
+    snprintf(all, sizeof all, most > least * 1.001 ? "%s to %s" : "%s",
+             with_unit(2 * least, "m", low), with_unit(2 * most, "m", high));
+    put_fact(page, nowhere, "Grains", "%d of %s, %d bonds", packing->n_particle, all,
+             packing->n_bond);
+    if (run->network.n_throat)
+        put_fact(page, nowhere, "Pores", "%d throats between %d nodes",
+                 run->network.n_throat, run->network.n_node);
+}
+
+void put_facts(FILE *page, const struct run *run, const struct course *course,
+               const struct shown_body *body)
+{
+    fputs("<dl class=\"facts\">\n", page);
+    put_first_crack(page, run, course);
+    put_modes(page, run);
+    put_rates(page, run, course);
+    put_forces(page, run, course, body);
+    put_pieces(page, run);
+    put_makeup(page, run);
+    fputs("</dl>\n", page);
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What happened in a run, in sentences and numbers.
+#ifndef CRAQUELURE_REPORT_FACTS_H
+#define CRAQUELURE_REPORT_FACTS_H
+
+#include "body.h"
+
+#include <stdio.h>
+
+// One sentence that says what came out.
+void put_headline(FILE *page, const struct run *run, const struct course *course);
+
+// A list of terms and what is known of them, each with where to look: data-key (of the
+// slider) and data-grain.
+void put_facts(FILE *page, const struct run *run, const struct course *course,
+               const struct shown_body *body);
+
+// Everything that a reader should know before trusting a number.
+void put_warnings(FILE *page, const struct run *run, const struct shown_body *body);
+
+#endif

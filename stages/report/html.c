@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "html.h"
+
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+void put_text(FILE *page, const char *text)
+{
+    for (const char *c = text; *c; c++)
+        switch (*c) {
+        case '&':
+            fputs("&amp;", page);
+            break;
+        case '<':
+            fputs("&lt;", page);
+            break;
+        case '>':
+            fputs("&gt;", page);
+            break;
+        case '"':
+            fputs("&quot;", page);
+            break;
+        case '\'':
+            fputs("&#39;", page);
+            break;
+        default:
+            fputc((unsigned char)*c < ' ' && *c != '\n' && *c != '\t' ? ' ' : *c, page);
+        }
+}
+
+void put_line(FILE *page, const char *format, ...)
+{
+    char *text = NULL;
+    va_list values;
+    va_start(values, format);
+    if (vasprintf(&text, format, values) < 0) die(STATUS_INTERNAL, "out of memory");
+    va_end(values);
+    put_text(page, text);
+    free(text);
+}
+
+char *json_for_script(const json_t *json)
+{
+    char *text = json_dumps(json, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_SORT_KEYS |
+                                      JSON_REAL_PRECISION(9));
+    if (!text) die(STATUS_INTERNAL, "out of memory");
+    char *safe = allocate(6 * strlen(text) + 1, 1), *end = safe;
+    for (const char *c = text; *c; c++)
+        if (*c == '<')
+            end = stpcpy(end, "\\u003c");
+        else
+            *end++ = *c;
+    free(text);
+    return safe;
+}
+
+json_t *text_json(const char *text)
+{
+    json_t *json = json_string(text);
+    if (json) return json;
+    char *plain = duplicate(text, strlen(text) + 1, 1); // it is not UTF-8
+    for (char *c = plain; *c; c++)
+        if ((unsigned char)*c > 126) *c = '?';
+    json = json_string(plain);
+    free(plain);
+    return json;
+}
+
+const char *with_unit(double value, const char *unit, char text[40])
+{
+    static const char *const prefix[] = {"a", "f", "p", "n", "µ", "m",
+                                         "",  "k", "M", "G", "T"};
+    int k = 6;
+    if (value != 0 && isfinite(value))
+        k = (int)floor(log10(fabs(value) * 1.0005) / 3) + 6;
+    k = k < 0 ? 0 : k > 10 ? 10 : k;
+    const double scaled = value / pow(10, 3 * (k - 6));
+    snprintf(text, 40,
+             fabs(scaled) < 999.5 && fabs(scaled) >= 100 ? "%.0f %s%s" : "%.3g %s%s",
+             scaled, prefix[k], unit);
+    return text;
+}

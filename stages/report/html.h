@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Text for people, and what keeps it text in a page.
+#ifndef CRAQUELURE_REPORT_HTML_H
+#define CRAQUELURE_REPORT_HTML_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+// TEXT, whatever it holds, as text of an element or of an attribute in quotes.
+void put_text(FILE *page, const char *text);
+
+// The same, of a format.
+void put_line(FILE *page, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+// JSON that may stand in a script element: no "<" in it.
+char *json_for_script(const json_t *json);
+
+// TEXT as a JSON string, whatever its bytes are. The caller owns it.
+json_t *text_json(const char *text);
+
+// 5e-7 and "m": "500 nm"; three digits.
+const char *with_unit(double value, const char *unit, char text[40]);
+
+#endif

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// report: a page on which a run shows itself.
+#include "basics/file.h"
+#include "page.h"
+
+#include <stdlib.h>
+
+struct report_parameters {
+    const char *title;
+    int64_t rows, moments;
+};
+
+#define AT(member) offsetof(struct report_parameters, member)
+
+static const struct parameter table[] = {
+    {"title", PARAMETER_TEXT, "1", "null", AT(title), .text = "of the page"},
+    {"rows", PARAMETER_INTEGER, "1", "1000", AT(rows), BETWEEN(2, 20000),
+     .text = "most moments of the drying that the slider and the curves know"},
+    {"moments", PARAMETER_INTEGER, "1", "16", AT(moments), BETWEEN(1, 1000),
+     .text = "moments at which forces are shown; fewer where grains are many"},
+    {0}};
+
+static const struct stage stage = {
+    .name = "report",
+    .version = STAGE_VERSION,
+    .summary = "report -- a page on which a run shows itself: the body in 3D, curves, "
+               "numbers, warnings",
+    .reads = "the folder of a run, or its artifacts: packing, network, drying, forces, "
+             "response, crackstats (of the run; of several), check",
+    .writes = "report",
+    .most_inputs = 16,
+    .parameters = table,
+    .notes = "The page is one HTML file that needs no network and no other file. It "
+             "opens in any\nbrowser of the last years, with or without WebGL.",
+    .writes_page = true};
+
+// So many forces make a megabyte and a half.
+static int moments_for(const struct run *run, int64_t wanted)
+{
+    const int64_t most = 500000 / (run->packing.n_particle + 1) + 2;
+    return (int)(wanted < most ? wanted : most);
+}
+
+int main(int argc, char **argv)
+{
+    struct report_parameters parameters;
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    struct run run = run_of_paths(invocation.inputs, invocation.n_input);
+    struct course course = course_of(&run, (int)parameters.rows);
+    struct arrays arrays = arrays_new();
+    struct shown_body body =
+        put_body(&arrays, &run, &course, moments_for(&run, parameters.moments));
+    put_course(&arrays, &course, &run);
+
+    const struct contents contents = {&run, &course, &body, &arrays, parameters.title};
+    size_t size;
+    char *page = page_of(&contents, &size);
+    write_whole(invocation.output, page, size);
+
+    free(page);
+    arrays_free(&arrays);
+    shown_body_free(&body);
+    course_free(&course);
+    close_run(&run);
+    invocation_free(&invocation);
+    return 0;
+}

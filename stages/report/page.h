@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page: its template (page/page.html) with everything in it.
+#ifndef CRAQUELURE_REPORT_PAGE_H
+#define CRAQUELURE_REPORT_PAGE_H
+
+#include "body.h"
+
+// All that stands in a page.
+struct contents {
+    const struct run *run;
+    const struct course *course;
+    const struct shown_body *body;
+    const struct arrays *arrays;
+    const char *title; // NULL: none given
+};
+
+// The page as text of *SIZE bytes; the caller frees it.
+char *page_of(const struct contents *contents, size_t *size);
+
+#endif

@@ -1,0 +1,67 @@
+// The numbers of one grain, throat or broken bond, and what prints them.
+
+const MODES = ["tension", "shear"];
+
+function placeText(body, at, k) {
+  return [0, 1, 2].map((axis) => withUnit(at[3 * k + axis] * body.unit + body.middle[axis], "m")).join(", ");
+}
+
+function whenText(course, key) {
+  return course.rows ? `saturation ${short(course.at(course.saturation, key))}, ${withUnit(course.at(course.time, key), "s")}` : "";
+}
+
+function printing(dataset, files, filter) {
+  const file = files.find((name) => meta_has(name, dataset)) || files[0];
+  return `craquelure inspect --data ${dataset} ${file} | jq '${filter}'`;
+}
+
+// Which artifact has a dataset, the first that may.
+function meta_has(name, dataset) {
+  const within = { "/particles": /^(packing|drying|forces|response)\.h5/, "/throats": /^(drying|network)\.h5/, "/bonds": /^(packing|response)\.h5/, "/cracks": /^response\.h5/, "/force": /^forces\.h5/ };
+  return within[`/${dataset.split("/")[1]}`].test(name);
+}
+
+function describeGrain(body, course, i) {
+  const { grain, bond, arrays, meta } = body, history = [];
+  let bonds = 0, whole = 0;
+  for (let b = 0; b < bond.n; b++) {
+    if (bond.first[b] !== i && bond.second[b] !== i) continue;
+    bonds++;
+    if (bond.breaks[b] > course.key) whole++;
+    if (bond.breaks[b] === NEVER) continue;
+    history.push([bond.breaks[b], `bond with grain ${bond.first[b] === i ? bond.second[b] : bond.first[b]} broke in ${MODES[bond.mode[b]]} at ${whenText(course, bond.breaks[b])}`]);
+  }
+  const rows = [["centre", placeText(body, grain.at, i)], ["diameter", withUnit(2 * grain.radius[i] * body.unit, "m")], ["bonds", `${whole} of ${bonds} whole`]];
+  if (arrays["grain.largest"]) rows.push(["largest force", `${withUnit(arrays["grain.largest"][i], "N")} at ${whenText(course, arrays["grain.largest_key"][i])}`]);
+  return { title: `Grain ${i}`, rows, history: history.sort((a, b) => a[0] - b[0]).map(([, text]) => text), command: printing("/particles/position", meta.files, `.[${i}]`) };
+}
+
+function describeThroat(body, course, t) {
+  const { throat, node, meta } = body, id = throat.id[t], a = throat.first[t], b = throat.second[t];
+  const length = Math.hypot(...[0, 1, 2].map((axis) => node.at[3 * a + axis] - node.at[3 * b + axis])) * body.unit;
+  const rows = [["radius", withUnit(throat.radius[t] * body.unit, "m")], ["length", withUnit(length, "m")]];
+  if (meta.tension > 0 && throat.radius[t] > 0) rows.push(["entry suction", withUnit(2 * meta.tension / (throat.radius[t] * body.unit), "Pa")]);
+  const history = throat.ends[t] === NEVER ? ["never empties"] : [`begins to empty at ${whenText(course, throat.leaves[t])}`, `is empty at ${whenText(course, throat.ends[t])}`];
+  return { title: `Throat ${id}`, rows, history, command: printing("/throats/radius", meta.files, `.[${id}]`) };
+}
+
+function describeCrack(body, course, crack) {
+  const i = body.bond.first[crack.bond], j = body.bond.second[crack.bond];
+  return { title: `Bond ${crack.bond}`, rows: [["grains", `${i} and ${j}`], ["centre", placeText(body, crack.at, 0)]],
+    history: [`broke in ${MODES[crack.mode]} at ${whenText(course, crack.key)}`], command: printing("/bonds/particles", body.meta.files, `.[${crack.bond}]`) };
+}
+
+function describe(body, course, cracks, picked) {
+  if (picked.kind === "grain") return describeGrain(body, course, picked.index);
+  if (picked.kind === "throat") return describeThroat(body, course, picked.index);
+  return describeCrack(body, course, cracks[picked.index]);
+}
+
+function showDetails(body, course, cracks, picked) {
+  const place = document.getElementById("picked");
+  if (!picked) return place.replaceChildren(html("p", { textContent: "Nothing there. Click a grain, a throat or a broken bond for its numbers." }));
+  const { title, rows, history, command } = describe(body, course, cracks, picked);
+  place.replaceChildren(html("p", {}, html("b", { textContent: title })),
+    html("dl", {}, ...rows.flatMap(([term, text]) => [html("dt", { textContent: term }), html("dd", { textContent: text })])),
+    ...history.map((text) => html("p", { textContent: text })), html("p", {}, html("code", { textContent: command })));
+}

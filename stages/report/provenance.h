@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a run comes from: what was modelled and what was not, the scene, the commands,
+// versions and digests.
+#ifndef CRAQUELURE_REPORT_PROVENANCE_H
+#define CRAQUELURE_REPORT_PROVENANCE_H
+
+#include "run.h"
+
+#include <stdio.h>
+
+// What each stage left out, and what it modelled, as lists.
+void put_left_out(FILE *page, const struct run *run);
+void put_modelled(FILE *page, const struct run *run);
+
+// The effective parameters of all stages, as one scene.
+void put_scene(FILE *page, const struct run *run);
+
+// Command lines that make the run again from that scene.
+void put_commands(FILE *page, const struct run *run);
+
+// Rows of a table: artifact, program, digest.
+void put_sources(FILE *page, const struct run *run);
+
+#endif

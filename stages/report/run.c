@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run.h"
+
+#include "artifacts/document.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char *const kind_name[KINDS] = {"packing", "network", "drying", "forces",
+                                             "response"};
+
+// As `make run` and `make demo` name them; those of the two limits lie in a folder of
+// their own, below what both share.
+static const char *const usual[] = {"packing.h5",      "tessellation.h5", "network.h5",
+                                    "drying.h5",       "forces.h5",       "response.h5",
+                                    "crackstats.json", "seeds.json",      "check.json"};
+
+// ---- which artifacts ----------------------------------------------------------------
+
+static void note_source(struct run *run, const char *name, const char *schema,
+                        const char *sha256)
+{
+    json_array_append_new(run->sources, json_pack("{s:s,s:s,s:s}", "name", name,
+                                                  "schema", schema, "sha256", sha256));
+}
+
+static void keep_document(struct run *run, const char *path, const struct bytes *bytes)
+{
+    json_t *document = document_of(path, bytes);
+    const char *schema = json_string_value(json_object_get(document, "schema"));
+    json_t **place = NULL;
+    const char *name = "crackstats.json";
+    if (!strncmp(schema, "craquelure/crackstats/", 22)) {
+        const bool one = json_integer_value(json_object_get(document, "runs")) == 1;
+        place = one ? &run->counted : &run->repeated;
+        name = one ? name : "seeds.json";
+    } else if (!strncmp(schema, "craquelure/check/", 17)) {
+        place = &run->checked;
+        name = "check.json";
+    }
+    if (!place)
+        die(STATUS_BAD_DATA, "%s: a page shows no %s", input_name(path), schema);
+    if (*place)
+        die(STATUS_USAGE, "%s: is a second %s: a page shows one run", input_name(path),
+            schema);
+    char digest[65];
+    sha256(bytes->data, bytes->size, digest);
+    note_source(run, name, schema, digest);
+    *place = document;
+}
+
+static bool was_merged(const struct artifact *network)
+{
+    return artifact_has_number(network, "/summary/unmerged_throats");
+}
+
+static void keep_artifact(struct run *run, struct artifact *artifact)
+{
+    int kind = 0;
+    while (kind < KINDS && strcmp(kind_name[kind], artifact->schema->name))
+        kind++;
+    if (kind == KINDS)
+        die(STATUS_BAD_DATA, "%s: a page shows no %s; inspect does",
+            input_name(artifact->path), artifact->schema->name);
+    const bool is_raw = kind == NETWORK && !was_merged(artifact);
+    struct artifact **place = is_raw ? &run->tessellation : &run->of[kind];
+    if (*place)
+        die(STATUS_USAGE, "%s: is a second %s: a page shows one run",
+            input_name(artifact->path), artifact->schema->name);
+    char name[40];
+    snprintf(name, sizeof name, "%s.h5", is_raw ? "tessellation" : kind_name[kind]);
+    note_source(run, name, artifact->schema->id, artifact->sha256);
+    *place = artifact;
+}
+
+static void keep(struct run *run, const char *path)
+{
+    struct bytes bytes = read_whole_of(path, may_be_either);
+    if (is_document(&bytes)) {
+        keep_document(run, path, &bytes);
+        free(bytes.data);
+        return;
+    }
+    char *name = duplicate(path, strlen(path) + 1, 1); // lives as long as the artifact
+    keep_artifact(run, artifact_open_bytes(name, bytes, NULL));
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat there;
+    return !stat(path, &there) && S_ISDIR(there.st_mode);
+}
+
+static void keep_folder(struct run *run, const char *folder)
+{
+    static const int n_usual = sizeof usual / sizeof *usual, n_shared = 3;
+    int found = 0;
+    for (int k = 0; k < n_usual; k++) {
+        char path[4096];
+        snprintf(path, sizeof path, "%s/%s", folder, usual[k]);
+        if (k < n_shared && access(path, F_OK))
+            snprintf(path, sizeof path, "%s/../%s", folder, usual[k]);
+        if (access(path, F_OK)) continue;
+        found++;
+        keep(run, path);
+    }
+    if (!found) die(STATUS_NO_INPUT, "%s: holds no artifact of a run", folder);
+}
+
+// ---- whether they are of one run ----------------------------------------------------
+
+static void must_fit(const struct artifact *made, const struct artifact *from)
+{
+    if (!made || !from) return;
+    char *text = artifact_get_text(made, "inputs");
+    json_t *inputs = text ? json_loads(text, 0, NULL) : NULL;
+    free(text);
+    size_t k;
+    json_t *input;
+    json_array_foreach(inputs, k, input)
+    {
+        const char *schema = json_string_value(json_object_get(input, "schema"));
+        const char *digest = json_string_value(json_object_get(input, "sha256"));
+        if (!schema || !digest || strcmp(schema, from->schema->id) ||
+            !strcmp(digest, from->sha256))
+            continue;
+        die(STATUS_BAD_DATA, "%s: was not made from %s, but from another %s",
+            made->path, from->path, from->schema->name);
+    }
+    json_decref(inputs);
+}
+
+static void check_fit(const struct run *run)
+{
+    must_fit(run->tessellation, run->of[PACKING]);
+    must_fit(run->of[NETWORK], run->tessellation);
+    for (int kind = DRYING; kind < KINDS; kind++)
+        must_fit(run->of[kind], run->of[kind - 1]);
+    const int n = run->packing.n_particle;
+    for (int kind = 0; kind < KINDS; kind++) {
+        if (!run->of[kind]) continue;
+        int rows;
+        free(artifact_get(run->of[kind], "/particles/radius", &rows));
+        if (rows != n)
+            die(STATUS_BAD_DATA, "%s: has %d grains, another artifact %d: not one run",
+                input_name(run->of[kind]->path), rows, n);
+    }
+}
+
+// ---- what they hold -----------------------------------------------------------------
+
+// The last artifact knows of the bonds all others do, and of what the replay made.
+static void read_grains_of(struct run *run)
+{
+    const struct artifact *last = run->tessellation;
+    for (int kind = 0; kind < KINDS; kind++)
+        last = run->of[kind] ? run->of[kind] : last;
+    if (!last) die(STATUS_USAGE, "no artifact with grains among the inputs");
+    run->packing = artifact_get_packing(last);
+}
+
+static void read_liquid(struct run *run)
+{
+    const struct artifact *drying = run->of[DRYING];
+    const struct artifact *network = drying             ? drying
+                                     : run->of[NETWORK] ? run->of[NETWORK]
+                                                        : run->tessellation;
+    if (network) run->network = artifact_get_periodic_network(network);
+    if (drying) run->record = artifact_get_drying(drying);
+}
+
+static void read_cracks(struct run *run)
+{
+    const struct artifact *response = run->of[RESPONSE];
+    if (!response) return;
+    run->crack_bond = artifact_get(response, "/cracks/bond", &run->n_crack);
+    run->crack_time = artifact_get(response, "/cracks/time", NULL);
+    run->crack_saturation = artifact_get(response, "/cracks/saturation", NULL);
+    run->crack_mode = artifact_get(response, "/cracks/mode", NULL);
+}
+
+static void read_loads(struct run *run)
+{
+    const struct artifact *forces = run->of[FORCES];
+    if (!forces) return;
+    run->load_time = artifact_get(forces, "/time", &run->n_load);
+    run->load_saturation = artifact_get(forces, "/saturation", NULL);
+    run->load = artifact_get(forces, "/force", NULL);
+}
+
+struct run run_of_paths(const char *const *paths, int n)
+{
+    struct run run = {.sources = json_array()};
+    for (int k = 0; k < n; k++)
+        if (is_folder(paths[k]))
+            keep_folder(&run, paths[k]);
+        else
+            keep(&run, paths[k]);
+    read_grains_of(&run);
+    check_fit(&run);
+    read_liquid(&run);
+    read_cracks(&run);
+    read_loads(&run);
+    return run;
+}
+
+static void close_kept(struct artifact *artifact)
+{
+    if (!artifact) return;
+    char *path = (char *)(uintptr_t)artifact->path;
+    artifact_close(artifact);
+    free(path);
+}
+
+void close_run(struct run *run)
+{
+    for (int kind = 0; kind < KINDS; kind++)
+        close_kept(run->of[kind]);
+    close_kept(run->tessellation);
+    json_decref(run->counted);
+    json_decref(run->repeated);
+    json_decref(run->checked);
+    json_decref(run->sources);
+    packing_free(&run->packing);
+    network_free(&run->network);
+    drying_record_free(&run->record);
+    free(run->crack_bond);
+    free(run->crack_time);
+    free(run->crack_saturation);
+    free(run->crack_mode);
+    free(run->load_time);
+    free(run->load_saturation);
+    free(run->load);
+    *run = (struct run){0};
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a page is made from: the artifacts of one run, each of which may be missing.
+#ifndef CRAQUELURE_REPORT_RUN_H
+#define CRAQUELURE_REPORT_RUN_H
+
+#include "artifacts/artifact.h"
+
+#include <jansson.h>
+
+enum kind { PACKING, NETWORK, DRYING, FORCES, RESPONSE, KINDS };
+
+struct run {
+    struct artifact *of[KINDS];    // NULL: not there
+    struct artifact *tessellation; // a network that no throats were merged in
+    json_t *counted;               // crackstats of this run; NULL likewise
+    json_t *repeated;              // crackstats of several runs
+    json_t *checked;               // findings of check
+    json_t *sources;               // [{"name", "schema", "sha256"}, ...] all of them
+
+    struct packing packing;      // the grains
+    struct network network;      // n_throat 0: not known
+    struct drying_record record; // n_step 0: not known
+
+    int n_crack;
+    int32_t *crack_bond; // (n_crack)
+    double *crack_time, *crack_saturation;
+    uint8_t *crack_mode;
+
+    int n_load;
+    double *load_time, *load_saturation; // (n_load)
+    struct vector *load;                 // (n_load, n_particle) N
+};
+
+// Reads PATHS (N): artifacts, or folders of them. Exits 65 where two say different
+// things of one run, or one is not known here, and 66 where a folder has none.
+struct run run_of_paths(const char *const *paths, int n);
+void close_run(struct run *run);
+
+#endif

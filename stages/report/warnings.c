@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What artifacts say of their own limits. Stages tell these as they run; what they
+// leave in the summaries is told here again.
+#include "facts.h"
+#include "html.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static double summary_of(const struct run *run, enum kind kind, const char *name)
+{
+    char whole[80];
+    snprintf(whole, sizeof whole, "/summary/%s", name);
+    const struct artifact *artifact = run->of[kind];
+    return artifact && artifact_has_number(artifact, whole)
+               ? artifact_get_number(artifact, whole)
+               : NAN;
+}
+
+static void warn(FILE *page, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void warn(FILE *page, const char *format, ...)
+{
+    char text[1000];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    fputs("<li>", page);
+    put_text(page, text);
+    fputs("</li>\n", page);
+}
+
+static void warn_of_rest(FILE *page, const struct run *run)
+{
+    const double unsettled = summary_of(run, RESPONSE, "steps_unsettled");
+    const json_t *mean = json_object_get(run->counted, "mean");
+    const json_t *broke = json_object_get(json_object_get(mean, "unsettled"), "cracks");
+    if (unsettled > 0 && json_is_number(broke))
+        warn(page,
+             "Under %.0f loads the grains did not come to rest; %.0f bonds broke under "
+             "these.",
+             unsettled, json_number_value(broke));
+    else if (unsettled > 0)
+        warn(page, "Under %.0f loads the grains did not come to rest.", unsettled);
+    const double gone = summary_of(run, RESPONSE, "gone"),
+                 snaps = summary_of(run, RESPONSE, "snaps");
+    if (gone > 0)
+        warn(page, "%.0f grains came off the body, for nothing held them.", gone);
+    if (snaps > 0) warn(page, "The body snapped through or buckled %.0f times.", snaps);
+}
+
+static void warn_of_weight(FILE *page, const struct run *run)
+{
+    static const double matters = 0.05; // as dem-replay has it
+    const double bond = fmax(summary_of(run, RESPONSE, "bond_number_body"),
+                             summary_of(run, RESPONSE, "bond_number_grain"));
+    if (!(summary_of(run, RESPONSE, "gravity") > 0) && bond >= matters)
+        warn(page, "Gravity is left out, but the weight is %.2g of the suction.", bond);
+    const double broke = summary_of(run, RESPONSE, "weight_cracks"),
+                 rest = summary_of(run, RESPONSE, "weight_unbalanced_ratio");
+    if (broke > 0)
+        warn(page,
+             "%.0f bonds broke under the weight alone, before drying: they are not "
+             "among the cracks.",
+             broke);
+    if (rest >= 1e-4)
+        warn(page,
+             "Under its weight alone the body did not come to rest before drying: the "
+             "unbalanced ratio is %.2g.",
+             rest);
+}
+
+static void warn_of_forces(FILE *page, const struct run *run)
+{
+    const double factor = summary_of(run, FORCES, "force_scale"),
+                 between = summary_of(run, FORCES, "interpolation_error"),
+                 field = summary_of(run, FORCES, "field_error");
+    if (!isnan(factor) && factor != 1)
+        warn(page, "The forces are %g times the physical ones (force_scale).", factor);
+    if (between > 0.1)
+        warn(page,
+             "Between two loads a force is off a straight line by up to %.2g of the "
+             "largest: more force-protocol.steps follow it.",
+             between);
+    if (field > 0.05)
+        warn(page,
+             "Between snapshots the suction is off by %.2g of itself, on average.",
+             field);
+}
+
+static void warn_of_liquid(FILE *page, const struct run *run,
+                           const struct shown_body *body)
+{
+    const double shut = summary_of(run, DRYING, "shut_throats"),
+                 enclosed = summary_of(run, DRYING, "enclosed_throats"),
+                 balance = summary_of(run, DRYING, "balance_error"),
+                 residual = fmax(summary_of(run, DRYING, "residual"),
+                                 summary_of(run, DRYING, "liquid_residual"));
+    if (shut > 0) warn(page, "%.0f throats have no clearance and are shut.", shut);
+    if (enclosed > 0)
+        warn(page, "%.0f throats are cut off from the air and taken as empty.",
+             enclosed);
+    if (balance > 1e-6)
+        warn(page, "%.2g of the liquid is lost in the balance of the drying.", balance);
+    if (residual > 1e-3) warn(page, "The drying left a residual of %.2g.", residual);
+    if (body->refilled)
+        warn(page,
+             "Throats filled again %d times; the picture shows each from when it last "
+             "emptied.",
+             body->refilled);
+}
+
+static void warn_of_grains(FILE *page, const struct run *run)
+{
+    const double overlap = summary_of(run, PACKING, "max_overlap");
+    if (overlap > 0.1)
+        warn(page, "Grains overlap by up to %.2g of the smaller radius.", overlap);
+    size_t k;
+    json_t *finding;
+    json_array_foreach(json_object_get(run->checked, "findings"), k, finding)
+    {
+        const char *severity = json_string_value(json_object_get(finding, "severity"));
+        const char *text = json_string_value(json_object_get(finding, "text"));
+        if (severity && text && strcmp(severity, "note")) warn(page, "%s", text);
+    }
+}
+
+void put_warnings(FILE *page, const struct run *run, const struct shown_body *body)
+{
+    if (run->of[RESPONSE] && !run->repeated)
+        warn(page,
+             "This is one run, so the counts have no interval: other seeds of the "
+             "throat radii or the packing show how far they scatter.");
+    warn_of_rest(page, run);
+    warn_of_weight(page, run);
+    warn_of_forces(page, run);
+    warn_of_liquid(page, run, body);
+    warn_of_grains(page, run);
+}
