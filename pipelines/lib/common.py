@@ -76,11 +76,15 @@ def titled(word):
 
 # ---- tables -----------------------------------------------------------------------------
 
+def number(x):
+    """X with as many digits as it takes."""
+    return f"{x:.17g}" if x == int(x) else repr(float(x))
+
+
 def rounded(x, digits=0):
     """X to so many digits behind the point, halves away from zero, without zeros at the end."""
     scale = 10.0 ** digits
-    x = math.copysign(math.floor(abs(x) * scale + 0.5), x) / scale
-    return f"{x:.17g}" if x == int(x) else repr(float(x))
+    return number(math.copysign(math.floor(abs(x) * scale + 0.5), x) / scale)
 
 
 def row(*cells):

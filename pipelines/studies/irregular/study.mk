@@ -46,7 +46,7 @@ irregular_test = $(call crackstats,$(irregular_folder)/$1,$(irregular_scene),fir
 $(call irregular_test,limits.json,inviscid-uniform immobile-uniform)
 $(call irregular_test,gradient.json,viscous-uniform viscous-field)
 irregular_tests := $(irregular_folder)/limits.json $(irregular_folder)/gradient.json
-$(call report,$(irregular_folder)/irregular.md,studies/irregular/table,pipelines/lib/counts pipelines/studies/monte-carlo/table $(irregular_tables) $(irregular_tests),$(irregular_folder))
+$(call report,$(irregular_folder)/irregular.md,studies/irregular/table,$(irregular_tables) $(irregular_tests),$(irregular_folder))
 $(call report,$(irregular_folder)/irregular.svg,figures/cracks,$(irregular_tables),$(foreach arm,$(irregular_arms),$(arm)=$(irregular_folder)/$(arm).json))
 
 $(call study,irregular,$(irregular_folder)/irregular.md $(irregular_folder)/irregular.svg)

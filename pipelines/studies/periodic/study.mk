@@ -40,7 +40,7 @@ inviscid_published := 5,91
 immobile_published := 5,82
 periodic_rows := $(foreach f,$(PERIODIC_SCALES),$(foreach l,$(periodic_limits),'$l, force × $f=$(periodic_folder)/$l-$f.json=$($l_published)'))
 periodic_titles := $(foreach f,$(PERIODIC_SCALES),$(foreach l,$(periodic_limits),'$l, force × $f=$(periodic_folder)/$l/$(firstword $(PERIODIC_SEEDS))/response-$f.h5'))
-$(call report,$(periodic_folder)/periodic.md,lib/counts,$(periodic_tables),$(periodic_rows))
+$(call report,$(periodic_folder)/periodic.md,studies/periodic/table,$(periodic_tables),$(periodic_rows))
 $(call report,$(periodic_folder)/periodic.svg,figures/crack-patterns,$(periodic_drawn),$(periodic_titles))
 
 $(call study,periodic,$(periodic_folder)/periodic.md $(periodic_folder)/periodic.svg)
