@@ -15,19 +15,19 @@
 // A grain beside a throat.
 struct corner {
     int32_t throat, grain;
-    struct vector arm;     // from the middle of the throat to the grain
-    struct vector pull;    // f0, then f
-    struct vector turn[3]; // its part in three turns of the grains around the throat,
-                           // orthonormal over these, or 0
-    struct vector now;     // P of the vectors asked for last
+    struct vector arm;         // from the middle of the throat to the grain
+    struct vector pull;        // f0, then f
+    struct vector rotation[3]; // its part in three turns of the grains around the
+                               // throat, orthonormal over these, or 0
+    struct vector now; // P of the vectors asked for last
 };
 
 struct throats {
     int n_throat, n_grain, n_corner, capacity;
     struct corner *corner; // (n_corner)
     int *first;            // (n_throat+1) corners of each throat
-    int *begin, *own;      // (n_grain+1) into OWN (n_corner): corners of each grain
-    bool *borne;           // (n_throat) something else takes what is left: P is 1
+    int *begin, *corners;  // (n_grain+1) into CORNERS (n_corner): corners of each grain
+    bool *supported;       // (n_throat) something else takes what is left: P is 1
     bool *closed;          // (n_grain) the pulls on it sum to zero
 };
 
@@ -36,43 +36,44 @@ static void throats_free(struct throats *throats)
     free(throats->corner);
     free(throats->first);
     free(throats->begin);
-    free(throats->own);
-    free(throats->borne);
+    free(throats->corners);
+    free(throats->supported);
     free(throats->closed);
 }
 
 // --- corners -----------------------------------------------------------------------
 
 // In its repetition of the box: in a small one a grain can be around a throat twice.
-static struct corner *corner_of(struct throats *throats, const struct wedge *wedge)
+static struct corner *corner_of(struct throats *throats, const struct sector *sector)
 {
-    const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
-    const struct vector arm = subtract(wedge->centre, middle);
-    for (int k = throats->first[wedge->throat]; k < throats->n_corner; k++)
-        if (throats->corner[k].grain == wedge->grain &&
+    const struct vector middle = scale(0.5, add(sector->from, sector->to));
+    const struct vector arm = subtract(sector->centre, middle);
+    for (int k = throats->first[sector->throat]; k < throats->n_corner; k++)
+        if (throats->corner[k].grain == sector->grain &&
             distance(throats->corner[k].arm, arm) <= 1e-6 * norm(arm))
             return &throats->corner[k];
     GROW_ARRAY(throats->corner, throats->n_corner, throats->capacity);
     struct corner *corner = &throats->corner[throats->n_corner++];
     *corner =
-        (struct corner){.throat = wedge->throat, .grain = wedge->grain, .arm = arm};
+        (struct corner){.throat = sector->throat, .grain = sector->grain, .arm = arm};
     return corner;
 }
 
 // Auxiliary grains are not there, and walls are no grains: both bear what is left.
-static void find_corners(struct throats *throats, struct wedges *wedges, enum form form)
+static void find_corners(struct throats *throats, struct sectors *sectors,
+                         enum form form)
 {
     for (int t = 0; t < throats->n_throat; t++) {
         throats->first[t] = throats->n_corner;
-        const int n = wedges_at(wedges, t);
+        const int n = sectors_at(sectors, t);
         for (int k = 0; k < n; k++) {
-            const struct wedge *wedge = &wedges->wedge[k];
+            const struct sector *sector = &sectors->sector[k];
             const bool is_grain =
-                !is_auxiliary(&wedges->network->packing, wedge->grain);
-            if (!is_grain || wedge->beyond < 0) throats->borne[t] = true;
+                !is_auxiliary(&sectors->network->packing, sector->grain);
+            if (!is_grain || sector->beyond < 0) throats->supported[t] = true;
             if (!is_grain) continue;
-            struct corner *corner = corner_of(throats, wedge);
-            corner->pull = add(corner->pull, pull_of(form)(wedges, wedge, NULL));
+            struct corner *corner = corner_of(throats, sector);
+            corner->pull = add(corner->pull, pull_of(form)(sectors, sector, NULL));
         }
     }
     throats->first[throats->n_throat] = throats->n_corner;
@@ -84,10 +85,10 @@ static void list_by_grain(struct throats *throats)
         throats->begin[throats->corner[k].grain + 1]++;
     for (int i = 0; i < throats->n_grain; i++)
         throats->begin[i + 1] += throats->begin[i];
-    throats->own = NEW_ARRAY(int, throats->n_corner);
+    throats->corners = NEW_ARRAY(int, throats->n_corner);
     int *next = duplicate(throats->begin, (size_t)throats->n_grain + 1, sizeof *next);
     for (int k = 0; k < throats->n_corner; k++)
-        throats->own[next[throats->corner[k].grain]++] = k;
+        throats->corners[next[throats->corner[k].grain]++] = k;
     free(next);
 }
 
@@ -97,7 +98,7 @@ static void find_closed(struct throats *throats)
         struct vector sum = {0};
         double sizes = 0;
         for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++) {
-            const struct vector pull = throats->corner[throats->own[k]].pull;
+            const struct vector pull = throats->corner[throats->corners[k]].pull;
             sum = add(sum, pull);
             sizes += norm(pull);
         }
@@ -116,20 +117,20 @@ static struct vector mean_arm(const struct corner *corner, int n)
 }
 
 // Takes the turns before the Kth, orthonormal or 0, out of it; twice, for rounding.
-static void take_out(struct corner *corner, int n, int k)
+static void orthogonalise(struct corner *corner, int n, int k)
 {
     for (int former = 0; former < 2 * k; former++) {
         double share = 0;
         for (int c = 0; c < n; c++)
-            share += dot(corner[c].turn[k], corner[c].turn[former % k]);
+            share += dot(corner[c].rotation[k], corner[c].rotation[former % k]);
         for (int c = 0; c < n; c++)
-            corner[c].turn[k] =
-                subtract(corner[c].turn[k], scale(share, corner[c].turn[former % k]));
+            corner[c].rotation[k] = subtract(
+                corner[c].rotation[k], scale(share, corner[c].rotation[former % k]));
     }
 }
 
 // Grains in one line have two turns, and one grain none.
-static void find_turns(struct corner *corner, int n)
+static void find_rotations(struct corner *corner, int n)
 {
     const struct vector middle = mean_arm(corner, n);
     double reach = 0;
@@ -139,14 +140,14 @@ static void find_turns(struct corner *corner, int n)
         struct vector axis = {0};
         set_component(&axis, k, 1);
         for (int c = 0; c < n; c++)
-            corner[c].turn[k] = cross(axis, subtract(corner[c].arm, middle));
-        take_out(corner, n, k);
+            corner[c].rotation[k] = cross(axis, subtract(corner[c].arm, middle));
+        orthogonalise(corner, n, k);
         double size = 0;
         for (int c = 0; c < n; c++)
-            size += dot(corner[c].turn[k], corner[c].turn[k]);
+            size += dot(corner[c].rotation[k], corner[c].rotation[k]);
         const double unit = size > 1e-20 * reach * reach ? 1 / sqrt(size) : 0;
         for (int c = 0; c < n; c++)
-            corner[c].turn[k] = scale(unit, corner[c].turn[k]);
+            corner[c].rotation[k] = scale(unit, corner[c].rotation[k]);
     }
 }
 
@@ -154,16 +155,17 @@ static void find_turns(struct corner *corner, int n)
 static void project(struct corner *corner, int n)
 {
     struct vector mean = {0};
-    double turn[3] = {0};
+    double rotation[3] = {0};
     for (int c = 0; c < n; c++) {
         mean = add(mean, scale(1.0 / n, corner[c].now));
         for (int k = 0; k < 3; k++)
-            turn[k] += dot(corner[c].now, corner[c].turn[k]);
+            rotation[k] += dot(corner[c].now, corner[c].rotation[k]);
     }
     for (int c = 0; c < n; c++) {
         corner[c].now = subtract(corner[c].now, mean);
         for (int k = 0; k < 3; k++)
-            corner[c].now = subtract(corner[c].now, scale(turn[k], corner[c].turn[k]));
+            corner[c].now =
+                subtract(corner[c].now, scale(rotation[k], corner[c].rotation[k]));
     }
 }
 
@@ -178,7 +180,7 @@ static void balance(struct throats *throats, double share,
         for (int c = 0; c < n; c++)
             corner[c].now =
                 subtract(scale(share, corner[c].pull), multiplier[corner[c].grain]);
-        if (!throats->borne[t]) project(corner, n);
+        if (!throats->supported[t]) project(corner, n);
     }
 }
 
@@ -192,7 +194,7 @@ static void sum_up(const struct throats *throats, double sign, struct vector *su
         sum[i] = (struct vector){0};
         if (!throats->closed[i]) continue;
         for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
-            sum[i] = add(sum[i], scale(sign, throats->corner[throats->own[k]].now));
+            sum[i] = add(sum[i], scale(sign, throats->corner[throats->corners[k]].now));
     }
 }
 
@@ -280,24 +282,24 @@ static enum status balance_pulls(struct throats *throats, double *change,
     return status;
 }
 
-enum status find_balanced_patches(struct wedges *wedges, enum form form,
+enum status find_balanced_patches(struct sectors *sectors, enum form form,
                                   struct patches *patches, double *change,
                                   struct reason *reason)
 {
-    const int n_throat = wedges->network->n_throat;
-    const int n_grain = wedges->network->packing.n_particle;
+    const int n_throat = sectors->network->n_throat;
+    const int n_grain = sectors->network->packing.n_particle;
     struct throats throats = {.n_throat = n_throat,
                               .n_grain = n_grain,
                               .first = NEW_ARRAY(int, n_throat + 1),
                               .begin = NEW_ARRAY(int, n_grain + 1),
-                              .borne = NEW_ARRAY(bool, n_throat),
+                              .supported = NEW_ARRAY(bool, n_throat),
                               .closed = NEW_ARRAY(bool, n_grain)};
-    find_corners(&throats, wedges, form);
+    find_corners(&throats, sectors, form);
     list_by_grain(&throats);
     find_closed(&throats);
     for (int t = 0; t < n_throat; t++)
-        find_turns(&throats.corner[throats.first[t]],
-                   throats.first[t + 1] - throats.first[t]);
+        find_rotations(&throats.corner[throats.first[t]],
+                       throats.first[t + 1] - throats.first[t]);
     const enum status status = balance_pulls(&throats, change, reason);
     *patches = (struct patches){0};
     for (int k = 0; k < throats.n_corner && !status; k++)

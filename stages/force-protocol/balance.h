@@ -17,7 +17,7 @@
 // CHANGE: how much it was, root mean square, of the pulls. STATUS_NOT_CONVERGED when
 // conjugate gradients stall. OpenMP, the same digits for any number of threads. The
 // caller frees PATCHES, also after a failure.
-enum status find_balanced_patches(struct wedges *wedges, enum form form,
+enum status find_balanced_patches(struct sectors *sectors, enum form form,
                                   struct patches *patches, double *change,
                                   struct reason *reason);
 

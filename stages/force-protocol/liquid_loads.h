@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is in each throat over the time of drying: how much liquid, under which suction,
 // with how many menisci.
-#ifndef CRAQUELURE_FILLING_H
-#define CRAQUELURE_FILLING_H
+#ifndef CRAQUELURE_LIQUID_LOADS_H
+#define CRAQUELURE_LIQUID_LOADS_H
 
 #include "network/drying_record.h"
 
 // What the drying artifact says happened.
-struct filling_record {
+struct liquid_record {
     struct drying_record drying; // at least one step
     bool *exposed;               // (n_node) gas is above the node from the beginning
     int n_snapshot;
@@ -48,9 +48,9 @@ enum load {
 
 // The liquid as it goes from step to step of the drying. Between two steps saturations
 // are linear in time, and nothing else changes but the pressures of SUCTION_FIELD.
-struct filling {
+struct liquid_loads {
     const struct network *network;
-    const struct filling_record *record;
+    const struct liquid_record *record;
     struct suction_law law;
     int step;
     double share;           // of the way to the next step
@@ -62,32 +62,32 @@ struct filling {
 };
 
 // At the first step. Keeps NETWORK and RECORD, which must live as long. The caller
-// frees with filling_free.
-struct filling filling_begin(const struct network *network,
-                             const struct filling_record *record,
-                             const struct suction_law *law);
-void filling_free(struct filling *filling);
+// frees with liquid_loads_free.
+struct liquid_loads liquid_loads_begin(const struct network *network,
+                                       const struct liquid_record *record,
+                                       const struct suction_law *law);
+void liquid_loads_free(struct liquid_loads *liquid);
 
 // To the next step, which must be there, or to its end, the moment before that.
-void filling_advance(struct filling *filling);
-void filling_to_end_of_step(struct filling *filling);
+void liquid_loads_advance(struct liquid_loads *liquid);
+void liquid_loads_to_end_of_step(struct liquid_loads *liquid);
 
 // To TIME, which must not be before that of the step.
-void filling_to(struct filling *filling, double time);
+void liquid_loads_to(struct liquid_loads *liquid, double time);
 
 // Saturation of the network, interpolated.
-double filling_saturation(const struct filling *filling);
+double liquid_loads_saturation(const struct liquid_loads *liquid);
 
 // The loads of THROAT now.
-void filling_loads(const struct filling *filling, int throat, double load[LOADS]);
+void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS]);
 
 // How far the suction of a throat that holds liquid is, in the mean, from the one
 // interpolated between the snapshots before and after, of UNIFORM: what every second
 // snapshot adds. NAN with fewer than three.
-double field_error(const struct filling *filling);
+double field_error(const struct liquid_loads *liquid);
 
 // Names the connected pieces of liquid by the lowest throat of each, -1: no liquid.
 // Throats join at nodes where none has emptied. CLUSTER (n_throat); returns how many.
-int filling_clusters(const struct filling *filling, int *cluster);
+int liquid_loads_clusters(const struct liquid_loads *liquid, int *cluster);
 
 #endif

@@ -17,45 +17,45 @@
 
 // ---- shares -------------------------------------------------------------------------
 
-static double void_of(const struct wedges *wedges, const struct wedge *wedge)
+static double void_of(const struct sectors *sectors, const struct sector *sector)
 {
-    const struct network *network = wedges->network;
-    if (wedges->layer) return 0;
+    const struct network *network = sectors->network;
+    if (sectors->layer) return 0;
     // In the repetition of the box in which the wedge is, which is that of the face.
     const struct vector middle =
-        wedge->face >= 0 ? face_middle(network, wedge->face) : wedge->foot;
-    return fmax(0, tetrahedron_outside_ball(network->packing.radius[wedge->grain],
-                                            subtract(middle, wedge->centre),
-                                            subtract(wedge->from, wedge->centre),
-                                            subtract(wedge->to, wedge->centre)));
+        sector->face >= 0 ? face_middle(network, sector->face) : sector->foot;
+    return fmax(0, tetrahedron_outside_ball(network->packing.radius[sector->grain],
+                                            subtract(middle, sector->centre),
+                                            subtract(sector->from, sector->centre),
+                                            subtract(sector->to, sector->centre)));
 }
 
-static void share_throat(struct wedges *wedges, int throat, struct patches *patches)
+static void share_throat(struct sectors *sectors, int throat, struct patches *patches)
 {
-    const int n = wedges_at(wedges, throat);
+    const int n = sectors_at(sectors, throat);
     double all = 0;
     int count = 0;
     for (int k = 0; k < n; k++) {
-        const struct wedge *wedge = &wedges->wedge[k];
-        if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
-        all += void_of(wedges, wedge);
+        const struct sector *sector = &sectors->sector[k];
+        if (is_auxiliary(&sectors->network->packing, sector->grain)) continue;
+        all += void_of(sectors, sector);
         count++;
     }
     for (int k = 0; k < n; k++) {
-        const struct wedge *wedge = &wedges->wedge[k];
-        if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
-        const double share = all > 0 ? void_of(wedges, wedge) / all : 1.0 / count;
-        patches_add(patches, throat, wedge->grain, (struct vector){.z = -share});
+        const struct sector *sector = &sectors->sector[k];
+        if (is_auxiliary(&sectors->network->packing, sector->grain)) continue;
+        const double share = all > 0 ? void_of(sectors, sector) / all : 1.0 / count;
+        patches_add(patches, throat, sector->grain, (struct vector){.z = -share});
     }
 }
 
-struct patches find_liquid_shares(struct wedges *wedges)
+struct patches find_liquid_shares(struct sectors *sectors)
 {
     struct patches patches = {0};
-    for (int t = 0; t < wedges->network->n_throat; t++)
-        if (wedges->network->throat_kind[t] == THROAT_NETWORK)
-            share_throat(wedges, t, &patches);
-    patches_sort(&patches, wedges->network->packing.n_particle);
+    for (int t = 0; t < sectors->network->n_throat; t++)
+        if (sectors->network->throat_kind[t] == THROAT_NETWORK)
+            share_throat(sectors, t, &patches);
+    patches_sort(&patches, sectors->network->packing.n_particle);
     return patches;
 }
 
@@ -77,19 +77,19 @@ double *liquid_masses(const struct process *process, const struct protocol *prot
                       double gravity)
 {
     const size_t n = (size_t)process->network->packing.n_particle;
-    const struct patches *shares = &process->action->patches[LOAD_WEIGHT];
+    const struct patches *shares = &process->loads->patches[LOAD_WEIGHT];
     double *mass = NEW_ARRAY(double, (size_t)protocol->n_time *n);
-    struct filling filling =
-        filling_begin(process->network, process->record, process->law);
+    struct liquid_loads liquid =
+        liquid_loads_begin(process->network, process->record, process->law);
     for (int m = 0; m < protocol->n_time; m++) {
-        filling_to(&filling, protocol->time[m]);
+        liquid_loads_to(&liquid, protocol->time[m]);
         for (int k = 0; k < shares->n; k++) {
             double load[LOADS];
-            filling_loads(&filling, shares->patch[k].throat, load);
+            liquid_loads_at(&liquid, shares->patch[k].throat, load);
             mass[(size_t)m * n + (size_t)shares->patch[k].particle] -=
                 load[LOAD_WEIGHT] * shares->patch[k].pull.z / gravity;
         }
     }
-    filling_free(&filling);
+    liquid_loads_free(&liquid);
     return mass;
 }

@@ -10,7 +10,7 @@
 // throat sum to 1. By the void of its cell beside the throat, as find_void_volumes
 // gives it to the throat, so that a grain carries the liquid in its own cell; in equal
 // parts in layers and where nothing is void. The caller frees it.
-struct patches find_liquid_shares(struct wedges *wedges);
+struct patches find_liquid_shares(struct sectors *sectors);
 
 // Liquid per volume of full throats, kg/m3, from the MASS with which the drying began.
 double liquid_density(const struct network *network, const struct drying_record *record,

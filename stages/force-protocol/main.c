@@ -167,7 +167,7 @@ static double gravity_of_drying(const struct artifact *input)
 }
 
 static void find_weight(const struct network *network,
-                        const struct filling_record *record,
+                        const struct liquid_record *record,
                         struct force_parameters *parameters,
                         const struct artifact *input, struct suction_law *law)
 {
@@ -179,10 +179,10 @@ static void find_weight(const struct network *network,
     law->weight = parameters->gravity * liquid_density(network, &record->drying, mass);
 }
 
-static enum status find_action(struct wedges *wedges,
+static enum status find_action(struct sectors *sectors,
                                const struct force_parameters *parameters,
                                double suction, unsigned open_walls,
-                               struct action *action, struct rings *rings,
+                               struct throat_loads *loads, struct pendular_rings *rings,
                                struct reason *reason)
 {
     const struct ring_law law = {.rule = (enum ring_rule)parameters->rings,
@@ -191,31 +191,31 @@ static enum status find_action(struct wedges *wedges,
                                  .surface_tension = parameters->surface_tension,
                                  .contact_angle =
                                      parameters->contact_angle * (M_PI / 180)};
-    if (parameters->form == FORM_ARCS && !wedges->layer)
+    if (parameters->form == FORM_ARCS && !sectors->layer)
         return refuse(reason, STATUS_BAD_DATA,
                       "/faces/particles: form=arcs needs the network of a layer "
                       "(tessellate.dimensions=2)");
-    *action = (struct action){.scale = parameters->force_scale};
-    *rings = (struct rings){0};
-    struct patches *of = action->patches;
+    *loads = (struct throat_loads){.scale = parameters->force_scale};
+    *rings = (struct pendular_rings){0};
+    struct patches *of = loads->patches;
     if (parameters->balanced) {
         const enum status status =
-            find_balanced_patches(wedges, (enum form)parameters->form,
-                                  &of[LOAD_SUCTION], &action->balance_change, reason);
+            find_balanced_patches(sectors, (enum form)parameters->form,
+                                  &of[LOAD_SUCTION], &loads->balance_change, reason);
         if (status) return status;
     } else
-        of[LOAD_SUCTION] = find_patches(wedges, (enum form)parameters->form);
+        of[LOAD_SUCTION] = find_patches(sectors, (enum form)parameters->form);
     if (parameters->contact_angle > 0)
-        of[LOAD_CONTACT_LINE] = find_contact_lines(wedges);
+        of[LOAD_CONTACT_LINE] = find_contact_lines(sectors);
     for (int l = 0; l < LOAD_EMPTINESS; l++) {
         const enum status status = check_patches(&of[l], reason);
         if (status) return status;
         if (parameters->open_surface == OPEN_SURFACE_IDLE)
-            drop_patches_in_walls(wedges, open_walls, &of[l]);
+            drop_patches_in_walls(sectors, open_walls, &of[l]);
     }
-    if (parameters->gravity > 0) of[LOAD_WEIGHT] = find_liquid_shares(wedges);
+    if (parameters->gravity > 0) of[LOAD_WEIGHT] = find_liquid_shares(sectors);
     if (law.rule == RING_NONE) return STATUS_OK;
-    const enum status status = find_rings(wedges, &law, rings, reason);
+    const enum status status = find_pendular_rings(sectors, &law, rings, reason);
     of[LOAD_EMPTINESS] = rings->patches;
     return status;
 }
@@ -266,7 +266,7 @@ static struct findings examine(const struct process *process,
         die(STATUS_BAD_DATA,
             "%s: the forces overflow at a capillary pressure of %g Pa and "
             "force_scale = %g",
-            input_name(path), process->law->uniform, process->action->scale);
+            input_name(path), process->law->uniform, process->loads->scale);
     found.change = largest_change(protocol, packing->n_particle);
     found.error = interpolation_error(process, protocol);
     found.field_error =
@@ -281,7 +281,7 @@ static void put_summary(struct artifact *artifact, const struct process *process
 {
     const double unit = found->largest > 0 ? found->largest : 1;
     artifact_put_number(artifact, "/summary/capillary_pressure", process->law->uniform);
-    artifact_put_number(artifact, "/summary/force_scale", process->action->scale);
+    artifact_put_number(artifact, "/summary/force_scale", process->loads->scale);
     artifact_put_number(artifact, "/summary/largest_force", found->largest);
     artifact_put_number(artifact, "/summary/largest_change", found->change / unit);
     artifact_put_number(artifact, "/summary/interpolation_error", found->error / unit);
@@ -289,7 +289,7 @@ static void put_summary(struct artifact *artifact, const struct process *process
         artifact_put_number(artifact, "/summary/field_error", found->field_error);
     if (gravity > 0) artifact_put_number(artifact, "/summary/gravity", gravity);
     artifact_put_number(artifact, "/summary/balance_change",
-                        process->action->balance_change);
+                        process->loads->balance_change);
     artifact_put_number(artifact, "/summary/net_force", found->net_force);
     artifact_put_number(artifact, "/summary/net_moment", found->net_moment);
     artifact_put_number(artifact, "/summary/first_period_end_time",
@@ -297,7 +297,7 @@ static void put_summary(struct artifact *artifact, const struct process *process
 }
 
 static void describe(const struct force_parameters *parameters, const char *difference,
-                     const struct rings *rings, char *text, size_t size)
+                     const struct pendular_rings *rings, char *text, size_t size)
 {
     static const char *const forms[] = {
         "S p_c R^2 n over the patch facing each throat",
@@ -368,7 +368,7 @@ int main(int argc, char **argv)
     omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_periodic_network(input);
-    struct filling_record record =
+    struct liquid_record record =
         read_record(input, &network, parameters.suction == SUCTION_FIELD);
     check_end(&record.drying, (double)parameters.steps, input->path);
     char difference[300], model[1400];
@@ -377,20 +377,20 @@ int main(int argc, char **argv)
     find_weight(&network, &record, &parameters, input, &law);
     if (*difference && !invocation.quiet) report("%s", difference);
 
-    struct wedges wedges;
-    struct action action = {0};
-    struct rings rings;
+    struct sectors sectors;
+    struct throat_loads loads = {0};
+    struct pendular_rings rings;
     struct reason reason;
-    enum status status = wedges_find(&network, &wedges, &reason);
+    enum status status = sectors_find(&network, &sectors, &reason);
     if (!status)
         status =
-            find_action(&wedges, &parameters, law.uniform,
+            find_action(&sectors, &parameters, law.uniform,
                         (unsigned)artifact_get_number(input, "/summary/open_walls"),
-                        &action, &rings, &reason);
+                        &loads, &rings, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
 
-    const struct process process = {&network, &record, &law, &action};
+    const struct process process = {&network, &record, &law, &loads};
     struct protocol protocol = find_protocol(&process, &parameters);
     const struct findings found = examine(&process, &protocol, input->path);
     drop_auxiliary(&network.packing, &protocol);
@@ -402,7 +402,7 @@ int main(int argc, char **argv)
                  &liquid, model, &invocation, input);
 
     protocol_free(&protocol);
-    action_free(&action);
+    throat_loads_free(&loads);
     free_record(&record);
     network_free(&network);
     artifact_close(input);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 // Dimensionless volumes between which the one in equilibrium is looked for.
-static const double LEAST = 1e-9, MOST = 1;
+static const double MIN_VOLUME = 1e-9, MAX_VOLUME = 1;
 
 static double cubed(double x)
 {
@@ -56,7 +56,7 @@ static enum status try_volume(const double radius[2], double separation,
 
 // No bridge between the first and the last of three has more than this, as suction is
 // concave over the logarithm of the volume.
-static double most_between(const struct trial of[3])
+static double suction_bound(const struct trial of[3])
 {
     const double left = of[1].log_volume - of[0].log_volume;
     const double right = of[2].log_volume - of[1].log_volume;
@@ -66,12 +66,12 @@ static double most_between(const struct trial of[3])
 
 // Of three trials the middle one has the most suction, too little. Replaces it by one
 // that has enough, if there is one.
-static enum status climb(const double radius[2], double separation,
-                         const struct ring_law *law, struct trial of[3],
-                         struct reason *reason)
+static enum status find_most_suction(const double radius[2], double separation,
+                                     const struct ring_law *law, struct trial of[3],
+                                     struct reason *reason)
 {
     static const double narrow = 1e-6;
-    while (of[1].excess < 0 && most_between(of) > law->suction &&
+    while (of[1].excess < 0 && suction_bound(of) > law->suction &&
            of[2].log_volume - of[0].log_volume > narrow) {
         const double left = of[1].log_volume - of[0].log_volume;
         const double right = of[2].log_volume - of[1].log_volume;
@@ -97,8 +97,8 @@ static enum status find_volume(const double radius[2], double separation,
                                struct reason *reason)
 {
     static const double accuracy = 1e-12;
-    struct trial low = {log(LEAST), 0, INFINITY};
-    struct trial high = {log(MOST), -INFINITY, -INFINITY};
+    struct trial low = {log(MIN_VOLUME), 0, INFINITY};
+    struct trial high = {log(MAX_VOLUME), -INFINITY, -INFINITY};
     struct trial beyond = high;
     *volume = 0;
     // Between plates this far apart no liquid has that suction, still less between
@@ -115,7 +115,8 @@ static enum status find_volume(const double radius[2], double separation,
         if (status) return status;
         if (isinf(low.excess) && trial.excess < 0 && trial.suction < high.suction) {
             struct trial of[3] = {trial, high, beyond};
-            const enum status failed = climb(radius, separation, law, of, reason);
+            const enum status failed =
+                find_most_suction(radius, separation, law, of, reason);
             if (failed || of[1].excess < 0) return failed;
             trial = of[1];
             high = of[2];
@@ -167,56 +168,57 @@ struct ring {
 };
 
 // In a layer each throat is a face, and so it is where the network has lost the face.
-static int ring_at(const struct wedges *wedges, const struct wedge *wedge)
+static int ring_at(const struct sectors *sectors, const struct sector *sector)
 {
-    return wedges->layer || wedge->face < 0 ? wedges->network->n_face + wedge->throat
-                                            : wedge->face;
+    return sectors->layer || sector->face < 0
+               ? sectors->network->n_face + sector->throat
+               : sector->face;
 }
 
 // The angle at the foot between the two ends of the throat.
-static double angle_of(const struct wedge *wedge)
+static double angle_of(const struct sector *sector)
 {
-    const struct vector from = subtract(wedge->from, wedge->foot);
-    const struct vector to = subtract(wedge->to, wedge->foot);
+    const struct vector from = subtract(sector->from, sector->foot);
+    const struct vector to = subtract(sector->to, sector->foot);
     return atan2(norm(cross(from, to)), dot(from, to));
 }
 
 // Neither walls nor grains that are not there hold one.
-static bool has_ring(const struct wedges *wedges, const struct wedge *wedge)
+static bool has_ring(const struct sectors *sectors, const struct sector *sector)
 {
-    const struct packing *packing = &wedges->network->packing;
-    return wedge->beyond >= 0 && !is_auxiliary(packing, wedge->grain) &&
-           !is_auxiliary(packing, wedge->beyond);
+    const struct packing *packing = &sectors->network->packing;
+    return sector->beyond >= 0 && !is_auxiliary(packing, sector->grain) &&
+           !is_auxiliary(packing, sector->beyond);
 }
 
-static void add_to_ring(const struct wedges *wedges, const struct wedge *wedge,
+static void add_to_ring(const struct sectors *sectors, const struct sector *sector,
                         struct ring *ring)
 {
-    const double *radius = wedges->network->packing.radius;
-    const int low = wedge->grain < wedge->beyond ? wedge->grain : wedge->beyond;
-    const int high = wedge->grain < wedge->beyond ? wedge->beyond : wedge->grain;
+    const double *radius = sectors->network->packing.radius;
+    const int low = sector->grain < sector->beyond ? sector->grain : sector->beyond;
+    const int high = sector->grain < sector->beyond ? sector->beyond : sector->grain;
     ring->grain[0] = low;
     ring->grain[1] = high;
     ring->radius[0] = radius[low];
     ring->radius[1] = radius[high];
-    ring->gap =
-        fmax(0, distance(wedge->across, wedge->centre) - (radius[low] + radius[high]));
-    ring->angle += angle_of(wedge);
-    if (!wedges->layer && wedge->face < 0) ring->angle = 4 * M_PI;
+    ring->gap = fmax(0, distance(sector->across, sector->centre) -
+                            (radius[low] + radius[high]));
+    ring->angle += angle_of(sector);
+    if (!sectors->layer && sector->face < 0) ring->angle = 4 * M_PI;
 }
 
 // For each face, then for each throat. The caller frees them.
-static struct ring *survey(struct wedges *wedges, int n)
+static struct ring *list_rings(struct sectors *sectors, int n)
 {
     struct ring *ring = NEW_ARRAY(struct ring, n);
     for (int r = 0; r < n; r++)
         ring[r].grain[1] = -1;
-    for (int t = 0; t < wedges->network->n_throat; t++) {
-        const int count = wedges_at(wedges, t);
+    for (int t = 0; t < sectors->network->n_throat; t++) {
+        const int count = sectors_at(sectors, t);
         for (int k = 0; k < count; k++)
-            if (has_ring(wedges, &wedges->wedge[k]))
-                add_to_ring(wedges, &wedges->wedge[k],
-                            &ring[ring_at(wedges, &wedges->wedge[k])]);
+            if (has_ring(sectors, &sectors->sector[k]))
+                add_to_ring(sectors, &sectors->sector[k],
+                            &ring[ring_at(sectors, &sectors->sector[k])]);
     }
     return ring;
 }
@@ -273,29 +275,29 @@ static enum status solve_all(const struct ring_law *law, int n, struct ring *rin
                   grain[1], why.text);
 }
 
-static struct vector part_of_ring(const struct wedges *wedges,
-                                  const struct wedge *wedge, const void *rings)
+static struct vector part_of_ring(const struct sectors *sectors,
+                                  const struct sector *sector, const void *rings)
 {
-    if (!has_ring(wedges, wedge)) return (struct vector){0};
-    const struct ring *ring = (const struct ring *)rings + ring_at(wedges, wedge);
+    if (!has_ring(sectors, sector)) return (struct vector){0};
+    const struct ring *ring = (const struct ring *)rings + ring_at(sectors, sector);
     if (!(ring->angle > 0)) return (struct vector){0};
-    const double share = 2 * angle_of(wedge) / ring->angle;
-    const struct vector apart = subtract(wedge->across, wedge->centre);
+    const double share = 2 * angle_of(sector) / ring->angle;
+    const struct vector apart = subtract(sector->across, sector->centre);
     return scale(share * ring->force / norm(apart), apart);
 }
 
-enum status find_rings(struct wedges *wedges, const struct ring_law *law,
-                       struct rings *rings, struct reason *reason)
+enum status find_pendular_rings(struct sectors *sectors, const struct ring_law *law,
+                                struct pendular_rings *rings, struct reason *reason)
 {
-    const int n = wedges->network->n_face + wedges->network->n_throat;
-    struct ring *ring = survey(wedges, n);
-    *rings = (struct rings){0};
+    const int n = sectors->network->n_face + sectors->network->n_throat;
+    struct ring *ring = list_rings(sectors, n);
+    *rings = (struct pendular_rings){0};
     const enum status status = solve_all(law, n, ring, reason);
     for (int r = 0; r < n && !status; r++) {
         rings->count += ring[r].force != 0;
         rings->largest = fmax(rings->largest, fabs(ring[r].force));
     }
-    if (!status) rings->patches = collect_patches(wedges, part_of_ring, ring);
+    if (!status) rings->patches = collect_patches(sectors, part_of_ring, ring);
     free(ring);
     return status;
 }

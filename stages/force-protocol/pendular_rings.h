@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pendular rings: the liquid that stays at the contacts when throats empty.
-#ifndef CRAQUELURE_RINGS_H
-#define CRAQUELURE_RINGS_H
+#ifndef CRAQUELURE_PENDULAR_RINGS_H
+#define CRAQUELURE_PENDULAR_RINGS_H
 
 #include "solid_angle_patches.h"
 
@@ -19,7 +19,7 @@ struct ring_law {
     double contact_angle;   // rad
 };
 
-struct rings {
+struct pendular_rings {
     struct patches patches; // N, for a unit of a throat's emptiness
     int count;              // pairs of grains that can hold one
     double largest;         // N, force of a whole ring
@@ -32,8 +32,8 @@ struct rings {
 // angle seen from the foot of the face, so that the force grows as the throats around
 // a contact empty and is whole in the end. STATUS_NOT_CONVERGED as bridge_solve.
 // OpenMP. The caller frees the patches.
-enum status find_rings(struct wedges *wedges, const struct ring_law *law,
-                       struct rings *rings, struct reason *reason);
+enum status find_pendular_rings(struct sectors *sectors, const struct ring_law *law,
+                                struct pendular_rings *rings, struct reason *reason);
 
 // The bridge between spheres of these radii (m) and SEPARATION (m) by LAW: its volume
 // (m3), 0 for none, and force (N).

@@ -20,14 +20,14 @@ struct protocol make_protocol(const struct process *process, double *times, int 
         .time = times,
         .saturation = NEW_ARRAY(double, n_time),
         .force = NEW_ARRAY(struct vector, (size_t)n_time * n_particle)};
-    struct filling filling =
-        filling_begin(process->network, process->record, process->law);
+    struct liquid_loads liquid =
+        liquid_loads_begin(process->network, process->record, process->law);
     for (int m = 0; m < n_time; m++) {
-        filling_to(&filling, times[m]);
-        protocol.saturation[m] = filling_saturation(&filling);
-        forces_now(process->action, &filling, protocol.force + (size_t)m * n_particle);
+        liquid_loads_to(&liquid, times[m]);
+        protocol.saturation[m] = liquid_loads_saturation(&liquid);
+        forces_now(process->loads, &liquid, protocol.force + (size_t)m * n_particle);
     }
-    filling_free(&filling);
+    liquid_loads_free(&liquid);
     return protocol;
 }
 
@@ -87,16 +87,17 @@ static double deviation(const struct protocol *protocol, int n_particle,
 }
 
 // Of the grains that the walk's last move changed: as they were BEFORE, and are NOW.
-static double worst_deviation(const struct walk *walk, const struct protocol *protocol,
-                              struct moment before, struct moment now)
+static double worst_deviation(const struct force_steps *steps,
+                              const struct protocol *protocol, struct moment before,
+                              struct moment now)
 {
-    const int n = walk->filling.network->packing.n_particle;
+    const int n = steps->liquid.network->packing.n_particle;
     double worst = 0;
-    for (int k = 0; k < walk->n_changed; k++) {
-        const int i = walk->changed[k];
-        const double then = deviation(protocol, n, before, i, walk->former[k]);
-        worst =
-            larger(worst, larger(then, deviation(protocol, n, now, i, walk->force[i])));
+    for (int k = 0; k < steps->n_changed; k++) {
+        const int i = steps->changed[k];
+        const double then = deviation(protocol, n, before, i, steps->former[k]);
+        worst = larger(worst,
+                       larger(then, deviation(protocol, n, now, i, steps->force[i])));
     }
     return worst;
 }
@@ -106,31 +107,31 @@ double interpolation_error(const struct process *process,
                            const struct protocol *protocol)
 {
     const struct drying_record *record = &process->record->drying;
-    struct walk walk =
-        walk_begin(process->action, process->network, process->record, process->law);
+    struct force_steps steps = force_steps_begin(process->loads, process->network,
+                                                 process->record, process->law);
     double worst = 0;
     struct moment now = moment_at(protocol, (struct moment){0, 1}, record->time[0]);
     for (int step = 0; step + 1 < record->n_step; step++) {
         const struct moment next = moment_at(protocol, now, record->time[step + 1]);
-        if (walk.far_reaching) {
-            walk_to_end_of_step(&walk);
-            worst = fmax(worst, worst_deviation(&walk, protocol, now, next));
+        if (steps.checks_all) {
+            force_steps_to_end_of_step(&steps);
+            worst = fmax(worst, worst_deviation(&steps, protocol, now, next));
             now = next; // what changes yet, changes there
         }
-        walk_advance(&walk);
-        worst = fmax(worst, worst_deviation(&walk, protocol, now, next));
+        force_steps_advance(&steps);
+        worst = fmax(worst, worst_deviation(&steps, protocol, now, next));
         now = next;
     }
-    walk_free(&walk);
+    force_steps_free(&steps);
     return worst;
 }
 
 double process_field_error(const struct process *process)
 {
-    struct filling filling =
-        filling_begin(process->network, process->record, process->law);
-    const double error = field_error(&filling);
-    filling_free(&filling);
+    struct liquid_loads liquid =
+        liquid_loads_begin(process->network, process->record, process->law);
+    const double error = field_error(&liquid);
+    liquid_loads_free(&liquid);
     return error;
 }
 

@@ -8,9 +8,9 @@
 // Everything that the forces of one run follow from.
 struct process {
     const struct network *network;
-    const struct filling_record *record;
+    const struct liquid_record *record;
     const struct suction_law *law;
-    const struct action *action;
+    const struct throat_loads *loads;
 };
 
 struct protocol {

@@ -25,7 +25,7 @@ static bool *find_exposed(const struct artifact *input, const struct network *ne
     return exposed;
 }
 
-static void read_pressures(const struct artifact *input, struct filling_record *record)
+static void read_pressures(const struct artifact *input, struct liquid_record *record)
 {
     static const char *const needed[] = {"/snapshots/liquid_pressure",
                                          "/snapshots/time"};
@@ -43,11 +43,11 @@ static void read_pressures(const struct artifact *input, struct filling_record *
             input_name(input->path), needed[0]);
 }
 
-struct filling_record read_record(const struct artifact *input,
-                                  const struct network *network, bool field)
+struct liquid_record read_record(const struct artifact *input,
+                                 const struct network *network, bool field)
 {
-    struct filling_record record = {.drying = artifact_get_drying(input),
-                                    .exposed = find_exposed(input, network)};
+    struct liquid_record record = {.drying = artifact_get_drying(input),
+                                   .exposed = find_exposed(input, network)};
     if (record.drying.n_step < 1)
         die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
             input_name(input->path));
@@ -55,11 +55,11 @@ struct filling_record read_record(const struct artifact *input,
     return record;
 }
 
-void free_record(struct filling_record *record)
+void free_record(struct liquid_record *record)
 {
     drying_record_free(&record->drying);
     free(record->exposed);
     free(record->snapshot_time);
     free(record->pressure);
-    *record = (struct filling_record){0};
+    *record = (struct liquid_record){0};
 }

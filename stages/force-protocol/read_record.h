@@ -8,8 +8,8 @@
 
 // What INPUT, a drying of NETWORK, says happened, with the pressures of its snapshots
 // if FIELD; ends the program when there are none. The caller frees it.
-struct filling_record read_record(const struct artifact *input,
-                                  const struct network *network, bool field);
-void free_record(struct filling_record *record);
+struct liquid_record read_record(const struct artifact *input,
+                                 const struct network *network, bool field);
+void free_record(struct liquid_record *record);
 
 #endif

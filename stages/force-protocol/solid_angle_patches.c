@@ -30,11 +30,11 @@ static struct vector direction(struct vector from, struct vector to)
 }
 
 // Where the face's foot is the centre of the grain itself, any direction would do.
-static struct vector towards_foot(const struct wedge *wedge)
+static struct vector towards_foot(const struct sector *sector)
 {
-    return direction(wedge->centre, distance(wedge->foot, wedge->centre) > 0
-                                        ? wedge->foot
-                                        : wedge->across);
+    return direction(sector->centre, distance(sector->foot, sector->centre) > 0
+                                         ? sector->foot
+                                         : sector->across);
 }
 
 // In the plane of a layer, to the right of A: outwards where A runs from one end of a
@@ -44,73 +44,73 @@ static struct vector turned(struct vector a)
     return cross(a, (struct vector){.y = 1});
 }
 
-static struct vector arc_in_plane(const struct wedge *wedge)
+static struct vector arc_in_plane(const struct sector *sector)
 {
-    return turned(subtract(direction(wedge->centre, wedge->to),
-                           direction(wedge->centre, wedge->from)));
+    return turned(subtract(direction(sector->centre, sector->to),
+                           direction(sector->centre, sector->from)));
 }
 
-static double thickness(const struct wedges *wedges)
+static double thickness(const struct sectors *sectors)
 {
-    const struct packing *packing = &wedges->network->packing;
+    const struct packing *packing = &sectors->network->packing;
     return packing->upper.y - packing->lower.y;
 }
 
 // --- forms -------------------------------------------------------------------------
 
-static double radius_squared(const struct wedges *wedges, const struct wedge *wedge)
+static double radius_squared(const struct sectors *sectors, const struct sector *sector)
 {
-    const double radius = wedges->network->packing.radius[wedge->grain];
+    const double radius = sectors->network->packing.radius[sector->grain];
     return radius * radius;
 }
 
 // Across the plane of a layer a sphere adds pi/2 to the arc.
-static struct vector solid_angle(const struct wedges *wedges, const struct wedge *wedge,
-                                 const void *unused)
+static struct vector solid_angle(const struct sectors *sectors,
+                                 const struct sector *sector, const void *unused)
 {
     (void)unused;
     const struct vector unit =
-        wedges->layer ? scale(M_PI / 2, arc_in_plane(wedge))
-                      : triangle_normal(towards_foot(wedge),
-                                        direction(wedge->centre, wedge->from),
-                                        direction(wedge->centre, wedge->to));
-    return scale(radius_squared(wedges, wedge), unit);
+        sectors->layer ? scale(M_PI / 2, arc_in_plane(sector))
+                       : triangle_normal(towards_foot(sector),
+                                         direction(sector->centre, sector->from),
+                                         direction(sector->centre, sector->to));
+    return scale(radius_squared(sectors, sector), unit);
 }
 
-static struct vector face_area(const struct wedges *wedges, const struct wedge *wedge,
-                               const void *unused)
+static struct vector face_area(const struct sectors *sectors,
+                               const struct sector *sector, const void *unused)
 {
     (void)unused;
-    const struct vector from = subtract(wedge->from, wedge->foot);
-    const struct vector to = subtract(wedge->to, wedge->foot);
-    return wedges->layer ? scale(thickness(wedges), turned(subtract(to, from)))
-                         : scale(0.5, cross(from, to));
+    const struct vector from = subtract(sector->from, sector->foot);
+    const struct vector to = subtract(sector->to, sector->foot);
+    return sectors->layer ? scale(thickness(sectors), turned(subtract(to, from)))
+                          : scale(0.5, cross(from, to));
 }
 
 // Half of it with each of the two faces beside the throat; in a layer there is one.
-static struct vector to_centre(const struct wedges *wedges, const struct wedge *wedge,
-                               const void *unused)
+static struct vector to_centre(const struct sectors *sectors,
+                               const struct sector *sector, const void *unused)
 {
     (void)unused;
-    const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
-    return scale((wedges->layer ? 1 : 0.5) * radius_squared(wedges, wedge),
-                 direction(wedge->centre, middle));
+    const struct vector middle = scale(0.5, add(sector->from, sector->to));
+    return scale((sectors->layer ? 1 : 0.5) * radius_squared(sectors, sector),
+                 direction(sector->centre, middle));
 }
 
-static struct vector in_plane(const struct wedges *wedges, const struct wedge *wedge,
-                              const void *unused)
+static struct vector in_plane(const struct sectors *sectors,
+                              const struct sector *sector, const void *unused)
 {
     (void)unused;
-    return scale(radius_squared(wedges, wedge), arc_in_plane(wedge));
+    return scale(radius_squared(sectors, sector), arc_in_plane(sector));
 }
 
 // A layer has the throat above and below it, half of each circle faces the grain.
-static struct vector contact_line(const struct wedges *wedges,
-                                  const struct wedge *wedge, const void *unused)
+static struct vector contact_line(const struct sectors *sectors,
+                                  const struct sector *sector, const void *unused)
 {
     (void)unused;
-    if (!wedges->layer) return direction(wedge->centre, wedge->across);
-    const struct vector outwards = turned(subtract(wedge->to, wedge->from));
+    if (!sectors->layer) return direction(sector->centre, sector->across);
+    const struct vector outwards = turned(subtract(sector->to, sector->from));
     return scale(2 / norm(outwards), outwards);
 }
 
@@ -150,23 +150,23 @@ void patches_sort(struct patches *patches, int n_particle)
     patches->patch = sorted;
 }
 
-struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
+struct patches collect_patches(struct sectors *sectors, pull_of_sector *make,
                                const void *context)
 {
     struct patches patches = {0};
-    for (int t = 0; t < wedges->network->n_throat; t++) {
-        const int n = wedges_at(wedges, t);
+    for (int t = 0; t < sectors->network->n_throat; t++) {
+        const int n = sectors_at(sectors, t);
         for (int k = 0; k < n; k++) {
-            const struct wedge *wedge = &wedges->wedge[k];
-            if (is_auxiliary(&wedges->network->packing, wedge->grain)) continue;
-            patches_add(&patches, t, wedge->grain, make(wedges, wedge, context));
+            const struct sector *sector = &sectors->sector[k];
+            if (is_auxiliary(&sectors->network->packing, sector->grain)) continue;
+            patches_add(&patches, t, sector->grain, make(sectors, sector, context));
         }
     }
-    patches_sort(&patches, wedges->network->packing.n_particle);
+    patches_sort(&patches, sectors->network->packing.n_particle);
     return patches;
 }
 
-pull_of_wedge *pull_of(enum form form)
+pull_of_sector *pull_of(enum form form)
 {
     return form == FORM_SOLID_ANGLE ? solid_angle
            : form == FORM_FACES     ? face_area
@@ -174,14 +174,14 @@ pull_of_wedge *pull_of(enum form form)
                                     : in_plane;
 }
 
-struct patches find_patches(struct wedges *wedges, enum form form)
+struct patches find_patches(struct sectors *sectors, enum form form)
 {
-    return collect_patches(wedges, pull_of(form), NULL);
+    return collect_patches(sectors, pull_of(form), NULL);
 }
 
-struct patches find_contact_lines(struct wedges *wedges)
+struct patches find_contact_lines(struct sectors *sectors)
 {
-    return collect_patches(wedges, contact_line, NULL);
+    return collect_patches(sectors, contact_line, NULL);
 }
 
 void patches_free(struct patches *patches)
@@ -201,13 +201,13 @@ enum status check_patches(const struct patches *patches, struct reason *reason)
     return STATUS_OK;
 }
 
-void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
+void drop_patches_in_walls(const struct sectors *sectors, unsigned walls,
                            struct patches *patches)
 {
     int kept = 0;
     for (int k = 0; k < patches->n; k++)
-        if (!(wedges->surface[patches->patch[k].throat] & walls))
+        if (!(sectors->surface[patches->patch[k].throat] & walls))
             patches->patch[kept++] = patches->patch[k];
     patches->n = kept;
-    find_begins(patches, wedges->network->packing.n_particle);
+    find_begins(patches, sectors->network->packing.n_particle);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How what is in each throat acts on each grain beside it [K 3.13-3.21, 5.1].
-#ifndef CRAQUELURE_PATCHES_H
-#define CRAQUELURE_PATCHES_H
+#ifndef CRAQUELURE_SOLID_ANGLE_PATCHES_H
+#define CRAQUELURE_SOLID_ANGLE_PATCHES_H
 
 #include "basics/status.h"
 #include "throat_face_sectors.h"
@@ -36,20 +36,20 @@ struct patches {
 };
 
 // The pull of a unit of suction (m2).
-struct patches find_patches(struct wedges *wedges, enum form form);
+struct patches find_patches(struct sectors *sectors, enum form form);
 
 // The pull of a unit contact line in each throat: a circle around it, of radius r, that
 // pulls with sigma sin(theta) towards the middle of the throat [K 3.16]. Each grain has
 // the arc between the faces on both sides, and the integral over that is r times the
 // sum of the unit vectors towards both neighbours, whatever the angle: two grains pull
 // each other equally here as well. For a unit of r sigma sin(theta) (1).
-struct patches find_contact_lines(struct wedges *wedges);
+struct patches find_contact_lines(struct sectors *sectors);
 
 // Patches of what MAKE returns for each wedge.
-typedef struct vector pull_of_wedge(const struct wedges *, const struct wedge *,
-                                    const void *context);
-pull_of_wedge *pull_of(enum form form); // its context is not looked at
-struct patches collect_patches(struct wedges *wedges, pull_of_wedge *make,
+typedef struct vector pull_of_sector(const struct sectors *, const struct sector *,
+                                     const void *context);
+pull_of_sector *pull_of(enum form form); // its context is not looked at
+struct patches collect_patches(struct sectors *sectors, pull_of_sector *make,
                                const void *context);
 void patches_free(struct patches *patches);
 
@@ -63,7 +63,7 @@ enum status check_patches(const struct patches *patches, struct reason *reason);
 
 // Takes out the patches of throats that lie in one of WALLS (bits of enum wall). Not of
 // those that only face it where cells were left out.
-void drop_patches_in_walls(const struct wedges *wedges, unsigned walls,
+void drop_patches_in_walls(const struct sectors *sectors, unsigned walls,
                            struct patches *patches);
 
 #endif

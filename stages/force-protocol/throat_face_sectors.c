@@ -70,21 +70,22 @@ static bool is_cell_turned(const struct network *network, int face)
 
 // --- the wedges of one throat ------------------------------------------------------
 
-static struct wedge *append(struct wedges *wedges, int *n)
+static struct sector *append(struct sectors *sectors, int *n)
 {
-    GROW_ARRAY(wedges->wedge, *n, wedges->capacity);
-    return &wedges->wedge[(*n)++];
+    GROW_ARRAY(sectors->sector, *n, sectors->capacity);
+    return &sectors->sector[(*n)++];
 }
 
-static void add_side(struct wedges *wedges, int throat, const struct side *side, int *n)
+static void add_side(struct sectors *sectors, int throat, const struct side *side,
+                     int *n)
 {
-    const struct network *network = wedges->network;
+    const struct network *network = sectors->network;
     const int32_t *grains = network->face_particles[side->face];
     const int count = corners_of(network, side->face);
     const int64_t begin = network->face_offset[side->face];
     const int next = (side->k + 1) % count;
-    struct wedge *wedge = append(wedges, n);
-    *wedge = (struct wedge){
+    struct sector *sector = append(sectors, n);
+    *sector = (struct sector){
         .throat = throat,
         .grain = grains[side->which],
         .beyond = grains[!side->which],
@@ -92,63 +93,63 @@ static void add_side(struct wedges *wedges, int throat, const struct side *side,
         .centre = centre_of(network, side->face, side->which),
         .from = face_corner(network, begin + (side->turned ? next : side->k)),
         .to = face_corner(network, begin + (side->turned ? side->k : next))};
-    if (wedges->layer) {
-        wedge->beyond = -1;
-        wedge->centre.y = wedge->from.y; // grains and throats are staggered
-        wedge->foot = scale(0.5, add(wedge->from, wedge->to));
-        wedge->across = wedge->foot;
-    } else if (wedge->beyond < 0) {
-        wedge->foot =
-            nearest_on_wall(&network->packing, -1 - wedge->beyond, wedge->centre);
-        wedge->across = wedge->foot;
+    if (sectors->layer) {
+        sector->beyond = -1;
+        sector->centre.y = sector->from.y; // grains and throats are staggered
+        sector->foot = scale(0.5, add(sector->from, sector->to));
+        sector->across = sector->foot;
+    } else if (sector->beyond < 0) {
+        sector->foot =
+            nearest_on_wall(&network->packing, -1 - sector->beyond, sector->centre);
+        sector->across = sector->foot;
     } else {
-        wedge->across = centre_of(network, side->face, !side->which);
-        wedge->foot = foot_between(&network->packing, wedge->grain, wedge->centre,
-                                   wedge->beyond, wedge->across);
+        sector->across = centre_of(network, side->face, !side->which);
+        sector->foot = foot_between(&network->packing, sector->grain, sector->centre,
+                                    sector->beyond, sector->across);
     }
 }
 
 // What the grain across a face that the network has not kept sees of it.
-static struct wedge seen_from_beyond(const struct wedge *wedge)
+static struct sector seen_from_beyond(const struct sector *sector)
 {
-    return (struct wedge){.throat = wedge->throat,
-                          .grain = wedge->beyond,
-                          .beyond = wedge->grain,
-                          .face = -1,
-                          .centre = wedge->across,
-                          .across = wedge->centre,
-                          .foot = wedge->foot,
-                          .from = wedge->to,
-                          .to = wedge->from};
+    return (struct sector){.throat = sector->throat,
+                           .grain = sector->beyond,
+                           .beyond = sector->grain,
+                           .face = -1,
+                           .centre = sector->across,
+                           .across = sector->centre,
+                           .foot = sector->foot,
+                           .from = sector->to,
+                           .to = sector->from};
 }
 
 // The wedges of the face between the grains of A and B, which the network has not kept:
 // both have a wedge against a grain between them. Seen from the first the throat runs
 // the other way in the face on its other side, and so it does in that of the second.
-static void add_missing(struct wedges *wedges, int a, int b, int *n)
+static void add_missing(struct sectors *sectors, int a, int b, int *n)
 {
-    struct wedge wedge = wedges->wedge[a];
-    const struct wedge *other = &wedges->wedge[b];
-    wedge.beyond = other->grain;
-    wedge.face = -1;
-    wedge.across = add(other->centre, subtract(wedge.to, other->from));
-    wedge.foot = foot_between(&wedges->network->packing, wedge.grain, wedge.centre,
-                              wedge.beyond, wedge.across);
-    wedge.from = wedges->wedge[a].to;
-    wedge.to = wedges->wedge[a].from;
-    *append(wedges, n) = wedge;
-    *append(wedges, n) = seen_from_beyond(&wedge);
+    struct sector sector = sectors->sector[a];
+    const struct sector *other = &sectors->sector[b];
+    sector.beyond = other->grain;
+    sector.face = -1;
+    sector.across = add(other->centre, subtract(sector.to, other->from));
+    sector.foot = foot_between(&sectors->network->packing, sector.grain, sector.centre,
+                               sector.beyond, sector.across);
+    sector.from = sectors->sector[a].to;
+    sector.to = sectors->sector[a].from;
+    *append(sectors, n) = sector;
+    *append(sectors, n) = seen_from_beyond(&sector);
 }
 
 // Of the N wedges those of grains that have only this one, and so miss a face; returns
 // how many, of which the first two are in SINGLE.
-static int find_singles(const struct wedge *wedge, int n, int single[2])
+static int find_singles(const struct sector *sector, int n, int single[2])
 {
     int count = 0;
     for (int a = 0; a < n; a++) {
         int same = 0;
         for (int b = 0; b < n; b++)
-            same += wedge[b].grain == wedge[a].grain;
+            same += sector[b].grain == sector[a].grain;
         if (same > 1) continue;
         if (count < 2) single[count] = a;
         count++;
@@ -180,49 +181,49 @@ static struct vector nearest_copy(const struct packing *packing, int j, struct v
     return best;
 }
 
-// The grain across the throat of WEDGE, whose cell was left out: of all others that of
+// The grain across the throat of SECTOR, whose cell was left out: of all others that of
 // least power at its middle.
-static void find_grain_across(const struct network *network, struct wedge *wedge)
+static void find_grain_across(const struct network *network, struct sector *sector)
 {
     double least = INFINITY;
     for (int j = 0; j < network->packing.n_particle; j++) {
         double power;
         const struct vector copy =
-            nearest_copy(&network->packing, j, wedge->foot, &power);
-        if (power >= least || distance(copy, wedge->centre) == 0) continue;
+            nearest_copy(&network->packing, j, sector->foot, &power);
+        if (power >= least || distance(copy, sector->centre) == 0) continue;
         least = power;
-        wedge->beyond = j;
-        wedge->across = copy;
+        sector->beyond = j;
+        sector->across = copy;
     }
 }
 
 // In a layer both sides of a throat are cells.
-static void pair_cells(struct wedges *wedges, int throat, int *n)
+static void pair_cells(struct sectors *sectors, int throat, int *n)
 {
-    struct wedge *wedge = wedges->wedge;
+    struct sector *sector = sectors->sector;
     if (*n == 2) {
         for (int k = 0; k < 2; k++) {
-            wedge[k].beyond = wedge[!k].grain;
-            wedge[k].across =
-                add(wedge[!k].centre, subtract(wedge[k].to, wedge[!k].from));
+            sector[k].beyond = sector[!k].grain;
+            sector[k].across =
+                add(sector[!k].centre, subtract(sector[k].to, sector[!k].from));
         }
-    } else if (*n == 1 && !wedges->surface[throat]) {
-        find_grain_across(wedges->network, &wedge[0]);
-        if (wedge[0].beyond < 0) return;
-        const struct wedge one = wedge[0]; // the list may move
-        *append(wedges, n) = seen_from_beyond(&one);
+    } else if (*n == 1 && !sectors->surface[throat]) {
+        find_grain_across(sectors->network, &sector[0]);
+        if (sector[0].beyond < 0) return;
+        const struct sector one = sector[0]; // the list may move
+        *append(sectors, n) = seen_from_beyond(&one);
     }
 }
 
-int wedges_at(struct wedges *wedges, int throat)
+int sectors_at(struct sectors *sectors, int throat)
 {
     int n = 0, single[2];
-    for (int64_t k = wedges->offset[throat]; k < wedges->offset[throat + 1]; k++)
-        add_side(wedges, throat, &wedges->side[k], &n);
-    if (wedges->layer)
-        pair_cells(wedges, throat, &n);
-    else if (wedges->open[throat] && find_singles(wedges->wedge, n, single) == 2)
-        add_missing(wedges, single[0], single[1], &n);
+    for (int64_t k = sectors->offset[throat]; k < sectors->offset[throat + 1]; k++)
+        add_side(sectors, throat, &sectors->side[k], &n);
+    if (sectors->layer)
+        pair_cells(sectors, throat, &n);
+    else if (sectors->open[throat] && find_singles(sectors->sector, n, single) == 2)
+        add_missing(sectors, single[0], single[1], &n);
     return n;
 }
 
@@ -259,30 +260,30 @@ static enum status find_throats(const struct network *network, int **throats,
 }
 
 // Counts the grains on the sides of FACE.
-static int sides_of(const struct wedges *wedges, int face)
+static int sides_of(const struct sectors *sectors, int face)
 {
-    return wedges->layer || wedges->network->face_particles[face][1] < 0 ? 1 : 2;
+    return sectors->layer || sectors->network->face_particles[face][1] < 0 ? 1 : 2;
 }
 
-static void sort_sides(struct wedges *wedges, const int *throats)
+static void sort_sides(struct sectors *sectors, const int *throats)
 {
-    const struct network *network = wedges->network;
+    const struct network *network = sectors->network;
     const int n = network->n_throat;
     for (int face = 0; face < network->n_face; face++)
         for (int64_t c = network->face_offset[face]; c < network->face_offset[face + 1];
              c++)
-            wedges->offset[throats[c] + 1] += sides_of(wedges, face);
+            sectors->offset[throats[c] + 1] += sides_of(sectors, face);
     for (int t = 0; t < n; t++)
-        wedges->offset[t + 1] += wedges->offset[t];
-    int64_t *next = duplicate(wedges->offset, (size_t)n + 1, sizeof *next);
-    wedges->side = NEW_ARRAY(struct side, wedges->offset[n]);
+        sectors->offset[t + 1] += sectors->offset[t];
+    int64_t *next = duplicate(sectors->offset, (size_t)n + 1, sizeof *next);
+    sectors->side = NEW_ARRAY(struct side, sectors->offset[n]);
     for (int face = 0; face < network->n_face; face++)
-        for (int which = 0; which < sides_of(wedges, face); which++) {
-            const bool turned = wedges->layer ? is_cell_turned(network, face)
-                                              : is_turned(network, face, which);
+        for (int which = 0; which < sides_of(sectors, face); which++) {
+            const bool turned = sectors->layer ? is_cell_turned(network, face)
+                                               : is_turned(network, face, which);
             const int *loop = throats + network->face_offset[face];
             for (int k = 0; k < corners_of(network, face); k++)
-                wedges->side[next[loop[k]]++] =
+                sectors->side[next[loop[k]]++] =
                     (struct side){face, k, (uint8_t)which, turned};
         }
     free(next);
@@ -305,69 +306,69 @@ static unsigned walls_around(const struct network *network, int throat)
     return walls;
 }
 
-static bool is_beside_auxiliary(const struct wedges *wedges, int n)
+static bool is_beside_auxiliary(const struct sectors *sectors, int n)
 {
     for (int k = 0; k < n; k++)
-        if (is_auxiliary(&wedges->network->packing, wedges->wedge[k].grain))
+        if (is_auxiliary(&sectors->network->packing, sectors->sector[k].grain))
             return true;
     return false;
 }
 
-static void find_surface(struct wedges *wedges)
+static void find_surface(struct sectors *sectors)
 {
-    const struct network *network = wedges->network;
+    const struct network *network = sectors->network;
     for (int t = 0; t < network->n_throat; t++)
-        wedges->surface[t] = (uint8_t)walls_around(network, t);
+        sectors->surface[t] = (uint8_t)walls_around(network, t);
     for (int t = 0; t < network->n_throat; t++) {
         const int32_t *ends = network->throat_nodes[t];
-        if (is_beside_auxiliary(wedges, wedges_at(wedges, t)))
-            wedges->surface[t] =
+        if (is_beside_auxiliary(sectors, sectors_at(sectors, t)))
+            sectors->surface[t] =
                 network->node_walls[ends[0]] & network->node_walls[ends[1]];
     }
 }
 
 // Around a throat grains follow one another; at most one face between two is missing.
-static enum status find_open(struct wedges *wedges, struct reason *reason)
+static enum status find_open(struct sectors *sectors, struct reason *reason)
 {
-    for (int t = 0; t < wedges->network->n_throat; t++) {
+    for (int t = 0; t < sectors->network->n_throat; t++) {
         int single[2];
-        const int n = wedges_at(wedges, t);
-        const int count = wedges->layer ? 0 : find_singles(wedges->wedge, n, single);
+        const int n = sectors_at(sectors, t);
+        const int count = sectors->layer ? 0 : find_singles(sectors->sector, n, single);
         if (count != 0 && count != 2)
             return refuse(reason, STATUS_BAD_DATA,
                           "/faces/particles: the cell of grain %d is open at throat "
                           "%d: tessellate with boundary=truncate",
-                          wedges->wedge[single[0]].grain, t);
-        wedges->open[t] = count == 2;
+                          sectors->sector[single[0]].grain, t);
+        sectors->open[t] = count == 2;
     }
     return STATUS_OK;
 }
 
-enum status wedges_find(const struct network *network, struct wedges *wedges,
-                        struct reason *reason)
+enum status sectors_find(const struct network *network, struct sectors *sectors,
+                         struct reason *reason)
 {
     int *throats;
-    *wedges = (struct wedges){.network = network,
-                              .layer = is_layer(network),
-                              .offset = NEW_ARRAY(int64_t, network->n_throat + 1),
-                              .open = NEW_ARRAY(bool, network->n_throat),
-                              .surface = NEW_ARRAY(uint8_t, network->n_throat)};
+    *sectors = (struct sectors){.network = network,
+                                .layer = is_layer(network),
+                                .offset = NEW_ARRAY(int64_t, network->n_throat + 1),
+                                .open = NEW_ARRAY(bool, network->n_throat),
+                                .surface = NEW_ARRAY(uint8_t, network->n_throat)};
     enum status status = find_throats(network, &throats, reason);
     if (!status) {
-        sort_sides(wedges, throats);
-        find_surface(wedges);
+        sort_sides(sectors, throats);
+        find_surface(sectors);
     }
-    if (!status) status = find_open(wedges, reason);
+    if (!status) status = find_open(sectors, reason);
     free(throats);
     return status;
 }
 
-void wedges_free(struct wedges *wedges)
+void sectors_free(struct sectors *sectors)
 {
-    free(wedges->side);
-    free(wedges->offset);
-    free(wedges->open);
-    free(wedges->surface);
-    free(wedges->wedge);
-    *wedges = (struct wedges){0};
+    free(sectors->side);
+    free(sectors->offset);
+    free(sectors->open);
+    free(sectors->surface);
+    free(sectors->sector);
+    *sectors = (struct sectors){0};
 }

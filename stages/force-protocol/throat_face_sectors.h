@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where each throat lies beside each grain: wedges, out of which all forms of the
 // capillary force are made.
-#ifndef CRAQUELURE_WEDGES_H
-#define CRAQUELURE_WEDGES_H
+#ifndef CRAQUELURE_THROAT_FACE_SECTORS_H
+#define CRAQUELURE_THROAT_FACE_SECTORS_H
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -11,7 +11,7 @@
 // from the foot of the face to the throat. In a layer of grains the face is the throat
 // itself, and the foot is its middle. All places are in one repetition of the box, the
 // same for all wedges of one face.
-struct wedge {
+struct sector {
     int32_t throat, grain;
     int32_t beyond;         // the grain across the face; below 0: a wall
     int32_t face;           // -1: of a face that the network has not kept
@@ -21,15 +21,15 @@ struct wedge {
     struct vector from, to; // the throat, counter-clockwise seen from beyond
 };
 
-struct wedges {
+struct sectors {
     const struct network *network;
     bool layer;
-    struct side *side;   // what is known of them, by throats
-    int64_t *offset;     // (n_throat+1) into SIDE
-    bool *open;          // (n_throat) a face beside it is missing
-    uint8_t *surface;    // (n_throat) walls it lies in, bits of enum wall; below an
-                         // auxiliary layer those it faces
-    struct wedge *wedge; // of the throat asked for last
+    struct side *side;     // what is known of them, by throats
+    int64_t *offset;       // (n_throat+1) into SIDE
+    bool *open;            // (n_throat) a face beside it is missing
+    uint8_t *surface;      // (n_throat) walls it lies in, bits of enum wall; below an
+                           // auxiliary layer those it faces
+    struct sector *sector; // of the throat asked for last
     int capacity;
 };
 
@@ -40,12 +40,12 @@ struct wedges {
 // the grain that lost its cell is that of least power at the throat.
 //
 // STATUS_BAD_DATA when two neighbours in a face's loop are not joined by a throat, or
-// a cell is open elsewhere. The caller frees with wedges_free, also after a failure.
-enum status wedges_find(const struct network *network, struct wedges *wedges,
-                        struct reason *reason);
-void wedges_free(struct wedges *wedges);
+// a cell is open elsewhere. The caller frees with sectors_free, also after a failure.
+enum status sectors_find(const struct network *network, struct sectors *sectors,
+                         struct reason *reason);
+void sectors_free(struct sectors *sectors);
 
 // The wedges of THROAT in wedges->wedge, until asked again; returns how many.
-int wedges_at(struct wedges *wedges, int throat);
+int sectors_at(struct sectors *sectors, int throat);
 
 #endif

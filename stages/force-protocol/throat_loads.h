@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From what is in the throats to the forces on the grains, now or followed from step to
 // step of the drying.
-#ifndef CRAQUELURE_ACTION_H
-#define CRAQUELURE_ACTION_H
+#ifndef CRAQUELURE_THROAT_LOADS_H
+#define CRAQUELURE_THROAT_LOADS_H
 
 #include "liquid_loads.h"
 #include "solid_angle_patches.h"
 
 // Which throats act on which grains, by each load; what is not modelled has no patches.
 // Forces are times SCALE, but for the weight.
-struct action {
+struct throat_loads {
     struct patches patches[LOADS];
     double scale;
     double balance_change; // of the suction's pulls (balance.h); 0: none
 };
-void action_free(struct action *action);
+void throat_loads_free(struct throat_loads *loads);
 
 // Forces on all grains (n_particle), for the filling as it is now. OpenMP over the
 // grains, each summed in the order of throats.
-void forces_now(const struct action *action, const struct filling *filling,
+void forces_now(const struct throat_loads *loads, const struct liquid_loads *liquid,
                 struct vector *force);
 
 // The forces step by step; only of grains beside throats that change.
-struct walk {
-    const struct action *action;
-    struct filling filling;
-    bool far_reaching;     // throats change that the drying does not list
+struct force_steps {
+    const struct throat_loads *loads;
+    struct liquid_loads liquid;
+    bool checks_all;       // throats change that the drying does not list
     double (*load)[LOADS]; // (n_throat)
     struct vector *force;  // (n_particle) N
     int *offset, *grain;   // (n_throat+1): grains that each throat acts on
@@ -35,15 +35,16 @@ struct walk {
     bool *listed;          // (n_particle)
 };
 
-// At the first step. The caller frees with walk_free.
-struct walk walk_begin(const struct action *action, const struct network *network,
-                       const struct filling_record *record,
-                       const struct suction_law *law);
-void walk_free(struct walk *walk);
+// At the first step. The caller frees with force_steps_free.
+struct force_steps force_steps_begin(const struct throat_loads *loads,
+                                     const struct network *network,
+                                     const struct liquid_record *record,
+                                     const struct suction_law *law);
+void force_steps_free(struct force_steps *steps);
 
 // To the end of the step, just before the next; then to the next. False: there is none.
-// Only where forces jump, WALK.FAR_REACHING, do the two differ.
-void walk_to_end_of_step(struct walk *walk);
-bool walk_advance(struct walk *walk);
+// Only where forces jump, STEPS.CHECKS_ALL, do the two differ.
+void force_steps_to_end_of_step(struct force_steps *steps);
+bool force_steps_advance(struct force_steps *steps);
 
 #endif

@@ -22,7 +22,7 @@ double *uniform_times(const struct drying_record *record, int count)
 
 // Times chosen so far.
 struct choice {
-    struct walk walk;
+    struct force_steps steps;
     double bound;        // N
     struct vector *last; // (n_particle) forces at the last time
     double *time;        // (n) but no more than MOST
@@ -43,17 +43,17 @@ static void choose(struct choice *choice, double time)
 
 static void remember(struct choice *choice)
 {
-    const int n = choice->walk.filling.network->packing.n_particle;
-    memcpy(choice->last, choice->walk.force, (size_t)n * sizeof *choice->last);
+    const int n = choice->steps.liquid.network->packing.n_particle;
+    memcpy(choice->last, choice->steps.force, (size_t)n * sizeof *choice->last);
 }
 
 // Largest change of the last move's forces since the last time.
-static double movement(const struct choice *choice)
+static double largest_movement(const struct choice *choice)
 {
     double most = 0;
-    for (int k = 0; k < choice->walk.n_changed; k++) {
-        const int i = choice->walk.changed[k];
-        most = fmax(most, distance(choice->walk.force[i], choice->last[i]));
+    for (int k = 0; k < choice->steps.n_changed; k++) {
+        const int i = choice->steps.changed[k];
+        most = fmax(most, distance(choice->steps.force[i], choice->last[i]));
     }
     return most;
 }
@@ -62,18 +62,18 @@ static double movement(const struct choice *choice)
 static void remember_former(struct choice *choice)
 {
     remember(choice);
-    for (int k = 0; k < choice->walk.n_changed; k++)
-        choice->last[choice->walk.changed[k]] = choice->walk.former[k];
+    for (int k = 0; k < choice->steps.n_changed; k++)
+        choice->last[choice->steps.changed[k]] = choice->steps.former[k];
 }
 
 // The walk has gone from time FROM to TO. If that was too much, FROM becomes a time;
 // where it alone was too much, it is parted evenly.
-static void follow(struct choice *choice, double from, double to)
+static void add_step(struct choice *choice, double from, double to)
 {
-    if (movement(choice) <= choice->bound) return;
+    if (largest_movement(choice) <= choice->bound) return;
     choose(choice, from);
     remember_former(choice);
-    const double moved = movement(choice);
+    const double moved = largest_movement(choice);
     if (moved <= choice->bound) return;
     const double parts = to > from ? ceil(moved / choice->bound) : 1;
     const double too_many = choice->wanted + parts > choice->most ? parts : 0;
@@ -86,15 +86,15 @@ static void follow(struct choice *choice, double from, double to)
 
 static double largest_at_steps(const struct process *process)
 {
-    struct walk walk =
-        walk_begin(process->action, process->network, process->record, process->law);
+    struct force_steps steps = force_steps_begin(process->loads, process->network,
+                                                 process->record, process->law);
     double largest = 0;
     for (int i = 0; i < process->network->packing.n_particle; i++)
-        largest = fmax(largest, norm(walk.force[i]));
-    while (walk_advance(&walk))
-        for (int k = 0; k < walk.n_changed; k++)
-            largest = fmax(largest, norm(walk.force[walk.changed[k]]));
-    walk_free(&walk);
+        largest = fmax(largest, norm(steps.force[i]));
+    while (force_steps_advance(&steps))
+        for (int k = 0; k < steps.n_changed; k++)
+            largest = fmax(largest, norm(steps.force[steps.changed[k]]));
+    force_steps_free(&steps);
     return largest;
 }
 
@@ -103,17 +103,17 @@ double *adaptive_times(const struct process *process, double bound, int most,
 {
     const struct drying_record *record = &process->record->drying;
     struct choice choice = {
-        .walk = walk_begin(process->action, process->network, process->record,
-                           process->law),
+        .steps = force_steps_begin(process->loads, process->network, process->record,
+                                   process->law),
         .bound = bound * largest_at_steps(process),
         .last = NEW_ARRAY(struct vector, process->network->packing.n_particle),
         .most = most};
     choose(&choice, 0);
     remember(&choice);
-    for (int step = 0; walk_advance(&choice.walk); step++)
-        follow(&choice, record->time[step], record->time[step + 1]);
+    for (int step = 0; force_steps_advance(&choice.steps); step++)
+        add_step(&choice, record->time[step], record->time[step + 1]);
     choose(&choice, end_of(record));
-    walk_free(&choice.walk);
+    force_steps_free(&choice.steps);
     free(choice.last);
     *count = choice.wanted;
     if (choice.wanted <= most) return choice.time;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sorting of rows of a few integers, in linear time if few rows share their first key.
-#ifndef CRAQUELURE_ROWS_H
-#define CRAQUELURE_ROWS_H
+#ifndef CRAQUELURE_SORT_ROWS_H
+#define CRAQUELURE_SORT_ROWS_H
 
 #include <stdint.h>
 

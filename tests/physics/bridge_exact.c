@@ -51,20 +51,20 @@ static void test_catenoid(void **state)
 {
     (void)state;
     const double radius = 2e-3;
-    for (double filling = 0.1; filling < 0.7; filling += 0.1)
+    for (double liquid = 0.1; liquid < 0.7; liquid += 0.1)
         for (double angle = 0.3; angle < 0.9; angle += 0.2) {
-            const double y = radius * sin(filling), c = y * sin(filling + angle);
+            const double y = radius * sin(liquid), c = y * sin(liquid + angle);
             const double x = c * acosh(y / c);
             const double revolved = M_PI * c * c * (x + 0.5 * c * sinh(2 * x / c));
-            const struct bridge bridge = between(radius, filling, angle, revolved);
-            const double gap = 2 * (x - sagitta(radius, filling));
+            const struct bridge bridge = between(radius, liquid, angle, revolved);
+            const double gap = 2 * (x - sagitta(radius, liquid));
             if (!(bridge.volume > 0)) continue;
             struct bridge_state widest;
             struct reason reason;
             assert_int_equal(bridge_solve_rupture(&bridge, &widest, &reason), 0);
             if (gap > 0.999 * widest.separation) continue; // may be the unstable one
             const struct bridge_state is = solved(&bridge, gap);
-            if (fabs(is.half_filling_angle[0] - filling) > 1e-3) continue;
+            if (fabs(is.half_filling_angle[0] - liquid) > 1e-3) continue;
             close_to(is.force, 2 * M_PI * c * 0.05, 1e-10, "force of a catenoid");
             close_to(is.neck_radius, c, 1e-10, "neck of a catenoid");
             assert_true(fabs(is.suction) < 1e-12 * 0.05 / c);
@@ -76,13 +76,13 @@ static void test_cylinder(void **state)
 {
     (void)state;
     const double radius = 3e-6;
-    for (double filling = 0.2; filling < 1.3; filling += 0.2)
+    for (double liquid = 0.2; liquid < 1.3; liquid += 0.2)
         for (double share = 0.1; share < 0.8; share += 0.2) {
-            const double y = radius * sin(filling);
-            const double gap = share * y, height = gap + 2 * sagitta(radius, filling);
+            const double y = radius * sin(liquid);
+            const double gap = share * y, height = gap + 2 * sagitta(radius, liquid);
             if (height > 2 * y) continue;
             const struct bridge bridge =
-                between(radius, filling, M_PI / 2 - filling, M_PI * y * y * height);
+                between(radius, liquid, M_PI / 2 - liquid, M_PI * y * y * height);
             const struct bridge_state is = solved(&bridge, gap);
             close_to(is.force, M_PI * y * 0.05, 1e-10, "force of a cylinder");
             close_to(is.suction, -0.05 / y, 1e-10, "suction of a cylinder");
@@ -94,14 +94,14 @@ static void test_cylinder(void **state)
 static void test_sphere(void **state)
 {
     (void)state;
-    const double radius = 1, filling = 0.5;
+    const double radius = 1, liquid = 0.5;
     for (double slope = 0.2; slope < 1.2; slope += 0.2) {
-        const double ball = radius * sin(filling) / cos(slope);
+        const double ball = radius * sin(liquid) / cos(slope);
         const double x = ball * sin(slope);
         const double revolved = 2 * M_PI * x * (ball * ball - x * x / 3);
-        const double gap = 2 * (x - sagitta(radius, filling));
+        const double gap = 2 * (x - sagitta(radius, liquid));
         const struct bridge bridge =
-            between(radius, filling, M_PI / 2 - filling + slope, revolved);
+            between(radius, liquid, M_PI / 2 - liquid + slope, revolved);
         if (!(bridge.volume > 0) || gap < 0) continue;
         const struct bridge_state is = solved(&bridge, gap);
         assert_true(fabs(is.force) < 1e-12 * 0.05 * radius);

@@ -93,15 +93,15 @@ static void pairs_are_in_balance(void **state)
 
 static struct patches balanced_patches_of(const struct network *network, enum form form)
 {
-    struct wedges wedges;
+    struct sectors sectors;
     struct patches patches;
     struct reason reason;
     double change;
-    assert_int_equal(wedges_find(network, &wedges, &reason), STATUS_OK);
-    assert_int_equal(find_balanced_patches(&wedges, form, &patches, &change, &reason),
+    assert_int_equal(sectors_find(network, &sectors, &reason), STATUS_OK);
+    assert_int_equal(find_balanced_patches(&sectors, form, &patches, &change, &reason),
                      STATUS_OK);
     assert_true(form == FORM_FACES ? change < 1e-15 : change > 0.01 && change < 1);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     return patches;
 }
 
@@ -167,15 +167,15 @@ static void contact_lines_pull_in_pairs(void **state)
 {
     (void)state;
     struct network network = cell_among_six(0.3);
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    assert_int_equal(wedges_find(&network, &wedges, &reason), STATUS_OK);
-    struct patches lines = find_contact_lines(&wedges);
+    assert_int_equal(sectors_find(&network, &sectors, &reason), STATUS_OK);
+    struct patches lines = find_contact_lines(&sectors);
     assert_int_equal(lines.n, 36);
     for (int t = 0; t < network.n_throat; t++)
         check_contact_line(&network, &lines, 0, t);
     patches_free(&lines);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
@@ -292,12 +292,12 @@ static void throats_leave_their_part_of_rings(void **state)
 {
     (void)state;
     struct network network = cell_among_six(0.3);
-    struct wedges wedges;
-    struct rings rings;
+    struct sectors sectors;
+    struct pendular_rings rings;
     struct reason reason;
     double largest = 0;
-    assert_int_equal(wedges_find(&network, &wedges, &reason), STATUS_OK);
-    assert_int_equal(find_rings(&wedges, &law, &rings, &reason), STATUS_OK);
+    assert_int_equal(sectors_find(&network, &sectors, &reason), STATUS_OK);
+    assert_int_equal(find_pendular_rings(&sectors, &law, &rings, &reason), STATUS_OK);
     assert_int_equal(rings.patches.n, 36);
     for (int k = 0; k < 36; k++) {
         const struct patch *patch = &rings.patches.patch[k];
@@ -317,7 +317,7 @@ static void throats_leave_their_part_of_rings(void **state)
     assert_true(fabs(rings.largest - largest) < 1e-9);
     assert_int_equal(rings.count, 6 + 12);
     patches_free(&rings.patches);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
@@ -341,12 +341,12 @@ static void each_pair_in_a_row_has_its_own_ring(void **state)
         const struct tessellation how = {.power = true};
         struct tessellation_report report;
         struct network network;
-        struct wedges wedges;
-        struct rings rings;
+        struct sectors sectors;
+        struct pendular_rings rings;
         struct reason reason;
         if (tessellate(&packing, &how, &network, &report, &reason) ||
-            wedges_find(&network, &wedges, &reason) ||
-            find_rings(&wedges, &law, &rings, &reason))
+            sectors_find(&network, &sectors, &reason) ||
+            find_pendular_rings(&sectors, &law, &rings, &reason))
             fail_msg("%s", reason.text);
         double below = 0;
         for (int i = 0; i < 4; i++) {
@@ -359,7 +359,7 @@ static void each_pair_in_a_row_has_its_own_ring(void **state)
         }
         assert_int_equal(rings.count, 3);
         patches_free(&rings.patches);
-        wedges_free(&wedges);
+        sectors_free(&sectors);
         network_free(&network);
     }
 }
@@ -371,14 +371,15 @@ static void what_is_no_bridge_is_refused(void **state)
     struct network network = cell_among_six(0);
     struct ring_law bad = law;
     bad.contact_angle = 4;
-    struct wedges wedges;
-    struct rings rings;
+    struct sectors sectors;
+    struct pendular_rings rings;
     struct reason reason;
-    assert_int_equal(wedges_find(&network, &wedges, &reason), STATUS_OK);
-    assert_int_equal(find_rings(&wedges, &bad, &rings, &reason), STATUS_BAD_DATA);
+    assert_int_equal(sectors_find(&network, &sectors, &reason), STATUS_OK);
+    assert_int_equal(find_pendular_rings(&sectors, &bad, &rings, &reason),
+                     STATUS_BAD_DATA);
     assert_non_null(strstr(reason.text, "ring between grains 0 and 1: "));
     assert_int_equal(rings.patches.n, 0);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 

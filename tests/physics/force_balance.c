@@ -4,12 +4,12 @@
 #include "force-protocol/balance.h"
 #include "wedge_scene.h"
 
-static struct wedges wedges_of(const struct network *network)
+static struct sectors wedges_of(const struct network *network)
 {
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    if (wedges_find(network, &wedges, &reason)) fail_msg("%s", reason.text);
-    return wedges;
+    if (sectors_find(network, &sectors, &reason)) fail_msg("%s", reason.text);
+    return sectors;
 }
 
 static double product(const struct patches *a, const struct patches *b)
@@ -24,11 +24,11 @@ static double product(const struct patches *a, const struct patches *b)
     return sum;
 }
 
-static struct patches balanced(struct wedges *wedges, enum form form, double *change)
+static struct patches balanced(struct sectors *sectors, enum form form, double *change)
 {
     struct patches patches;
     struct reason reason;
-    if (find_balanced_patches(wedges, form, &patches, change, &reason))
+    if (find_balanced_patches(sectors, form, &patches, change, &reason))
         fail_msg("%s", reason.text);
     return patches;
 }
@@ -44,25 +44,25 @@ static struct vector pull_on(const struct patches *patches, int throat, int grai
 
 // Forces, and moments about the throat, of all throats that neither walls nor auxiliary
 // grains are beside. Returns how many.
-static int check_throats(struct wedges *wedges, const struct patches *patches)
+static int check_throats(struct sectors *sectors, const struct patches *patches)
 {
     int count = 0;
-    for (int t = 0; t < wedges->network->n_throat; t++) {
+    for (int t = 0; t < sectors->network->n_throat; t++) {
         struct vector force = {0}, moment = {0};
         bool alone = true;
-        const int n = wedges_at(wedges, t);
+        const int n = sectors_at(sectors, t);
         for (int k = 0; k < n; k++) {
-            const struct wedge *wedge = &wedges->wedge[k];
+            const struct sector *sector = &sectors->sector[k];
             bool known = false;
             for (int other = 0; other < k; other++)
-                known |= wedges->wedge[other].grain == wedge->grain;
-            alone &= wedge->beyond >= 0 &&
-                     !is_auxiliary(&wedges->network->packing, wedge->grain);
+                known |= sectors->sector[other].grain == sector->grain;
+            alone &= sector->beyond >= 0 &&
+                     !is_auxiliary(&sectors->network->packing, sector->grain);
             if (known || !alone) continue;
-            const struct vector middle = scale(0.5, add(wedge->from, wedge->to));
-            const struct vector pull = pull_on(patches, t, wedge->grain);
+            const struct vector middle = scale(0.5, add(sector->from, sector->to));
+            const struct vector pull = pull_on(patches, t, sector->grain);
             force = add(force, pull);
-            moment = add(moment, cross(subtract(wedge->centre, middle), pull));
+            moment = add(moment, cross(subtract(sector->centre, middle), pull));
         }
         if (!alone) continue;
         assert_within(norm(force), 0, 1e-12);
@@ -82,13 +82,13 @@ static double rest_of(const struct patches *patches, int grain)
 
 // FORM_FACES is in balance as it is. What is changed of the solid angles is orthogonal
 // to it and to what becomes of them, so that nothing in balance is nearer.
-static void check_balance(struct wedges *wedges)
+static void check_balance(struct sectors *sectors)
 {
     double change, none;
-    struct patches form = find_patches(wedges, FORM_SOLID_ANGLE);
-    struct patches faces = find_patches(wedges, FORM_FACES);
-    struct patches near = balanced(wedges, FORM_SOLID_ANGLE, &change);
-    struct patches same = balanced(wedges, FORM_FACES, &none);
+    struct patches form = find_patches(sectors, FORM_SOLID_ANGLE);
+    struct patches faces = find_patches(sectors, FORM_FACES);
+    struct patches near = balanced(sectors, FORM_SOLID_ANGLE, &change);
+    struct patches same = balanced(sectors, FORM_FACES, &none);
     assert_within(none, 0, 1e-12);
     assert_within(product(&same, &same), product(&same, &faces), 0);
     const double all = product(&form, &form);
@@ -96,9 +96,9 @@ static void check_balance(struct wedges *wedges)
     assert_close(product(&near, &near), product(&near, &form), 1e-12);
     assert_close(change, sqrt(1 - product(&near, &near) / all), 1e-9);
     assert_true(change > 0.01);
-    assert_true(check_throats(wedges, &near) > 40);
+    assert_true(check_throats(sectors, &near) > 40);
     int closed = 0;
-    for (int i = 0; i < wedges->network->packing.n_particle; i++) {
+    for (int i = 0; i < sectors->network->packing.n_particle; i++) {
         if (rest_of(&form, i) > 1e-12) continue;
         assert_within(rest_of(&near, i), 0, 1e-12);
         closed += near.begin[i] < near.begin[i + 1];
@@ -115,9 +115,9 @@ static void balance_is_the_nearest_there_is(void **state)
     (void)state;
     for (int s = 0; s < N_SCENE; s++) {
         struct network network = diagram_of(&scenes[s], 1);
-        struct wedges wedges = wedges_of(&network);
-        check_balance(&wedges);
-        wedges_free(&wedges);
+        struct sectors sectors = wedges_of(&network);
+        check_balance(&sectors);
+        sectors_free(&sectors);
         network_free(&network);
     }
 }
@@ -129,35 +129,35 @@ static void repetitions_are_grains_of_their_own(void **state)
     (void)state;
     const struct scene narrow = {false, {1, 1, 0}, BOUNDARY_TRUNCATE, IN_A_NARROW_BOX};
     struct network network = diagram_of(&narrow, 1);
-    struct wedges wedges = wedges_of(&network);
+    struct sectors sectors = wedges_of(&network);
     int twice = 0;
     for (int t = 0; t < network.n_throat; t++) {
         int same = 0;
-        const int n = wedges_at(&wedges, t);
+        const int n = sectors_at(&sectors, t);
         for (int k = 0; k < n; k++)
-            same += wedges.wedge[k].grain == wedges.wedge[0].grain;
+            same += sectors.sector[k].grain == sectors.sector[0].grain;
         twice += same > 2;
     }
     assert_true(twice > 5);
     for (int scaled = 0; scaled < 2; scaled++) {
         double change;
-        struct patches patches = balanced(&wedges, FORM_FACES, &change);
+        struct patches patches = balanced(&sectors, FORM_FACES, &change);
         assert_within(change, 0, 1e-12);
         patches_free(&patches);
         resize(&network, 0x1p-30);
     }
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
 static void check_scale(const struct scene *scene, int power)
 {
     struct network network = diagram_of(scene, 2);
-    struct wedges wedges = wedges_of(&network);
+    struct sectors sectors = wedges_of(&network);
     double change, scaled_change;
-    struct patches patches = balanced(&wedges, FORM_SOLID_ANGLE, &change);
+    struct patches patches = balanced(&sectors, FORM_SOLID_ANGLE, &change);
     resize(&network, ldexp(1, power));
-    struct patches scaled = balanced(&wedges, FORM_SOLID_ANGLE, &scaled_change);
+    struct patches scaled = balanced(&sectors, FORM_SOLID_ANGLE, &scaled_change);
     assert_true(change == scaled_change);
     assert_int_equal(patches.n, scaled.n);
     for (int k = 0; k < scaled.n; k++) {
@@ -166,7 +166,7 @@ static void check_scale(const struct scene *scene, int power)
     }
     patches_free(&patches);
     patches_free(&scaled);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 

@@ -10,7 +10,7 @@
 struct dried {
     struct network network;
     struct drying_history history;
-    struct filling_record record;
+    struct liquid_record record;
 };
 
 static struct dried dry_lattice_under(double gravity, uint64_t seed)
@@ -21,7 +21,7 @@ static struct dried dry_lattice_under(double gravity, uint64_t seed)
     conditions.gravity = gravity;
     dried.history = dry_and_check(&dried.network, &conditions);
     struct drying_history *history = &dried.history;
-    dried.record = (struct filling_record){
+    dried.record = (struct liquid_record){
         .drying = {.n_step = history->n_step,
                    .time = history->time,
                    .saturation = history->saturation,
@@ -56,16 +56,16 @@ static void clusters_are_those_of_the_drying(void **state)
     (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct dried dried = dry_lattice(seed);
-        struct filling filling =
-            filling_begin(&dried.network, &dried.record, &by_clusters);
+        struct liquid_loads liquid =
+            liquid_loads_begin(&dried.network, &dried.record, &by_clusters);
         int *cluster = NEW_ARRAY(int, dried.network.n_throat);
         for (int step = 0; step < dried.record.drying.n_step; step++) {
-            if (step > 0) filling_advance(&filling);
-            assert_int_equal(filling_clusters(&filling, cluster),
+            if (step > 0) liquid_loads_advance(&liquid);
+            assert_int_equal(liquid_loads_clusters(&liquid, cluster),
                              dried.history.clusters[step]);
         }
         free(cluster);
-        filling_free(&filling);
+        liquid_loads_free(&liquid);
         dried_free(&dried);
     }
 }
@@ -78,25 +78,26 @@ static void empties_next(double gravity)
     struct suction_law law = by_clusters;
     law.meniscus = 2 * kharaghani_conditions(LIQUID_INVISCID).surface_tension;
     law.weight = kharaghani_conditions(LIQUID_INVISCID).liquid_density * gravity;
-    struct filling filling = filling_begin(&dried.network, &dried.record, &law);
+    struct liquid_loads liquid =
+        liquid_loads_begin(&dried.network, &dried.record, &law);
     int checked = 0;
     for (int step = 0; step + 1 < dried.record.drying.n_step; step++) {
-        if (step > 0) filling_advance(&filling);
+        if (step > 0) liquid_loads_advance(&liquid);
         for (int64_t k = dried.record.drying.offset[step + 1];
              k < dried.record.drying.offset[step + 2]; k++) {
             if (dried.record.drying.throat_saturation[k] > 0) continue;
             const int throat = dried.record.drying.throat[k];
             double load[LOADS];
-            filling_to_end_of_step(&filling);
-            filling_loads(&filling, throat, load);
+            liquid_loads_to_end_of_step(&liquid);
+            liquid_loads_at(&liquid, throat, load);
             assert_true(load[LOAD_SUCTION] == 0 && load[LOAD_EMPTINESS] == 1);
             const double wanted = law.meniscus / dried.network.throat_radius[throat];
-            assert_true(fabs(filling.suction[throat] / wanted - 1) < 1e-14);
+            assert_true(fabs(liquid.suction[throat] / wanted - 1) < 1e-14);
             checked++;
         }
     }
     assert_true(checked > 400);
-    filling_free(&filling);
+    liquid_loads_free(&liquid);
     dried_free(&dried);
 }
 
@@ -120,21 +121,22 @@ static void menisci_begin_at_the_open_surface(void **state)
 {
     (void)state;
     struct dried dried = dry_lattice(2);
-    struct filling filling = filling_begin(&dried.network, &dried.record, &by_clusters);
+    struct liquid_loads liquid =
+        liquid_loads_begin(&dried.network, &dried.record, &by_clusters);
     double widest = 0;
     for (int t = 0; t < dried.network.n_throat; t++) {
         const int32_t *node = dried.network.throat_nodes[t];
         const int ends = dried.record.exposed[node[0]] + dried.record.exposed[node[1]];
         double load[LOADS];
-        filling_loads(&filling, t, load);
+        liquid_loads_at(&liquid, t, load);
         assert_true(load[LOAD_CONTACT_LINE] ==
                     0.03 * dried.network.throat_radius[t] * ends);
         assert_true(load[LOAD_EMPTINESS] == 0);
         if (ends > 0) widest = fmax(widest, dried.network.throat_radius[t]);
     }
     for (int t = 0; t < dried.network.n_throat; t++) // all in one piece
-        assert_true(fabs(filling.suction[t] * widest / 0.14 - 1) < 1e-15);
-    filling_free(&filling);
+        assert_true(fabs(liquid.suction[t] * widest / 0.14 - 1) < 1e-15);
+    liquid_loads_free(&liquid);
     dried_free(&dried);
 }
 
@@ -149,18 +151,18 @@ static void a_drying_may_begin_with_some_throats_empty(void **state)
     int64_t offset[] = {0, 3};
     int32_t throat[] = {EMPTY, HALF, NEVER};
     double left[] = {0, 0.5, 0}, time[] = {0}, saturation[] = {0.75};
-    const struct filling_record record = {.drying = {.n_step = 1,
-                                                     .time = time,
-                                                     .saturation = saturation,
-                                                     .offset = offset,
-                                                     .throat = throat,
-                                                     .throat_saturation = left},
-                                          .exposed = NEW_ARRAY(bool, network.n_node)};
+    const struct liquid_record record = {.drying = {.n_step = 1,
+                                                    .time = time,
+                                                    .saturation = saturation,
+                                                    .offset = offset,
+                                                    .throat = throat,
+                                                    .throat_saturation = left},
+                                         .exposed = NEW_ARRAY(bool, network.n_node)};
     const struct suction_law law = {
         .rule = SUCTION_UNIFORM, .uniform = 7, .contact_line = 1};
-    struct filling filling = filling_begin(&network, &record, &law);
+    struct liquid_loads liquid = liquid_loads_begin(&network, &record, &law);
     const int32_t *gas = network.throat_nodes[EMPTY];
-    assert_true(filling_saturation(&filling) == 0.75);
+    assert_true(liquid_loads_saturation(&liquid) == 0.75);
     for (int t = 0; t < network.n_throat; t++) {
         const double wet = t == EMPTY || t == NEVER ? 0 : t == HALF ? 0.5 : 1;
         int menisci = 0;
@@ -169,13 +171,13 @@ static void a_drying_may_begin_with_some_throats_empty(void **state)
             menisci += node == gas[0] || node == gas[1];
         }
         double load[LOADS];
-        filling_loads(&filling, t, load);
+        liquid_loads_at(&liquid, t, load);
         assert_true(load[LOAD_SUCTION] == 7 * wet);
         assert_true(load[LOAD_EMPTINESS] == (t == NEVER ? 0 : 1 - wet));
         assert_true(load[LOAD_CONTACT_LINE] ==
                     (wet > 0 ? menisci * network.throat_radius[t] : 0));
     }
-    filling_free(&filling);
+    liquid_loads_free(&liquid);
     free(record.exposed);
     network_free(&network);
 }
@@ -218,14 +220,14 @@ static double in_snapshot(const struct dried *dried, int s, int throat)
     return throat == 5 ? 1e6 : 0.14 / radius;
 }
 
-static void check_field(const struct dried *dried, const struct filling *filling,
+static void check_field(const struct dried *dried, const struct liquid_loads *liquid,
                         double time)
 {
     const double *when = dried->record.snapshot_time;
     const int s = time < when[1] ? 0 : 1;
     const double share = fmin(1, fmax(0, (time - when[s]) / (when[s + 1] - when[s])));
     for (int t = 0; t < dried->network.n_throat; t++)
-        assert_close(filling->suction[t],
+        assert_close(liquid->suction[t],
                      (1 - share) * in_snapshot(dried, s, t) +
                          share * in_snapshot(dried, s + 1, t),
                      1e-14);
@@ -237,18 +239,20 @@ static void a_field_is_that_of_the_time(void **state)
     (void)state;
     struct dried dried = dry_with_field();
     const struct drying_record *drying = &dried.record.drying;
-    struct filling walking = filling_begin(&dried.network, &dried.record, &by_field);
-    struct filling going = filling_begin(&dried.network, &dried.record, &by_field);
+    struct liquid_loads walking =
+        liquid_loads_begin(&dried.network, &dried.record, &by_field);
+    struct liquid_loads going =
+        liquid_loads_begin(&dried.network, &dried.record, &by_field);
     for (int step = 0; step + 1 < drying->n_step; step++) {
-        if (step > 0) filling_advance(&walking);
+        if (step > 0) liquid_loads_advance(&walking);
         check_field(&dried, &walking, drying->time[step]);
-        filling_to_end_of_step(&walking);
+        liquid_loads_to_end_of_step(&walking);
         check_field(&dried, &walking, drying->time[step + 1]);
-        filling_to(&going, drying->time[step]);
+        liquid_loads_to(&going, drying->time[step]);
         check_field(&dried, &going, drying->time[step]);
     }
-    filling_free(&going);
-    filling_free(&walking);
+    liquid_loads_free(&going);
+    liquid_loads_free(&walking);
     dried_free(&dried);
 }
 
@@ -258,7 +262,8 @@ static void the_error_of_a_field_is_what_the_middle_snapshot_adds(void **state)
 {
     (void)state;
     struct dried dried = dry_with_field();
-    struct filling filling = filling_begin(&dried.network, &dried.record, &by_field);
+    struct liquid_loads liquid =
+        liquid_loads_begin(&dried.network, &dried.record, &by_field);
     double sum = 0, at_once = 0;
     int count = 0;
     for (int t = 0; t < dried.network.n_throat; t++) {
@@ -276,11 +281,11 @@ static void the_error_of_a_field_is_what_the_middle_snapshot_adds(void **state)
         count++;
     }
     assert_true(count > 200 && count < dried.network.n_throat - 50);
-    assert_close(field_error(&filling), sum / count / 1e6, 1e-13);
+    assert_close(field_error(&liquid), sum / count / 1e6, 1e-13);
     for (int s = 0; s < SNAPSHOTS; s++)
         dried.record.snapshot_time[s] = 0;
-    assert_close(field_error(&filling), at_once / count / 1e6, 1e-13);
-    filling_free(&filling);
+    assert_close(field_error(&liquid), at_once / count / 1e6, 1e-13);
+    liquid_loads_free(&liquid);
     dried_free(&dried);
 }
 
@@ -290,23 +295,24 @@ static void steps_are_the_filling_of_their_times(void **state)
     (void)state;
     struct dried dried = dry_lattice(6);
     const struct drying_record *drying = &dried.record.drying;
-    struct filling walking = filling_begin(&dried.network, &dried.record, &by_clusters);
+    struct liquid_loads walking =
+        liquid_loads_begin(&dried.network, &dried.record, &by_clusters);
     for (int step = 1; step + 1 < drying->n_step; step++) {
-        filling_advance(&walking);
+        liquid_loads_advance(&walking);
         if (!(drying->time[step] < drying->time[step + 1])) continue;
-        struct filling going =
-            filling_begin(&dried.network, &dried.record, &by_clusters);
-        filling_to(&going, drying->time[step]);
+        struct liquid_loads going =
+            liquid_loads_begin(&dried.network, &dried.record, &by_clusters);
+        liquid_loads_to(&going, drying->time[step]);
         assert_int_equal(going.step, step);
         for (int t = 0; t < dried.network.n_throat; t++) {
             double one[LOADS], other[LOADS];
-            filling_loads(&walking, t, one);
-            filling_loads(&going, t, other);
+            liquid_loads_at(&walking, t, one);
+            liquid_loads_at(&going, t, other);
             assert_memory_equal(one, other, sizeof one);
         }
-        filling_free(&going);
+        liquid_loads_free(&going);
     }
-    filling_free(&walking);
+    liquid_loads_free(&walking);
     dried_free(&dried);
 }
 

@@ -77,12 +77,12 @@ static void throats_of_one_grain(void **state)
 {
     (void)state;
     struct network network = layer();
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);
-    struct patches form[FORM_ARCS + 1], lines = find_contact_lines(&wedges);
+    if (sectors_find(&network, &sectors, &reason)) fail_msg("%s", reason.text);
+    struct patches form[FORM_ARCS + 1], lines = find_contact_lines(&sectors);
     for (enum form f = FORM_SOLID_ANGLE; f <= FORM_ARCS; f++)
-        form[f] = find_patches(&wedges, f);
+        form[f] = find_patches(&sectors, f);
     for (int t = 0; t < network.n_throat; t++) {
         const struct view view = view_of(&network, t);
         const double square = radius * radius;
@@ -95,7 +95,7 @@ static void throats_of_one_grain(void **state)
     for (enum form f = FORM_SOLID_ANGLE; f <= FORM_ARCS; f++)
         patches_free(&form[f]);
     patches_free(&lines);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 

@@ -149,11 +149,11 @@ static void patches_close_around_a_grain_in_its_face(void **state)
 
 static void is_refused(struct network *network, const char *why)
 {
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    assert_int_equal(wedges_find(network, &wedges, &reason), STATUS_BAD_DATA);
+    assert_int_equal(sectors_find(network, &sectors, &reason), STATUS_BAD_DATA);
     assert_non_null(strstr(reason.text, why));
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(network);
 }
 

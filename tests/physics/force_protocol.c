@@ -25,9 +25,9 @@ static void assert_same(double got, double wanted)
 // which counts: F_0 = (5 s_0, 0, -2.5 s_1), F_1 = (0, 2.5 s_1, 0).
 struct pair {
     struct network network;
-    struct filling_record record;
+    struct liquid_record record;
     struct suction_law law;
-    struct action action;
+    struct throat_loads loads;
 };
 
 static struct pair two_throats(void)
@@ -53,7 +53,7 @@ static struct pair two_throats(void)
                                               .throat_saturation = left},
                                    .exposed = exposed},
                         .law = {.rule = SUCTION_UNIFORM, .uniform = 10, .meniscus = 3},
-                        .action = {.scale = 0.5}};
+                        .loads = {.scale = 0.5}};
     pair.network.packing.position[0] = (struct vector){2, 3, 3};
     pair.network.packing.position[1] = (struct vector){3, 3, 5};
     for (int t = 0; t < 2; t++) {
@@ -61,7 +61,7 @@ static struct pair two_throats(void)
         pair.network.throat_nodes[t][1] = t + 1;
         pair.network.throat_radius[t] = 1;
     }
-    struct patches *patches = &pair.action.patches[LOAD_SUCTION];
+    struct patches *patches = &pair.loads.patches[LOAD_SUCTION];
     patches_add(patches, 0, 0, (struct vector){0.25, 0, 0});
     patches_add(patches, 0, 0, (struct vector){0.75, 0, 0}); // one patch of both
     patches_add(patches, 1, 0, (struct vector){0, 0, -0.5});
@@ -74,12 +74,12 @@ static struct pair two_throats(void)
 static void pair_free(struct pair *pair)
 {
     network_free(&pair->network);
-    action_free(&pair->action);
+    throat_loads_free(&pair->loads);
 }
 
 static struct process process_of(const struct pair *pair)
 {
-    return (struct process){&pair->network, &pair->record, &pair->law, &pair->action};
+    return (struct process){&pair->network, &pair->record, &pair->law, &pair->loads};
 }
 
 static void forces_at_uniform_times(void **state)
@@ -120,7 +120,7 @@ static void what_jumps_is_missed(void **state)
     (void)state;
     struct pair pair = two_throats();
     pair.law.contact_line = 16;
-    struct patches *lines = &pair.action.patches[LOAD_CONTACT_LINE];
+    struct patches *lines = &pair.loads.patches[LOAD_CONTACT_LINE];
     patches_add(lines, 1, 1, (struct vector){1, 0, 0});
     patches_sort(lines, 2);
     const struct process process = process_of(&pair);
@@ -200,22 +200,23 @@ static void a_field_is_linear_between_snapshots(void **state)
     pair.record.snapshot_time = when;
     pair.record.pressure = pressure;
     pair.law.rule = SUCTION_FIELD;
-    struct filling filling = filling_begin(&pair.network, &pair.record, &pair.law);
+    struct liquid_loads liquid =
+        liquid_loads_begin(&pair.network, &pair.record, &pair.law);
     static const double time[] = {0, 0.75, 1, 1.5, 2.5, 3};
     static const double first[] = {6, 8, 10, 10 + 10. / 3, 20, 20};
     static const double second[] = {8, 11, 14, 16, 20, 20};
     for (int k = 0; k < 6; k++) {
-        filling_to(&filling, time[k]);
-        assert_same(filling.suction[0], first[k]);
-        assert_same(filling.suction[1], second[k]);
+        liquid_loads_to(&liquid, time[k]);
+        assert_same(liquid.suction[0], first[k]);
+        assert_same(liquid.suction[1], second[k]);
         double load[LOADS];
-        filling_loads(&filling, 1, load);
+        liquid_loads_at(&liquid, 1, load);
         const double left = time[k] < 1 ? 1 : (3 - time[k]) / 2;
         assert_same(load[LOAD_SUCTION], left * second[k]);
     }
     // In the middle, a quarter of the way: 10 for 9.5 and 14 for 11, of 10.
-    assert_same(field_error(&filling), 0.5 * (0.5 + 3) / 10);
-    filling_free(&filling);
+    assert_same(field_error(&liquid), 0.5 * (0.5 + 3) / 10);
+    liquid_loads_free(&liquid);
     pair_free(&pair);
 }
 
@@ -284,9 +285,9 @@ static void rings_have_the_suction_of_the_liquid(void **state)
 // ---- from step to step --------------------------------------------------------------
 
 // Random patches of all loads on the grains of a lattice that dries.
-static struct action random_action(const struct network *network)
+static struct throat_loads random_action(const struct network *network)
 {
-    struct action action = {.scale = 2};
+    struct throat_loads loads = {.scale = 2};
     uint64_t seed = 5;
     for (int l = 0; l < LOADS; l++) {
         for (int t = 0; t < network->n_throat; t++)
@@ -295,11 +296,11 @@ static struct action random_action(const struct network *network)
                 const int grain = (int)(share * network->packing.n_particle);
                 const struct vector pull = {next_random(&seed), next_random(&seed),
                                             next_random(&seed)};
-                patches_add(&action.patches[l], t, grain, pull);
+                patches_add(&loads.patches[l], t, grain, pull);
             }
-        patches_sort(&action.patches[l], network->packing.n_particle);
+        patches_sort(&loads.patches[l], network->packing.n_particle);
     }
-    return action;
+    return loads;
 }
 
 static void the_walk_keeps_to_forces_found_anew(void **state)
@@ -310,7 +311,7 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     struct drying_history history = dry_and_check(&network, &conditions);
     bool *exposed = NEW_ARRAY(bool, network.n_node);
-    const struct filling_record record = {
+    const struct liquid_record record = {
         .drying = {.n_step = history.n_step,
                    .time = history.time,
                    .saturation = history.saturation,
@@ -327,21 +328,21 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
                                         .uniform = 1,
                                         .meniscus = 1e-7,
                                         .contact_line = 1e6};
-        struct action action = random_action(&network);
-        if (which % 2 == 0) patches_free(&action.patches[LOAD_CONTACT_LINE]);
-        struct walk walk = walk_begin(&action, &network, &record, &law);
+        struct throat_loads loads = random_action(&network);
+        if (which % 2 == 0) patches_free(&loads.patches[LOAD_CONTACT_LINE]);
+        struct force_steps steps = force_steps_begin(&loads, &network, &record, &law);
         int steps = 1;
         do {
-            forces_now(&action, &walk.filling, anew);
+            forces_now(&loads, &steps.liquid, anew);
             for (int i = 0; i < n; i++)
-                assert_same(distance(walk.force[i], anew[i]), 0);
-            for (int k = 0; steps > 1 && k < walk.n_changed; k++)
-                assert_same(distance(walk.former[k], before[walk.changed[k]]), 0);
-            memcpy(before, walk.force, (size_t)n * sizeof *before);
-        } while (walk_advance(&walk) && ++steps);
+                assert_same(distance(steps.force[i], anew[i]), 0);
+            for (int k = 0; steps > 1 && k < steps.n_changed; k++)
+                assert_same(distance(steps.former[k], before[steps.changed[k]]), 0);
+            memcpy(before, steps.force, (size_t)n * sizeof *before);
+        } while (force_steps_advance(&steps) && ++steps);
         assert_int_equal(steps, record.drying.n_step);
-        walk_free(&walk);
-        action_free(&action);
+        force_steps_free(&steps);
+        throat_loads_free(&loads);
     }
     free(before);
     free(anew);

@@ -23,12 +23,12 @@ static inline struct vector sum_of(const struct patches *patches, int grain)
 
 static inline struct patches patches_of(const struct network *network, enum form form)
 {
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    assert_int_equal(wedges_find(network, &wedges, &reason), STATUS_OK);
-    struct patches patches = find_patches(&wedges, form);
+    assert_int_equal(sectors_find(network, &sectors, &reason), STATUS_OK);
+    struct patches patches = find_patches(&sectors, form);
     assert_int_equal(check_patches(&patches, &reason), STATUS_OK);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     return patches;
 }
 

@@ -21,15 +21,15 @@ enum { GRAINS = 2, MOST_STEPS = 8 };
 // K empties in step K, and pulls with what goes with it.
 struct scene {
     struct network network;
-    struct filling_record record;
+    struct liquid_record record;
     struct suction_law law;
-    struct action action;
+    struct throat_loads loads;
 };
 
 static struct process process_of(const struct scene *scene)
 {
     return (struct process){&scene->network, &scene->record, &scene->law,
-                            &scene->action};
+                            &scene->loads};
 }
 
 static void scene_free(struct scene *scene)
@@ -37,7 +37,7 @@ static void scene_free(struct scene *scene)
     network_free(&scene->network);
     drying_record_free(&scene->record.drying);
     free(scene->record.exposed);
-    action_free(&scene->action);
+    throat_loads_free(&scene->loads);
 }
 
 static struct scene forces_through(int n_step, const struct vector (*force)[GRAINS])
@@ -59,7 +59,7 @@ static struct scene forces_through(int n_step, const struct vector (*force)[GRAI
                               .throat_saturation = NEW_ARRAY(double, n)},
                    .exposed = NEW_ARRAY(bool, n_step)},
         .law = {.rule = SUCTION_UNIFORM, .uniform = 1, .meniscus = 1},
-        .action = {.scale = 1}};
+        .loads = {.scale = 1}};
     struct drying_record *drying = &scene.record.drying;
     for (int k = 0; k < n; k++) {
         scene.network.throat_nodes[k][0] = k;
@@ -71,10 +71,10 @@ static struct scene forces_through(int n_step, const struct vector (*force)[GRAI
         for (int i = 0; i < GRAINS; i++) {
             const struct vector change = subtract(force[k][i], force[k + 1][i]);
             if (norm(change) > 0)
-                patches_add(&scene.action.patches[LOAD_SUCTION], k, i, change);
+                patches_add(&scene.loads.patches[LOAD_SUCTION], k, i, change);
         }
     }
-    patches_sort(&scene.action.patches[LOAD_SUCTION], GRAINS);
+    patches_sort(&scene.loads.patches[LOAD_SUCTION], GRAINS);
     return scene;
 }
 
@@ -135,7 +135,7 @@ static void as_few_times_as_it_takes(void **state)
         for (int unit = -60; unit <= 60; unit += 60)
             for (int most = 0; most <= rows[r].count; most++) {
                 double count;
-                scene.action.scale = ldexp(1, unit);
+                scene.loads.scale = ldexp(1, unit);
                 double *time = adaptive_times(&process, rows[r].bound, most, &count);
                 assert_same(count, rows[r].count);
                 assert_int_equal(time != NULL, most == rows[r].count);
@@ -215,19 +215,19 @@ static double most_missed(const struct process *process,
                           const struct protocol *protocol)
 {
     const struct drying_record *drying = &process->record->drying;
-    struct filling filling =
-        filling_begin(process->network, process->record, process->law);
+    struct liquid_loads liquid =
+        liquid_loads_begin(process->network, process->record, process->law);
     struct vector force[GRAINS];
     double most = 0;
     for (int step = 0; step + 1 < drying->n_step; step++) {
-        if (step > 0) filling_advance(&filling);
-        forces_now(process->action, &filling, force);
+        if (step > 0) liquid_loads_advance(&liquid);
+        forces_now(process->loads, &liquid, force);
         most = fmax(most, missed(protocol, drying->time[step], force));
-        filling_to_end_of_step(&filling);
-        forces_now(process->action, &filling, force);
+        liquid_loads_to_end_of_step(&liquid);
+        forces_now(process->loads, &liquid, force);
         most = fmax(most, missed(protocol, drying->time[step + 1], force));
     }
-    filling_free(&filling);
+    liquid_loads_free(&liquid);
     return most;
 }
 
@@ -254,7 +254,7 @@ static void what_is_interpolated_misses_as_much_as_said(void **state)
         struct scene scene = random_scene(&seed);
         check_error(&scene);
         scene.law.contact_line = 0.1 * trial;
-        struct patches *lines = &scene.action.patches[LOAD_CONTACT_LINE];
+        struct patches *lines = &scene.loads.patches[LOAD_CONTACT_LINE];
         for (int t = 0; t < scene.network.n_throat; t += 2)
             patches_add(lines, t, t % GRAINS,
                         (struct vector){next_random(&seed), 0, 0});

@@ -26,82 +26,83 @@ static void assert_equal(struct vector got, struct vector wanted)
 }
 
 // Grains are where they are, in one repetition of the box or another.
-static void check_places(const struct wedges *wedges, const struct wedge *wedge)
+static void check_places(const struct sectors *sectors, const struct sector *sector)
 {
-    const struct packing *packing = &wedges->network->packing;
-    struct vector there[2] = {wedge->centre, wedge->across};
-    const int grain[2] = {wedge->grain, wedge->beyond};
+    const struct packing *packing = &sectors->network->packing;
+    struct vector there[2] = {sector->centre, sector->across};
+    const int grain[2] = {sector->grain, sector->beyond};
     for (int k = 0; k < 2; k++) {
         if (grain[k] < 0) continue;
-        if (wedges->layer) there[k].y = packing->position[grain[k]].y;
+        if (sectors->layer) there[k].y = packing->position[grain[k]].y;
         assert_zero(norm(nearest(packing, packing->position[grain[k]], there[k])));
     }
-    assert_equal(there[1], wedge->beyond < 0 ? wedge->foot : there[1]);
+    assert_equal(there[1], sector->beyond < 0 ? sector->foot : there[1]);
 }
 
 // [K 3.2] On the line between the grains, where both have the same power.
-static void check_foot(const struct wedges *wedges, const struct wedge *wedge)
+static void check_foot(const struct sectors *sectors, const struct sector *sector)
 {
-    const struct packing *packing = &wedges->network->packing;
-    const struct vector apart = subtract(wedge->across, wedge->centre);
-    const struct vector here = subtract(wedge->foot, wedge->centre);
-    const struct vector there = subtract(wedge->foot, wedge->across);
-    if (wedges->layer) {
-        assert_equal(wedge->foot, scale(0.5, add(wedge->from, wedge->to)));
-    } else if (wedge->beyond < 0) {
-        const int wall = -1 - wedge->beyond;
+    const struct packing *packing = &sectors->network->packing;
+    const struct vector apart = subtract(sector->across, sector->centre);
+    const struct vector here = subtract(sector->foot, sector->centre);
+    const struct vector there = subtract(sector->foot, sector->across);
+    if (sectors->layer) {
+        assert_equal(sector->foot, scale(0.5, add(sector->from, sector->to)));
+    } else if (sector->beyond < 0) {
+        const int wall = -1 - sector->beyond;
         if (wall >= WALL_OUTER) {
-            const double height = height_above(packing, wedge->centre);
-            assert_zero(height_above(packing, wedge->foot));
-            assert_zero(distance(wedge->foot, wedge->centre) - fabs(height));
+            const double height = height_above(packing, sector->centre);
+            assert_zero(height_above(packing, sector->foot));
+            assert_zero(distance(sector->foot, sector->centre) - fabs(height));
             return;
         }
-        struct vector wanted = wedge->centre;
+        struct vector wanted = sector->centre;
         set_component(&wanted, wall / 2,
                       wall % 2 ? component(packing->upper, wall / 2) : 0);
-        assert_equal(wedge->foot, wanted);
+        assert_equal(sector->foot, wanted);
     } else {
         assert_zero(norm(cross(here, apart)));
-        assert_zero(power(packing, wedge->grain, here) -
-                    power(packing, wedge->beyond, there));
+        assert_zero(power(packing, sector->grain, here) -
+                    power(packing, sector->beyond, there));
     }
 }
 
 // Both grains have the same power along the throat, and no grain has less.
-static void check_throat(const struct wedges *wedges, const struct wedge *wedge)
+static void check_throat(const struct sectors *sectors, const struct sector *sector)
 {
-    const struct packing *packing = &wedges->network->packing;
-    const struct vector at[2] = {wedge->from, wedge->to};
+    const struct packing *packing = &sectors->network->packing;
+    const struct vector at[2] = {sector->from, sector->to};
     for (int k = 0; k < 2; k++) {
-        const double own = power(packing, wedge->grain, subtract(at[k], wedge->centre));
-        if (wedge->beyond >= 0)
-            assert_zero(own -
-                        power(packing, wedge->beyond, subtract(at[k], wedge->across)));
+        const double own =
+            power(packing, sector->grain, subtract(at[k], sector->centre));
+        if (sector->beyond >= 0)
+            assert_zero(
+                own - power(packing, sector->beyond, subtract(at[k], sector->across)));
         for (int j = 0; j < packing->n_particle; j++) {
             struct vector centre = packing->position[j];
-            if (wedges->layer) centre.y = at[k].y;
+            if (sectors->layer) centre.y = at[k].y;
             assert_true(power(packing, j, nearest(packing, centre, at[k])) >
                         own - 1e-9);
         }
     }
-    const struct vector along = subtract(wedge->to, wedge->from), y = {0, 1, 0};
-    const struct vector outwards = subtract(wedge->foot, wedge->centre);
+    const struct vector along = subtract(sector->to, sector->from), y = {0, 1, 0};
+    const struct vector outwards = subtract(sector->foot, sector->centre);
     assert_true(norm(along) > 0);
-    if (wedges->layer) assert_true(dot(cross(along, y), outwards) > 0);
+    if (sectors->layer) assert_true(dot(cross(along, y), outwards) > 0);
 }
 
 // ---- the wedges of one throat -------------------------------------------------------
 
 // From A's grain the throat runs as it does, the other way, in B from its own.
-static bool run_opposite(const struct wedge *a, struct vector from_a,
-                         const struct wedge *b, struct vector from_b)
+static bool run_opposite(const struct sector *a, struct vector from_a,
+                         const struct sector *b, struct vector from_b)
 {
     return distance(subtract(a->from, from_a), subtract(b->to, from_b)) < 1e-9 &&
            distance(subtract(a->to, from_a), subtract(b->from, from_b)) < 1e-9;
 }
 
 // What the grain beyond sees of it is the mirror image.
-static bool are_mates(const struct wedge *a, const struct wedge *b, bool is_layer)
+static bool are_mates(const struct sector *a, const struct sector *b, bool is_layer)
 {
     return a->grain == b->beyond && a->beyond == b->grain &&
            (is_layer || a->face == b->face) &&
@@ -112,20 +113,20 @@ static bool are_mates(const struct wedge *a, const struct wedge *b, bool is_laye
 
 // Grains follow one another around a throat: in space each has the throat in two of its
 // faces, whose loops run along it in opposite directions.
-static void check_around(const struct wedges *wedges, int n)
+static void check_around(const struct sectors *sectors, int n)
 {
     for (int a = 0; a < n; a++) {
-        const struct wedge *wedge = &wedges->wedge[a];
+        const struct sector *sector = &sectors->sector[a];
         int mates = 0, others = 0;
         for (int b = 0; b < n; b++) {
-            const struct wedge *other = &wedges->wedge[b];
-            mates += are_mates(wedge, other, wedges->layer);
-            if (b == a || other->grain != wedge->grain) continue;
-            assert_true(run_opposite(wedge, wedge->centre, other, other->centre));
+            const struct sector *other = &sectors->sector[b];
+            mates += are_mates(sector, other, sectors->layer);
+            if (b == a || other->grain != sector->grain) continue;
+            assert_true(run_opposite(sector, sector->centre, other, other->centre));
             others++;
         }
-        assert_int_equal(mates, wedge->beyond >= 0);
-        assert_int_equal(others, !wedges->layer);
+        assert_int_equal(mates, sector->beyond >= 0);
+        assert_int_equal(others, !sectors->layer);
     }
 }
 
@@ -150,29 +151,29 @@ static bool lies_in(const struct network *network, int throat, int wall)
 // Bits of the walls in which both ends of the throat lie; below auxiliary grains, which
 // are all at the upper side, also that of this one. Grains around it go from wall to
 // wall.
-static void check_surface(const struct wedges *wedges, int throat, int n)
+static void check_surface(const struct sectors *sectors, int throat, int n)
 {
-    const struct network *network = wedges->network;
+    const struct network *network = sectors->network;
     int count = 0, beyond = 0;
     bool below = false;
     if (network->throat_kind[throat] != THROAT_NETWORK)
         return; // between auxiliary ones
     for (int k = 0; k < n; k++)
-        below |= is_auxiliary(&network->packing, wedges->wedge[k].grain);
+        below |= is_auxiliary(&network->packing, sectors->sector[k].grain);
     for (int wall = 0; wall <= WALL_INNER; wall++) {
-        if (wedges->layer && wall / 2 == 1) continue;
+        if (sectors->layer && wall / 2 == 1) continue;
         const bool lies = lies_in(network, throat, wall);
         const bool faces = below && wall == 5;
-        assert_int_equal(wedges->surface[throat] >> wall & 1, lies || faces);
+        assert_int_equal(sectors->surface[throat] >> wall & 1, lies || faces);
         count += lies;
     }
     for (int k = 0; k < n; k++) {
-        const int wall = -1 - wedges->wedge[k].beyond;
+        const int wall = -1 - sectors->sector[k].beyond;
         beyond += wall >= 0;
-        if (!wedges->layer && wall >= 0)
-            assert_true(lies_in(wedges->network, throat, wall));
+        if (!sectors->layer && wall >= 0)
+            assert_true(lies_in(sectors->network, throat, wall));
     }
-    assert_int_equal(beyond, count == 0 ? 0 : wedges->layer ? 1 : 2);
+    assert_int_equal(beyond, count == 0 ? 0 : sectors->layer ? 1 : 2);
 }
 
 // ---- all of them --------------------------------------------------------------------
@@ -181,26 +182,26 @@ static void check_all(const struct scene *scene, uint64_t seed, bool is_turned)
 {
     struct network network = diagram_of(scene, seed);
     if (is_turned) turn_loops(&network);
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);
+    if (sectors_find(&network, &sectors, &reason)) fail_msg("%s", reason.text);
     int count = 0, found = 0;
     for (int t = 0; t < network.n_throat; t++) {
-        const int n = wedges_at(&wedges, t);
+        const int n = sectors_at(&sectors, t);
         for (int k = 0; k < n; k++) {
-            assert_int_equal(wedges.wedge[k].throat, t);
-            check_places(&wedges, &wedges.wedge[k]);
-            check_foot(&wedges, &wedges.wedge[k]);
-            check_throat(&wedges, &wedges.wedge[k]);
-            found += wedges.wedge[k].face < 0;
+            assert_int_equal(sectors.sector[k].throat, t);
+            check_places(&sectors, &sectors.sector[k]);
+            check_foot(&sectors, &sectors.sector[k]);
+            check_throat(&sectors, &sectors.sector[k]);
+            found += sectors.sector[k].face < 0;
         }
-        check_around(&wedges, n);
-        check_surface(&wedges, t, n);
+        check_around(&sectors, n);
+        check_surface(&sectors, t, n);
         count += n;
     }
     assert_true(count > 200);
     assert_true(scene->boundary == BOUNDARY_TRUNCATE ? found == 0 : found > 20);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
@@ -219,12 +220,12 @@ static void walls_are_as_far_in_nanometres(void **state)
     (void)state;
     struct network network = diagram_of(&scenes[2], 1);
     resize(&network, 0x1p-30);
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);
+    if (sectors_find(&network, &sectors, &reason)) fail_msg("%s", reason.text);
     for (int t = 0; t < network.n_throat; t++)
-        assert_int_equal(wedges.surface[t], 0);
-    wedges_free(&wedges);
+        assert_int_equal(sectors.surface[t], 0);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
@@ -243,14 +244,14 @@ static void check_closed(const struct scene *scene, bool is_turned)
 {
     struct network network = diagram_of(scene, 1);
     if (is_turned) turn_loops(&network);
-    struct wedges wedges;
+    struct sectors sectors;
     struct reason reason;
-    if (wedges_find(&network, &wedges, &reason)) fail_msg("%s", reason.text);
+    if (sectors_find(&network, &sectors, &reason)) fail_msg("%s", reason.text);
     double volume = 0;
     double *angle = NEW_ARRAY(double, network.packing.n_particle);
     for (int t = 0; t < network.n_throat; t++)
-        for (int k = wedges_at(&wedges, t); k-- > 0;) {
-            const struct wedge *w = &wedges.wedge[k];
+        for (int k = sectors_at(&sectors, t); k-- > 0;) {
+            const struct sector *w = &sectors.sector[k];
             const struct vector foot = subtract(w->foot, w->centre);
             const struct vector from = subtract(w->from, w->centre);
             const struct vector to = subtract(w->to, w->centre);
@@ -262,7 +263,7 @@ static void check_closed(const struct scene *scene, bool is_turned)
     for (int i = 0; i < network.packing.n_particle; i++)
         assert_zero(angle[i] - 4 * M_PI);
     free(angle);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
@@ -283,11 +284,11 @@ static void check_rings(const struct scene *scene)
         .rule = RING_VOLUME, .volume = 1, .surface_tension = 1};
     struct network network = diagram_of(scene, 1);
     struct packing *packing = &network.packing;
-    struct wedges wedges;
-    struct rings rings;
+    struct sectors sectors;
+    struct pendular_rings rings;
     struct reason reason;
-    if (wedges_find(&network, &wedges, &reason) ||
-        find_rings(&wedges, &law, &rings, &reason))
+    if (sectors_find(&network, &sectors, &reason) ||
+        find_pendular_rings(&sectors, &law, &rings, &reason))
         fail_msg("%s", reason.text);
     struct vector *left = NEW_ARRAY(struct vector, packing->n_particle);
     for (int k = 0; k < rings.patches.n; k++) {
@@ -321,7 +322,7 @@ static void check_rings(const struct scene *scene)
     assert_true(count > 50);
     free(left);
     patches_free(&rings.patches);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
@@ -340,25 +341,25 @@ static void check_rings_of_layer(const struct scene *scene)
         .rule = RING_VOLUME, .volume = 1, .surface_tension = 1};
     struct network network = diagram_of(scene, 1);
     const struct packing *packing = &network.packing;
-    struct wedges wedges;
-    struct rings rings;
+    struct sectors sectors;
+    struct pendular_rings rings;
     struct reason reason;
-    if (wedges_find(&network, &wedges, &reason) ||
-        find_rings(&wedges, &law, &rings, &reason))
+    if (sectors_find(&network, &sectors, &reason) ||
+        find_pendular_rings(&sectors, &law, &rings, &reason))
         fail_msg("%s", reason.text);
     int count = 0;
     for (int k = 0; k < rings.patches.n; k++) {
         const struct patch *patch = &rings.patches.patch[k];
-        const int n = wedges_at(&wedges, patch->throat);
-        const struct wedge *wedge = wedges.wedge;
-        if (n > 1 && wedge->grain != patch->particle) wedge++;
-        assert_int_equal(wedge->grain, patch->particle);
+        const int n = sectors_at(&sectors, patch->throat);
+        const struct sector *sector = sectors.sector;
+        if (n > 1 && sector->grain != patch->particle) sector++;
+        assert_int_equal(sector->grain, patch->particle);
         double volume, force = 0;
-        const struct vector apart = subtract(wedge->across, wedge->centre);
-        if (n > 1 && !is_auxiliary(packing, wedge->grain) &&
-            !is_auxiliary(packing, wedge->beyond)) {
-            const double radius[2] = {packing->radius[wedge->grain],
-                                      packing->radius[wedge->beyond]};
+        const struct vector apart = subtract(sector->across, sector->centre);
+        if (n > 1 && !is_auxiliary(packing, sector->grain) &&
+            !is_auxiliary(packing, sector->beyond)) {
+            const double radius[2] = {packing->radius[sector->grain],
+                                      packing->radius[sector->beyond]};
             if (solve_ring(radius, norm(apart) - radius[0] - radius[1], &law, &volume,
                            &force, &reason))
                 fail_msg("%s", reason.text);
@@ -369,7 +370,7 @@ static void check_rings_of_layer(const struct scene *scene)
     assert_int_equal(count, 2 * rings.count);
     assert_true(count > 60);
     patches_free(&rings.patches);
-    wedges_free(&wedges);
+    sectors_free(&sectors);
     network_free(&network);
 }
 
