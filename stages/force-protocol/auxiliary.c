@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Grains, bonds and rows of the protocol are compacted in place.
 #include "auxiliary.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// Gives the grains that stay their new numbers; the others -1. Returns how many stay.
+// New numbers of the grains that stay, -1 for the others. Returns how many stay.
 static int number_grains(const struct packing *packing, int32_t *number)
 {
     int n = 0;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces f on the grains around one throat are in balance when they are orthogonal to
-// all rigid motions of these grains; P takes the rigid part off. Wanted are the f
-// nearest to f0, what the form says, with P f = f at each throat and, for each grain
-// that f0 leaves at rest when all throats are full, the same. With a multiplier m for
-// each such grain f = P (f0 - m); m follows from the sums over its throats: symmetric,
-// positive, sparse.
+// Pulls in balance at each throat. f0 are the pulls of a form; wanted are the nearest
+// f with
+//     P f = f at each throat,   sum over throats of f = 0 on each closed grain,
+// where P removes the rigid part (mean, and three rotations about the mean place) of
+// the forces on the grains around a throat, and a grain is closed if f0 sums to 0 on
+// it when all throats are full. With a multiplier m for each closed grain
+//     f = P (f0 - m),   sum P m = sum P f0   on each closed grain,
+// a symmetric, positive and sparse system, solved by conjugate gradients,
+// preconditioned with the number of throats of each grain. At a throat beside a wall
+// or an auxiliary grain P is 1: these take the rest.
 #include "balance.h"
 
 #include "basics/memory.h"
@@ -17,9 +21,9 @@ struct corner {
     int32_t throat, grain;
     struct vector arm;         // from the middle of the throat to the grain
     struct vector pull;        // f0, then f
-    struct vector rotation[3]; // its part in three turns of the grains around the
-                               // throat, orthonormal over these, or 0
-    struct vector now; // P of the vectors asked for last
+    struct vector rotation[3]; // displacement in three rotations of the grains around
+                               // the throat, orthonormal over these, or 0
+    struct vector now;         // the last result of balance
 };
 
 struct throats {
@@ -27,7 +31,7 @@ struct throats {
     struct corner *corner; // (n_corner)
     int *first;            // (n_throat+1) corners of each throat
     int *begin, *corners;  // (n_grain+1) into CORNERS (n_corner): corners of each grain
-    bool *supported;       // (n_throat) something else takes what is left: P is 1
+    bool *supported;       // (n_throat) a wall takes the rigid part: P is 1
     bool *closed;          // (n_grain) the pulls on it sum to zero
 };
 
@@ -43,7 +47,8 @@ static void throats_free(struct throats *throats)
 
 // --- corners -----------------------------------------------------------------------
 
-// In its repetition of the box: in a small one a grain can be around a throat twice.
+// The corner of a sector, by grain and place: in a small periodic box a grain can be at
+// a throat twice, in two images.
 static struct corner *corner_of(struct throats *throats, const struct sector *sector)
 {
     const struct vector middle = scale(0.5, add(sector->from, sector->to));
@@ -59,7 +64,7 @@ static struct corner *corner_of(struct throats *throats, const struct sector *se
     return corner;
 }
 
-// Auxiliary grains are not there, and walls are no grains: both bear what is left.
+// Walls and auxiliary grains are no corners: a throat beside them is supported.
 static void find_corners(struct throats *throats, struct sectors *sectors,
                          enum form form)
 {
@@ -116,7 +121,7 @@ static struct vector mean_arm(const struct corner *corner, int n)
     return scale(1.0 / n, sum);
 }
 
-// Takes the turns before the Kth, orthonormal or 0, out of it; twice, for rounding.
+// Orthogonalises the Kth rotation to those before it; twice, for rounding.
 static void orthogonalise(struct corner *corner, int n, int k)
 {
     for (int former = 0; former < 2 * k; former++) {
@@ -129,7 +134,8 @@ static void orthogonalise(struct corner *corner, int n, int k)
     }
 }
 
-// Grains in one line have two turns, and one grain none.
+// Orthonormal rotations about the mean place. Grains in one line have two, one grain
+// none.
 static void find_rotations(struct corner *corner, int n)
 {
     const struct vector middle = mean_arm(corner, n);
@@ -151,7 +157,7 @@ static void find_rotations(struct corner *corner, int n)
     }
 }
 
-// NOW without its rigid part.
+// Removes the rigid part of NOW.
 static void project(struct corner *corner, int n)
 {
     struct vector mean = {0};
@@ -186,7 +192,7 @@ static void balance(struct throats *throats, double share,
 
 // --- the multipliers ---------------------------------------------------------------
 
-// SIGN times the sum of NOW on each grain that is closed.
+// SUM becomes SIGN times the sum of NOW on each closed grain, 0 on the others.
 static void sum_up(const struct throats *throats, double sign, struct vector *sum)
 {
 #pragma omp parallel for
@@ -205,7 +211,7 @@ static void multiply(void *context, const double *x, double *image)
     sum_up(throats, -1, (struct vector *)image);
 }
 
-// By the throats of each grain. On grains that are not closed all is 0.
+// Divides by the number of throats of each grain. On grains not closed all is 0.
 static void precondition(void *context, const double *residual, double *z)
 {
     const struct throats *throats = context;
@@ -250,7 +256,7 @@ static enum status find_multipliers(struct throats *throats, struct vector *mult
 
 // --- pulls -------------------------------------------------------------------------
 
-// How far NOW is from PULL, root mean square, of the pulls.
+// Root mean square of NOW - PULL, relative to that of the pulls.
 static double change_of(const struct throats *throats)
 {
     double sum = 0;

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The liquid in each throat at any time of the drying, and the loads it puts on
+// grains:
+//     load[LOAD_SUCTION]      = S suction,            S saturation, linear within a
+//     step load[LOAD_CONTACT_LINE] = r sigma sin(theta) (number of menisci)
+//     load[LOAD_EMPTINESS]    = 1 - S,
+//     load[LOAD_WEIGHT]       = rho g S V.
+// The suction is uniform [K 5.3], of each cluster (the least entry pressure less rho g
+// z among its menisci), or interpolated from the pressure field of viscous liquid.
+// With K's uniform suction loads are continuous in time; clusters make them jump when
+// a throat empties, so the end of a step and the beginning of the next are told apart.
 #include "liquid_loads.h"
 
 #include "basics/disjoint_sets.h"
@@ -21,7 +31,7 @@ static bool has_meniscus_at(const struct liquid_loads *liquid, int node)
     return liquid->gas[node] || liquid->record->exposed[node];
 }
 
-// At the step itself.
+// Whether the throat holds liquid at the beginning of the step.
 static bool holds_liquid(const struct liquid_loads *liquid, int throat)
 {
     return liquid->before[throat] > 0;
@@ -63,7 +73,8 @@ int liquid_loads_clusters(const struct liquid_loads *liquid, int *cluster)
     return count;
 }
 
-// By how much still liquid is below its pressure at z = 0 in the middle of THROAT.
+// rho g z at the middle of THROAT: how far its pressure in liquid at rest is below that
+// at z = 0.
 static double above(const struct liquid_loads *liquid, int throat)
 {
     const double weight = liquid->law.weight;
@@ -178,7 +189,7 @@ static void interpolate_field(const struct liquid_loads *liquid, double time)
 
 // --- time --------------------------------------------------------------------------
 
-// What has emptied by this step leaves gas in its nodes.
+// Throats that empty at this step leave gas in their nodes.
 static void note_gas(struct liquid_loads *liquid)
 {
     const struct drying_record *record = &liquid->record->drying;

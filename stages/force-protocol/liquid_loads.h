@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is in each throat over the time of drying: how much liquid, under which suction,
-// with how many menisci.
+// The load of the liquid in each throat during the drying: how much liquid there is,
+// under which suction, with how many menisci.
 #ifndef CRAQUELURE_LIQUID_LOADS_H
 #define CRAQUELURE_LIQUID_LOADS_H
 
 #include "network/drying_record.h"
 
-// What the drying artifact says happened.
+// The drying, as read from its artifact.
 struct liquid_record {
     struct drying_record drying; // at least one step
-    bool *exposed;               // (n_node) gas is above the node from the beginning
+    bool *exposed;               // (n_node) gas touches the node from the beginning
     int n_snapshot;
     double *snapshot_time; // (n_snapshot)
     double *pressure;      // (n_snapshot * n_node) Pa, of the liquid less that of the
@@ -18,10 +18,10 @@ struct liquid_record {
 
 enum suction_rule {
     SUCTION_UNIFORM, // that of a throat of mean radius, everywhere [K 5.3]
-    // In each connected piece of liquid that of its widest throat with a meniscus, into
-    // which gas comes next: there the meniscus is as curved as it can be, and behind
-    // all others of the piece is the same pressure; with weight, at the same height:
-    // then gas comes next where the suction less rho g z is least.
+    // In each cluster of liquid that of its widest throat with a meniscus, which gas
+    // enters next: its meniscus is as curved as it can be, and the whole cluster has
+    // the same pressure. With weight, the same potential: then gas enters next where
+    // the suction less rho g z is least.
     SUCTION_CLUSTERS,
     // By the pressures of viscous liquid at the nodes: a throat has the mean of its
     // ends that are in liquid, or without one that of its own meniscus; linear in time
@@ -37,11 +37,11 @@ struct suction_law {
     double weight;       // rho g, N/m3; 0: the liquid weighs nothing
 };
 
-// What pulls on the grains, for each throat.
+// What a throat's liquid does to the grains around it.
 enum load {
     LOAD_SUCTION,      // of the liquid times saturation, Pa
     LOAD_CONTACT_LINE, // radius times sigma sin(theta) for each end in gas, N
-    LOAD_EMPTINESS,    // how much of the throat has emptied, 1
+    LOAD_EMPTINESS,    // 1 - saturation: rings grow with it
     LOAD_WEIGHT,       // of the liquid, N
     LOADS
 };
@@ -68,26 +68,27 @@ struct liquid_loads liquid_loads_begin(const struct network *network,
                                        const struct suction_law *law);
 void liquid_loads_free(struct liquid_loads *liquid);
 
-// To the next step, which must be there, or to its end, the moment before that.
+// _advance goes to the next step, which must exist; _to_end_of_step to the moment just
+// before it.
 void liquid_loads_advance(struct liquid_loads *liquid);
 void liquid_loads_to_end_of_step(struct liquid_loads *liquid);
 
-// To TIME, which must not be before that of the step.
+// Goes to TIME (s), which must not be before the present step.
 void liquid_loads_to(struct liquid_loads *liquid, double time);
 
 // Saturation of the network, interpolated.
 double liquid_loads_saturation(const struct liquid_loads *liquid);
 
-// The loads of THROAT now.
+// The loads of THROAT now, in the units of enum load.
 void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS]);
 
-// How far the suction of a throat that holds liquid is, in the mean, from the one
-// interpolated between the snapshots before and after, of UNIFORM: what every second
-// snapshot adds. NAN with fewer than three.
+// Interpolation error of SUCTION_FIELD: the mean difference between the suction of a
+// wet throat in a snapshot and that interpolated between the snapshots before and
+// after, relative to law.uniform. NAN with fewer than three snapshots.
 double field_error(const struct liquid_loads *liquid);
 
-// Names the connected pieces of liquid by the lowest throat of each, -1: no liquid.
-// Throats join at nodes where none has emptied. CLUSTER (n_throat); returns how many.
+// Sets CLUSTER (n_throat) to the lowest throat of each throat's cluster, -1: no liquid.
+// Throats join at nodes where none has emptied. Returns the number of clusters.
 int liquid_loads_clusters(const struct liquid_loads *liquid, int *cluster);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The liquid's own weight, on the grains around it.
+// The weight of the liquid, on the grains around it.
 #ifndef CRAQUELURE_LIQUID_WEIGHT_H
 #define CRAQUELURE_LIQUID_WEIGHT_H
 
@@ -7,9 +7,9 @@
 #include "solid_angle_patches.h"
 
 // The share of each grain in the liquid of a throat, as a pull towards -z; those of one
-// throat sum to 1. By the void of its cell beside the throat, as find_void_volumes
-// gives it to the throat, so that a grain carries the liquid in its own cell; in equal
-// parts in layers and where nothing is void. The caller frees it.
+// throat sum to 1. In proportion to the void of its cell beside the throat, as in
+// find_void_volumes, so that a grain carries the liquid in its own cell; in equal parts
+// in layers and where there is no void. The caller frees it.
 struct patches find_liquid_shares(struct sectors *sectors);
 
 // Liquid per volume of full throats, kg/m3, from the MASS with which the drying began.

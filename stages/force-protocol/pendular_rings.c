@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Liquid rings at contacts. A ring of a given volume has the force of the exact bridge
+// (bridges/bridges.h). A ring in equilibrium with a suction needs its volume V first:
+//     suction(V, separation) = law.suction,
+// solved for log V. The suction falls with V, except next to rupture, where it falls
+// again towards small V: so there is a maximum, and below rupture no bridge at all.
+// Regula falsi with every third step a bisection finds the root of larger volume; when
+// a smaller trial has less suction than a larger one, the maximum is found first by
+// golden section, and if it is below law.suction there is no ring. Suction is concave
+// over log V, which bounds the maximum and ends that search early. Contacts of one
+// shape are solved once.
 #include "pendular_rings.h"
 
 #include "basics/memory.h"
@@ -26,13 +36,13 @@ static struct bridge bridge_of(const double radius[2], const struct ring_law *la
 
 // --- one ring ----------------------------------------------------------------------
 
-// A trial volume: its suction, and by how much that is more than the liquid's, as a
-// logarithm; -INFINITY where it is none, INFINITY where the bridge ruptures.
+// A trial volume: its suction, and log(suction / law.suction); -INFINITY where there is
+// no suction, INFINITY where the bridge ruptures.
 struct trial {
     double log_volume, suction, excess;
 };
 
-// [G 2] is not off by as much.
+// Twice the rupture distance of [G 2] is certainly beyond rupture.
 static bool ruptures(const struct bridge *bridge, double separation)
 {
     return separation > 2 * bridge_rupture_distance(bridge);
@@ -54,7 +64,7 @@ static enum status try_volume(const double radius[2], double separation,
     return status == STATUS_NO ? STATUS_OK : status;
 }
 
-// No bridge between the first and the last of three has more than this, as suction is
+// Upper bound of the suction between the first and the last of three trials: suction is
 // concave over the logarithm of the volume.
 static double suction_bound(const struct trial of[3])
 {
@@ -64,8 +74,8 @@ static double suction_bound(const struct trial of[3])
                                 (of[1].suction - of[0].suction) * right / left);
 }
 
-// Of three trials the middle one has the most suction, too little. Replaces it by one
-// that has enough, if there is one.
+// Of three trials the middle one has the most suction, but too little. Golden-section
+// search for one that has enough, until the bound says that there is none.
 static enum status find_most_suction(const double radius[2], double separation,
                                      const struct ring_law *law, struct trial of[3],
                                      struct reason *reason)
@@ -89,9 +99,9 @@ static enum status find_most_suction(const double radius[2], double separation,
     return STATUS_OK;
 }
 
-// Smaller bridges have more suction, until next to rupture they have less again. By
-// regula falsi, every third step by halves; as soon as one has less than a larger one,
-// from the one that has the most. Where that has too little, *VOLUME is 0.
+// The dimensionless volume in equilibrium; *VOLUME is 0 where there is none. Regula
+// falsi, every third step a bisection; once a trial has less suction than a larger one,
+// from the one that has the most.
 static enum status find_volume(const double radius[2], double separation,
                                const struct ring_law *law, double *volume,
                                struct reason *reason)
@@ -162,12 +172,13 @@ struct ring {
     int32_t grain[2]; // the lower first; the second below 0: none
     double radius[2]; // m, of the two
     double gap;       // m; 0 where they overlap
-    double angle;     // of all throats beside the face, each from both its sides; 4 pi
-                      // where the foot lies within it
+    double angle;     // sum over the throats beside the face, each from both its sides;
+                      // 4 pi where the foot lies within it
     double force;     // N
 };
 
-// In a layer each throat is a face, and so it is where the network has lost the face.
+// The index of the ring of a sector: its face, or in a layer, and where the face is
+// missing, its throat.
 static int ring_at(const struct sectors *sectors, const struct sector *sector)
 {
     return sectors->layer || sector->face < 0
@@ -183,7 +194,7 @@ static double angle_of(const struct sector *sector)
     return atan2(norm(cross(from, to)), dot(from, to));
 }
 
-// Neither walls nor grains that are not there hold one.
+// Walls and auxiliary grains hold no ring.
 static bool has_ring(const struct sectors *sectors, const struct sector *sector)
 {
     const struct packing *packing = &sectors->network->packing;
@@ -207,7 +218,7 @@ static void add_to_ring(const struct sectors *sectors, const struct sector *sect
     if (!sectors->layer && sector->face < 0) ring->angle = 4 * M_PI;
 }
 
-// For each face, then for each throat. The caller frees them.
+// The rings at faces, then those at throats, not solved yet. The caller frees them.
 static struct ring *list_rings(struct sectors *sectors, int n)
 {
     struct ring *ring = NEW_ARRAY(struct ring, n);
@@ -240,7 +251,7 @@ static int by_shape(const void *a, const void *b)
     return 0;
 }
 
-// Those between grains, the like of shape together. The caller frees them.
+// The rings between grains, sorted by shape. The caller frees the list.
 static struct ring **sorted(struct ring *ring, int n, int *count)
 {
     struct ring **list = NEW_ARRAY(struct ring *, n);
@@ -251,7 +262,8 @@ static struct ring **sorted(struct ring *ring, int n, int *count)
     return list;
 }
 
-// Each shape once: contacts of equal grains are all alike.
+// Solves each shape once: contacts of equal grains are all alike. Reports the first
+// failure in that order, whatever the number of threads.
 static enum status solve_all(const struct ring_law *law, int n, struct ring *ring,
                              struct reason *reason)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pendular rings: the liquid that stays at the contacts when throats empty.
+// Pendular rings: the liquid that stays at contacts when throats empty.
 #ifndef CRAQUELURE_PENDULAR_RINGS_H
 #define CRAQUELURE_PENDULAR_RINGS_H
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Forces on all grains at given times, and how well they represent the drying. The
+// force on a grain is the sum over its patches of load times pull (throat_loads.h).
+// Between steps of the drying loads are linear in time, so the largest error of
+// interpolating between the protocol's times is found at steps: deviation = |force -
+// interpolated force| there, on both sides of a step where forces jump.
 #include "protocol.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// Inlined, which fmax, with its rules for what is not a number, is not: a third of the
-// time of this stage.
+// Inlined; fmax with its rules for NaN is not, and took a third of the stage's time.
 static inline double larger(double a, double b)
 {
     return a > b ? a : b;
@@ -40,7 +44,7 @@ void protocol_free(struct protocol *protocol)
     *protocol = (struct protocol){0};
 }
 
-// --- what is said of it ------------------------------------------------------------
+// --- measures of a protocol --------------------------------------------------------
 
 double largest_force(const struct protocol *protocol, int n_particle)
 {
@@ -59,7 +63,7 @@ double largest_change(const struct protocol *protocol, int n_particle)
     return largest;
 }
 
-// Where in the protocol a moment lies.
+// A moment, and where it lies in the protocol.
 struct moment {
     double time;
     int after; // the first time of the protocol later than that, or the last
@@ -74,7 +78,7 @@ static struct moment moment_at(const struct protocol *protocol, struct moment ea
     return moment;
 }
 
-// How far FORCE on GRAIN is from the one interpolated.
+// Distance between FORCE on GRAIN and the force interpolated at that moment.
 static double deviation(const struct protocol *protocol, int n_particle,
                         struct moment moment, int grain, struct vector force)
 {
@@ -86,7 +90,8 @@ static double deviation(const struct protocol *protocol, int n_particle,
     return distance(force, add(*from, scale(share, subtract(*to, *from))));
 }
 
-// Of the grains that the walk's last move changed: as they were BEFORE, and are NOW.
+// Largest deviation among the grains that the last step changed: of their forces BEFORE
+// it and NOW.
 static double worst_deviation(const struct force_steps *steps,
                               const struct protocol *protocol, struct moment before,
                               struct moment now)
@@ -102,7 +107,7 @@ static double worst_deviation(const struct force_steps *steps,
     return worst;
 }
 
-// A force bends only where a step ends or begins in which it changes.
+// A force is linear in time except where a step in which it changes begins or ends.
 double interpolation_error(const struct process *process,
                            const struct protocol *protocol)
 {
@@ -116,7 +121,7 @@ double interpolation_error(const struct process *process,
         if (steps.checks_all) {
             force_steps_to_end_of_step(&steps);
             worst = fmax(worst, worst_deviation(&steps, protocol, now, next));
-            now = next; // what changes yet, changes there
+            now = next; // the rest of the change is a jump at this moment
         }
         force_steps_advance(&steps);
         worst = fmax(worst, worst_deviation(&steps, protocol, now, next));
@@ -135,7 +140,7 @@ double process_field_error(const struct process *process)
     return error;
 }
 
-// Of one time: sums of forces and moments, and of their magnitudes.
+// Sums of forces and moments at one time, and of their magnitudes.
 struct sums {
     struct vector force, moment;
     double forces, moments;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Capillary forces over time, from who holds liquid when [K 3.6, 5.2, 5.3].
+// Capillary forces on the grains over time, from the liquid in each throat [K 3.6,
+// 5.2, 5.3].
 #ifndef CRAQUELURE_PROTOCOL_H
 #define CRAQUELURE_PROTOCOL_H
 
 #include "throat_loads.h"
 
-// Everything that the forces of one run follow from.
+// Everything that determines the forces of one run.
 struct process {
     const struct network *network;
     const struct liquid_record *record;
@@ -21,28 +22,30 @@ struct protocol {
                                // weighs nothing
 };
 
-// The forces at the N_TIME TIMES, increasing, which it takes over. Between steps of the
-// drying they are linear in time, but for SUCTION_FIELD. The caller frees with
-// protocol_free.
+// The forces at N_TIME increasing TIMES (s), which the protocol takes over. Between
+// steps of the drying they are linear in time, except with SUCTION_FIELD. OpenMP. The
+// caller frees with protocol_free.
 struct protocol make_protocol(const struct process *process, double *times, int n_time);
 void protocol_free(struct protocol *protocol);
 
 // The largest force on a grain at any time (N).
 double largest_force(const struct protocol *protocol, int n_particle);
 
-// By how much the force on a grain changes at most from one time to the next (N).
+// The largest change of a force on a grain from one time to the next (N).
 double largest_change(const struct protocol *protocol, int n_particle);
 
-// How far the true force on a grain is at most from the one interpolated between two
-// times (N): measured at all steps of the drying, on both sides where forces jump.
+// The largest distance (N) between the force on a grain and the one interpolated
+// between two times: measured at all steps of the drying, on both sides where forces
+// jump.
 double interpolation_error(const struct process *process,
                            const struct protocol *protocol);
 
 // field_error of the process; for SUCTION_FIELD.
 double process_field_error(const struct process *process);
 
-// Net force and moment about the middle of the box at any time, at most, of the largest
-// sums of their parts' magnitudes. A box that repeats has no moment: 0.
+// The largest net force, and net moment about the middle of the box, at any time, each
+// relative to the largest sum of magnitudes of its parts. In a periodic box the moment
+// is not defined: 0.
 void net_load(const struct protocol *protocol, const struct packing *packing,
               double *force, double *moment);
 

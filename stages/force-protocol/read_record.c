@@ -6,8 +6,8 @@
 
 #include <stdlib.h>
 
-// The nodes under the boundary layer; a foreign program need not say which: then those
-// on the open walls.
+// The nodes under the boundary layer. Artifacts of other programs need not have them:
+// then those on the open walls.
 static bool *find_exposed(const struct artifact *input, const struct network *network)
 {
     bool *exposed = NEW_ARRAY(bool, network->n_node);

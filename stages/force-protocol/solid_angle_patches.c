@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The pull of a unit of suction on each grain at each throat, R^2 times the integral
+// of the unit normal n over the patch of the sphere that faces the throat [K 3.13,
+// 3.20, 3.21]. The patch is a spherical triangle (foot of the face, both ends of the
+// throat). Its cone is closed, so the integral of n over it is minus that over its
+// flat sides:
+//     integral of n = 1/2 sum over the three arcs of theta (a x b) / |a x b|,
+// exact for any triangle, and the sum over all patches of a grain vanishes to
+// rounding, because each arc belongs to two of them [K 3.22]. Small angles: theta =
+// atan2(|a x b|, a . b), which keeps its digits where acos would not. In a layer the
+// patch is the lune between the two ends: the arc in the plane times pi / 2.
 #include "solid_angle_patches.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// theta times the unit normal of the plane through the arc from direction A to
-// direction B. For unit vectors theta is the angle; small angles keep their digits.
+// theta (A x B) / |A x B| for unit vectors A and B with the angle theta between them.
 static struct vector arc(struct vector a, struct vector b)
 {
     const struct vector normal = cross(a, b);
@@ -16,8 +25,7 @@ static struct vector arc(struct vector a, struct vector b)
 }
 
 // The integral of the unit normal over the spherical triangle A B C, counter-clockwise
-// from outside. The cone below it is closed, so the integral is minus that over its
-// three flat sides, which are sectors of area theta/2.
+// from outside. The flat sides of its cone are circular sectors of area theta / 2.
 static struct vector triangle_normal(struct vector a, struct vector b, struct vector c)
 {
     return scale(0.5, add(arc(a, b), add(arc(b, c), arc(c, a))));
@@ -29,7 +37,7 @@ static struct vector direction(struct vector from, struct vector to)
     return scale(1 / norm(apart), apart);
 }
 
-// Where the face's foot is the centre of the grain itself, any direction would do.
+// If the face's foot is the centre of the grain itself, any direction would do.
 static struct vector towards_foot(const struct sector *sector)
 {
     return direction(sector->centre, distance(sector->foot, sector->centre) > 0
@@ -87,7 +95,7 @@ static struct vector face_area(const struct sectors *sectors,
                           : scale(0.5, cross(from, to));
 }
 
-// Half of it with each of the two faces beside the throat; in a layer there is one.
+// Half of it from each of the two faces beside the throat; in a layer there is one.
 static struct vector to_centre(const struct sectors *sectors,
                                const struct sector *sector, const void *unused)
 {
@@ -104,7 +112,7 @@ static struct vector in_plane(const struct sectors *sectors,
     return scale(radius_squared(sectors, sector), arc_in_plane(sector));
 }
 
-// A layer has the throat above and below it, half of each circle faces the grain.
+// A layer has the throat above it and below it; half of each circle faces the grain.
 static struct vector contact_line(const struct sectors *sectors,
                                   const struct sector *sector, const void *unused)
 {

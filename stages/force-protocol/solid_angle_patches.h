@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How what is in each throat acts on each grain beside it [K 3.13-3.21, 5.1].
+// The pull of each throat on each grain beside it, for a unit of its load [K
+// 3.13-3.21, 5.1].
 #ifndef CRAQUELURE_SOLID_ANGLE_PATCHES_H
 #define CRAQUELURE_SOLID_ANGLE_PATCHES_H
 
@@ -21,13 +22,14 @@ enum form {
     FORM_ARCS     // [K 3.20, 3.21] R times the arc of the circle, in a layer; times R
 };
 
-// What one throat does to one grain, for a unit of what is in the throat.
+// The pull of one throat on one grain, for a unit of the throat's load.
 struct patch {
     int32_t throat, particle;
     struct vector pull;
 };
 
-// By grain, then by throat; one for each pair. Auxiliary grains have none.
+// Sorted by grain, then by throat; one for each pair. Auxiliary grains have none. Free
+// with patches_free.
 struct patches {
     int n;
     struct patch *patch;
@@ -35,7 +37,7 @@ struct patches {
     int capacity;
 };
 
-// The pull of a unit of suction (m2).
+// The pulls of a unit of suction in each throat (m2). The caller frees them.
 struct patches find_patches(struct sectors *sectors, enum form form);
 
 // The pull of a unit contact line in each throat: a circle around it, of radius r, that
@@ -61,8 +63,8 @@ void patches_sort(struct patches *patches, int n_particle);
 // STATUS_BAD_DATA when a node lies in the centre of a grain: it is in no direction.
 enum status check_patches(const struct patches *patches, struct reason *reason);
 
-// Takes out the patches of throats that lie in one of WALLS (bits of enum wall). Not of
-// those that only face it where cells were left out.
+// Removes the patches of throats that lie in one of WALLS (bits of enum wall), but not
+// of those that only face it where cells were left out.
 void drop_patches_in_walls(const struct sectors *sectors, unsigned walls,
                            struct patches *patches);
 

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sectors: a throat beside a face, seen from one grain, is the triangle from the foot
+// of the face to the throat. The foot is where the line between the grains at x_i and
+// x_j crosses the plane of equal power [K 3.2],
+//     foot = x_i + (1/2 + (R_i^2 - R_j^2) / (2 |x_j - x_i|^2)) (x_j - x_i).
+// Sectors are made when asked for, from the list of face sides of each throat. A face
+// that was removed with cut cells leaves a gap around a throat: the two grains beside
+// the gap have one sector each, and the missing pair is made from them. The trap is
+// orientation: a large grain can engulf the centre of a small one, which then lies
+// beyond its own face, so the sense of a loop is taken from the neighbour, not from
+// the foot.
 #include "throat_face_sectors.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// A throat, the Kth of a face's loop, seen from the grain on one SIDE of the face.
+// A throat, the K-th of a face's loop, seen from the grain on one side of the face.
 struct side {
     int32_t face, k;
     uint8_t which; // side of the face
@@ -26,7 +36,7 @@ static struct vector centre_of(const struct network *network, int face, int whic
                  : network->packing.position[network->face_particles[face][0]];
 }
 
-// On the line from the centre of grain I to that of J: the point of equal power, the
+// The point of equal power on the line from the centre of grain I to that of J: the
 // middle for equal radii.
 static struct vector foot_between(const struct packing *packing, int i,
                                   struct vector centre, int j, struct vector across)
@@ -38,7 +48,7 @@ static struct vector foot_between(const struct packing *packing, int i,
     return add(centre, scale(share, apart));
 }
 
-// By its corners; twice the area, normal to the loop.
+// Twice the area vector of a face, from its corners.
 static struct vector loop_area(const struct network *network, int face)
 {
     const int64_t begin = network->face_offset[face];
@@ -109,7 +119,7 @@ static void add_side(struct sectors *sectors, int throat, const struct side *sid
     }
 }
 
-// What the grain across a face that the network has not kept sees of it.
+// The same sector seen from the grain across, for a face that the network has not kept.
 static struct sector seen_from_beyond(const struct sector *sector)
 {
     return (struct sector){.throat = sector->throat,
@@ -159,8 +169,7 @@ static int find_singles(const struct sector *sector, int n, int single[2])
 
 // --- layers ------------------------------------------------------------------------
 
-// The copy of grain J, along sides that repeat, of least power at X, which is lowered
-// to it.
+// The periodic copy of grain J of least power at X; POWER becomes that power.
 static struct vector nearest_copy(const struct packing *packing, int j, struct vector x,
                                   double *power)
 {
@@ -197,7 +206,8 @@ static void find_grain_across(const struct network *network, struct sector *sect
     }
 }
 
-// In a layer both sides of a throat are cells.
+// In a layer both sides of a throat are cells: each sector's grain across is the
+// other's.
 static void pair_cells(struct sectors *sectors, int throat, int *n)
 {
     struct sector *sector = sectors->sector;
@@ -289,8 +299,8 @@ static void sort_sides(struct sectors *sectors, const int *throats)
     free(next);
 }
 
-// Of the walls that both ends of the throat belong to those on which they lie. Where
-// cells were left out ends only face a wall.
+// The walls (bits) on which both ends of the throat lie; where cells were left out,
+// nodes have the bit of a wall that they only face.
 static unsigned walls_around(const struct network *network, int throat)
 {
     static const double rounding = 1e-6; // of the throat
@@ -327,7 +337,7 @@ static void find_surface(struct sectors *sectors)
     }
 }
 
-// Around a throat grains follow one another; at most one face between two is missing.
+// Finds throats with a missing face. At most one face around a throat may be missing.
 static enum status find_open(struct sectors *sectors, struct reason *reason)
 {
     for (int t = 0; t < sectors->network->n_throat; t++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where each throat lies beside each grain: wedges, out of which all forms of the
+// Where each throat lies beside each grain: the sectors from which all forms of the
 // capillary force are made.
 #ifndef CRAQUELURE_THROAT_FACE_SECTORS_H
 #define CRAQUELURE_THROAT_FACE_SECTORS_H

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The force on grain i is the sum over loads l and its patches k,
+//     force_i = scale * sum_(l, k) load_l(throat_k) pull_lk  (weight without the
+//     scale),
+// always added in the same order, so that stepping gives the same bits as a sum from
+// scratch: a grain whose throats change is summed again as a whole, never corrected.
 #include "throat_loads.h"
 
 #include "basics/memory.h"
@@ -12,7 +17,7 @@ void throat_loads_free(struct throat_loads *loads)
         patches_free(&loads->patches[l]);
 }
 
-// Added to FORCE.
+// FORCE plus the pulls of load L.
 static struct vector pulled(const struct throat_loads *loads, enum load l,
                             double (*load)[LOADS], int grain, struct vector force)
 {
@@ -52,7 +57,7 @@ void forces_now(const struct throat_loads *loads, const struct liquid_loads *liq
 
 // --- step by step ------------------------------------------------------------------
 
-// Grains of each throat; those that it acts on in several ways several times.
+// Lists the grains of each throat, once for each load that acts on them.
 static void list_grains(struct force_steps *steps, int n_throat)
 {
     const struct patches *patches = steps->loads->patches;

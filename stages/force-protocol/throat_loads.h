@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From what is in the throats to the forces on the grains, now or followed from step to
-// step of the drying.
+// Forces on the grains from the loads of the throats: at one time, or followed from
+// step to step of the drying.
 #ifndef CRAQUELURE_THROAT_LOADS_H
 #define CRAQUELURE_THROAT_LOADS_H
 
 #include "liquid_loads.h"
 #include "solid_angle_patches.h"
 
-// Which throats act on which grains, by each load; what is not modelled has no patches.
-// Forces are times SCALE, but for the weight.
+// Which throats act on which grains, by each load; a load that is not modelled has no
+// patches. Forces are multiplied by SCALE, except the weight.
 struct throat_loads {
     struct patches patches[LOADS];
     double scale;
@@ -42,7 +42,8 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
                                      const struct suction_law *law);
 void force_steps_free(struct force_steps *steps);
 
-// To the end of the step, just before the next; then to the next. False: there is none.
+// _to_end_of_step goes to the moment just before the next step, _advance to that step
+// itself; false: there is none.
 // Only where forces jump, STEPS.CHECKS_ALL, do the two differ.
 void force_steps_to_end_of_step(struct force_steps *steps);
 bool force_steps_advance(struct force_steps *steps);

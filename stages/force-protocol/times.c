@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Adaptive times of the protocol. Forces are followed from step to step; when the
+// force on some grain has changed by more than the bound since the last chosen time,
+// the step before becomes a time. A single step that changes a force by more is
+// divided into equal parts, since forces are linear within it; a jump cannot be
+// divided and counts as one change. The count goes on beyond the limit, so that the
+// message can say what is needed.
 #include "times.h"
 
 #include "basics/memory.h"
@@ -47,7 +53,7 @@ static void remember(struct choice *choice)
     memcpy(choice->last, choice->steps.force, (size_t)n * sizeof *choice->last);
 }
 
-// Largest change of the last move's forces since the last time.
+// Largest change since the last chosen time, among the forces that the step changed.
 static double largest_movement(const struct choice *choice)
 {
     double most = 0;
@@ -58,7 +64,7 @@ static double largest_movement(const struct choice *choice)
     return most;
 }
 
-// The forces before the last move become those of the last time.
+// The forces before the last step become those of the last chosen time.
 static void remember_former(struct choice *choice)
 {
     remember(choice);
@@ -66,8 +72,8 @@ static void remember_former(struct choice *choice)
         choice->last[choice->steps.changed[k]] = choice->steps.former[k];
 }
 
-// The walk has gone from time FROM to TO. If that was too much, FROM becomes a time;
-// where it alone was too much, it is parted evenly.
+// The forces have been advanced from time FROM to TO. If they moved too far, FROM
+// becomes a time; if this step alone is too much, it is divided evenly.
 static void add_step(struct choice *choice, double from, double to)
 {
     if (largest_movement(choice) <= choice->bound) return;
