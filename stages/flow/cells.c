@@ -8,14 +8,14 @@
 #include <stdlib.h>
 
 // In units: copies of grains are first made as far as this.
-static const double first_reach = 2;
+static const double FIRST_REACH = 2;
 
 // A cell whose edges from one corner span less than this of their product is flat: its
 // centre is not where its corners say but where their last digits do.
-static const double flat = 1e-8;
+static const double MIN_DETERMINANT = 1e-8;
 
 // Two centres closer than this, in units, are one: rounding moves them less.
-static const double coincide = 1e-9;
+static const double COINCIDENCE = 1e-9;
 
 const int facet_corner[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
@@ -23,14 +23,15 @@ const int facet_corner[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 // The four points of equal power: a wall is where the power to a grain is that to the
 // grain's reflection.
-struct four {
+struct power_points {
     struct vector point[4];
     double weight[4];
 };
 
-static struct four corners_of(const struct grains *grains, const struct cell *cell)
+static struct power_points corners_of(const struct grains *grains,
+                                      const struct cell *cell)
 {
-    struct four four;
+    struct power_points four;
     int grain = 0;
     while (cell->vertex[grain] < 0)
         grain++;
@@ -49,7 +50,7 @@ static struct four corners_of(const struct grains *grains, const struct cell *ce
 
 // Where the powers are equal. False when the four are so nearly in a plane that digits
 // would be lost.
-static bool power_centre(const struct four *four, struct vector *centre)
+static bool power_centre(const struct power_points *four, struct vector *centre)
 {
     const struct vector a = four->point[0];
     const struct vector u = subtract(four->point[1], a),
@@ -58,7 +59,7 @@ static bool power_centre(const struct four *four, struct vector *centre)
     const struct vector vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
     const double determinant = dot(u, vw), uu = dot(u, u), vv = dot(v, v),
                  ww = dot(w, w);
-    if (!(fabs(determinant) > flat * sqrt(uu * vv * ww))) return false;
+    if (!(fabs(determinant) > MIN_DETERMINANT * sqrt(uu * vv * ww))) return false;
     const double p = uu - four->weight[1] + four->weight[0],
                  q = vv - four->weight[2] + four->weight[0],
                  r = ww - four->weight[3] + four->weight[0];
@@ -88,7 +89,7 @@ static int find_centres(const struct grains *grains,
 #pragma omp parallel for schedule(static) reduction(+ : n_flat)
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct cell *cell = &triangulation->cell[c];
-        const struct four four = corners_of(grains, cell);
+        const struct power_points four = corners_of(grains, cell);
         triangulation->node[c] = power_centre(&four, &centre[c]) ? 0 : -1;
         n_flat += triangulation->node[c] < 0;
         put_on_walls(grains, cell->vertex, &centre[c]);
@@ -147,7 +148,7 @@ static int compare_names(const void *a, const void *b)
 
 // Of all copies of a cell, the one whose first corner is a grain itself stands for
 // them.
-static bool stands(const struct name *name)
+static bool is_representative(const struct name *name)
 {
     return same_image(name->first, (struct image){0});
 }
@@ -163,7 +164,7 @@ static struct name *number_cells(const struct grains *grains,
     *n_cell = 0;
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct name name = name_of(grains, &triangulation->cell[c], c);
-        triangulation->node[c] = stands(&name) ? (*n_cell)++ : -1;
+        triangulation->node[c] = is_representative(&name) ? (*n_cell)++ : -1;
     }
     for (int c = 0; c < triangulation->n_cell; c++) {
         const struct cell *cell = &triangulation->cell[c];
@@ -207,7 +208,7 @@ static bool is_complete(const struct grains *grains, const struct cell *cell,
     return true;
 }
 
-static bool all_complete(const struct grains *grains,
+static bool are_complete(const struct grains *grains,
                          const struct triangulation *triangulation,
                          const struct vector *centre)
 {
@@ -227,9 +228,9 @@ static bool all_complete(const struct grains *grains,
 
 // The cell that stands for cell C, and the image in which it is C; -1: none does, for
 // too few copies were made.
-static int32_t standing(const struct grains *grains,
-                        const struct triangulation *triangulation, int c,
-                        const struct name *names, int n_name, struct image *image)
+static int32_t representative(const struct grains *grains,
+                              const struct triangulation *triangulation, int c,
+                              const struct name *names, int n_name, struct image *image)
 {
     *image = (struct image){0};
     if (triangulation->node[c] >= 0) return triangulation->node[c];
@@ -253,8 +254,8 @@ static bool copy_cell(const struct grains *grains,
         if (vertex >= 0) to->corner_image[k] = grains->image[vertex];
         to->neighbour[k] = -1;
         if (from->neighbour[k] < 0) continue;
-        to->neighbour[k] = standing(grains, triangulation, from->neighbour[k], names,
-                                    n_name, &to->neighbour_image[k]);
+        to->neighbour[k] = representative(grains, triangulation, from->neighbour[k],
+                                          names, n_name, &to->neighbour_image[k]);
         if (to->neighbour[k] < 0) return false;
     }
     return true;
@@ -278,7 +279,7 @@ static bool keep_cells(const struct grains *grains, struct triangulation *triang
         for (int c = 0; c < n; c++)
             triangulation->node[c] = cells->n++;
     bool complete =
-        all_complete(grains, triangulation, centre) || !grains_repeat(grains);
+        are_complete(grains, triangulation, centre) || !grains_repeat(grains);
     cells->cell = NEW_ARRAY(struct pore_cell, cells->n);
     *is_flat = NEW_ARRAY(uint8_t, cells->n);
     for (int c = 0; c < n && complete; c++) {
@@ -300,8 +301,8 @@ static bool keep_cells(const struct grains *grains, struct triangulation *triang
 // A flat cell is a chink between two others: it takes the centre of the first of them
 // that has one. Walls among its corners are among the neighbour's, or the centre would
 // leave them.
-static void settle_flat_cells(const struct grains *grains, struct cells *cells,
-                              uint8_t *is_flat)
+static void place_flat_cells(const struct grains *grains, struct cells *cells,
+                             uint8_t *is_flat)
 {
     for (bool settled = false; !settled;) {
         settled = true;
@@ -333,7 +334,7 @@ static void unite_pores(const struct grains *grains, struct cells *cells)
             if (other < 0) continue;
             const struct vector there =
                 in_image(grains, cells->cell[other].centre, cell->neighbour_image[k]);
-            if (distance(cell->centre, there) <= coincide) unite_sets(set, c, other);
+            if (distance(cell->centre, there) <= COINCIDENCE) unite_sets(set, c, other);
         }
     // The root comes before its members.
     for (int c = 0; c < cells->n; c++) {
@@ -370,7 +371,7 @@ enum status find_cells(const struct packing *packing, struct grains *grains,
                        struct cells *cells, struct reason *reason)
 {
     *cells = (struct cells){0};
-    for (double reach = first_reach;; reach *= 2) {
+    for (double reach = FIRST_REACH;; reach *= 2) {
         const enum status status = place_grains(packing, reach, grains, reason);
         if (status) return status;
         unsigned walls = 0;
@@ -384,7 +385,7 @@ enum status find_cells(const struct packing *packing, struct grains *grains,
             keep_cells(grains, &triangulation, cells, &is_flat);
         triangulation_free(&triangulation);
         if (complete) {
-            settle_flat_cells(grains, cells, is_flat);
+            place_flat_cells(grains, cells, is_flat);
             unite_pores(grains, cells);
             cells->n_hidden = count_hidden(grains, cells);
         }

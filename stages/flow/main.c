@@ -11,11 +11,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum product { PRODUCT_FLOW, PRODUCT_FORCES };
+enum output_kind { OUTPUT_FLOW, OUTPUT_FORCES };
 
 struct flow_parameters {
     struct imposed imposed;
-    int sides, conductance, pieces, solver, product;
+    int sides, conductance, facet_pieces, solver, output_kind;
     double factor, viscosity, density, tolerance;
     double gravity[3], strain_rate[3];
     bool tensor, stress, stokes;
@@ -58,7 +58,7 @@ static const struct parameter table[] = {
      .text = "of a throat: by hydraulic radius [C 8] or effective radius [C 10]"},
     {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", AT(factor),
      BETWEEN(1e-100, 1e100), .text = "alpha of [C 8]"},
-    {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", AT(pieces),
+    {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", AT(facet_pieces),
      .choices = "signed|unsigned",
      .text = "of throats whose pores lie on one side of the facet: signed, a partition "
              "of the void; or counted twice, as in Yade"},
@@ -86,7 +86,8 @@ static const struct parameter table[] = {
     {"tolerance", PARAMETER_NUMBER, "1", "1e-12", AT(tolerance), BETWEEN(1e-14, 0.1),
      .text = "largest error of the balance of a pore, and of the sum over all pores, "
              "relative to the flux"},
-    {"write", PARAMETER_CHOICE, "1", "\"flow\"", AT(product), .choices = "flow|forces",
+    {"write", PARAMETER_CHOICE, "1", "\"flow\"", AT(output_kind),
+     .choices = "flow|forces",
      .text = "all of the flow, or the total force on every grain for dem-replay"},
     {"steps", PARAMETER_INTEGER, "1", "11", AT(steps), BETWEEN(2, 1e6),
      .text = "write=forces: number of times, a second apart, over which the forces "
@@ -114,7 +115,7 @@ struct computation {
     struct pressures pressures;
     struct forces forces;
     double *opening; // NULL: nothing moves
-    struct vector columns[3];
+    struct vector permeability_columns[3];
     struct pore_stress stress;
 };
 
@@ -170,7 +171,7 @@ static enum status find_columns(struct computation *flow,
         if (!status) {
             struct forces forces =
                 find_forces(&flow->grains, &flow->cells, &flow->throats, &pressures);
-            flow->columns[axis] =
+            flow->permeability_columns[axis] =
                 scale(unit * unit * component(flow->grains.box, axis), forces.velocity);
             forces_free(&forces);
         }
@@ -185,11 +186,11 @@ static enum status compute(const struct artifact *input,
                            const struct flow_parameters *parameters,
                            struct computation *flow, struct reason *reason)
 {
-    const struct throat_rule rule = {.sides = (enum sides)parameters->sides,
-                                     .conductance =
-                                         (enum conductance)parameters->conductance,
-                                     .pieces = (enum pieces)parameters->pieces,
-                                     .factor = parameters->factor};
+    const struct throat_rule rule = {
+        .sides = (enum sides)parameters->sides,
+        .conductance = (enum conductance)parameters->conductance,
+        .facet_pieces = (enum facet_pieces)parameters->facet_pieces,
+        .factor = parameters->factor};
     const struct solving solving = {(enum solver)parameters->solver,
                                     parameters->tolerance};
     enum status status =
@@ -284,7 +285,8 @@ static void write(const struct computation *computation,
         .bed_share = parameters->imposed.along == ALONG_NONE
                          ? 1
                          : bed_share(&computation->packing, parameters->imposed.along),
-        .columns = parameters->tensor ? computation->columns : NULL,
+        .permeability_columns =
+            parameters->tensor ? computation->permeability_columns : NULL,
         .stress = parameters->stress ? &computation->stress : NULL};
     char model[700];
     snprintf(
@@ -301,7 +303,7 @@ static void write(const struct computation *computation,
         flow.pressures->n_unknown, parameters->tolerance, flow.cells->n_hidden,
         flow.cells->n_flat, flow.throats->n_closed, flow.pressures->n_pocket,
         flow.opening ? "" : ", motion of the grains");
-    const bool all = parameters->product == PRODUCT_FLOW;
+    const bool all = parameters->output_kind == OUTPUT_FLOW;
     struct artifact *artifact =
         artifact_create(all ? "flow" : "forces", invocation->output);
     if (all)

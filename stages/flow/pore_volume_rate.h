@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How fast moving grains and walls open and close the pores [C 5, 20].
-#ifndef CRAQUELURE_FLOW_SWEPT_H
-#define CRAQUELURE_FLOW_SWEPT_H
+#ifndef CRAQUELURE_FLOW_PORE_VOLUME_RATE_H
+#define CRAQUELURE_FLOW_PORE_VOLUME_RATE_H
 
 #include "throats.h"
 

@@ -9,10 +9,10 @@
 
 // Each correction gains what the solver promises, at most this; rounding ends it.
 enum { CORRECTIONS = 12 };
-static const double first_reduction = 1e-8;
+static const double FIRST_REDUCTION = 1e-8;
 
 // Below this imbalance corrections do not change the throughput any more.
-static const double settled = 1e-5;
+static const double THROUGHPUT_SETTLED = 1e-5;
 
 // A network of nodes: those whose pressure is sought first.
 struct balance {
@@ -45,7 +45,7 @@ uint8_t *walls_of_pores(const struct cells *cells)
 }
 
 // The wall that imposes the pressure on a pore; -1: none.
-static int imposing(const struct conditions *conditions, unsigned walls)
+static int pressure_wall(const struct conditions *conditions, unsigned walls)
 {
     for (int wall = 0; wall < WALL_COUNT; wall++)
         if (walls >> wall & 1 && !isnan(conditions->pressure[wall])) return wall;
@@ -53,9 +53,9 @@ static int imposing(const struct conditions *conditions, unsigned walls)
 }
 
 // The wall through which a flux enters a pore; -1: none.
-static int feeding(const struct conditions *conditions, unsigned walls)
+static int flux_wall(const struct conditions *conditions, unsigned walls)
 {
-    if (imposing(conditions, walls) >= 0) return -1;
+    if (pressure_wall(conditions, walls) >= 0) return -1;
     for (int wall = 0; wall < WALL_COUNT; wall++)
         if (walls >> wall & 1 && !isnan(conditions->flux[wall])) return wall;
     return -1;
@@ -63,8 +63,8 @@ static int feeding(const struct conditions *conditions, unsigned walls)
 
 int feeding_wall(const struct conditions *conditions, unsigned walls)
 {
-    const int wall = imposing(conditions, walls);
-    return wall >= 0 ? wall : feeding(conditions, walls);
+    const int wall = pressure_wall(conditions, walls);
+    return wall >= 0 ? wall : flux_wall(conditions, walls);
 }
 
 // Numbers the nodes: pores, and all pores behind one flux plate as one.
@@ -77,7 +77,7 @@ static void number_nodes(struct balance *balance, const struct conditions *condi
         plate[wall] = -1;
     for (int i = 0; i < n; i++) {
         parent[i] = i;
-        const int wall = feeding(conditions, balance->walls[i]);
+        const int wall = flux_wall(conditions, balance->walls[i]);
         if (wall < 0) continue;
         if (plate[wall] < 0) plate[wall] = i;
         parent[i] = plate[wall];
@@ -106,8 +106,8 @@ static bool nodes_of(const struct pressures *pressures, const struct throat *thr
 
 // Where all that is imposed is one pressure, it is that of all pores: begun from there,
 // what does not flow is nothing, and not the rounding of a solution.
-static void begin_from_least(const struct conditions *conditions,
-                             struct pressures *pressures)
+static void start_from_uniform(const struct conditions *conditions,
+                               struct pressures *pressures)
 {
     double least = INFINITY;
     for (int wall = 0; wall < WALL_COUNT; wall++)
@@ -122,12 +122,12 @@ static void impose(struct balance *balance, const struct conditions *conditions,
                    struct pressures *pressures)
 {
     pressures->value = NEW_ARRAY(struct compensated, pressures->n_node);
-    begin_from_least(conditions, pressures);
+    start_from_uniform(conditions, pressures);
     balance->known = NEW_ARRAY(uint8_t, pressures->n_node);
     balance->injected = NEW_ARRAY(double, pressures->n_node);
     for (int i = 0; i < balance->cells->n_pore; i++) {
         const int32_t node = pressures->node[i];
-        const int wall = imposing(conditions, balance->walls[i]);
+        const int wall = pressure_wall(conditions, balance->walls[i]);
         if (source) balance->injected[node] += source[i];
         if (wall < 0) continue;
         balance->known[node] = 1;
@@ -275,12 +275,12 @@ static enum status correct(const struct balance *balance, const struct solving *
                            struct pressures *pressures, struct reason *reason)
 {
     const double tolerance = solving->tolerance;
-    double best = INFINITY, reduction = first_reduction;
+    double best = INFINITY, reduction = FIRST_REDUCTION;
     for (int round = 0; round < CORRECTIONS; round++) {
         const enum status status = linear_correct(solver, given, x, residual, reduction,
                                                   &pressures->iterations, reason);
         if (status) return status;
-        if (!(pressures->imbalance < settled)) {
+        if (!(pressures->imbalance < THROUGHPUT_SETTLED)) {
             reorder(balance, pressures, x, true);
             pressures->throughput = find_throughput(balance, pressures);
         }
@@ -289,7 +289,7 @@ static enum status correct(const struct balance *balance, const struct solving *
         pressures->imbalance = left;
         if (left < 0.1 * tolerance || (left < tolerance && left > 0.5 * best)) break;
         best = fmin(best, left);
-        reduction = fmax(first_reduction, 0.02 * tolerance / left);
+        reduction = fmax(FIRST_REDUCTION, 0.02 * tolerance / left);
     }
     return STATUS_OK;
 }
@@ -330,8 +330,8 @@ static enum status close_balances(const struct balance *balance,
 
 // Pockets float: each takes the mean pressure of the pores around it, by facet area;
 // one with nothing around it but itself, a mean of 0.
-static void settle_pockets(const struct balance *balance, const int32_t *pocket,
-                           struct pressures *pressures)
+static void level_pockets(const struct balance *balance, const int32_t *pocket,
+                          struct pressures *pressures)
 {
     const int n = pressures->n_node;
     double *area = NEW_ARRAY(double, n), *sum = NEW_ARRAY(double, n);
@@ -380,7 +380,7 @@ static void find_inflow(const struct balance *balance,
             isnan(conditions->flux[wall]) ? 0 : conditions->flux[wall];
     struct compensated sum[WALL_COUNT] = {{0, 0}};
     for (int i = 0; source && i < balance->cells->n_pore; i++) {
-        const int wall = imposing(conditions, balance->walls[i]);
+        const int wall = pressure_wall(conditions, balance->walls[i]);
         if (wall >= 0) compensated_add(&sum[wall], -source[i]);
     }
     for (int t = 0; t < balance->throats->n; t++) {
@@ -391,9 +391,9 @@ static void find_inflow(const struct balance *balance,
             throat->conductance *
             pressure_drop(pressures, balance->grains, balance->cells, throat);
         for (int end = 0; end < 2; end++) {
-            const int wall =
-                imposing(conditions,
-                         balance->walls[balance->cells->cell[throat->cell[end]].pore]);
+            const int wall = pressure_wall(
+                conditions,
+                balance->walls[balance->cells->cell[throat->cell[end]].pore]);
             if (wall >= 0) compensated_add(&sum[wall], end == 0 ? flux : -flux);
         }
     }
@@ -423,7 +423,7 @@ enum status solve_pressures(const struct grains *grains, const struct cells *cel
             status = close_balances(&balance, solving, pressures, reason);
     }
     if (!status) {
-        settle_pockets(&balance, pocket, pressures);
+        level_pockets(&balance, pocket, pressures);
         find_inflow(&balance, conditions, source, pressures);
     }
     free(pocket);

@@ -6,19 +6,19 @@
 #include <stdlib.h>
 
 // What surrounds a grain: sums over the throats that it is a corner of.
-struct surroundings {
+struct neighbourhood {
     struct vector moment; // flux times step, for a viscosity of 1
     double volume;        // of fluid
     double surface;       // of the other corners
     struct vector more;   // force that the grain gets, and they lose
 };
 
-static struct surroundings *find_surroundings(const struct grains *grains,
-                                              const struct cells *cells,
-                                              const struct throats *throats,
-                                              const struct pressures *pressures)
+static struct neighbourhood *find_neighbourhoods(const struct grains *grains,
+                                                 const struct cells *cells,
+                                                 const struct throats *throats,
+                                                 const struct pressures *pressures)
 {
-    struct surroundings *around = NEW_ARRAY(struct surroundings, grains->n_base);
+    struct neighbourhood *around = NEW_ARRAY(struct neighbourhood, grains->n_base);
     for (int t = 0; t < throats->n; t++) {
         const struct throat *throat = &throats->throat[t];
         const double drop = pressure_drop(pressures, grains, cells, throat);
@@ -28,7 +28,7 @@ static struct surroundings *find_surroundings(const struct grains *grains,
             throat->surface[0] + throat->surface[1] + throat->surface[2];
         for (int k = 0; k < 3; k++) {
             if (throat->corner[k] < 0) continue;
-            struct surroundings *here = &around[throat->corner[k]];
+            struct neighbourhood *here = &around[throat->corner[k]];
             here->moment = add(here->moment, moment);
             here->volume += throat->volume;
             here->surface += surface - throat->surface[k];
@@ -38,7 +38,7 @@ static struct surroundings *find_surroundings(const struct grains *grains,
 }
 
 // The root of the sum of the squares, less the force there is.
-static struct vector missing_drag(const struct surroundings *around, double radius,
+static struct vector missing_drag(const struct neighbourhood *around, double radius,
                                   struct vector force)
 {
     const double moment = norm(around->moment), there = norm(force);
@@ -52,7 +52,8 @@ void add_stokes_drag(const struct grains *grains, const struct cells *cells,
                      const struct throats *throats, const struct pressures *pressures,
                      struct forces *forces)
 {
-    struct surroundings *around = find_surroundings(grains, cells, throats, pressures);
+    struct neighbourhood *around =
+        find_neighbourhoods(grains, cells, throats, pressures);
     for (int i = 0; i < grains->n_base; i++)
         around[i].more = missing_drag(&around[i], grains->radius[i],
                                       add(forces->viscous[i], forces->pressure[i]));
@@ -62,7 +63,7 @@ void add_stokes_drag(const struct grains *grains, const struct cells *cells,
         const struct throat *throat = &throats->throat[t];
         for (int k = 0; k < 3; k++) {
             if (throat->corner[k] < 0) continue;
-            const struct surroundings *here = &around[throat->corner[k]];
+            const struct neighbourhood *here = &around[throat->corner[k]];
             for (int m = 0; m < 3 && here->surface > 0; m++) {
                 const int32_t host = throat->corner[m];
                 if (m == k) continue;

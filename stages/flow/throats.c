@@ -8,7 +8,7 @@
 #include <string.h>
 
 // In units: more than centres of one pore are apart.
-static const double inside = 1e-6;
+static const double SAME_PORE = 1e-6;
 
 struct corner facet_corner_of(const struct grains *grains, const struct pore_cell *cell,
                               int facet, int k)
@@ -78,7 +78,7 @@ static bool fit_sectors(struct throat *throat)
 static bool is_inside(const struct cells *cells, const struct throat *throat)
 {
     return cells->cell[throat->cell[0]].pore == cells->cell[throat->cell[1]].pore &&
-           throat->length < inside;
+           throat->length < SAME_PORE;
 }
 
 static void measure_throat(const struct grains *grains, const struct cells *cells,
@@ -92,7 +92,7 @@ static void measure_throat(const struct grains *grains, const struct cells *cell
     }
     const struct vector to = add(cell->centre, throat_step(grains, cells, throat));
     const struct facet shape =
-        measure_facet(corner, cell->centre, to, rule->pieces == PIECES_SIGNED);
+        measure_facet(corner, cell->centre, to, rule->facet_pieces == PIECES_SIGNED);
     throat->area = shape.area;
     memcpy(throat->sector, shape.sector, sizeof throat->sector);
     for (int k = 0; k < 3; k++)

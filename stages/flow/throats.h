@@ -14,7 +14,7 @@ enum sides {
 };
 
 // A throat whose pores are both on one side of its facet.
-enum pieces {
+enum facet_pieces {
     PIECES_SIGNED,  // what is nearer is taken off what is farther: a partition
     PIECES_UNSIGNED // each grain's share is counted twice, as Yade does
 };
@@ -24,7 +24,7 @@ enum conductance { CONDUCTANCE_HYDRAULIC, CONDUCTANCE_EFFECTIVE };
 struct throat_rule {
     enum sides sides;
     enum conductance conductance;
-    enum pieces pieces;
+    enum facet_pieces facet_pieces;
     double factor; // alpha [C 8]
 };
 

@@ -181,11 +181,11 @@ static void put_permeability(struct artifact *artifact, const struct flow *flow)
         artifact_put_number(artifact, "/summary/bed_permeability",
                             flow->permeability * flow->bed_share);
     }
-    if (!flow->columns) return;
+    if (!flow->permeability_columns) return;
     double tensor[3][3];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            tensor[i][j] = component(flow->columns[j], i);
+            tensor[i][j] = component(flow->permeability_columns[j], i);
     artifact_put(artifact, "/permeability", tensor, 3);
 }
 

@@ -14,12 +14,13 @@ struct flow {
     const struct throats *throats;
     const struct pressures *pressures;
     const struct forces *forces;
-    const double *opening;        // (n_pore); NULL: nothing moves
-    double viscosity;             // Pa s
-    struct vector weight;         // density of the fluid times gravity, N m-3
-    double permeability;          // m2; NAN: none
-    double bed_share;             // of the box along the flow, that grains reach over
-    const struct vector *columns; // (3) of the permeability tensor; NULL: not asked for
+    const double *opening; // (n_pore); NULL: nothing moves
+    double viscosity;      // Pa s
+    struct vector weight;  // density of the fluid times gravity, N m-3
+    double permeability;   // m2; NAN: none
+    double bed_share;      // of the box along the flow, that grains reach over
+    const struct vector
+        *permeability_columns; // (3) of the permeability tensor; NULL: not asked for
     const struct pore_stress *stress; // NULL: not asked for
 };
 

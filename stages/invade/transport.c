@@ -12,9 +12,9 @@
 static const double TOLERANCE = 1e-10;
 static const double REDUCTION = 1e-8; // of what the balances lack, in one round
 
-enum { MOST_ROUNDS = 6, MOST_ELIMINATED = 20000, MOST_STATES = 11 };
+enum { MAX_ROUNDS = 6, MAX_ELIMINATED = 20000, MAX_STATES = 11 };
 
-struct passage {
+struct phase_network {
     const struct network *network;
     struct incidence incidence;
     unsigned inlet, outlet;
@@ -25,65 +25,65 @@ struct passage {
     bool reached;          // the outlet
 };
 
-static bool is_inlet(const struct passage *passage, int node)
+static bool is_inlet(const struct phase_network *conductor, int node)
 {
-    return passage->network->node_walls[node] & passage->inlet;
+    return conductor->network->node_walls[node] & conductor->inlet;
 }
 
-static bool is_outlet(const struct passage *passage, int node)
+static bool is_outlet(const struct phase_network *conductor, int node)
 {
-    return passage->network->node_walls[node] & passage->outlet;
+    return conductor->network->node_walls[node] & conductor->outlet;
 }
 
 // --- one network of conductances -----------------------------------------------------
 
 // From NODE on, which is reached.
-static void look_around(struct passage *passage, int node, int *n_queue)
+static void visit_neighbours(struct phase_network *conductor, int node, int *n_queue)
 {
-    const struct incidence *incidence = &passage->incidence;
+    const struct incidence *incidence = &conductor->incidence;
     for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++) {
-        const int32_t *ends = passage->network->throat_nodes[incidence->throat[k]];
+        const int32_t *ends = conductor->network->throat_nodes[incidence->throat[k]];
         const int other = ends[ends[0] == node];
-        if (!(passage->conductance[incidence->throat[k]] > 0) ||
-            is_inlet(passage, other))
+        if (!(conductor->conductance[incidence->throat[k]] > 0) ||
+            is_inlet(conductor, other))
             continue;
-        if (is_outlet(passage, other)) {
-            passage->reached = true;
-        } else if (passage->site[other] < 0) {
-            passage->site[other] = passage->n_balance++;
-            passage->queue[(*n_queue)++] = other;
+        if (is_outlet(conductor, other)) {
+            conductor->reached = true;
+        } else if (conductor->site[other] < 0) {
+            conductor->site[other] = conductor->n_balance++;
+            conductor->queue[(*n_queue)++] = other;
         }
     }
 }
 
 // Numbers the nodes that something leads to from the inlet, then outlet and inlet.
-static void find_sites(struct passage *passage)
+static void find_sites(struct phase_network *conductor)
 {
-    const int n_node = passage->network->n_node;
+    const int n_node = conductor->network->n_node;
     int n_queue = 0;
-    passage->n_balance = 0;
-    passage->reached = false;
+    conductor->n_balance = 0;
+    conductor->reached = false;
     for (int i = 0; i < n_node; i++) {
-        passage->site[i] = -1;
-        if (is_inlet(passage, i)) passage->queue[n_queue++] = i;
+        conductor->site[i] = -1;
+        if (is_inlet(conductor, i)) conductor->queue[n_queue++] = i;
     }
     for (int k = 0; k < n_queue; k++)
-        look_around(passage, passage->queue[k], &n_queue);
+        visit_neighbours(conductor, conductor->queue[k], &n_queue);
     for (int i = 0; i < n_node; i++) {
-        if (is_outlet(passage, i)) passage->site[i] = passage->n_balance;
-        if (is_inlet(passage, i)) passage->site[i] = passage->n_balance + 1;
+        if (is_outlet(conductor, i)) conductor->site[i] = conductor->n_balance;
+        if (is_inlet(conductor, i)) conductor->site[i] = conductor->n_balance + 1;
     }
 }
 
 // Links between sites. Returns how many.
-static int link_sites(const struct passage *passage, struct link *link)
+static int link_sites(const struct phase_network *conductor, struct link *link)
 {
     int n = 0;
-    for (int t = 0; t < passage->network->n_throat; t++) {
-        const int32_t *ends = passage->network->throat_nodes[t];
-        const int a = passage->site[ends[0]], b = passage->site[ends[1]];
-        if (passage->conductance[t] > 0 && a >= 0 && b >= 0 && a != b)
-            link[n++] = (struct link){{a, b}, passage->conductance[t]};
+    for (int t = 0; t < conductor->network->n_throat; t++) {
+        const int32_t *ends = conductor->network->throat_nodes[t];
+        const int a = conductor->site[ends[0]], b = conductor->site[ends[1]];
+        if (conductor->conductance[t] > 0 && a >= 0 && b >= 0 && a != b)
+            link[n++] = (struct link){{a, b}, conductor->conductance[t]};
     }
     return n;
 }
@@ -121,7 +121,7 @@ static enum status iterate(int n, int n_link, const struct link *link,
     enum status status = linear_solver_make(&matrix, SOLVER_AUTO, &solver, reason);
     matrix_residual(&matrix, NULL, x, residual);
     bool closed = false;
-    for (int round = 0, iterations = 0; !status && !closed && round < MOST_ROUNDS;
+    for (int round = 0, iterations = 0; !status && !closed && round < MAX_ROUNDS;
          round++) {
         status =
             linear_correct(&solver, NULL, x, residual, REDUCTION, &iterations, reason);
@@ -135,7 +135,7 @@ static enum status iterate(int n, int n_link, const struct link *link,
     return status || closed ? status : STATUS_NOT_CONVERGED;
 }
 
-static double fall_of_one(const void *context, int b, int a)
+static double unit_drop(const void *context, int b, int a)
 {
     (void)context;
     return b - a; // the inlet is end 1, the outlet end 0
@@ -149,21 +149,21 @@ static double eliminate(int n, int n_link, const struct link *link)
     for (int k = 0; k < n_link; k++)
         kron_link(&kron, link[k].site[0], link[k].site[1], link[k].conductance);
     kron_eliminate(&kron);
-    const double flow = kron_flow(&kron, 0, fall_of_one, NULL);
+    const double flow = kron_flow(&kron, 0, unit_drop, NULL);
     kron_free(&kron);
     return flow;
 }
 
-static enum status find_conductance(struct passage *passage, double *conductance,
-                                    struct reason *reason)
+static enum status find_conductance(struct phase_network *conductor,
+                                    double *conductance, struct reason *reason)
 {
     *conductance = 0;
-    find_sites(passage);
-    if (!passage->reached) return STATUS_OK;
-    struct link *link = NEW_ARRAY(struct link, passage->network->n_throat);
-    const int n = passage->n_balance, n_link = link_sites(passage, link);
+    find_sites(conductor);
+    if (!conductor->reached) return STATUS_OK;
+    struct link *link = NEW_ARRAY(struct link, conductor->network->n_throat);
+    const int n = conductor->n_balance, n_link = link_sites(conductor, link);
     enum status status = iterate(n, n_link, link, conductance, reason);
-    if (status == STATUS_NOT_CONVERGED && n < MOST_ELIMINATED) {
+    if (status == STATUS_NOT_CONVERGED && n < MAX_ELIMINATED) {
         *conductance = eliminate(n, n_link, link);
         status = STATUS_OK;
     }
@@ -173,24 +173,24 @@ static enum status find_conductance(struct passage *passage, double *conductance
                   "transport: the balances of %d nodes cannot be closed to %g of the "
                   "flow, conductances are too far apart (throats of more even radii, "
                   "or fewer than %d nodes, would do)",
-                  n, TOLERANCE, MOST_ELIMINATED);
+                  n, TOLERANCE, MAX_ELIMINATED);
 }
 
 // --- states ------------------------------------------------------------------------
 
-static double property_of(const struct passage *passage, int throat,
+static double property_of(const struct phase_network *conductor, int throat,
                           enum property property)
 {
-    const double r = passage->network->throat_radius[throat] / passage->radius;
-    const double length = passage->network->throat_length[throat] / passage->length;
+    const double r = conductor->network->throat_radius[throat] / conductor->radius;
+    const double length = conductor->network->throat_length[throat] / conductor->length;
     return property == PERMEABILITY ? M_PI * (r * r) * (r * r) / (8 * length)
                                     : M_PI * (r * r) / length;
 }
 
-static double unit_of(const struct passage *passage, enum property property)
+static double unit_of(const struct phase_network *conductor, enum property property)
 {
-    const double section = passage->radius * passage->radius;
-    return section / passage->length * (property == PERMEABILITY ? section : 1);
+    const double section = conductor->radius * conductor->radius;
+    return section / conductor->length * (property == PERMEABILITY ? section : 1);
 }
 
 // After EVENT events gas has come to what has a number up to it, but 0: nothing was
@@ -200,25 +200,27 @@ static bool holds(enum phase phase, int number, int event)
     return (number >= 0 && number <= event) == (phase == GAS);
 }
 
-static bool leads_through(const struct passage *passage, const struct outcome *outcome,
-                          enum phase phase, int node, int event)
+static bool leads_through(const struct phase_network *conductor,
+                          const struct outcome *outcome, enum phase phase, int node,
+                          int event)
 {
-    return is_inlet(passage, node) || is_outlet(passage, node) ||
+    return is_inlet(conductor, node) || is_outlet(conductor, node) ||
            holds(phase, outcome->node_event[node], event);
 }
 
 // OUTCOME is NULL for one phase alone.
-static void fill_passage(struct passage *passage, const struct outcome *outcome,
-                         enum phase phase, enum property property, int event)
+static void fill_phase_network(struct phase_network *conductor,
+                               const struct outcome *outcome, enum phase phase,
+                               enum property property, int event)
 {
-    for (int t = 0; t < passage->network->n_throat; t++) {
-        const int32_t *ends = passage->network->throat_nodes[t];
-        bool open = passage->network->throat_kind[t] == THROAT_NETWORK;
+    for (int t = 0; t < conductor->network->n_throat; t++) {
+        const int32_t *ends = conductor->network->throat_nodes[t];
+        bool open = conductor->network->throat_kind[t] == THROAT_NETWORK;
         if (outcome)
             open &= holds(phase, outcome->throat_event[t], event) &&
-                    leads_through(passage, outcome, phase, ends[0], event) &&
-                    leads_through(passage, outcome, phase, ends[1], event);
-        passage->conductance[t] = open ? property_of(passage, t, property) : 0;
+                    leads_through(conductor, outcome, phase, ends[0], event) &&
+                    leads_through(conductor, outcome, phase, ends[1], event);
+        conductor->conductance[t] = open ? property_of(conductor, t, property) : 0;
     }
 }
 
@@ -239,11 +241,11 @@ static int find_states(const struct outcome *outcome, int *event)
 
 // --- the whole ---------------------------------------------------------------------
 
-static enum status check(const struct passage *passage, struct reason *reason)
+static enum status check(const struct phase_network *conductor, struct reason *reason)
 {
-    const struct network *network = passage->network;
+    const struct network *network = conductor->network;
     for (int i = 0; i < network->n_node; i++)
-        if (is_inlet(passage, i) && is_outlet(passage, i))
+        if (is_inlet(conductor, i) && is_outlet(conductor, i))
             return refuse(reason, STATUS_BAD_DATA,
                           "transport: node %d is at the inlet and at the outlet", i);
     for (int t = 0; t < network->n_throat; t++) {
@@ -258,77 +260,80 @@ static enum status check(const struct passage *passage, struct reason *reason)
     return STATUS_OK;
 }
 
-static struct passage passage_make(const struct network *network,
-                                   const struct invasion_conditions *conditions)
+static struct phase_network
+phase_network_make(const struct network *network,
+                   const struct invasion_conditions *conditions)
 {
-    struct passage passage = {.network = network,
-                              .incidence = network_incidence(network),
-                              .inlet = conditions->inlet,
-                              .outlet = conditions->outlet,
-                              .conductance = NEW_ARRAY(double, network->n_throat),
-                              .site = NEW_ARRAY(int, network->n_node),
-                              .queue = NEW_ARRAY(int, network->n_node)};
+    struct phase_network conductor = {.network = network,
+                                      .incidence = network_incidence(network),
+                                      .inlet = conditions->inlet,
+                                      .outlet = conditions->outlet,
+                                      .conductance =
+                                          NEW_ARRAY(double, network->n_throat),
+                                      .site = NEW_ARRAY(int, network->n_node),
+                                      .queue = NEW_ARRAY(int, network->n_node)};
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
-        passage.length = fmax(passage.length, network->throat_length[t]);
-        passage.radius = fmax(passage.radius, network->throat_radius[t]);
+        conductor.length = fmax(conductor.length, network->throat_length[t]);
+        conductor.radius = fmax(conductor.radius, network->throat_radius[t]);
     }
-    return passage;
+    return conductor;
 }
 
-static void passage_free(struct passage *passage)
+static void phase_network_free(struct phase_network *conductor)
 {
-    incidence_free(&passage->incidence);
-    free(passage->conductance);
-    free(passage->site);
-    free(passage->queue);
+    incidence_free(&conductor->incidence);
+    free(conductor->conductance);
+    free(conductor->site);
+    free(conductor->queue);
 }
 
 // Length over section of the box along the axis whose sides are inlet and outlet.
-static double shape_of_box(const struct passage *passage)
+static double box_shape_factor(const struct phase_network *conductor)
 {
-    const struct packing *packing = &passage->network->packing;
+    const struct packing *packing = &conductor->network->packing;
     const struct vector box = subtract(packing->upper, packing->lower);
     for (int axis = 0; axis < 3; axis++) {
         const unsigned lower = 1u << 2 * axis, upper = 2u << 2 * axis;
         if (packing->n_body == 0 &&
-            (passage->inlet | passage->outlet) == (lower | upper) &&
-            passage->inlet != (lower | upper))
+            (conductor->inlet | conductor->outlet) == (lower | upper) &&
+            conductor->inlet != (lower | upper))
             return component(box, axis) /
                    (component(box, (axis + 1) % 3) * component(box, (axis + 2) % 3));
     }
     return NAN;
 }
 
-static enum status find_one_phase(struct passage *passage, struct transport *transport,
-                                  struct reason *reason)
+static enum status find_one_phase(struct phase_network *conductor,
+                                  struct transport *transport, struct reason *reason)
 {
     for (enum property property = 0; property < PROPERTIES; property++) {
         double *conductance = &transport->conductance[property];
-        fill_passage(passage, NULL, GAS, property, 0);
-        const enum status status = find_conductance(passage, conductance, reason);
+        fill_phase_network(conductor, NULL, GAS, property, 0);
+        const enum status status = find_conductance(conductor, conductance, reason);
         if (status) return status;
         if (!(*conductance > 0))
             return refuse(reason, STATUS_BAD_DATA,
                           "transport: no throats lead from inlet to outlet");
-        *conductance *= unit_of(passage, property);
-        transport->material[property] = *conductance * shape_of_box(passage);
+        *conductance *= unit_of(conductor, property);
+        transport->material[property] = *conductance * box_shape_factor(conductor);
     }
     return STATUS_OK;
 }
 
-static enum status find_relative(struct passage *passage, const struct outcome *outcome,
-                                 int state, int event, struct transport *transport,
-                                 struct reason *reason)
+static enum status find_relative(struct phase_network *conductor,
+                                 const struct outcome *outcome, int state, int event,
+                                 struct transport *transport, struct reason *reason)
 {
     for (enum phase phase = 0; phase < PHASES; phase++)
         for (enum property property = 0; property < PROPERTIES; property++) {
             double conductance;
-            fill_passage(passage, outcome, phase, property, event);
-            const enum status status = find_conductance(passage, &conductance, reason);
+            fill_phase_network(conductor, outcome, phase, property, event);
+            const enum status status =
+                find_conductance(conductor, &conductance, reason);
             if (status) return status;
             transport->relative[phase][property][state] =
-                conductance * unit_of(passage, property) /
+                conductance * unit_of(conductor, property) /
                 transport->conductance[property];
         }
     return STATUS_OK;
@@ -339,20 +344,20 @@ enum status transport_find(const struct network *network,
                            const struct outcome *outcome, struct transport *transport,
                            struct reason *reason)
 {
-    int event[MOST_STATES];
+    int event[MAX_STATES];
     *transport = (struct transport){.n = find_states(outcome, event),
-                                    .saturation = NEW_ARRAY(double, MOST_STATES)};
+                                    .saturation = NEW_ARRAY(double, MAX_STATES)};
     for (int k = 0; k < PHASES * PROPERTIES; k++)
         transport->relative[k / PROPERTIES][k % PROPERTIES] =
-            NEW_ARRAY(double, MOST_STATES);
-    struct passage passage = passage_make(network, conditions);
-    enum status status = check(&passage, reason);
-    if (!status) status = find_one_phase(&passage, transport, reason);
+            NEW_ARRAY(double, MAX_STATES);
+    struct phase_network conductor = phase_network_make(network, conditions);
+    enum status status = check(&conductor, reason);
+    if (!status) status = find_one_phase(&conductor, transport, reason);
     for (int k = 0; !status && k < transport->n; k++) {
         transport->saturation[k] = event[k] ? outcome->saturation[event[k] - 1] : 1;
-        status = find_relative(&passage, outcome, k, event[k], transport, reason);
+        status = find_relative(&conductor, outcome, k, event[k], transport, reason);
     }
-    passage_free(&passage);
+    phase_network_free(&conductor);
     return status;
 }
 

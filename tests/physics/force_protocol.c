@@ -331,16 +331,16 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
         struct throat_loads loads = random_action(&network);
         if (which % 2 == 0) patches_free(&loads.patches[LOAD_CONTACT_LINE]);
         struct force_steps steps = force_steps_begin(&loads, &network, &record, &law);
-        int steps = 1;
+        int n_step = 1;
         do {
             forces_now(&loads, &steps.liquid, anew);
             for (int i = 0; i < n; i++)
                 assert_same(distance(steps.force[i], anew[i]), 0);
-            for (int k = 0; steps > 1 && k < steps.n_changed; k++)
+            for (int k = 0; n_step > 1 && k < steps.n_changed; k++)
                 assert_same(distance(steps.former[k], before[steps.changed[k]]), 0);
             memcpy(before, steps.force, (size_t)n * sizeof *before);
-        } while (force_steps_advance(&steps) && ++steps);
-        assert_int_equal(steps, record.drying.n_step);
+        } while (force_steps_advance(&steps) && ++n_step);
+        assert_int_equal(n_step, record.drying.n_step);
         force_steps_free(&steps);
         throat_loads_free(&loads);
     }
