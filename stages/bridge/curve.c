@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lists of the report are appended point by point; a model that has no suction or
+// shape gives null for them, so that every report has the same keys. A table is made
+// once for the bridge's radii and angles and evaluated in units of the effective
+// radius [G 1].
 #include "curve.h"
 
 #include "basics/memory.h"
@@ -87,7 +91,7 @@ static enum status append_exact(json_t *report, const struct bridge *bridge,
     return STATUS_OK;
 }
 
-// What only the exact solution has stands as null where there is none.
+// Sets the keys that only the exact solution has to null where they are missing.
 static void fill_in(json_t *report)
 {
     static const char *const names[] = {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Connectivity of the bonds. The gap that would join most grains is the largest edge
+// of a minimum spanning forest grown until one piece has 95 % of the grains (Kruskal
+// 1956): pairs are sorted by gap over the sum of radii and united one after the other.
 #include "bonds.h"
 
 #include "basics/disjoint_sets.h"
@@ -22,7 +25,7 @@ static int compare_gaps(const void *a, const void *b)
     return (p->gap > q->gap) - (p->gap < q->gap);
 }
 
-// Pairs up to GAP, the nearest first; the caller frees them.
+// Pairs of grains up to GAP apart, the nearest first; the caller frees them.
 static struct near_pair *pairs_by_gap(const struct packing *packing, double gap,
                                       int *count)
 {
@@ -40,7 +43,7 @@ static struct near_pair *pairs_by_gap(const struct packing *packing, double gap,
 }
 
 // The gap at which the nearest pairs, joined one after the other, make a piece of
-// WANTED grains (Kruskal); NAN where all up to MOST do not.
+// WANTED grains; NAN if all pairs up to MOST do not.
 static double joining_gap(const struct packing *packing, int wanted, double most)
 {
     const int n = packing->n_particle;
@@ -102,7 +105,7 @@ struct bond_facts bond_facts(const struct packing *packing)
     return facts;
 }
 
-// ---- what it says -------------------------------------------------------------------
+// ---- findings -----------------------------------------------------------------------
 
 // What to do where bonds are missing.
 static void say_gap(const struct bond_facts *facts, char text[200])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether bonds make one body of the grains, and what holds it.
+// Whether bonds join the grains to one body, and what supports it.
 #ifndef CRAQUELURE_CHECK_BONDS_H
 #define CRAQUELURE_CHECK_BONDS_H
 
@@ -14,9 +14,11 @@ struct bond_facts {
     double gap;    // touching_gap that joins most grains; NAN: they are, or none does
 };
 
+// The facts of PACKING; auxiliary grains do not count. O(n) but for the search of gap.
 struct bond_facts bond_facts(const struct packing *packing);
 
-// What these facts say; N grains in all, BOTTOM where to hold those at the bottom, m.
+// Adds what these facts mean to FINDINGS. N: grains in all; BOTTOM: the height (m)
+// below which grains should be held.
 void judge_bonds(const struct packing *packing, const struct bond_facts *facts, int n,
                  double bottom, struct findings *findings);
 

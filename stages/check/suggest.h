@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where to begin with grains of this size: parameters of dem-replay, and what a run
+// Parameters of dem-replay to start with for grains of this size, and what a run
 // costs.
 #ifndef CRAQUELURE_CHECK_SUGGEST_H
 #define CRAQUELURE_CHECK_SUGGEST_H
@@ -17,7 +17,8 @@ struct material {
     double contact_angle;   // degrees
 };
 
-// Below this height lie the centres of the lowest grains, to hold; m.
+// The height (m) below which the centres of the lowest grains lie, which should be
+// held.
 double bottom_of(const struct packing_facts *facts);
 
 // The stress in a neck under the largest capillary force to expect, Pa.
@@ -36,7 +37,8 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
 json_t *suggest(const struct material *material, const struct packing *packing,
                 const struct packing_facts *facts);
 
-// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains; likewise.
+// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains; the caller owns
+// it.
 json_t *expected_cost(int n);
 
 #endif

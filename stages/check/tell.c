@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Both outputs are made from the same struct checked, so that they cannot differ.
 #include "tell.h"
 
 #include "basics/file.h"

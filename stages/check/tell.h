@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was found, for people and for programs.
+// The findings, for people and for programs.
 #ifndef CRAQUELURE_CHECK_TELL_H
 #define CRAQUELURE_CHECK_TELL_H
 
@@ -16,11 +16,11 @@ struct checked {
     const struct material *material;
 };
 
-// Findings that are worse than a note.
+// Number of findings worse than a note.
 int count_wrong(const struct findings *findings);
 
-// To standard output: a line for each finding, then what was measured, and where none
-// is WRONG what is suggested.
+// Prints a line for each finding to standard output, then the measurements, and if no
+// finding is WRONG the suggestions.
 void tell(const struct checked *checked, int wrong);
 
 // The same as a document of schemas/check.json; the caller owns it.

@@ -2,12 +2,12 @@
 #include "deformation.h"
 
 #include "basics/memory.h"
-#include "pieces.h"
+#include "fragment_counts.h"
 
 #include <gsl/gsl_multifit.h>
 #include <stdlib.h>
 
-enum { LEAST_GRAINS = 4 }; // for 1, x, y, z
+enum { MIN_GRAINS = 4 }; // for 1, x, y, z
 
 // The grains to fit: in units of the body's size around its middle, where the least
 // squares see no difference between nanometres and kilometres.
@@ -89,12 +89,12 @@ struct deformation body_deformation(const struct run *run, int s)
     const struct packing *packing = &run->packing;
     const size_t n_particle = (size_t)packing->n_particle;
     uint8_t *is_in =
-        largest_piece(packing, run->intact + (size_t)s * (size_t)packing->n_bond);
+        largest_fragment(packing, run->intact + (size_t)s * (size_t)packing->n_bond);
     struct fit fit = {0};
     for (size_t i = 0; i < n_particle; i++)
         fit.n += is_in[i];
     struct deformation found = {NAN, {NAN, NAN, NAN, NAN, NAN, NAN}};
-    if (fit.n >= LEAST_GRAINS) {
+    if (fit.n >= MIN_GRAINS) {
         fit.place = gsl_matrix_alloc(fit.n, 4);
         for (int axis = 0; axis < 3; axis++)
             fit.displacement[axis] = gsl_vector_alloc(fit.n);

@@ -6,20 +6,20 @@
 #include <gsl/gsl_statistics_double.h>
 #include <stdlib.h>
 
-struct front front_new(struct classes classes)
+struct drying_front drying_front_new(struct classes classes)
 {
-    return (struct front){
+    return (struct drying_front){
         .slice =
             NEW_ARRAY(double, (size_t)classes.n_interval *(size_t)classes.n_slice)};
 }
 
-void front_free(struct front *front)
+void drying_front_free(struct drying_front *front)
 {
     free(front->slice);
     front->slice = NULL;
 }
 
-static void add_slices(struct front *front, const struct liquid *liquid,
+static void add_slices(struct drying_front *front, const struct liquid *liquid,
                        struct classes classes)
 {
     double *time = NEW_ARRAY(double, classes.n_interval);
@@ -35,8 +35,8 @@ static void add_slices(struct front *front, const struct liquid *liquid,
     free(time);
 }
 
-void add_front(struct front *front, const struct run *run, const struct liquid *liquid,
-               struct classes classes)
+void drying_front_add(struct drying_front *front, const struct run *run,
+                      const struct liquid *liquid, struct classes classes)
 {
     add_slices(front, liquid, classes);
     double *slice = slice_saturations(liquid, classes.n_slice, run->time, run->n_crack);
@@ -55,7 +55,8 @@ void add_front(struct front *front, const struct run *run, const struct liquid *
     free(slice);
 }
 
-void front_sum(struct front *sum, const struct front *front, struct classes classes)
+void drying_front_sum(struct drying_front *sum, const struct drying_front *front,
+                      struct classes classes)
 {
     const size_t n = (size_t)classes.n_interval * (size_t)classes.n_slice;
     for (size_t k = 0; k < n; k++)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether cracks open where the liquid goes [K 5.8, Fig. 5.19].
-#ifndef CRAQUELURE_CRACKSTATS_FRONT_H
-#define CRAQUELURE_CRACKSTATS_FRONT_H
+#ifndef CRAQUELURE_CRACKSTATS_DRYING_FRONT_CORRELATION_H
+#define CRAQUELURE_CRACKSTATS_DRYING_FRONT_CORRELATION_H
 
 #include "count.h"
 #include "liquid.h"
@@ -9,22 +9,23 @@
 enum { LOCAL_CLASSES = 10 };
 
 // Of one run; or, added up, of many.
-struct front {
+struct drying_front {
     double *slice;               // (n_interval, n_slice) saturations, as each ends
     double local[LOCAL_CLASSES]; // cracks in slices as dry as that: from 1 down to 0
     double local_sum;            // of those saturations over the cracks
     double cracks;               // of which it is the sum
 };
 
-struct front front_new(struct classes classes);
-void front_free(struct front *front);
+struct drying_front drying_front_new(struct classes classes);
+void drying_front_free(struct drying_front *front);
 
 // Adds RUN, whose forces come from LIQUID.
-void add_front(struct front *front, const struct run *run, const struct liquid *liquid,
-               struct classes classes);
+void drying_front_add(struct drying_front *front, const struct run *run,
+                      const struct liquid *liquid, struct classes classes);
 
 // Adds one to another.
-void front_sum(struct front *sum, const struct front *front, struct classes classes);
+void drying_front_sum(struct drying_front *sum, const struct drying_front *front,
+                      struct classes classes);
 
 // Pearson's correlation, over all slices and intervals of saturation, of the cracks
 // that opened there then (count.h's PLACE) with the share of the slice's liquid that

@@ -2,31 +2,31 @@
 #include "ensemble.h"
 
 #include "clusters.h"
-#include "pieces.h"
+#include "fragment_counts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-struct study study_new(int most_runs, struct classes classes)
+struct ensemble ensemble_new(int most_runs, struct classes classes)
 {
-    return (struct study){.classes = classes,
-                          .facts = NEW_ARRAY(struct facts, most_runs),
-                          .counts = counts_new(classes),
-                          .squares = squares_new(classes),
-                          .front = front_new(classes)};
+    return (struct ensemble){.classes = classes,
+                             .statistics = NEW_ARRAY(struct run_statistics, most_runs),
+                             .counts = counts_new(classes),
+                             .squares = squares_new(classes),
+                             .front = drying_front_new(classes)};
 }
 
-void study_free(struct study *study)
+void ensemble_free(struct ensemble *ensemble)
 {
-    free(study->facts);
-    counts_free(&study->counts);
-    squares_free(&study->squares);
-    free(study->clusters.size);
-    free(study->fragments.size);
-    free(study->snapshot_saturation);
-    free(study->deformation);
-    front_free(&study->front);
-    *study = (struct study){0};
+    free(ensemble->statistics);
+    counts_free(&ensemble->counts);
+    squares_free(&ensemble->squares);
+    free(ensemble->clusters.size);
+    free(ensemble->fragments.size);
+    free(ensemble->snapshot_saturation);
+    free(ensemble->deformation);
+    drying_front_free(&ensemble->front);
+    *ensemble = (struct ensemble){0};
 }
 
 // ---- facts of one run ---------------------------------------------------------------
@@ -57,12 +57,12 @@ static void note_clusters(double *value, const struct run *run, struct sizes *si
         value[CLUSTERS_SPAN_X + axis] = found.spans[axis];
 }
 
-static void note_pieces(double *value, const struct run *run, struct sizes *sizes)
+static void note_fragments(double *value, const struct run *run, struct sizes *sizes)
 {
     const struct packing *packing = &run->packing;
     uint8_t *before = bonds_before(run), *left = bonds_left(run);
-    const struct pieces found = find_pieces(packing, left, sizes);
-    value[FRAGMENTS_BEFORE] = find_pieces(packing, before, NULL).count;
+    const struct fragment_counts found = count_fragments(packing, left, sizes);
+    value[FRAGMENTS_BEFORE] = count_fragments(packing, before, NULL).count;
     value[FRAGMENTS_COUNT] = found.count;
     value[FRAGMENTS_LARGEST] = found.largest;
     value[FRAGMENTS_SINGLE] = found.single;
@@ -90,48 +90,50 @@ static void note_deformation(double *value, const struct run *run,
 
 static void note_front(double *value, const struct run *run,
                        const struct liquid *liquid, const double *place,
-                       struct study *study)
+                       struct ensemble *ensemble)
 {
     value[FRONT_CORRELATION] = value[FRONT_SATURATION] = NAN;
     if (!liquid) return;
-    struct front front = front_new(study->classes);
-    add_front(&front, run, liquid, study->classes);
-    value[FRONT_CORRELATION] = front_correlation(front.slice, place, study->classes, 1);
+    struct drying_front front = drying_front_new(ensemble->classes);
+    drying_front_add(&front, run, liquid, ensemble->classes);
+    value[FRONT_CORRELATION] =
+        front_correlation(front.slice, place, ensemble->classes, 1);
     value[FRONT_SATURATION] = front.cracks > 0 ? front.local_sum / front.cracks : NAN;
-    front_sum(&study->front, &front, study->classes);
-    front_free(&front);
-    study->n_liquid++;
+    drying_front_sum(&ensemble->front, &front, ensemble->classes);
+    drying_front_free(&front);
+    ensemble->n_liquid++;
 }
 
 // ---- the sum ------------------------------------------------------------------------
 
-static void begin_snapshots(struct study *study, const struct run *run)
+static void begin_snapshots(struct ensemble *ensemble, const struct run *run)
 {
-    study->n_snapshot = run->n_snapshot;
-    study->snapshot_saturation = NEW_ARRAY(double, run->n_snapshot);
-    study->deformation = NEW_ARRAY(struct deformation, run->n_snapshot);
+    ensemble->n_snapshot = run->n_snapshot;
+    ensemble->snapshot_saturation = NEW_ARRAY(double, run->n_snapshot);
+    ensemble->deformation = NEW_ARRAY(struct deformation, run->n_snapshot);
 }
 
-void study_add(struct study *study, const struct run *run, const struct liquid *liquid)
+void ensemble_add(struct ensemble *ensemble, const struct run *run,
+                  const struct liquid *liquid)
 {
-    if (study->n_run == 0) begin_snapshots(study, run);
-    double *value = study->facts[study->n_run++].value;
-    struct counts counts = counts_new(study->classes);
-    count_cracks(&counts, run, study->classes);
+    if (ensemble->n_run == 0) begin_snapshots(ensemble, run);
+    double *value = ensemble->statistics[ensemble->n_run++].value;
+    struct counts counts = counts_new(ensemble->classes);
+    count_cracks(&counts, run, ensemble->classes);
     struct orientation orientation = {0};
     add_orientation(&orientation, run);
-    squares_add(&study->squares, &counts, &orientation, study->classes);
+    squares_add(&ensemble->squares, &counts, &orientation, ensemble->classes);
     note_counts(value, &counts, run->packing.n_bond);
-    note_clusters(value, run, &study->clusters);
-    note_pieces(value, run, &study->fragments);
-    note_deformation(value, run, study->deformation);
+    note_clusters(value, run, &ensemble->clusters);
+    note_fragments(value, run, &ensemble->fragments);
+    note_deformation(value, run, ensemble->deformation);
     for (int s = 0; s < run->n_snapshot; s++)
-        study->snapshot_saturation[s] += run->snapshot_saturation[s];
-    note_front(value, run, liquid, counts.place, study);
+        ensemble->snapshot_saturation[s] += run->snapshot_saturation[s];
+    note_front(value, run, liquid, counts.place, ensemble);
     value[UNSETTLED_LOADS] = run->n_unsettled;
     value[UNSETTLED_CRACKS] = run->n_unsettled_crack;
     counts_free(&counts);
-    count_cracks(&study->counts, run, study->classes);
-    add_orientation(&study->orientation, run);
-    study->bonds += run->packing.n_bond;
+    count_cracks(&ensemble->counts, run, ensemble->classes);
+    add_orientation(&ensemble->orientation, run);
+    ensemble->bonds += run->packing.n_bond;
 }

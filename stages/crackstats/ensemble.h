@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs added up: the facts of each, and the tables of all together.
-#ifndef CRAQUELURE_CRACKSTATS_STUDY_H
-#define CRAQUELURE_CRACKSTATS_STUDY_H
+#ifndef CRAQUELURE_CRACKSTATS_ENSEMBLE_H
+#define CRAQUELURE_CRACKSTATS_ENSEMBLE_H
 
 #include "count.h"
 #include "deformation.h"
@@ -11,12 +11,12 @@
 #include "scatter.h"
 #include "sizes.h"
 
-struct study {
+struct ensemble {
     struct classes classes;
     int n_run;
-    double bonds;         // of all runs together, at their start
-    struct facts *facts;  // (n_run)
-    struct counts counts; // this and what follows: sums over the runs
+    double bonds;                      // of all runs together, at their start
+    struct run_statistics *statistics; // (n_run)
+    struct counts counts;              // this and what follows: sums over the runs
     struct squares squares;
     struct sizes clusters, fragments;
     struct orientation orientation;
@@ -24,14 +24,15 @@ struct study {
     double *snapshot_saturation;     // (n_snapshot)
     struct deformation *deformation; // (n_snapshot)
     int n_liquid;                    // runs whose drying is known
-    struct front front;
+    struct drying_front front;
 };
 
-struct study study_new(int most_runs, struct classes classes);
-void study_free(struct study *study);
+struct ensemble ensemble_new(int most_runs, struct classes classes);
+void ensemble_free(struct ensemble *ensemble);
 
 // Adds RUN, which has as many snapshots as those before, and the LIQUID it dried from;
 // NULL: not known.
-void study_add(struct study *study, const struct run *run, const struct liquid *liquid);
+void ensemble_add(struct ensemble *ensemble, const struct run *run,
+                  const struct liquid *liquid);
 
 #endif

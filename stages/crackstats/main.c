@@ -126,20 +126,20 @@ static bool next_liquid(struct reading *reading, const struct run *run,
     return true;
 }
 
-static void must_fit(const struct study *study, const struct run *run, const char *path,
-                     bool same_bonds)
+static void must_fit(const struct ensemble *ensemble, const struct run *run,
+                     const char *path, bool same_bonds)
 {
-    if (study->n_run == 0) return;
-    const double bonds = study->bonds / study->n_run;
+    if (ensemble->n_run == 0) return;
+    const double bonds = ensemble->bonds / ensemble->n_run;
     if (same_bonds && bonds != run->packing.n_bond)
         die(STATUS_BAD_DATA,
             "%s: has %d bonds, the runs before have %g: not one study "
             "(same_bonds=false takes runs of other packings)",
             path, run->packing.n_bond, bonds);
-    if (study->n_snapshot != run->n_snapshot)
+    if (ensemble->n_snapshot != run->n_snapshot)
         die(STATUS_BAD_DATA,
             "%s: has %d snapshots, the runs before have %d: not one study", path,
-            run->n_snapshot, study->n_snapshot);
+            run->n_snapshot, ensemble->n_snapshot);
 }
 
 // A table of slices at each interval is written.
@@ -152,35 +152,35 @@ static void check_classes(const struct crackstats_parameters *parameters)
             (int)most, (int)parameters->slices, (int)parameters->intervals);
 }
 
-static struct study read_study(const struct invocation *invocation, json_t *digests,
-                               const struct crackstats_parameters *parameters)
+static struct ensemble read_study(const struct invocation *invocation, json_t *digests,
+                                  const struct crackstats_parameters *parameters)
 {
-    struct study study =
-        study_new(invocation->n_input, (struct classes){(int)parameters->slices,
-                                                        (int)parameters->intervals});
+    struct ensemble ensemble =
+        ensemble_new(invocation->n_input, (struct classes){(int)parameters->slices,
+                                                           (int)parameters->intervals});
     struct reading reading = {
         .invocation = invocation, .digests = digests, .seen = json_object()};
     struct run run;
     const char *path;
     while (next_run(&reading, &run, &path)) {
-        must_fit(&study, &run, path, parameters->same_bonds);
+        must_fit(&ensemble, &run, path, parameters->same_bonds);
         struct liquid liquid;
         const bool known = next_liquid(&reading, &run, &liquid);
-        study_add(&study, &run, known ? &liquid : NULL);
+        ensemble_add(&ensemble, &run, known ? &liquid : NULL);
         if (known) liquid_free(&liquid);
         run_free(&run);
     }
     json_decref(reading.seen);
-    if (parameters->first_group && parameters->first_group >= study.n_run)
+    if (parameters->first_group && parameters->first_group >= ensemble.n_run)
         die(STATUS_BAD_DATA,
             "crackstats.first_group: must leave runs to test against, got %d of %d",
-            (int)parameters->first_group, study.n_run);
-    if (parameters->paired && 2 * parameters->first_group != study.n_run)
+            (int)parameters->first_group, ensemble.n_run);
+    if (parameters->paired && 2 * parameters->first_group != ensemble.n_run)
         die(STATUS_BAD_DATA,
             "crackstats.paired: takes two groups of as many runs, got first_group = %d "
             "of %d",
-            (int)parameters->first_group, study.n_run);
-    return study;
+            (int)parameters->first_group, ensemble.n_run);
+    return ensemble;
 }
 
 int main(int argc, char **argv)
@@ -189,23 +189,23 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check_classes(&parameters);
     json_t *inputs = json_array();
-    struct study study = read_study(&invocation, inputs, &parameters);
+    struct ensemble ensemble = read_study(&invocation, inputs, &parameters);
     json_t *counted =
         json_pack("{s:s,s:i,s:o}", "schema", "craquelure/crackstats/1", "runs",
-                  study.n_run, "bonds", json_value(study.bonds / study.n_run));
-    report_tables(counted, &study, parameters.confidence);
-    report_facts(counted, &study, parameters.confidence,
-                 (struct groups){(int)parameters.first_group, parameters.paired});
+                  ensemble.n_run, "bonds", json_value(ensemble.bonds / ensemble.n_run));
+    report_tables(counted, &ensemble, parameters.confidence);
+    report_statistics(counted, &ensemble, parameters.confidence,
+                      (struct groups){(int)parameters.first_group, parameters.paired});
     char model[250];
     snprintf(model, sizeof model,
              "counts by mode, drying period, slice, saturation and time; connected "
              "cracks, fragments, orientation, strain\n"
              "%s\n",
-             study.n_liquid == study.n_run
+             ensemble.n_liquid == ensemble.n_run
                  ? "cracks against the liquid of their slices"
                  : "left out: the liquid, whose drying was not given");
     finish_json(counted, &invocation, inputs, model);
-    study_free(&study);
+    ensemble_free(&ensemble);
     invocation_free(&invocation);
     return STATUS_OK;
 }

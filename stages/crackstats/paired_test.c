@@ -82,7 +82,7 @@ static double normal_tail(double n, double ties, double larger)
 
 struct wilcoxon wilcoxon_test(struct sample a, struct sample b)
 {
-    enum { MOST_EXACT = 50 };
+    enum { MAX_EXACT = 50 };
     double *value = differences(a, b);
     int n = 0;
     bool known = a.n > 0;
@@ -98,7 +98,7 @@ struct wilcoxon wilcoxon_test(struct sample a, struct sample b)
     if (!known) return (struct wilcoxon){NAN, NAN, false};
     if (n == 0) return (struct wilcoxon){0, 1, false};
     const double larger = fmax(v, 0.5 * n * (n + 1.0) - v);
-    const bool exact = ties == 0 && n == a.n && n <= MOST_EXACT;
+    const bool exact = ties == 0 && n == a.n && n <= MAX_EXACT;
     const double tail = exact ? exact_tail(n, larger) : normal_tail(n, ties, larger);
     return (struct wilcoxon){v, fmin(1, 2 * tail), exact};
 }

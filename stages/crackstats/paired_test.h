@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether two samples differ whose values belong together one by one, as those of the
 // same aggregates treated in two ways. All tests are two-sided.
-#ifndef CRAQUELURE_CRACKSTATS_PAIRS_H
-#define CRAQUELURE_CRACKSTATS_PAIRS_H
+#ifndef CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
+#define CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
 
 #include "sample.h"
 

@@ -9,22 +9,22 @@
 
 // One fact over some of the runs.
 struct column {
-    const struct study *study;
+    const struct ensemble *ensemble;
     int first, n;
     double confidence;
     bool paired; // with the runs before the first
 };
 
 // The caller frees the values.
-static struct sample take(struct column column, enum fact fact)
+static struct sample take(struct column column, enum statistic fact)
 {
     double *value = NEW_ARRAY(double, column.n);
     for (int r = 0; r < column.n; r++)
-        value[r] = column.study->facts[column.first + r].value[fact];
+        value[r] = column.ensemble->statistics[column.first + r].value[fact];
     return (struct sample){value, column.n};
 }
 
-static json_t *mean_of(struct column column, enum fact fact)
+static json_t *mean_of(struct column column, enum statistic fact)
 {
     const struct sample sample = take(column, fact);
     json_t *mean = json_value(sample_mean(sample));
@@ -32,7 +32,7 @@ static json_t *mean_of(struct column column, enum fact fact)
     return mean;
 }
 
-static json_t *deviation_of(struct column column, enum fact fact)
+static json_t *deviation_of(struct column column, enum statistic fact)
 {
     const struct sample sample = take(column, fact);
     json_t *deviation = json_value(sample_deviation(sample));
@@ -40,7 +40,7 @@ static json_t *deviation_of(struct column column, enum fact fact)
     return deviation;
 }
 
-static json_t *interval_of(struct column column, enum fact fact)
+static json_t *interval_of(struct column column, enum statistic fact)
 {
     const struct sample sample = take(column, fact);
     const double mean = sample_mean(sample);
@@ -50,16 +50,17 @@ static json_t *interval_of(struct column column, enum fact fact)
 }
 
 // {"cracks":{"normal":…, …}, …}, with what OF gives for each fact.
-static json_t *table(struct column column, json_t *of(struct column, enum fact))
+static json_t *table(struct column column, json_t *of(struct column, enum statistic))
 {
     json_t *object = json_object();
-    for (int f = 0; f < FACT_COUNT; f++) {
-        json_t *group = json_object_get(object, fact_names[f].group);
+    for (int f = 0; f < STATISTIC_COUNT; f++) {
+        json_t *group = json_object_get(object, statistic_names[f].group);
         if (!group) {
             group = json_object();
-            json_object_set_new(object, fact_names[f].group, group);
+            json_object_set_new(object, statistic_names[f].group, group);
         }
-        json_object_set_new(group, fact_names[f].name, of(column, (enum fact)f));
+        json_object_set_new(group, statistic_names[f].name,
+                            of(column, (enum statistic)f));
     }
     return object;
 }
@@ -93,10 +94,10 @@ static json_t *test_samples(struct sample a, struct sample b)
 }
 
 // Of the runs before COLUMN's first against COLUMN's own.
-static json_t *test_of(struct column column, enum fact fact)
+static json_t *test_of(struct column column, enum statistic fact)
 {
     const struct sample a =
-        take((struct column){.study = column.study, .n = column.first}, fact);
+        take((struct column){.ensemble = column.ensemble, .n = column.first}, fact);
     const struct sample b = take(column, fact);
     json_t *test = test_samples(a, b);
     if (column.paired && json_is_object(test)) test_pairs(test, a, b);
@@ -105,12 +106,12 @@ static json_t *test_of(struct column column, enum fact fact)
     return test;
 }
 
-static json_t *test(const struct study *study, struct groups groups)
+static json_t *test(const struct ensemble *ensemble, struct groups groups)
 {
     if (groups.first == 0) return json_null();
-    const struct column second = {.study = study,
+    const struct column second = {.ensemble = ensemble,
                                   .first = groups.first,
-                                  .n = study->n_run - groups.first,
+                                  .n = ensemble->n_run - groups.first,
                                   .paired = groups.paired};
     json_t *test = table(second, test_of);
     json_object_set_new(test, "groups", json_pack("[i,i]", groups.first, second.n));
@@ -125,21 +126,21 @@ static json_t *what_intervals_are(int runs, double confidence)
                         100 * confidence, runs);
 }
 
-void report_facts(json_t *report, const struct study *study, double confidence,
-                  struct groups groups)
+void report_statistics(json_t *report, const struct ensemble *ensemble,
+                       double confidence, struct groups groups)
 {
-    const struct column all = {study, 0, study->n_run, confidence, false};
-    const bool many = study->n_run > 1;
+    const struct column all = {ensemble, 0, ensemble->n_run, confidence, false};
+    const bool many = ensemble->n_run > 1;
     json_object_set_new(report, "interval_of",
-                        what_intervals_are(study->n_run, confidence));
+                        what_intervals_are(ensemble->n_run, confidence));
     json_object_set_new(report, "mean", table(all, mean_of));
     json_object_set_new(report, "sd", many ? table(all, deviation_of) : json_null());
     json_object_set_new(report, "confidence_interval",
                         many ? table(all, interval_of) : json_null());
-    json_object_set_new(report, "test", test(study, groups));
+    json_object_set_new(report, "test", test(ensemble, groups));
     json_t *each = json_array();
-    for (int r = 0; r < study->n_run; r++)
-        json_array_append_new(each,
-                              table((struct column){study, r, 1, 0, false}, mean_of));
+    for (int r = 0; r < ensemble->n_run; r++)
+        json_array_append_new(
+            each, table((struct column){ensemble, r, 1, 0, false}, mean_of));
     json_object_set_new(report, "each", each);
 }

@@ -83,20 +83,20 @@ static json_t *scattered(json_t *list, const double (*squares)[COLUMN_COUNT], in
 
 // At the end of each interval of saturation: cracks so far in every slice, and the
 // saturation of the slices.
-static json_t *profiles(const struct study *study)
+static json_t *profiles(const struct ensemble *ensemble)
 {
-    const int n_slice = study->classes.n_slice, n = study->classes.n_interval;
-    const bool known = study->n_liquid == study->n_run;
+    const int n_slice = ensemble->classes.n_slice, n = ensemble->classes.n_interval;
+    const bool known = ensemble->n_liquid == ensemble->n_run;
     double *so_far = NEW_ARRAY(double, n_slice);
     json_t *list = json_array();
     for (int k = 0; k < n; k++) {
         json_t *cracks = json_array(), *liquid = json_array();
         for (int s = 0; s < n_slice; s++) {
             const size_t at = (size_t)k * (size_t)n_slice + (size_t)s;
-            so_far[s] += study->counts.place[at];
-            json_array_append_new(cracks, json_value(so_far[s] / study->n_run));
-            json_array_append_new(liquid,
-                                  json_value(study->front.slice[at] / study->n_run));
+            so_far[s] += ensemble->counts.place[at];
+            json_array_append_new(cracks, json_value(so_far[s] / ensemble->n_run));
+            json_array_append_new(
+                liquid, json_value(ensemble->front.slice[at] / ensemble->n_run));
         }
         json_array_append_new(list, json_pack("{s:f,s:o,s:o}", "saturation",
                                               (n - k - 1.0) / n, "cracks", cracks,
@@ -145,12 +145,13 @@ static json_t *fabric(const double sum[9])
     return rows;
 }
 
-static json_t *orientation(const struct study *study, double confidence)
+static json_t *orientation(const struct ensemble *ensemble, double confidence)
 {
-    const struct orientation *of = &study->orientation;
-    const double runs = study->n_run;
-    json_t *list = scattered(classes(of->cracks, INCLINATION_CLASSES, 0, 90, runs),
-                             study->squares.inclination, study->n_run, confidence);
+    const struct orientation *of = &ensemble->orientation;
+    const double runs = ensemble->n_run;
+    json_t *list =
+        scattered(classes(of->cracks, INCLINATION_CLASSES, 0, 90, runs),
+                  ensemble->squares.inclination, ensemble->n_run, confidence);
     size_t k;
     json_t *entry;
     json_array_foreach(list, k, entry)
@@ -165,68 +166,71 @@ static json_t *orientation(const struct study *study, double confidence)
 
 // ---- deformation, front -------------------------------------------------------------
 
-static json_t *deformation(const struct study *study)
+static json_t *deformation(const struct ensemble *ensemble)
 {
     static const char *const names[STRAIN_COUNT] = {"xx", "yy", "zz", "yz", "xz", "xy"};
-    const double runs = study->n_run;
+    const double runs = ensemble->n_run;
     json_t *list = json_array();
-    for (int s = 0; s < study->n_snapshot; s++) {
-        const struct deformation *sum = &study->deformation[s];
+    for (int s = 0; s < ensemble->n_snapshot; s++) {
+        const struct deformation *sum = &ensemble->deformation[s];
         json_t *strain = json_object();
         for (int k = 0; k < STRAIN_COUNT; k++)
             json_object_set_new(strain, names[k], json_value(sum->strain[k] / runs));
         json_array_append_new(
             list, json_pack("{s:f,s:o,s:o}", "saturation",
-                            study->snapshot_saturation[s] / runs, "shrinkage",
+                            ensemble->snapshot_saturation[s] / runs, "shrinkage",
                             json_value(sum->shrinkage / runs), "strain", strain));
     }
     return list;
 }
 
-static json_t *front(const struct study *study)
+static json_t *front(const struct ensemble *ensemble)
 {
-    if (study->n_liquid < study->n_run) return json_null();
-    const double runs = study->n_run;
+    if (ensemble->n_liquid < ensemble->n_run) return json_null();
+    const double runs = ensemble->n_run;
     json_t *local = json_array();
     for (int k = 0; k < LOCAL_CLASSES; k++)
         json_array_append_new(
             local, json_pack("{s:f,s:f,s:o}", "from",
                              (double)(LOCAL_CLASSES - k) / LOCAL_CLASSES, "to",
                              (LOCAL_CLASSES - k - 1.0) / LOCAL_CLASSES, "cracks",
-                             json_value(study->front.local[k] / runs)));
-    const double correlation = front_correlation(
-        study->front.slice, study->counts.place, study->classes, study->n_run);
+                             json_value(ensemble->front.local[k] / runs)));
+    const double correlation =
+        front_correlation(ensemble->front.slice, ensemble->counts.place,
+                          ensemble->classes, ensemble->n_run);
     return json_pack("{s:o,s:o}", "correlation", json_value(correlation),
                      "slice_saturation", local);
 }
 
-void report_tables(json_t *report, const struct study *study, double confidence)
+void report_tables(json_t *report, const struct ensemble *ensemble, double confidence)
 {
-    const struct counts *counts = &study->counts;
-    const struct squares *squares = &study->squares;
-    const double runs = study->n_run;
-    const int n_slice = study->classes.n_slice, n = study->classes.n_interval;
+    const struct counts *counts = &ensemble->counts;
+    const struct squares *squares = &ensemble->squares;
+    const double runs = ensemble->n_run;
+    const int n_slice = ensemble->classes.n_slice, n = ensemble->classes.n_interval;
     double all[MODE_COUNT];
     count_all(all, counts);
     json_t *cracks = by_mode(all, runs);
-    put_scatter(cracks, squares->all[0], study->n_run, confidence);
+    put_scatter(cracks, squares->all[0], ensemble->n_run, confidence);
     json_object_set_new(report, "cracks", cracks);
     json_object_set_new(
         report, "periods",
-        scattered(periods(counts, runs), squares->period, study->n_run, confidence));
+        scattered(periods(counts, runs), squares->period, ensemble->n_run, confidence));
     json_object_set_new(report, "profile",
                         scattered(classes(counts->slice, n_slice, 0, 1, runs),
-                                  squares->slice, study->n_run, confidence));
+                                  squares->slice, ensemble->n_run, confidence));
     json_object_set_new(report, "by_saturation",
                         scattered(classes(counts->saturation, n, 1, 0, runs),
-                                  squares->saturation, study->n_run, confidence));
+                                  squares->saturation, ensemble->n_run, confidence));
     json_object_set_new(report, "by_time",
                         scattered(classes(counts->time, n, 0, 1, runs), squares->time,
-                                  study->n_run, confidence));
-    json_object_set_new(report, "profiles", profiles(study));
-    json_object_set_new(report, "clusters", size_distribution(study->clusters, runs));
-    json_object_set_new(report, "fragments", size_distribution(study->fragments, runs));
-    json_object_set_new(report, "orientation", orientation(study, confidence));
-    json_object_set_new(report, "deformation", deformation(study));
-    json_object_set_new(report, "front", front(study));
+                                  ensemble->n_run, confidence));
+    json_object_set_new(report, "profiles", profiles(ensemble));
+    json_object_set_new(report, "clusters",
+                        size_distribution(ensemble->clusters, runs));
+    json_object_set_new(report, "fragments",
+                        size_distribution(ensemble->fragments, runs));
+    json_object_set_new(report, "orientation", orientation(ensemble, confidence));
+    json_object_set_new(report, "deformation", deformation(ensemble));
+    json_object_set_new(report, "front", front(ensemble));
 }

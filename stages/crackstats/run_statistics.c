@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_statistics.h"
 
-const struct fact_name fact_names[FACT_COUNT] = {
+const struct statistic_name statistic_names[STATISTIC_COUNT] = {
     [CRACKS_NORMAL] = {"cracks", "normal"},
     [CRACKS_SHEAR] = {"cracks", "shear"},
     [CRACKS_TOTAL] = {"cracks", "total"},

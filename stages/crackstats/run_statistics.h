@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The numbers that one run comes down to; means, intervals and tests are over them.
-#ifndef CRAQUELURE_CRACKSTATS_FACTS_H
-#define CRAQUELURE_CRACKSTATS_FACTS_H
+#ifndef CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
+#define CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
 
-enum fact {
+enum statistic {
     CRACKS_NORMAL,
     CRACKS_SHEAR,
     CRACKS_TOTAL,
@@ -30,17 +30,17 @@ enum fact {
     FRONT_SATURATION,
     UNSETTLED_LOADS,
     UNSETTLED_CRACKS,
-    FACT_COUNT
+    STATISTIC_COUNT
 };
 
-struct fact_name {
+struct statistic_name {
     const char *group, *name; // "cracks", "total"
 };
-extern const struct fact_name fact_names[FACT_COUNT];
+extern const struct statistic_name statistic_names[STATISTIC_COUNT];
 
 // NAN: the run does not tell.
-struct facts {
-    double value[FACT_COUNT];
+struct run_statistics {
+    double value[STATISTIC_COUNT];
 };
 
 #endif

@@ -133,14 +133,14 @@ static double normal_tail(int n_a, int n_b, double ties, double larger)
 
 struct mann_whitney mann_whitney_test(struct sample a, struct sample b)
 {
-    enum { MOST_EXACT = 50 };
+    enum { MAX_EXACT = 50 };
     if (a.n < 1 || b.n < 1) return (struct mann_whitney){NAN, NAN, false};
     struct ranked *all = sorted(a, b);
     double ties;
     const double u = rank_sum(all, a.n + b.n, &ties) - 0.5 * a.n * (a.n + 1.0);
     free(all);
     const double larger = fmax(u, (double)a.n * b.n - u);
-    const bool exact = ties == 0 && a.n + b.n <= MOST_EXACT;
+    const bool exact = ties == 0 && a.n + b.n <= MAX_EXACT;
     const double tail =
         exact ? exact_tail(a.n, b.n, larger) : normal_tail(a.n, b.n, ties, larger);
     return (struct mann_whitney){u, fmin(1, 2 * tail), exact};

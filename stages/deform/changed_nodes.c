@@ -13,7 +13,7 @@ static const double negligible = 1e-9;
 
 struct state {
     const struct network *network;
-    const struct surroundings *around;
+    const struct neighbour_grains *around;
     double diameter;
 };
 
@@ -25,7 +25,7 @@ static double power(const struct packing *packing, struct grain_beside beside,
     return dot(to, to) - radius * radius;
 }
 
-static bool is_around(const struct surroundings *around, int node,
+static bool is_around(const struct neighbour_grains *around, int node,
                       struct grain_beside beside)
 {
     for (int64_t k = around->offset[node]; k < around->offset[node + 1]; k++)
@@ -48,7 +48,7 @@ static double largest_own_power(const struct state *state, int node)
 static bool is_overtaken(const struct state *state, int node, int other,
                          struct image image)
 {
-    const struct surroundings *around = state->around;
+    const struct neighbour_grains *around = state->around;
     const double own =
         largest_own_power(state, node) - negligible * state->diameter * state->diameter;
     for (int64_t k = around->offset[other]; k < around->offset[other + 1]; k++) {
@@ -158,34 +158,36 @@ static bool is_overtaken_through_hole(const struct state *state, int node,
 // -------------------------------------------------------------------------------------
 
 // (n_node) The caller frees it.
-static bool *find_amiss(const struct state *state)
+static bool *find_changed(const struct state *state)
 {
     const struct network *network = state->network;
-    bool *amiss = NEW_ARRAY(bool, network->n_node);
+    bool *changed = NEW_ARRAY(bool, network->n_node);
     bool *at_hole = grains_at_holes(state);
     for (int i = 0; i < network->n_node; i++)
-        amiss[i] = is_outside(state, i) || is_overtaken_through_hole(state, i, at_hole);
+        changed[i] =
+            is_outside(state, i) || is_overtaken_through_hole(state, i, at_hole);
     free(at_hole);
     for (int t = 0; t < network->n_throat; t++) {
         const int32_t *end = network->throat_nodes[t];
         const struct image image =
             network->throat_image ? network->throat_image[t] : (struct image){0};
-        amiss[end[0]] = amiss[end[0]] || is_overtaken(state, end[0], end[1], image);
-        amiss[end[1]] =
-            amiss[end[1]] || is_overtaken(state, end[1], end[0], image_opposite(image));
-        if (is_interrupted(state, t)) amiss[end[0]] = amiss[end[1]] = true;
+        changed[end[0]] = changed[end[0]] || is_overtaken(state, end[0], end[1], image);
+        changed[end[1]] = changed[end[1]] ||
+                          is_overtaken(state, end[1], end[0], image_opposite(image));
+        if (is_interrupted(state, t)) changed[end[0]] = changed[end[1]] = true;
     }
-    return amiss;
+    return changed;
 }
 
-int count_changed_nodes(const struct network *before, const struct surroundings *around,
+int count_changed_nodes(const struct network *before,
+                        const struct neighbour_grains *around,
                         const struct network *after)
 {
     double diameter = 0;
     for (int i = 0; i < before->packing.n_particle; i++)
         diameter += 2 * before->packing.radius[i] / before->packing.n_particle;
-    bool *was = find_amiss(&(struct state){before, around, diameter});
-    bool *is = find_amiss(&(struct state){after, around, diameter});
+    bool *was = find_changed(&(struct state){before, around, diameter});
+    bool *is = find_changed(&(struct state){after, around, diameter});
     int count = 0;
     for (int i = 0; i < before->n_node; i++)
         count += is[i] && !was[i];

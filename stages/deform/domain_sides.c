@@ -21,7 +21,7 @@ static double off_side(const struct body *body, int side, struct vector at)
 
 // Of all bodies with this wall: the side that the node is on, which is the nearest.
 static void add_body(const struct packing *before, const struct packing *after,
-                     int wall, struct vector at, struct sides *sides)
+                     int wall, struct vector at, struct domain_sides *sides)
 {
     double least = HUGE_VAL;
     int nearest = -1, on = -1;
@@ -45,11 +45,12 @@ static void add_body(const struct packing *before, const struct packing *after,
         corner_of(&after->body[nearest], on) - corner_of(&before->body[nearest], on);
 }
 
-struct sides find_sides(const struct packing *before, const struct packing *after,
-                        unsigned walls, struct vector at)
+struct domain_sides find_domain_sides(const struct packing *before,
+                                      const struct packing *after, unsigned walls,
+                                      struct vector at)
 {
     const double near = 1e-9 * distance(before->lower, before->upper);
-    struct sides sides = {.round = -1};
+    struct domain_sides sides = {.round = -1};
     for (int wall = WALL_INNER; wall >= WALL_OUTER; wall--)
         if (walls >> wall & 1) add_body(before, after, wall, at, &sides);
     for (int wall = WALL_COUNT - 1; wall >= 0; wall--) {

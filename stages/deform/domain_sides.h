@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What surfaces a node of a network lies on: walls of the box, sides of bodies.
-#ifndef CRAQUELURE_DEFORM_SIDES_H
-#define CRAQUELURE_DEFORM_SIDES_H
+#ifndef CRAQUELURE_DEFORM_DOMAIN_SIDES_H
+#define CRAQUELURE_DEFORM_DOMAIN_SIDES_H
 
 #include "geometry/packing.h"
 
-struct sides {
+struct domain_sides {
     bool held[3];   // along x, y, z: by a flat surface
     double step[3]; // how far that has moved, m
     int round;      // the body on whose round surface it is; -1: on none
@@ -14,7 +14,8 @@ struct sides {
 // Of a node AT in WALLS (bits of enum wall, and of WALL_OUTER and WALL_INNER) of
 // BEFORE, whose surfaces AFTER has where they are now. Walls that it only faces from
 // afar hold nothing.
-struct sides find_sides(const struct packing *before, const struct packing *after,
-                        unsigned walls, struct vector at);
+struct domain_sides find_domain_sides(const struct packing *before,
+                                      const struct packing *after, unsigned walls,
+                                      struct vector at);
 
 #endif

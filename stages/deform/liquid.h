@@ -19,7 +19,7 @@ struct held_liquid {
 // the widest first. Of equals that with the lowest index comes first. Returns what
 // finds no room: m3 that leave the network. Where liquid is saturation times volume,
 // saturations stay, bit for bit; otherwise the sum of the liquid is kept to rounding.
-double settle_liquid(const struct network *network, const struct held_liquid *held,
-                     double *saturation);
+double redistribute_liquid(const struct network *network,
+                           const struct held_liquid *held, double *saturation);
 
 #endif

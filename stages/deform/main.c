@@ -137,13 +137,13 @@ struct liquid {
     double volume, expelled; // m3
 };
 
-// What carry_liquid gives where throats stay as they are.
-static struct carried keep_liquid(const struct network *before,
-                                  const double *saturation)
+// What map_liquid gives where throats stay as they are.
+static struct mapped_liquid keep_liquid(const struct network *before,
+                                        const double *saturation)
 {
     const int n = before->n_throat;
-    struct carried kept = {NEW_ARRAY(double, n),
-                           duplicate(saturation, (size_t)n, sizeof *saturation)};
+    struct mapped_liquid kept = {NEW_ARRAY(double, n),
+                                 duplicate(saturation, (size_t)n, sizeof *saturation)};
     for (int t = 0; t < n; t++)
         kept.liquid[t] = saturation[t] * throat_volume(before, t);
     return kept;
@@ -155,12 +155,13 @@ static unsigned open_walls(const struct artifact *drying)
 }
 
 static struct liquid settle(const struct artifact *drying,
-                            const struct network *network, struct carried *carried)
+                            const struct network *network,
+                            struct mapped_liquid *carried)
 {
     struct liquid liquid = {.saturation = NEW_ARRAY(double, network->n_throat)};
     const struct held_liquid held = {carried->liquid, carried->saturation,
                                      open_walls(drying)};
-    liquid.expelled = settle_liquid(network, &held, liquid.saturation);
+    liquid.expelled = redistribute_liquid(network, &held, liquid.saturation);
     struct compensated sum = {0};
     for (int t = 0; t < network->n_throat; t++)
         compensated_add(&sum, liquid.saturation[t] * throat_volume(network, t));
@@ -250,11 +251,11 @@ static void move(struct scene *scene)
     const struct network *before = &scene->before;
     struct network *after = &scene->after;
     const char *path = scene->input->path;
-    struct surroundings around = find_surroundings(before);
+    struct neighbour_grains around = find_neighbour_grains(before);
     struct reason reason;
     const int lost = move_nodes(before, &around, after);
     const int changed = lost + count_changed_nodes(before, &around, after);
-    surroundings_free(&around);
+    neighbour_grains_free(&around);
     if (changed && parameters->on_change == CHANGE_REFUSED)
         refuse_change(changed, before->n_node, path);
     enum status status =
@@ -266,7 +267,7 @@ static void move(struct scene *scene)
     struct liquid liquid = {0};
     double *saturation = find_saturations(scene);
     if (saturation) {
-        struct carried kept = keep_liquid(before, saturation);
+        struct mapped_liquid kept = keep_liquid(before, saturation);
         liquid = settle(scene->input, after, &kept);
     }
     write_moved(after, &liquid, changed, count_closed_throats(before, after), scene,
@@ -296,21 +297,21 @@ static void replace(struct scene *scene)
     struct artifact *third = open_network(scene->invocation->inputs[2]);
     struct network anew = artifact_get_periodic_network(third);
     check_same_grains(scene, &anew, third->path);
-    struct surroundings around = find_surroundings(&scene->before);
+    struct neighbour_grains around = find_neighbour_grains(&scene->before);
     struct liquid liquid = {0};
     double *saturation = find_saturations(scene);
     struct reason reason;
     if (scene->parameters->radii == RADII_CARRIED &&
-        carry_radii(&scene->before, &around, &scene->after.packing,
-                    (enum clearance)scene->parameters->clearance, &anew, &reason))
+        map_radii(&scene->before, &around, &scene->after.packing,
+                  (enum clearance)scene->parameters->clearance, &anew, &reason))
         die(STATUS_BAD_DATA, "%s: %s", input_name(third->path), reason.text);
     if (saturation) {
-        struct carried carried =
-            carry_liquid(&scene->before, &around, &scene->after.packing, saturation,
-                         open_walls(scene->input), &anew);
+        struct mapped_liquid carried =
+            map_liquid(&scene->before, &around, &scene->after.packing, saturation,
+                       open_walls(scene->input), &anew);
         liquid = settle(scene->input, &anew, &carried);
     }
-    surroundings_free(&around);
+    neighbour_grains_free(&around);
     json_t *inputs = digests(scene);
     json_array_append_new(inputs, input_digest(third));
     write_moved(&anew, &liquid, 0, 0, scene, inputs);
@@ -337,7 +338,8 @@ static void write_packing(const struct scene *scene)
     free(pair);
     struct artifact *artifact = artifact_create("packing", scene->invocation->output);
     artifact_put_packing(artifact, packing);
-    artifact_put_number(artifact, "/summary/porosity", 1 - solid / room_of(packing));
+    artifact_put_number(artifact, "/summary/porosity",
+                        1 - solid / domain_volume(packing));
     artifact_put_number(artifact, "/summary/max_overlap", overlap);
     artifact_put_number(artifact, "/summary/coordination",
                         packing->n_particle ? 2.0 * n / packing->n_particle : 0);

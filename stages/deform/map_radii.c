@@ -36,7 +36,7 @@ static void free_middles(struct middles *middles)
 
 // Takes the middles to where the grains have gone.
 static void follow_grains(const struct network *before,
-                          const struct surroundings *around,
+                          const struct neighbour_grains *around,
                           const struct packing *moved, struct middles *middles)
 {
     for (int k = 0; k < middles->n; k++) {
@@ -81,8 +81,8 @@ static void empty_enclosed(struct network *network, unsigned open_walls)
     free(open);
 }
 
-static void carry_saturations(const struct middles *old, const struct network *anew,
-                              const double *saturation, double *to)
+static void map_saturations(const struct middles *old, const struct network *anew,
+                            const double *saturation, double *to)
 {
     struct places places = places_make(&anew->packing, old->n, old->at);
     for (int t = 0; t < anew->n_throat; t++) {
@@ -93,11 +93,11 @@ static void carry_saturations(const struct middles *old, const struct network *a
     places_free(&places);
 }
 
-static void carry_volumes(const struct middles *old, const struct network *before,
-                          const double *saturation, const struct network *anew,
-                          struct carried *carried)
+static void map_volumes(const struct middles *old, const struct network *before,
+                        const double *saturation, const struct network *anew,
+                        struct mapped_liquid *mapped)
 {
-    struct middles wet = find_middles(anew, carried->saturation);
+    struct middles wet = find_middles(anew, mapped->saturation);
     if (!wet.n) { // too little was left for any throat to be near
         free_middles(&wet);
         wet = find_middles(anew, NULL);
@@ -108,22 +108,22 @@ static void carry_volumes(const struct middles *old, const struct network *befor
         const int near = saturation[t] > 0 ? nearest_place(&places, old->at[k]) : -1;
         if (near < 0) continue;
         const int to = wet.throat[near];
-        carried->liquid[to] += saturation[t] * throat_volume(before, t);
-        if (carried->saturation[to] == 0)
-            carried->saturation[to] =
-                fmin(1, carried->liquid[to] / throat_volume(anew, to));
+        mapped->liquid[to] += saturation[t] * throat_volume(before, t);
+        if (mapped->saturation[to] == 0)
+            mapped->saturation[to] =
+                fmin(1, mapped->liquid[to] / throat_volume(anew, to));
     }
     places_free(&places);
     free_middles(&wet);
 }
 
-struct carried carry_liquid(const struct network *before,
-                            const struct surroundings *around,
-                            const struct packing *moved, const double *saturation,
-                            unsigned open_walls, struct network *anew)
+struct mapped_liquid map_liquid(const struct network *before,
+                                const struct neighbour_grains *around,
+                                const struct packing *moved, const double *saturation,
+                                unsigned open_walls, struct network *anew)
 {
-    struct carried carried = {NEW_ARRAY(double, anew->n_throat),
-                              NEW_ARRAY(double, anew->n_throat)};
+    struct mapped_liquid mapped = {NEW_ARRAY(double, anew->n_throat),
+                                   NEW_ARRAY(double, anew->n_throat)};
     const unsigned empty = empty_walls(before);
     if (empty) {
         impose_empty_throats(anew, empty);
@@ -131,15 +131,16 @@ struct carried carry_liquid(const struct network *before,
     }
     struct middles old = find_middles(before, NULL);
     follow_grains(before, around, moved, &old);
-    carry_saturations(&old, anew, saturation, carried.saturation);
-    carry_volumes(&old, before, saturation, anew, &carried);
+    map_saturations(&old, anew, saturation, mapped.saturation);
+    map_volumes(&old, before, saturation, anew, &mapped);
     free_middles(&old);
-    return carried;
+    return mapped;
 }
 
-enum status carry_radii(const struct network *before, const struct surroundings *around,
-                        const struct packing *moved, enum clearance how,
-                        struct network *anew, struct reason *reason)
+enum status map_radii(const struct network *before,
+                      const struct neighbour_grains *around,
+                      const struct packing *moved, enum clearance how,
+                      struct network *anew, struct reason *reason)
 {
     double *was = find_clearances(before, how, reason);
     double *is = was ? find_clearances(anew, how, reason) : NULL;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Liquid carried from a network to another of the same grains, which have moved.
-#ifndef CRAQUELURE_CARRY_H
-#define CRAQUELURE_CARRY_H
+#ifndef CRAQUELURE_MAP_RADII_H
+#define CRAQUELURE_MAP_RADII_H
 
 #include "basics/status.h"
 #include "neighbour_grains.h"
 #include "network/clearance.h"
 
-struct carried {
+struct mapped_liquid {
     double *liquid;     // (n_throat) of the new network, m3
     double *saturation; // (n_throat) likewise, what it begins with
 };
@@ -18,17 +18,18 @@ struct carried {
 // the nearest new throat that has any. Throats of ANEW in walls where the old ones are
 // imposed empty become so, and so do those that these then shut in from OPEN_WALLS
 // (bits of enum wall). The caller frees both arrays.
-struct carried carry_liquid(const struct network *before,
-                            const struct surroundings *around,
-                            const struct packing *moved, const double *saturation,
-                            unsigned open_walls, struct network *anew);
+struct mapped_liquid map_liquid(const struct network *before,
+                                const struct neighbour_grains *around,
+                                const struct packing *moved, const double *saturation,
+                                unsigned open_walls, struct network *anew);
 
 // Each throat of ANEW that holds liquid gets the radius of the old one that is nearest,
 // as above, changed as their clearances differ (moved_radius): drawn radii keep their
 // share of the clearance. Without volumes of throats before there are none after: they
 // are cylinders. STATUS_BAD_DATA: a face without a throat at its rim.
-enum status carry_radii(const struct network *before, const struct surroundings *around,
-                        const struct packing *moved, enum clearance how,
-                        struct network *anew, struct reason *reason);
+enum status map_radii(const struct network *before,
+                      const struct neighbour_grains *around,
+                      const struct packing *moved, enum clearance how,
+                      struct network *anew, struct reason *reason);
 
 #endif

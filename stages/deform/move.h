@@ -22,14 +22,15 @@ void move_box(const struct packing *before, struct packing *after);
 // have some), to the scale of their distances, squared: exactly, or by least squares
 // where they are more than it takes. What they leave open follows their mean. Returns
 // how many have no such place on their round surface any more.
-int move_nodes(const struct network *before, const struct surroundings *around,
+int move_nodes(const struct network *before, const struct neighbour_grains *around,
                struct network *after);
 
 // At how many nodes moved grains would have another diagram: a grain of a neighbouring
 // node, or of any on the surface of the same hole, has less power to it than its own
 // have, it lies outside the box, or a throat of it goes through a hole; not counted
 // where that was so before.
-int count_changed_nodes(const struct network *before, const struct surroundings *around,
+int count_changed_nodes(const struct network *before,
+                        const struct neighbour_grains *around,
                         const struct network *after);
 
 #endif

@@ -89,8 +89,8 @@ struct grains {
     struct vector from, to;  // these means
 };
 
-static struct grains look_beside(const struct packing *before,
-                                 const struct packing *after, int k, double reach)
+static struct grains motion_beside(const struct packing *before,
+                                   const struct packing *after, int k, double reach)
 {
     bool *beside = grains_beside(before, k, reach);
     struct grains grains = {.was = NEW_ARRAY(struct vector, before->n_particle),
@@ -146,13 +146,13 @@ static void move_round(const struct grains *grains, double least, struct body *b
         was += dot(at, at);
         add_products(&products, at, body_round_part(body, grains->is[i]));
     }
-    struct turn turn = {.cosine = 1, .along = was};
-    if (was > least) turn = find_turn(&products);
-    const double stretch = was > least ? turn.along / was : 1;
+    struct rotation rotation = {.cosine = 1, .along = was};
+    if (was > least) rotation = find_rotation(&products);
+    const double stretch = was > least ? rotation.along / was : 1;
     const struct vector half = scale(0.5, subtract(body->upper, body->lower));
     const struct vector off = subtract(add(body->lower, half), grains->from);
     const struct vector centre =
-        add(grains->to, scale(stretch, turned(&turn, body_round_part(body, off))));
+        add(grains->to, scale(stretch, rotated(&rotation, body_round_part(body, off))));
     for (int axis = 0; axis < 3; axis++) {
         if (!body_is_round(body, axis)) continue;
         const double at = component(centre, axis);
@@ -167,7 +167,7 @@ static void move_body(const struct packing *before, double diameter, int k,
                       struct packing *after)
 {
     struct body *body = &after->body[k];
-    struct grains grains = look_beside(before, after, k, diameter);
+    struct grains grains = motion_beside(before, after, k, diameter);
     const double least = grains.count * diameter * diameter / 16;
     for (int axis = 0; axis < 3 && grains.count; axis++)
         if (!body_is_round(body, axis)) move_flat(&grains, axis, least, body);

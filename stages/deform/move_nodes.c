@@ -20,8 +20,9 @@ struct view {
     double mean_power, spread; // of TO around its mean, squared
 };
 
-static void look(const struct packing *packing, const struct grain_beside *beside,
-                 struct vector from, struct view *view)
+static void view_grains(const struct packing *packing,
+                        const struct grain_beside *beside, struct vector from,
+                        struct view *view)
 {
     view->mean = (struct vector){0};
     view->mean_power = view->spread = 0;
@@ -39,16 +40,16 @@ static void look(const struct packing *packing, const struct grain_beside *besid
 }
 
 // Directions, at right angles, that a node may move in.
-struct ways {
+struct directions {
     int n;
-    struct vector way[3];
+    struct vector direction[3];
 };
 
 // The shortest step along these for which every
 //     -2 (to - mean) . step = wanted
 // holds, or nearly so; not a number where there is none.
 static struct vector solve(const struct view *view, const double *wanted,
-                           const struct ways *along)
+                           const struct directions *along)
 {
     static const double negligible = 1e-10; // of the largest singular value
     const size_t rows = (size_t)(view->n > along->n ? view->n : along->n);
@@ -60,7 +61,7 @@ static struct vector solve(const struct view *view, const double *wanted,
     for (int k = 0; k < view->n; k++) {
         const struct vector off = subtract(view->to[k], view->mean);
         for (int c = 0; c < along->n; c++)
-            gsl_matrix_set(a, (size_t)k, (size_t)c, -2 * dot(off, along->way[c]));
+            gsl_matrix_set(a, (size_t)k, (size_t)c, -2 * dot(off, along->direction[c]));
         gsl_vector_set(b, (size_t)k, wanted[k]);
     }
     const bool fails = gsl_linalg_SV_decomp_jacobi(a, v, s) != GSL_SUCCESS;
@@ -70,7 +71,7 @@ static struct vector solve(const struct view *view, const double *wanted,
     gsl_linalg_SV_solve(a, v, s, b, x);
     struct vector step = {fails ? NAN : 0, 0, 0};
     for (int c = 0; c < along->n && !fails; c++)
-        step = add(step, scale(gsl_vector_get(x, (size_t)c), along->way[c]));
+        step = add(step, scale(gsl_vector_get(x, (size_t)c), along->direction[c]));
     gsl_matrix_free(a);
     gsl_matrix_free(v);
     gsl_vector_free(s);
@@ -83,7 +84,7 @@ static struct vector solve(const struct view *view, const double *wanted,
 static struct vector first_guess(const struct packing *before,
                                  const struct packing *after,
                                  const struct grain_beside *beside, int n,
-                                 const struct sides *sides)
+                                 const struct domain_sides *sides)
 {
     struct vector step = {0};
     for (int k = 0; k < n; k++)
@@ -95,14 +96,14 @@ static struct vector first_guess(const struct packing *before,
 }
 
 // What the turn of the grains around a node, both times seen from it, adds to that.
-static struct vector turn_around(const struct view view[2])
+static struct vector rotation_of_guess(const struct view view[2])
 {
     struct products products = {0};
     for (int k = 0; k < view[0].n; k++)
         add_products(&products, subtract(view[0].to[k], view[0].mean),
                      subtract(view[1].to[k], view[1].mean));
-    const struct turn turn = find_turn(&products);
-    return subtract(view[0].mean, turned(&turn, view[0].mean));
+    const struct rotation rotation = find_rotation(&products);
+    return subtract(view[0].mean, rotated(&rotation, view[0].mean));
 }
 
 static bool same_bodies(const struct packing *a, const struct packing *b)
@@ -117,43 +118,48 @@ static struct vector onto_round(const struct packing *packing, int k, struct vec
 }
 
 // Of a node AT on these surfaces: along them.
-static struct ways find_ways(const struct packing *packing, const struct sides *sides,
-                             struct vector at)
+static struct directions find_directions(const struct packing *packing,
+                                         const struct domain_sides *sides,
+                                         struct vector at)
 {
-    struct ways ways = {0};
+    struct directions directions = {0};
     for (int axis = 0; axis < 3; axis++) {
         if (sides->held[axis]) continue;
-        struct vector way = {0};
-        set_component(&way, axis, 1);
-        ways.way[ways.n++] = way;
+        struct vector direction = {0};
+        set_component(&direction, axis, 1);
+        directions.direction[directions.n++] = direction;
     }
-    if (sides->round < 0 || !ways.n) return ways;
+    if (sides->round < 0 || !directions.n) return directions;
     const struct body body = body_near(packing, sides->round, at);
     const struct vector outward = body_outward(&body, at);
     struct vector out = {0}; // within the flat surfaces
-    for (int c = 0; c < ways.n; c++)
-        out = add(out, scale(dot(outward, ways.way[c]), ways.way[c]));
-    if (!(norm(out) > 0)) return ways;
+    for (int c = 0; c < directions.n; c++)
+        out = add(
+            out, scale(dot(outward, directions.direction[c]), directions.direction[c]));
+    if (!(norm(out) > 0)) return directions;
     out = scale(1 / norm(out), out);
     int steepest = 0;
-    for (int c = 1; c < ways.n; c++)
-        if (fabs(dot(out, ways.way[c])) > fabs(dot(out, ways.way[steepest])))
+    for (int c = 1; c < directions.n; c++)
+        if (fabs(dot(out, directions.direction[c])) >
+            fabs(dot(out, directions.direction[steepest])))
             steepest = c;
-    ways.way[steepest] = ways.way[--ways.n];
-    for (int c = 0; c < ways.n; c++) { // Gram and Schmidt
-        struct vector *way = &ways.way[c];
-        *way = subtract(*way, scale(dot(*way, out), out));
+    directions.direction[steepest] = directions.direction[--directions.n];
+    for (int c = 0; c < directions.n; c++) { // Gram and Schmidt
+        struct vector *direction = &directions.direction[c];
+        *direction = subtract(*direction, scale(dot(*direction, out), out));
         for (int b = 0; b < c; b++)
-            *way = subtract(*way, scale(dot(*way, ways.way[b]), ways.way[b]));
-        *way = scale(1 / norm(*way), *way);
+            *direction =
+                subtract(*direction, scale(dot(*direction, directions.direction[b]),
+                                           directions.direction[b]));
+        *direction = scale(1 / norm(*direction), *direction);
     }
-    return ways;
+    return directions;
 }
 
 // From AT, where the grains are VIEWed from now, to where the differences of powers are
 // those BEFORE, scaled; AT itself where they are so.
 static struct vector step_to(const struct view *before, struct view *now,
-                             const struct ways *along)
+                             const struct directions *along)
 {
     const double scaling = now->spread / before->spread;
     if (!isfinite(scaling)) return (struct vector){NAN, 0, 0}; // no numbers hold it
@@ -168,44 +174,45 @@ static struct vector step_to(const struct view *before, struct view *now,
 }
 
 // False where no place on its round surface is found.
-static bool move_node(const struct network *before, const struct surroundings *around,
-                      int node, struct view view[2], struct network *after)
+static bool move_node(const struct network *before,
+                      const struct neighbour_grains *around, int node,
+                      struct view view[2], struct network *after)
 {
-    enum { MOST_STEPS = 30 };
+    enum { MAX_STEPS = 30 };
     static const double rest = 1e-13; // of how far the grains spread
     const struct grain_beside *beside = around->at + around->offset[node];
     const int n = (int)(around->offset[node + 1] - around->offset[node]);
     const struct packing *packing = &after->packing;
     const struct vector from = before->node_position[node];
-    const struct sides sides =
-        find_sides(&before->packing, packing, around->walls[node], from);
+    const struct domain_sides sides =
+        find_domain_sides(&before->packing, packing, around->walls[node], from);
     const struct vector guess =
         first_guess(&before->packing, packing, beside, n, &sides);
     struct vector at = add(from, guess);
     const bool is_round = sides.round >= 0;
     view[0].n = view[1].n = n;
-    look(&before->packing, beside, from, &view[0]);
+    view_grains(&before->packing, beside, from, &view[0]);
     if (is_round && (norm(guess) > 0 || !same_bodies(&before->packing, packing))) {
-        look(packing, beside, from, &view[1]);
-        at = add(at, turn_around(view));
+        view_grains(packing, beside, from, &view[1]);
+        at = add(at, rotation_of_guess(view));
         at = onto_round(packing, sides.round, at);
     }
     after->node_position[node] = at;
-    struct ways ways = find_ways(packing, &sides, at);
-    if (n < 2 || ways.n == 0) return true;
-    for (int k = 0; k < MOST_STEPS; k++) {
-        look(packing, beside, at, &view[1]);
-        const struct vector step = step_to(&view[0], &view[1], &ways);
+    struct directions directions = find_directions(packing, &sides, at);
+    if (n < 2 || directions.n == 0) return true;
+    for (int k = 0; k < MAX_STEPS; k++) {
+        view_grains(packing, beside, at, &view[1]);
+        const struct vector step = step_to(&view[0], &view[1], &directions);
         at = after->node_position[node] = add(at, step);
         if (!is_round || norm(step) == 0) return true;
         at = after->node_position[node] = onto_round(packing, sides.round, at);
         if (norm(step) <= rest * sqrt(view[1].spread)) return true;
-        ways = find_ways(packing, &sides, at);
+        directions = find_directions(packing, &sides, at);
     }
     return false;
 }
 
-int move_nodes(const struct network *before, const struct surroundings *around,
+int move_nodes(const struct network *before, const struct neighbour_grains *around,
                struct network *after)
 {
     int most = 0, lost = 0;

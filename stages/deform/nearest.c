@@ -44,7 +44,7 @@ struct search {
 };
 
 // CELL may lie beyond the cells.
-static void look_in(struct search *search, const int cell[3])
+static void search_cell(struct search *search, const int cell[3])
 {
     const struct places *places = search->places;
     const struct linked_cells *cells = &places->cells;
@@ -69,13 +69,14 @@ static void look_in(struct search *search, const int cell[3])
 }
 
 // The cells that are RING away from CENTRE along some axis, and no further along any.
-static void look_around(struct search *search, const int centre[3], int ring)
+static void search_ring(struct search *search, const int centre[3], int ring)
 {
     for (int x = -ring; x <= ring; x++)
         for (int y = -ring; y <= ring; y++) {
             const bool rim = abs(x) == ring || abs(y) == ring;
             for (int z = -ring; z <= ring; z += rim || ring == 0 ? 1 : 2 * ring)
-                look_in(search, (int[3]){centre[0] + x, centre[1] + y, centre[2] + z});
+                search_cell(search,
+                            (int[3]){centre[0] + x, centre[1] + y, centre[2] + z});
         }
 }
 
@@ -92,7 +93,7 @@ int nearest_place(const struct places *places, struct vector from)
     }
     // What lies in the next ring is at least RING cells away.
     for (int ring = 0; ring <= most; ring++) {
-        look_around(&search, centre, ring);
+        search_ring(&search, centre, ring);
         if (search.least <= ring * width) break;
     }
     return search.nearest;

@@ -25,7 +25,7 @@ struct vector to_grain(const struct packing *packing, struct grain_beside beside
 
 // Both sides of the face at CORNER of its loop, as its node sees them.
 static void add_sides(const struct network *network, int face, int64_t corner,
-                      struct surroundings *around, int64_t *end)
+                      struct neighbour_grains *around, int64_t *end)
 {
     const int node = network->face_nodes[corner];
     const int32_t *side = network->face_particles[face];
@@ -42,7 +42,7 @@ static void add_sides(const struct network *network, int face, int64_t corner,
 }
 
 // Sorts what is around each node, and keeps each grain once.
-static void reduce(int n_node, const int64_t *end, struct surroundings *around)
+static void keep_once(int n_node, const int64_t *end, struct neighbour_grains *around)
 {
     int64_t kept = 0;
     for (int i = 0; i < n_node; i++) {
@@ -57,13 +57,14 @@ static void reduce(int n_node, const int64_t *end, struct surroundings *around)
     around->offset[n_node] = kept;
 }
 
-struct surroundings find_surroundings(const struct network *network)
+struct neighbour_grains find_neighbour_grains(const struct network *network)
 {
     const int n = network->n_node;
     const int64_t n_corner = network->face_offset[network->n_face];
-    struct surroundings around = {.offset = NEW_ARRAY(int64_t, n + 1),
-                                  .at = NEW_ARRAY(struct grain_beside, 2 * n_corner),
-                                  .walls = NEW_ARRAY(uint8_t, n)};
+    struct neighbour_grains around = {.offset = NEW_ARRAY(int64_t, n + 1),
+                                      .at =
+                                          NEW_ARRAY(struct grain_beside, 2 * n_corner),
+                                      .walls = NEW_ARRAY(uint8_t, n)};
     for (int64_t k = 0; k < n_corner; k++)
         around.offset[network->face_nodes[k] + 1] += 2;
     for (int i = 0; i < n; i++)
@@ -72,7 +73,7 @@ struct surroundings find_surroundings(const struct network *network)
     for (int f = 0; f < network->n_face; f++)
         for (int64_t k = network->face_offset[f]; k < network->face_offset[f + 1]; k++)
             add_sides(network, f, k, &around, end);
-    reduce(n, end, &around);
+    keep_once(n, end, &around);
     // The cells of a layer are its faces, none of which lies in a wall beside it.
     const bool layer = is_layer(network);
     for (int i = 0; i < n && layer; i++)
@@ -81,10 +82,10 @@ struct surroundings find_surroundings(const struct network *network)
     return around;
 }
 
-void surroundings_free(struct surroundings *around)
+void neighbour_grains_free(struct neighbour_grains *around)
 {
     free(around->offset);
     free(around->at);
     free(around->walls);
-    *around = (struct surroundings){0};
+    *around = (struct neighbour_grains){0};
 }

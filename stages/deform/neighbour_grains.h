@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which grains lie around each node of a network, read off the faces that meet there.
-#ifndef CRAQUELURE_SURROUNDINGS_H
-#define CRAQUELURE_SURROUNDINGS_H
+#ifndef CRAQUELURE_NEIGHBOUR_GRAINS_H
+#define CRAQUELURE_NEIGHBOUR_GRAINS_H
 
 #include "network/network.h"
 
@@ -12,15 +12,15 @@ struct grain_beside {
     struct image image;
 };
 
-struct surroundings {
+struct neighbour_grains {
     int64_t *offset;         // (n_node+1)
     struct grain_beside *at; // grains around node i from offset[i] on, each once
     uint8_t *walls;          // (n_node) walls of the box among its faces, as bits
 };
 
-// O(n_face_node). The caller frees it with surroundings_free.
-struct surroundings find_surroundings(const struct network *network);
-void surroundings_free(struct surroundings *surroundings);
+// O(n_face_node). The caller frees it with neighbour_grains_free.
+struct neighbour_grains find_neighbour_grains(const struct network *network);
+void neighbour_grains_free(struct neighbour_grains *surroundings);
 
 // Seen from FROM, where the grain is; m.
 struct vector to_grain(const struct packing *packing, struct grain_beside beside,

@@ -23,7 +23,7 @@ static void fill(const double of[3][3], double matrix[4][4])
     }
 }
 
-struct turn find_turn(const struct products *sum)
+struct rotation find_rotation(const struct products *sum)
 {
     static const double alike = 1e-6; // of the largest
     double matrix[4][4], value[4], vector[4][4];
@@ -37,12 +37,12 @@ struct turn find_turn(const struct products *sum)
     gsl_eigen_symmv_free(workspace);
     gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_DESC);
     if (!(value[0] - value[1] > alike * fabs(value[0])))
-        return (struct turn){.cosine = 1, .along = trace};
-    return (struct turn){
+        return (struct rotation){.cosine = 1, .along = trace};
+    return (struct rotation){
         vector[0][0], {vector[1][0], vector[2][0], vector[3][0]}, value[0]};
 }
 
-struct vector turned(const struct turn *turn, struct vector x)
+struct vector rotated(const struct rotation *turn, struct vector x)
 {
     const struct vector across = cross(turn->axis, x);
     return add(x,

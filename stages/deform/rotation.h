@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The turn that takes directions to others best, by least squares.
-#ifndef CRAQUELURE_DEFORM_TURN_H
-#define CRAQUELURE_DEFORM_TURN_H
+#ifndef CRAQUELURE_DEFORM_ROTATION_H
+#define CRAQUELURE_DEFORM_ROTATION_H
 
 #include "geometry/vector.h"
 
@@ -12,7 +12,7 @@ struct products {
 
 void add_products(struct products *sum, struct vector a, struct vector b);
 
-struct turn {
+struct rotation {
     double cosine;      // of half its angle
     struct vector axis; // times the sine of that
     double along;       // sum of b . (a turned)
@@ -20,8 +20,8 @@ struct turn {
 
 // The turn of most ALONG [Horn, J. Opt. Soc. Am. A 4 (1987) 629]. None where others do
 // as well, as of directions along one line.
-struct turn find_turn(const struct products *sum);
+struct rotation find_rotation(const struct products *sum);
 
-struct vector turned(const struct turn *turn, struct vector x);
+struct vector rotated(const struct rotation *turn, struct vector x);
 
 #endif

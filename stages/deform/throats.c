@@ -26,8 +26,8 @@ static struct clear_way clear_of_face(struct clear_way way,
 }
 
 // (n_throat) Of the grains beside each; NULL with the reason.
-static struct clear_way *find_ways(const struct network *network, enum clearance how,
-                                   struct reason *reason)
+static struct clear_way *find_clear_ways(const struct network *network,
+                                         enum clearance how, struct reason *reason)
 {
     struct incidence incidence = network_incidence(network);
     struct clear_way *way = NEW_ARRAY(struct clear_way, network->n_throat);
@@ -57,7 +57,7 @@ static struct clear_way *find_ways(const struct network *network, enum clearance
 double *find_clearances(const struct network *network, enum clearance how,
                         struct reason *reason)
 {
-    struct clear_way *way = find_ways(network, how, reason);
+    struct clear_way *way = find_clear_ways(network, how, reason);
     if (!way) return NULL;
     struct sphere_cells grains = sphere_cells_make(&network->packing);
     double *least = NEW_ARRAY(double, network->n_throat);
@@ -114,7 +114,7 @@ static double volume_of(const struct body *body)
     return share[body->shape] * product(subtract(body->upper, body->lower));
 }
 
-double room_of(const struct packing *packing)
+double domain_volume(const struct packing *packing)
 {
     double room = product(subtract(packing->upper, packing->lower)), holes = 0;
     for (int k = 0; k < packing->n_body; k++) {
@@ -133,7 +133,7 @@ static double void_of(const struct packing *packing)
     double porosity;
     slice_porosity(packing, &contacts, &box, 1, &porosity);
     free((void *)(uintptr_t)contacts.pair);
-    return room_of(packing) - (1 - porosity) * product(edge);
+    return domain_volume(packing) - (1 - porosity) * product(edge);
 }
 
 // Whether the volumes of NETWORK are what find_void_volumes gives.

@@ -35,7 +35,7 @@ enum status move_volumes(const struct network *before, bool changed,
                          struct network *after, struct reason *reason);
 
 // Of the box, or of the body within it, less what is cut out, m3.
-double room_of(const struct packing *packing);
+double domain_volume(const struct packing *packing);
 
 // Throats of kind THROAT_NETWORK that have a radius or volume of 0 in AFTER only.
 int count_closed_throats(const struct network *before, const struct network *after);

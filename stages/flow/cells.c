@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pores: the tetrahedra of the regular triangulation of grains and walls [C 2.1], a
+// wall being a sphere of unlimited radius. The centre c of a pore has equal power to
+// its four corners,
+//     2 u . c = u . u - w_1 + w_0,  likewise v and w,   relative to corner 0,
+// where a wall stands for the reflection of a corner grain in it. In a periodic box
+// the triangulation contains copies: the cell whose first corner (in a canonical
+// order) is a grain itself represents all its copies, and neighbours are looked up by
+// name. Cells whose centres coincide, as on lattices, are one pore; flat cells, whose
+// centre would be rounding noise, take that of a neighbour.
 #include "cells.h"
 
 #include "basics/disjoint_sets.h"
@@ -10,8 +19,8 @@
 // In units: copies of grains are first made as far as this.
 static const double FIRST_REACH = 2;
 
-// A cell whose edges from one corner span less than this of their product is flat: its
-// centre is not where its corners say but where their last digits do.
+// A cell is flat if the determinant of its edges from one corner is below this part of
+// their product: its centre would depend on the last digits of its corners.
 static const double MIN_DETERMINANT = 1e-8;
 
 // Two centres closer than this, in units, are one: rounding moves them less.
@@ -48,7 +57,7 @@ static struct power_points corners_of(const struct grains *grains,
     return four;
 }
 
-// Where the powers are equal. False when the four are so nearly in a plane that digits
+// The point of equal power. False when the four are so nearly in one plane that digits
 // would be lost.
 static bool power_centre(const struct power_points *four, struct vector *centre)
 {
@@ -69,7 +78,7 @@ static bool power_centre(const struct power_points *four, struct vector *centre)
     return true;
 }
 
-// Exactly on the walls among the corners.
+// Moves a centre exactly onto the walls among its corners.
 static void put_on_walls(const struct grains *grains, const int32_t corner[4],
                          struct vector *at)
 {
@@ -80,7 +89,7 @@ static void put_on_walls(const struct grains *grains, const int32_t corner[4],
     }
 }
 
-// Of all cells at once; node -1 where one has none of its own.
+// The centres of all cells; node -1 where a cell is flat. Returns how many are.
 static int find_centres(const struct grains *grains,
                         struct triangulation *triangulation, struct vector *centre)
 {
@@ -99,7 +108,8 @@ static int find_centres(const struct grains *grains,
 
 // ---- copies -------------------------------------------------------------------------
 
-// Corners by what they are, then by image: the order is the same for all copies.
+// The name of a cell: its corners sorted by base and image. Copies of a cell have the
+// same name but for FIRST, the image of their first corner.
 struct name {
     int32_t corner[4], image[4]; // images from the first's
     struct image first;
@@ -146,15 +156,14 @@ static int compare_names(const void *a, const void *b)
     return 0;
 }
 
-// Of all copies of a cell, the one whose first corner is a grain itself stands for
-// them.
+// Whether a cell represents its copies: its first corner is a grain itself.
 static bool is_representative(const struct name *name)
 {
     return same_image(name->first, (struct image){0});
 }
 
-// Marks the cells that stand for all (node their number, else -1) and lists the names
-// of those with a copy beside them, sorted.
+// Numbers the cells that represent their copies (node; -1 for the others) and lists the
+// names of those with a copy beside them, sorted. The caller frees the list.
 static struct name *number_cells(const struct grains *grains,
                                  struct triangulation *triangulation, int *n_cell,
                                  int *n_name)
@@ -181,8 +190,8 @@ static struct name *number_cells(const struct grains *grains,
     return names;
 }
 
-// No copy that was left out could change this cell: it would have to be inside the
-// sphere around the centre that no grain has less power to.
+// Whether no copy that was left out could change this cell: it would have to be inside
+// the sphere around the centre in which a grain has less power than the corners.
 static bool is_complete(const struct grains *grains, const struct cell *cell,
                         struct vector centre, double largest_weight)
 {
@@ -226,7 +235,7 @@ static bool are_complete(const struct grains *grains,
 
 // ---- from the triangulation ---------------------------------------------------------
 
-// The cell that stands for cell C, and the image in which it is C; -1: none does, for
+// The cell that represents cell C, and the image in which it is C; -1: none, because
 // too few copies were made.
 static int32_t representative(const struct grains *grains,
                               const struct triangulation *triangulation, int c,
@@ -261,7 +270,8 @@ static bool copy_cell(const struct grains *grains,
     return true;
 }
 
-// Into CELLS those that stand for all; false when too few copies were made.
+// Keeps the cells that represent their copies in CELLS; false when too few copies were
+// made.
 static bool keep_cells(const struct grains *grains, struct triangulation *triangulation,
                        struct cells *cells, uint8_t **is_flat)
 {
@@ -298,9 +308,8 @@ static bool keep_cells(const struct grains *grains, struct triangulation *triang
 
 // ---- pores --------------------------------------------------------------------------
 
-// A flat cell is a chink between two others: it takes the centre of the first of them
-// that has one. Walls among its corners are among the neighbour's, or the centre would
-// leave them.
+// A flat cell has no volume between its neighbours: it takes the centre of the first of
+// them that has one. That neighbour must have the same walls among its corners.
 static void place_flat_cells(const struct grains *grains, struct cells *cells,
                              uint8_t *is_flat)
 {

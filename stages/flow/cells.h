@@ -12,9 +12,9 @@ struct pore_cell {
     int32_t corner[4];    // grains; -1..-6 for the walls -x, +x, -y, +y, -z, +z
     int32_t neighbour[4]; // cell opposite each corner; -1: none, beyond three walls
     struct image corner_image[4], neighbour_image[4];
-    struct vector centre; // where the power to all corners is equal: on the walls among
-                          // them, exactly; of a flat cell, that of a neighbour
-    int32_t pore;         // cells whose centres coincide are one pore
+    struct vector centre; // point of equal power, exactly on the walls among the
+                          // corners; in a flat cell, that of a neighbour
+    int32_t pore; // cells whose centres coincide are one pore
 };
 
 struct cells {
@@ -27,8 +27,9 @@ struct cells {
 // Corners of the facet opposite corner k, anticlockwise seen from outside the cell.
 extern const int facet_corner[4][3];
 
-// Triangulates. STATUS_BAD_DATA: the box that repeats is too narrow. The caller frees
-// with cells_free; GRAINS is left with the copies that it took.
+// Places the grains of PACKING in GRAINS, with as many copies as needed, and
+// triangulates. STATUS_BAD_DATA: a periodic box is too narrow, or as place_grains. The
+// caller frees CELLS with cells_free and GRAINS with grains_free.
 enum status find_cells(const struct packing *packing, struct grains *grains,
                        struct cells *cells, struct reason *reason);
 void cells_free(struct cells *cells);

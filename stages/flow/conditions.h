@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What drives the flow, as the user says it.
+// The boundary conditions of the flow, as the user gives them.
 #ifndef CRAQUELURE_FLOW_CONDITIONS_H
 #define CRAQUELURE_FLOW_CONDITIONS_H
 
@@ -13,13 +13,14 @@ struct imposed {
     double pressure[WALL_COUNT], flux[WALL_COUNT]; // Pa, m3/s; NAN: not imposed
 };
 
-// In the units of the computation, for a fluid of VISCOSITY. STATUS_BAD_DATA: two
-// things are imposed on one wall, or one on a side that repeats.
+// CONDITIONS in the units of the computation, for a fluid of VISCOSITY (Pa s).
+// STATUS_BAD_DATA: two conditions on one wall, or one on a periodic side.
 enum status find_conditions(const struct grains *grains, const struct imposed *imposed,
                             double viscosity, struct conditions *conditions,
                             struct reason *reason);
 
-// Nothing but a pressure that falls by DROP along AXIS.
+// Only a pressure that falls by DROP (Pa) along AXIS: between its walls, or as a mean
+// gradient in a periodic box.
 struct conditions fall_along(const struct grains *grains, int axis, double drop);
 
 #endif

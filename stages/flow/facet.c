@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Volume and surfaces of one throat: the double cone of a facet and the two pore
+// centres, minus the grains in it [C 2.2.2, Figs. 4 and 5].
+//     volume  = 1/3 area . step - sum over grains of R surface / 3,
+//     surface = R^2 (solid angle at the grain between facet and both centres),
+//     sector  = R^2 angle / 2 - segment that sticks out beyond the opposite side.
+// With a signed solid angle all throats partition the void exactly. Walls are spheres
+// of unlimited radius, so their limits are used: a facet with one wall is a trapezium
+// down to it, with two walls a rectangle to the edge of the box, and a wall's surface
+// is plane.
 #include "facet.h"
 
 #include "geometry/solid_angle.h"
@@ -32,8 +41,8 @@ static double solid_angle_at(struct vector u, struct vector v, struct vector fro
            fabs(solid_angle_between(none, half_solid_angle(v, from, to)));
 }
 
-// Of the disc of grain K in the facet, the segment beyond the side opposite to it: a
-// large grain sticks out between two small ones. 0 where it holds an end of that side.
+// Area of the segment of grain K's disc beyond the opposite side: a large grain sticks
+// out between two small ones. 0 where the disc covers an end of that side.
 static double segment_beyond(const struct corner corner[3], int k)
 {
     const struct corner *first = &corner[(k + 1) % 3], *second = &corner[(k + 2) % 3];
@@ -52,7 +61,7 @@ static double segment_beyond(const struct corner corner[3], int k)
     return radius * radius * acos(away / radius) - away * half;
 }
 
-// What grain k takes of the facet and of the throat.
+// Sector, surface and volume of grain k in the facet and the throat.
 static void measure_grain(const struct corner corner[3], int k, struct vector from,
                           struct vector to, bool partition, struct facet *facet)
 {
@@ -117,8 +126,8 @@ struct facet measure_facet(const struct corner corner[3], struct vector from,
     return facet;
 }
 
-// Where the circle may be, seen from grain K: at ACROSS its middle is off - radius *
-// rate along ACROSS.
+// A circle of radius r that touches grain K and another corner: its middle m, relative
+// to grain K, has m . across = off - r rate.
 struct condition {
     struct vector across;
     double off, rate;

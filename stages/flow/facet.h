@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The geometry of one throat [C 2.2.2]: a facet of the triangulation and the centres of
-// the two pores that it parts. In any unit of length.
+// The geometry of one throat [C 2.2.2]: a facet of the triangulation and the centres
+// of the two pores that it separates. In any unit of length.
 #ifndef CRAQUELURE_FLOW_FACET_H
 #define CRAQUELURE_FLOW_FACET_H
 
@@ -27,8 +27,8 @@ struct facet {
 };
 
 // CORNER: anticlockwise seen from the second pore, at most two of them walls. FROM and
-// TO: the centres. With PARTITION all pieces are signed: where both centres are on one
-// side of the facet the nearer one's share is taken off, so that over all throats the
+// TO: the centres. With PARTITION all parts are signed: where both centres are on one
+// side of the facet the nearer one's part is subtracted, so that over all throats the
 // volumes sum to the void and the surfaces to those of the grains and walls, wherever
 // centres are (grains must not overlap, for the volumes). Without, a grain's surface is
 // that between the plane through an edge and both centres, added up over its two edges

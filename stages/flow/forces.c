@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Forces of the fluid, throat by throat [C 13-18]. A throat with the pressure drop p_i
+// - p_j and normal n puts on its corner k
+//     pressure force  sector_k (p_i - p_j) n                       [C 14]
+//     viscous force   A^f (p_i - p_j) n surface_k / sum of surfaces [C 17, 18]
+// where A^f is the fluid part of the facet. Summed over all throats and walls the
+// forces vanish, because each facet's area is split into its sectors and A^f. (C 17 is
+// printed with p_j - p_i, which would drag grains against the flow.)
 #include "forces.h"
 
 #include "basics/memory.h"
@@ -10,8 +17,9 @@ static void add_to(struct vector *sum, double factor, struct vector v)
     *sum = add(*sum, scale(factor, v));
 }
 
-// Pressure pushes on the sectors of the facet [C 14]; what it does to the fluid between
-// them the grains feel as drag [C 17], by their shares of the surface [C 18].
+// Pressure acts on the sectors of the facet [C 14]; its action on the fluid between
+// them is passed on to the grains as drag [C 17], by their shares of the surface [C
+// 18].
 static void add_throat(const struct throat *throat, double drop, struct forces *forces)
 {
     const double area = norm(throat->area);

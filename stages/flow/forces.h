@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the fluid does to grains and walls [C 2.3].
+// The forces of the fluid on grains and walls [C 2.3].
 #ifndef CRAQUELURE_FLOW_FORCES_H
 #define CRAQUELURE_FLOW_FORCES_H
 
@@ -13,9 +13,9 @@ struct forces {
     double mean_pressure;   // in the fluid, Pa
 };
 
-// The force on a wall is what the fluid inside does to it. Over all grains and walls
-// the forces sum to nothing, or to the box times less the mean gradient where it
-// repeats. The caller frees with forces_free.
+// The force on a wall is that of the fluid inside. Over all grains and walls the forces
+// sum to 0, or in a periodic box to minus the mean gradient times the volume of the
+// box. The caller frees with forces_free.
 struct forces find_forces(const struct grains *grains, const struct cells *cells,
                           const struct throats *throats,
                           const struct pressures *pressures);

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Grains on a grid: positions are rounded to a power of two, 2^-40 units, so that
+// lattices and periodic copies (x + k box) are exact in double precision, and
+// degenerate cells are exactly degenerate. The unit is the cube root of the box volume
+// per grain.
 #include "grains.h"
 
 #include "basics/memory.h"
@@ -7,7 +11,7 @@
 
 enum { GRID_BITS = 40, SAFE_BITS = 50 };
 
-// The edge of a grain's share of the box, m.
+// The unit of length: the cube root of the box volume per grain, m.
 static double unit_for(const struct packing *packing)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
@@ -24,7 +28,7 @@ static struct vector on_grid(double grid, struct vector x)
     return (struct vector){rounded(grid, x.x), rounded(grid, x.y), rounded(grid, x.z)};
 }
 
-// Into the box where it repeats.
+// AT moved into a periodic box.
 static struct vector wrapped(const struct grains *grains, struct vector at)
 {
     for (int axis = 0; axis < 3; axis++) {

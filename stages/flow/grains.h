@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The grains in the units of the computation, and copies of them where the box repeats.
+// The grains in the units of the computation, and their copies in a periodic box.
 #ifndef CRAQUELURE_FLOW_GRAINS_H
 #define CRAQUELURE_FLOW_GRAINS_H
 

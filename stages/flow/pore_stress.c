@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Viscous stress of the fluid, averaged over each pore. By Gauss' theorem, and because
+// the fluid sticks to the grains,
+//     stress = mu 1/V integral of (n u + u n) over the facets
+//            = 1/V sum over facets of 2 flux n n   (mu = 1),
+// with the velocity u taken along the facet's normal n. Fluid that enters through a
+// wall passes a facet with the wall's normal. Flux in equals flux out, so the trace
+// vanishes.
 #include "pore_stress.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// FLUX through a facet with unit normal N, out of the pore.
+// Adds the term of a FLUX out of the pore through a facet with unit normal N.
 static void add_outflow(double sum[6], double flux, struct vector n)
 {
     sum[0] += 2 * flux * n.x * n.x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stress that the fluid carries, averaged over each pore.
+// The viscous stress of the fluid, averaged over each pore.
 #ifndef CRAQUELURE_FLOW_PORE_STRESS_H
 #define CRAQUELURE_FLOW_PORE_STRESS_H
 
@@ -12,12 +12,11 @@ struct pore_stress {
     double mean_viscous[6]; // over the fluid, Pa
 };
 
-// Viscosity times twice the mean rate of strain, which is what flows out through the
-// facets of the pore, over its volume: by Gauss 1/V sum (u n + n u) over the facets,
-// for the fluid sticks to the grains, with u along the normal n of each facet and of
-// the wall through which the pore is fed. That leaves out slip along facets. What flows
-// in flows out, so that the trace vanishes. Nothing may move. The caller frees with
-// pore_stress_free.
+// Viscosity times twice the mean rate of strain of each pore: by Gauss' theorem
+// 1/V sum (u n + n u) over its facets, since the fluid sticks to the grains, with u
+// along the normal n of each facet and of the wall through which the pore is fed. This
+// leaves out slip along facets. Inflow equals outflow, so the trace vanishes. Grains
+// and walls must be at rest. The caller frees with pore_stress_free.
 struct pore_stress find_pore_stress(const struct grains *grains,
                                     const struct cells *cells,
                                     const struct throats *throats,

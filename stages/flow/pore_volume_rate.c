@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The volume that each facet sweeps per time, less that swept of the grains' sectors
+// in it [C 5]. A facet between three grains moves as the plane through their centres:
+// the normal velocity at barycentric coordinates (a, b) is linear, so
+//     swept = area (v_0 + v_1 + v_2) / 3 - sum over grains of (a (v_j - v_k) + b (v_l -
+//     v_k)),
+// with a and b from the first moment of each sector, 2/3 R^3 sin(angle / 2) along its
+// bisector. Rigid motion of a grain along the normal sweeps no fluid of its own
+// sector, which is why only differences appear. At walls the facet stays perpendicular
+// to the wall; upper walls move with the strain rate of the box.
 #include "pore_volume_rate.h"
 
 #include "basics/memory.h"
@@ -22,8 +31,8 @@ static struct vector sector_moment(double radius, struct vector u, struct vector
     return scale(2.0 / 3 * radius * radius * radius * sin(angle / 2) / size, along);
 }
 
-// Three grains: the facet stays a triangle. A grain's sector sees it turn about the
-// grain's centre.
+// Three grains: the facet stays a triangle. Relative to a grain's sector it rotates
+// about the grain's centre.
 static double swept_triangle(const struct motion *motion)
 {
     double mean = 0, solid = 0;
@@ -43,7 +52,7 @@ static double swept_triangle(const struct motion *motion)
     return motion->area * mean - solid;
 }
 
-// Two grains and wall K: the facet stays at a right angle to the wall.
+// Two grains and wall K: the facet stays perpendicular to the wall.
 static double swept_at_wall(const struct motion *motion, int k)
 {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -116,7 +125,8 @@ static struct motion motion_of(const struct grains *grains,
     return motion;
 }
 
-// What the walls that close the cells at the ends of a throat sweep: see forces.c.
+// The volume swept by the walls that close the cell at one end of a throat; their area
+// is that of the facet along the wall's normal (forces.c).
 static double swept_wall(const struct grains *grains, const struct pore_cell *cell,
                          const struct throat *throat, int end, struct vector rate)
 {

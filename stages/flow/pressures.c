@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Balances of the pores [C 6, 20]: in each pore i of unknown pressure
+//     sum_j conductance_ij (p_i - p_j) = injected_i + what the mean gradient drives,
+//     p = value + gradient . x,
+// where pores at a wall of imposed pressure are known and all pores behind a wall of
+// imposed flux are one node. The values are corrected until the residual, summed in
+// two parts, is small relative to the throughput; the first correction is nearly the
+// solution. A set of pores without a path to an imposed pressure (a pocket) is
+// singular: one of its pores is pinned, and afterwards the pocket is shifted to the
+// mean pressure around it.
 #include "pressures.h"
 
 #include "basics/disjoint_sets.h"
@@ -7,14 +16,14 @@
 
 #include <stdlib.h>
 
-// Each correction gains what the solver promises, at most this; rounding ends it.
+// Each correction reduces the residual by at most this factor; rounding ends it.
 enum { CORRECTIONS = 12 };
 static const double FIRST_REDUCTION = 1e-8;
 
 // Below this imbalance corrections do not change the throughput any more.
 static const double THROUGHPUT_SETTLED = 1e-5;
 
-// A network of nodes: those whose pressure is sought first.
+// The system of balances: in the matrix the unknown nodes come first.
 struct balance {
     const struct grains *grains;
     const struct cells *cells;
@@ -67,7 +76,8 @@ int feeding_wall(const struct conditions *conditions, unsigned walls)
     return wall >= 0 ? wall : flux_wall(conditions, walls);
 }
 
-// Numbers the nodes: pores, and all pores behind one flux plate as one.
+// Numbers the nodes: each pore is one, and all pores behind a wall of imposed flux are
+// one (its plate).
 static void number_nodes(struct balance *balance, const struct conditions *conditions,
                          struct pressures *pressures, int32_t plate[WALL_COUNT])
 {
@@ -104,8 +114,8 @@ static bool nodes_of(const struct pressures *pressures, const struct throat *thr
     return node[0] != node[1];
 }
 
-// Where all that is imposed is one pressure, it is that of all pores: begun from there,
-// what does not flow is nothing, and not the rounding of a solution.
+// Starts from a uniform pressure, the smallest one imposed. If it is the only one, that
+// is the solution, and flows are exactly 0 instead of rounding.
 static void start_from_uniform(const struct conditions *conditions,
                                struct pressures *pressures)
 {
@@ -150,7 +160,8 @@ static void impose(struct balance *balance, const struct conditions *conditions,
     }
 }
 
-// Pins one pore of every pocket; POCKET (n_node) gets the root of each node.
+// Pins one pore of every pocket. POCKET (n_node) becomes the root of each node's
+// pocket, -1 for nodes with a path to an imposed pressure.
 static enum status find_pockets(struct balance *balance, struct pressures *pressures,
                                 int32_t *pocket, struct reason *reason)
 {
@@ -267,8 +278,8 @@ static void reorder(const struct balance *balance, struct pressures *pressures,
             x[balance->unknown[i]] = pressures->value[i];
 }
 
-// Until the balances close, or rounding ends it. The first correction is nearly the
-// whole solution. X, GIVEN and what they RESIDUAL are in the order of the matrix.
+// Corrects X until the balances close, or rounding ends it. X, GIVEN and RESIDUAL are
+// in the order of the matrix.
 static enum status correct(const struct balance *balance, const struct solving *solving,
                            struct linear_solver *solver, const double *given,
                            struct compensated *x, double *residual,
@@ -328,8 +339,8 @@ static enum status close_balances(const struct balance *balance,
 
 // ---- what follows -------------------------------------------------------------------
 
-// Pockets float: each takes the mean pressure of the pores around it, by facet area;
-// one with nothing around it but itself, a mean of 0.
+// Shifts each pocket to the mean pressure of the pores around it, weighted by facet
+// area; one without any pores around it to a mean of 0.
 static void level_pockets(const struct balance *balance, const int32_t *pocket,
                           struct pressures *pressures)
 {
@@ -369,8 +380,7 @@ static void level_pockets(const struct balance *balance, const int32_t *pocket,
     free(count);
 }
 
-// What leaves the pores of each wall for the others, less what they give off
-// themselves, enters through the wall.
+// The inflow through each wall: the flow from its pores to others, less their sources.
 static void find_inflow(const struct balance *balance,
                         const struct conditions *conditions, const double *source,
                         struct pressures *pressures)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pressure in every pore: what flows in flows out [C 6, 20].
+// The pressure in every pore, from the balances of the flow [C 6, 20].
 #ifndef CRAQUELURE_FLOW_PRESSURES_H
 #define CRAQUELURE_FLOW_PRESSURES_H
 
@@ -21,7 +21,7 @@ struct solving {
     double tolerance; // on the imbalance
 };
 
-// Pressure is a field that repeats, plus the mean gradient times the place.
+// The pressure is a periodic field plus the mean gradient times the position.
 struct pressures {
     int n_node;                // pores behind one flux plate are one
     int32_t *node;             // (n_pore)
@@ -29,18 +29,18 @@ struct pressures {
     struct compensated *value; // (n_node) Pa, without the mean gradient
     struct vector gradient;
     double inflow[WALL_COUNT]; // through each wall
-    double throughput;         // sum of flux times length over the throats, by the edge
-    double imbalance; // largest of one pore, or of all in sum; of the throughput
-    int n_pocket;     // sets of pores with no way out
+    double throughput; // sum over throats of |flux| length / largest edge of the box
+    double imbalance;  // largest residual of a pore, or their sum, over the throughput
+    int n_pocket;      // sets of pores with no way out
     int n_unknown, iterations;
     bool direct; // by Cholesky's factor
 };
 
-// SOURCE (n_pore) is what each pore gives off, or NULL. A pocket with no way out takes
-// the mean pressure of the pores around it. Pores in an edge between walls of imposed
-// pressure belong to the lower wall. STATUS_BAD_DATA: what flows into a pocket cannot
-// leave it. STATUS_NOT_CONVERGED: the imbalance stays above the tolerance. The caller
-// frees with pressures_free.
+// SOURCE (n_pore) is the inflow of each pore from moving grains, or NULL. A pocket
+// takes the mean pressure of the pores around it. Pores in an edge between walls of
+// imposed pressure belong to the lower wall. STATUS_BAD_DATA: what flows into a pocket
+// cannot leave it. STATUS_NOT_CONVERGED: the imbalance stays above the tolerance. The
+// caller frees with pressures_free.
 enum status solve_pressures(const struct grains *grains, const struct cells *cells,
                             const struct throats *throats,
                             const struct conditions *conditions, const double *source,

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Stokes' drag on grains much smaller than their pore. For each grain, over the
+// throats that it is a corner of,
+//     u = 2 sum of flux step / sum of volume    (twice the mean velocity around it)
+//     more = sqrt(|F|^2 + (6 pi mu R u)^2) - |F|   along u,   mu = 1,
+// where F is what C 14 and 18 give it. What it gets more is taken from the other
+// corners of these throats, by their surfaces: the sum of all forces stays.
 #include "small_grains.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// What surrounds a grain: sums over the throats that it is a corner of.
+// Sums over the throats that a grain is a corner of.
 struct neighbourhood {
     struct vector moment; // flux times step, for a viscosity of 1
     double volume;        // of fluid
@@ -37,7 +43,7 @@ static struct neighbourhood *find_neighbourhoods(const struct grains *grains,
     return around;
 }
 
-// The root of the sum of the squares, less the force there is.
+// The root of the sum of squares of both drags, less the force there is.
 static struct vector missing_drag(const struct neighbourhood *around, double radius,
                                   struct vector force)
 {

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Conductances [C 7-10]. With A the fluid part of the facet, V the volume of the
+// throat and S its solid surface,
+//     hydraulic:  g = factor A R_h^2,            R_h = V / S            [C 8, 9]
+//     effective:  g = 2 pi R_eff^4,              R_eff = (sqrt(A / pi) + inscribed) / 4
+// and conductance = g / length for a viscosity of 1 [C 20]. R_eff is half of the mean
+// of the two radii, the circle of equal area and the inscribed one [C 10]. A throat is
+// closed where grains cover its facet, or where its volume or surface is not positive.
 #include "throats.h"
 
 #include "basics/memory.h"
@@ -7,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// In units: more than centres of one pore are apart.
+// In units: farther apart than two centres of one pore.
 static const double SAME_PORE = 1e-6;
 
 struct corner facet_corner_of(const struct grains *grains, const struct pore_cell *cell,
@@ -63,7 +70,8 @@ static double conductance_of(const struct throat *throat, const struct corner co
     return radius > 0 ? rule->factor * area * radius * radius : 0;
 }
 
-// Grains that overlap in the facet share it.
+// Scales the sectors of overlapping grains to the area of the facet; false if they
+// cover it.
 static bool fit_sectors(struct throat *throat)
 {
     const double area = norm(throat->area);
@@ -74,7 +82,8 @@ static bool fit_sectors(struct throat *throat)
     return false;
 }
 
-// Inside a pore; not so from a pore to its own copy in the next box.
+// Whether both cells are one pore; a throat from a pore to its copy in the next box is
+// none of these.
 static bool is_inside(const struct cells *cells, const struct throat *throat)
 {
     return cells->cell[throat->cell[0]].pore == cells->cell[throat->cell[1]].pore &&

@@ -13,9 +13,9 @@ enum sides {
     SIDES_SYMMETRIC_YADE // and the hydraulic radius at walls is smaller: see below
 };
 
-// A throat whose pores are both on one side of its facet.
+// How volume and surface are counted when both centres lie on one side of the facet.
 enum facet_pieces {
-    PIECES_SIGNED,  // what is nearer is taken off what is farther: a partition
+    PIECES_SIGNED,  // the nearer part is subtracted from the farther: a partition
     PIECES_UNSIGNED // each grain's share is counted twice, as Yade does
 };
 
@@ -45,9 +45,8 @@ struct throats {
     struct throat *throat;
 };
 
-// One throat a facet, in the order of the first cell. Inside a pore (length 0) nothing
-// resists: those are left out of the list of what conducts, with conductance 0 and
-// length 0.
+// One throat a facet, in the order of the first cell. A facet inside a pore does not
+// resist: it has length 0 and conductance 0 and takes no part in the balances.
 //
 // At walls Yade multiplies the hydraulic radius by 2^(-1/4), at edges by 4^(-1/4), with
 // symmetric sides; the paper does not.

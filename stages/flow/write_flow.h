@@ -6,7 +6,7 @@
 #include "forces.h"
 #include "pore_stress.h"
 
-// All that there is to write, in the units of the computation.
+// All results, in the units of the computation.
 struct flow {
     const struct packing *packing;
     const struct grains *grains;
@@ -24,11 +24,11 @@ struct flow {
     const struct pore_stress *stress; // NULL: not asked for
 };
 
-// All of FLOW into an artifact of schema flow; the caller finishes it.
+// Writes FLOW, in SI units, to an artifact of schema flow; the caller finishes it.
 void put_flow(struct artifact *artifact, const struct flow *flow);
 
-// The total force on each grain, grown from nothing in STEPS times a second apart, into
-// an artifact of schema forces.
+// Writes the total force on each grain, growing from 0 over STEPS times one second
+// apart, to an artifact of schema forces.
 void put_forces(struct artifact *artifact, const struct flow *flow, int steps);
 
 #endif

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Entry pressures of throats or nodes, as wide as their widest throat:
+//     pressure = 2 sigma cos(theta) / r - rho g z,
+// z above the lower side of the box, relative to the liquid there. Without gravity the
+// order of invasion uses radii themselves, so that equal throats tie exactly.
 #include "entry.h"
 
 #include "basics/memory.h"

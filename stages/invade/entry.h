@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// At which pressure gas enters throats and nodes.
+// The pressure at which gas enters throats and nodes.
 #ifndef CRAQUELURE_ENTRY_H
 #define CRAQUELURE_ENTRY_H
 
@@ -20,9 +20,9 @@ struct entry {
         entry_priority; // (n) for invade: radii without gravity, so that equal ones tie
 };
 
-// The pressure is 2 sigma cos(theta) / r - rho g z with z above the floor of the box:
-// gas that comes from above is held back (stable), from below driven on. The caller
-// frees it with entry_free, also after a failure.
+// The pressure is 2 sigma cos(theta) / r - rho g z with z above the lower side of the
+// box: gas from above is stabilised by gravity, gas from below is destabilised. The
+// caller frees ENTRY with entry_free, also after a failure.
 //
 // STATUS_BAD_DATA with the dataset, the row, the rule and the value: a throat of kind
 // THROAT_NETWORK without radius or with less than no volume, or none of that kind; or

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From the order of invasion to results. An event empties its throat, or with node
+// invasion all throats at the node that are still liquid. Saturation is a difference
+// of compensated sums, and exactly 0 once nothing is left. The capillary pressure
+// curve is the running maximum of the entry pressures. Liquid that stays is clustered
+// by a disjoint-set forest over nodes without gas; a cluster without a node at the
+// outlet is trapped.
 #include "outcome.h"
 
 #include "basics/compensated.h"
@@ -75,7 +81,7 @@ static void find_curve(struct outcome *outcome)
 
 // --- what stays --------------------------------------------------------------------
 
-// A node in the set of liquid that THROAT belongs to, -1 if it is alone.
+// A liquid end of THROAT, which is in its cluster; -1 if both ends have gas.
 static int liquid_end(const struct network *network, const struct outcome *outcome,
                       int throat)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an invasion says of throats, nodes and the liquid that stays.
+// The results of an invasion: throats, nodes, and the liquid that stays.
 #ifndef CRAQUELURE_OUTCOME_H
 #define CRAQUELURE_OUTCOME_H
 
@@ -15,7 +15,8 @@ struct outcome {
     double *pressure;   // (n) Pa, at which gas enters
     double *saturation; // (n) after the event, of the liquid volume at the start
 
-    // Pressures higher than any before, and the saturation when the next one comes.
+    // Pressures higher than all before, and the saturation just before the next of
+    // them.
     int n_curve;
     double *curve_pressure, *curve_saturation; // (n_curve)
 
@@ -26,8 +27,8 @@ struct outcome {
     uint8_t *cluster_trapped; // (n_cluster) 1: no liquid leads to the outlet
 };
 
-// PRESSURE: at which gas enters each throat, or node, Pa. The caller frees the outcome
-// with outcome_free.
+// PRESSURE (n_throat or n_node): entry pressures, Pa (entry.h). The caller frees the
+// outcome with outcome_free.
 struct outcome outcome_make(const struct network *network,
                             const struct invasion_conditions *conditions,
                             const struct invasion *invasion, const double *pressure);

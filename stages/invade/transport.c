@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Relative permeability and diffusivity of each phase, in states along the invasion.
+// Each is the conductance between inlet (potential 1) and outlet (0) of the throats
+// that the phase fills, pi r^4 / (8 L) or pi r^2 / L: node balances
+//     sum_j conductance_ij (x_j - x_i) = 0
+// are solved by iterative refinement, and the conductance is the dissipation
+//     sum over links of conductance (x_a - x_b)^2,
+// which is of second order in the error of x. A residual at a node is flow that ends,
+// as a random walk would, at inlet or outlet, so the sum of residuals bounds the
+// error. If that does not fall to TOLERANCE, the network is eliminated, which loses no
+// digits.
 #include "transport.h"
 
 #include "basics/memory.h"
@@ -8,9 +18,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Of what passes.
+// Largest sum of residuals, relative to the flow.
 static const double TOLERANCE = 1e-10;
-static const double REDUCTION = 1e-8; // of what the balances lack, in one round
+static const double REDUCTION = 1e-8; // of the residuals, in one round
 
 enum { MAX_ROUNDS = 6, MAX_ELIMINATED = 20000, MAX_STATES = 11 };
 
@@ -37,7 +47,7 @@ static bool is_outlet(const struct phase_network *conductor, int node)
 
 // --- one network of conductances -----------------------------------------------------
 
-// From NODE on, which is reached.
+// Reaches the neighbours of NODE, a node that is reached.
 static void visit_neighbours(struct phase_network *conductor, int node, int *n_queue)
 {
     const struct incidence *incidence = &conductor->incidence;
@@ -56,7 +66,7 @@ static void visit_neighbours(struct phase_network *conductor, int node, int *n_q
     }
 }
 
-// Numbers the nodes that something leads to from the inlet, then outlet and inlet.
+// Numbers the nodes that are reached from the inlet, then outlet and inlet.
 static void find_sites(struct phase_network *conductor)
 {
     const int n_node = conductor->network->n_node;
@@ -88,7 +98,8 @@ static int link_sites(const struct phase_network *conductor, struct link *link)
     return n;
 }
 
-// What passes, in second order: of all potentials X those that balance lose the least.
+// The dissipation at the potentials X, which is the conductance if they balance; its
+// error is of second order, since balanced potentials minimise it.
 static double flow_of(int n_link, const struct link *link, const struct compensated *x)
 {
     struct compensated sum = {0};
@@ -108,8 +119,7 @@ static double sum_of_sizes(const double *x, int n)
     return sum;
 }
 
-// Until what the balances lack is a small part of what passes. Each unit of it ends at
-// the inlet or the outlet, as a random walk does, so its sum of sizes bounds the error.
+// Refines the potentials until the sum of residuals is a small part of the flow.
 static enum status iterate(int n, int n_link, const struct link *link,
                            double *conductance, struct reason *reason)
 {
@@ -141,7 +151,8 @@ static double unit_drop(const void *context, int b, int a)
     return b - a; // the inlet is end 1, the outlet end 0
 }
 
-// Loses no digits, however far apart conductances are.
+// The conductance by elimination: no digits are lost, however far apart conductances
+// are.
 static double eliminate(int n, int n_link, const struct link *link)
 {
     struct kron kron = {0};
@@ -193,8 +204,7 @@ static double unit_of(const struct phase_network *conductor, enum property prope
     return section / conductor->length * (property == PERMEABILITY ? section : 1);
 }
 
-// After EVENT events gas has come to what has a number up to it, but 0: nothing was
-// there.
+// Whether PHASE holds a throat or node of event NUMBER after EVENT events.
 static bool holds(enum phase phase, int number, int event)
 {
     return (number >= 0 && number <= event) == (phase == GAS);
@@ -208,7 +218,8 @@ static bool leads_through(const struct phase_network *conductor,
            holds(phase, outcome->node_event[node], event);
 }
 
-// OUTCOME is NULL for one phase alone.
+// Conductances of the throats that PHASE fills after EVENT events; of all throats if
+// OUTCOME is NULL.
 static void fill_phase_network(struct phase_network *conductor,
                                const struct outcome *outcome, enum phase phase,
                                enum property property, int event)
@@ -224,7 +235,8 @@ static void fill_phase_network(struct phase_network *conductor,
     }
 }
 
-// Events after which the network is in each state. Returns how many states.
+// The events after which the states are reached: full, 0.9, 0.8, ..., the end. Returns
+// their number.
 static int find_states(const struct outcome *outcome, int *event)
 {
     int n = 0, k = 0;

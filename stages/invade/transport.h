@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How well gas and liquid flow, and diffuse, from inlet to outlet as the one gives way
-// to the other: what is known as relative permeabilities and diffusivities.
+// How well gas and liquid flow and diffuse from inlet to outlet while gas replaces
+// liquid: relative permeabilities and diffusivities.
 #ifndef CRAQUELURE_TRANSPORT_H
 #define CRAQUELURE_TRANSPORT_H
 
@@ -23,16 +23,16 @@ struct transport {
     double material[PROPERTIES];
 };
 
-// A throat lets through pi r^4 / (8 L), and pi r^2 / L, if it is of kind THROAT_NETWORK;
-// nodes resist nothing. A phase leads through the throats it fills and through nodes at
-// which no gas has arrived, or has; those of inlet and outlet are open to both. Linear
-// balances hold at all nodes; their errors add up to 1e-10 of what passes at most. Where
-// rounding forbids that, they are eliminated without differences. The caller frees
+// A throat of kind THROAT_NETWORK has the conductance pi r^4 / (8 L), or pi r^2 / L for
+// diffusion; nodes do not resist. A phase passes through the throats it fills and the
+// nodes it holds (gas has arrived there, or has not); those of inlet and outlet are
+// open to both. Balances are solved until their errors add up to at most 1e-10 of the
+// flow; if rounding prevents that, the network is eliminated. The caller frees
 // TRANSPORT with transport_free, also after a failure.
 //
-// STATUS_BAD_DATA: nothing leads from inlet to outlet, or a node is on both, or a throat
-// has no length. STATUS_NOT_CONVERGED: conductances too far apart in a network too large
-// to eliminate.
+// STATUS_BAD_DATA: nothing leads from inlet to outlet, or a node is on both, or a
+// throat has no length. STATUS_NOT_CONVERGED: conductances too far apart in a network
+// too large to eliminate.
 enum status transport_find(const struct network *network,
                            const struct invasion_conditions *conditions,
                            const struct outcome *outcome, struct transport *transport,

@@ -35,10 +35,10 @@ static struct run broken_columns(void)
     return run;
 }
 
-static void assert_facts(const struct study *study, int of)
+static void assert_facts(const struct ensemble *study, int of)
 {
     static const struct {
-        enum fact fact;
+        enum statistic fact;
         double wanted;
     } row[] = {{CRACKS_NORMAL, 2},     {CRACKS_SHEAR, 2},     {CRACKS_TOTAL, 4},
                {CRACKS_SHARE, 0.4},    {FIRST_NORMAL, 0},     {FIRST_SHEAR, 1},
@@ -48,17 +48,17 @@ static void assert_facts(const struct study *study, int of)
                {FRAGMENTS_LARGEST, 7}, {FRAGMENTS_SINGLE, 1}, {SHRINKAGE_LARGEST, 0.1},
                {SHRINKAGE_LAST, 0.05}, {SPRING_BACK, 0.5}};
     for (size_t k = 0; k < sizeof row / sizeof *row; k++)
-        assert_within(study->facts[of].value[row[k].fact], row[k].wanted, 1e-12);
-    assert_true(isnan(study->facts[of].value[FRONT_SATURATION]));
+        assert_within(study->statistics[of].value[row[k].fact], row[k].wanted, 1e-12);
+    assert_true(isnan(study->statistics[of].value[FRONT_SATURATION]));
 }
 
 static void test_facts_and_sums_of_two_runs(void **state)
 {
     (void)state;
     struct run run = broken_columns();
-    struct study study = study_new(2, classes);
+    struct ensemble study = ensemble_new(2, classes);
     for (int k = 0; k < 2; k++) {
-        study_add(&study, &run, NULL);
+        ensemble_add(&study, &run, NULL);
         assert_facts(&study, k);
     }
     assert_within(study.bonds, 20, 0);
@@ -79,7 +79,7 @@ static void test_facts_and_sums_of_two_runs(void **state)
     for (int half = 0; half < 2; half++)
         for (int s = 0; s < 4; s++)
             assert_within(study.counts.place[half * 4 + s], place[half][s], 0);
-    study_free(&study);
+    ensemble_free(&study);
     run_free(&run);
 }
 
@@ -198,10 +198,10 @@ static void test_cracks_beside_their_liquid(void **state)
     run.time[0] = 1.25;
     run.time[1] = 2.5;
     run.end = 3;
-    struct study study = study_new(2, classes);
+    struct ensemble study = ensemble_new(2, classes);
     for (int k = 0; k < 2; k++) {
-        study_add(&study, &run, &liquid);
-        assert_within(study.facts[k].value[FRONT_SATURATION], 0.25 * (0.75 + 0.5),
+        ensemble_add(&study, &run, &liquid);
+        assert_within(study.statistics[k].value[FRONT_SATURATION], 0.25 * (0.75 + 0.5),
                       1e-15);
     }
     assert_int_equal(study.n_liquid, 2);
@@ -214,7 +214,7 @@ static void test_cracks_beside_their_liquid(void **state)
     static const double slice[8] = {2, 2, 0, 0, 2, 0, 0, 0};
     for (int k = 0; k < 8; k++)
         assert_within(study.front.slice[k], slice[k], 1e-15);
-    study_free(&study);
+    ensemble_free(&study);
     run_free(&run);
     liquid_free(&liquid);
 }

@@ -5,7 +5,7 @@
 #include "crackstats/clusters.h"
 #include "crackstats/deformation.h"
 #include "crackstats/orientation.h"
-#include "crackstats/pieces.h"
+#include "crackstats/fragment_counts.h"
 
 #include <gsl/gsl_rng.h>
 
@@ -70,7 +70,8 @@ static void compare_with_brute_force(const struct run *run)
     found.count = wanted.count = 0;
     memset(seen, 0, sizeof seen);
     uint8_t *intact = bonds_left(run);
-    const struct pieces pieces = find_pieces(&run->packing, intact, &found);
+    const struct fragment_counts pieces =
+        count_fragments(&run->packing, intact, &found);
     for (int i = 0; i < run->packing.n_particle; i++)
         if (!seen[i]) add_size(&wanted, visit_grains(&run->packing, intact, i, seen));
     assert_same_sizes(found, wanted);

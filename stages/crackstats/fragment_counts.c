@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pieces.h"
+#include "fragment_counts.h"
 
 #include "basics/disjoint_sets.h"
 
 #include <stdlib.h>
 
 // Grains of each fragment, at its lowest grain; 0 at the others. ROOT: (n_particle).
-static int *piece_sizes(const struct packing *packing, const uint8_t *intact, int *root)
+static int *fragment_sizes(const struct packing *packing, const uint8_t *intact,
+                           int *root)
 {
     int *size = NEW_ARRAY(int, packing->n_particle);
     for (int i = 0; i < packing->n_particle; i++)
@@ -20,10 +21,10 @@ static int *piece_sizes(const struct packing *packing, const uint8_t *intact, in
     return size;
 }
 
-uint8_t *largest_piece(const struct packing *packing, const uint8_t *intact)
+uint8_t *largest_fragment(const struct packing *packing, const uint8_t *intact)
 {
     int *root = NEW_ARRAY(int, packing->n_particle);
-    int *size = piece_sizes(packing, intact, root);
+    int *size = fragment_sizes(packing, intact, root);
     int largest = 0;
     for (int i = 1; i < packing->n_particle; i++)
         if (size[i] > size[largest]) largest = i;
@@ -35,12 +36,12 @@ uint8_t *largest_piece(const struct packing *packing, const uint8_t *intact)
     return is_in;
 }
 
-struct pieces find_pieces(const struct packing *packing, const uint8_t *intact,
-                          struct sizes *sizes)
+struct fragment_counts count_fragments(const struct packing *packing,
+                                       const uint8_t *intact, struct sizes *sizes)
 {
     int *root = NEW_ARRAY(int, packing->n_particle);
-    int *size = piece_sizes(packing, intact, root);
-    struct pieces found = {0};
+    int *size = fragment_sizes(packing, intact, root);
+    struct fragment_counts found = {0};
     for (int i = 0; i < packing->n_particle; i++) {
         if (size[i] == 0) continue;
         found.count++;
