@@ -2,8 +2,9 @@
 # From a scene to its cracks:
 #
 #     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
+#     make report SCENE=samples/x.json ->  build/runs/x/report.html, a page that shows the run
 #     make demo                        ->  the sample in both drying limits, for several draws of
-#                                          the throat radii, and pictures of the first
+#                                          the throat radii, and pages and pictures of the first
 #     make demo SCENE=samples/x.json   ->  the same for another scene
 #     make demo DEMO_SEEDS="3 4 5"     ->  the same for these draws
 
@@ -18,6 +19,7 @@ DRY ?= $(BUILD)/bin/dry
 FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
 DEM_REPLAY ?= $(BUILD)/bin/dem-replay
 CRACKSTATS ?= $(BUILD)/bin/crackstats
+REPORT ?= $(BUILD)/bin/report
 
 # $1 is made by the stage of that name from scene $2, with the overrides $3, and the files $4.
 pack = $(call step,$1,pack,$(PACK),$2,$3,$4)
@@ -28,7 +30,10 @@ force-protocol = $(call step,$1,force-protocol,$(FORCE_PROTOCOL),$2,$3,$4)
 dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
 crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
 
-pipeline_goals += demo run
+# A page, with title $3.
+page = $(call step,$1,report,$(REPORT),$2,title="$3",$4)
+
+pipeline_goals += demo run report
 
 # packing, tessellation and network of scene $2 in folder $1, with the overrides $3 of the packing
 # and $4 of the tessellation.
@@ -46,18 +51,25 @@ $(call dem-replay,$1/response.h5,$2,,$1/forces.h5)
 $(call crackstats,$1/crackstats.json,$2,,$1/response.h5 $1/drying.h5)
 endef
 
+# What a page shows: the artifacts of folder $1 up to the network, and those after it.
+network_artifacts = $(addprefix $1/,packing.h5 tessellation.h5 network.h5)
+history_artifacts = $(addprefix $1/,drying.h5 forces.h5 response.h5 crackstats.json)
+
 # Prints what $1, a crackstats.json, comes down to; $2: a word before it.
 headline = printf '%s' '$2' && jq -rf pipelines/run/headline.jq --arg draws 'draws of the throat radii' $1
 
 # --- one scene ------------------------------------------------------------------------
 
-.PHONY: run
+.PHONY: run report
 ifneq ($(SCENE),)
 run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
+run_page := $(run_folder)/report.html
+$(call page,$(run_page),$(SCENE),$(notdir $(run_folder)),$(call network_artifacts,$(run_folder)) $(call \
+	history_artifacts,$(run_folder)))
 # A wrong key of the last stage is not to be found after the others have run.
-run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats
+run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats report
 ifdef really
 .PHONY: sections
 $(run_folder)/packing.h5: | sections
@@ -70,9 +82,13 @@ ifdef really
 	@$(call headline,$(run_folder)/crackstats.json) 2>/dev/null || true
 	@echo 'artifacts: $(run_folder)'
 endif
+report: $(run_page) ## a page that shows a run: make report SCENE=samples/x.json
+ifdef really
+	@echo 'page: $(run_page)'
+endif
 else
-run:
-	@echo 'Which scene? make run SCENE=samples/x.json' >&2; exit 64
+run report:
+	@echo 'Which scene? make $@ SCENE=samples/x.json' >&2; exit 64
 endif
 
 # --- the demonstration ----------------------------------------------------------------
@@ -85,7 +101,7 @@ demo_limits := inviscid immobile
 demo_picture := $(if $(wildcard pipelines/run/picture),$(demo_folder)/picture.svg)
 
 .PHONY: demo
-demo: ## from the stiff aggregate of the samples to its cracks and a picture, in both limits
+demo: ## from the stiff aggregate of the samples to its cracks, pages and pictures, in both limits
 
 ifneq ($(filter demo $(demo_folder)/%,$(MAKECMDGOALS)),)
 # The scene's own seed; none where it takes the network's radii and draws none.
@@ -127,10 +143,17 @@ demo_moments := $(foreach limit,$(demo_limits),$(foreach s,0.9 0.6 0.3 \
 	0,'$(limit), saturation $s=$(demo_folder)/$(limit)/response.h5@$s'))
 $(call report,$(demo_patterns),figures/crack-patterns,$(demo_limits:%=$(demo_folder)/%/response.h5),$(demo_moments))
 
-demo: $(demo_counts) $(demo_means) $(demo_picture) $(demo_patterns)
+# A page of the first run of each limit, with the intervals over all.
+demo_pages := $(demo_limits:%=$(demo_folder)/%/report.html)
+$(foreach limit,$(demo_limits),$(call page,$(demo_folder)/$(limit)/report.html,$(demo_scene),$(notdir \
+	$(demo_folder))/$(limit),$(call network_artifacts,$(demo_folder)) $(call \
+	history_artifacts,$(demo_folder)/$(limit)) $(filter $(demo_folder)/$(limit)/seeds.json,$(demo_means))))
+
+demo: $(demo_pages) $(demo_counts) $(demo_means) $(demo_picture) $(demo_patterns)
 ifdef really
 	@$(foreach limit,$(demo_limits),$(call headline,$(filter $(demo_folder)/$(limit)/%,$(demo_means)),$(limit): );)
 	@echo 'artifacts: $(demo_folder)'
 	@echo 'pictures:  $(demo_picture) $(demo_patterns)'
+	@echo 'pages:     $(demo_pages)'
 endif
 endif

@@ -35,9 +35,9 @@ function axisUnit(most, unit) {
 // between x and the moment (none: the chart has no moment).
 function newChart(spec, course) {
   const { width, height, left, right, top, bottom } = CHART;
-  const [xWord, xFactor] = axisUnit(Math.max(...spec.x), spec.xUnit), most = Math.max(...spec.lines.map((line) => line.y.reduce((a, b) => Math.max(a, b), 0)));
+  const [xWord, xFactor] = axisUnit(spec.xMost || Math.max(...spec.x), spec.xUnit), most = Math.max(...spec.lines.map((line) => line.y.reduce((a, b) => Math.max(a, b), 0)));
   const [yWord, yFactor] = axisUnit(most, spec.unit);
-  const xEnd = Math.max(...spec.x) * xFactor || 1, yEnd = (most * yFactor || 1) * 1.06;
+  const xEnd = (spec.xMost || Math.max(...spec.x)) * xFactor || 1, yEnd = (most * yFactor || 1) * 1.06;
   const x = (value) => { const share = value * xFactor / xEnd; return left + (width - left - right) * (spec.backwards ? 1 - share : share); };
   const y = (value) => height - bottom - (height - bottom - top) * value * yFactor / yEnd;
   const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "chart", tabindex: 0, role: "img", "aria-label": spec.title });
@@ -129,7 +129,7 @@ function specsOf(body, course, along) {
   const bySaturation = along === "saturation";
   const over = (column) => (key) => course.at(column, key);
   const axis = (column, label, unit, backwards) => ({
-    xLabel: label, xUnit: unit, backwards, xOf: over(column),
+    xLabel: label, xUnit: unit, backwards, xOf: over(column), xMost: column.reduce((a, b) => Math.max(a, b), 0),
     keyOf: (x) => { const [row, share] = placeIn(backwards ? Array.from(column, (v) => -v) : column, backwards ? -x : x); return (row + share) * meta.keysARow; },
   });
   const time = axis(course.time, "time", "s", false), saturation = axis(course.saturation, "saturation (drying runs to the right)", "", true);
