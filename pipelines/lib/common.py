@@ -18,7 +18,7 @@ PROGRAM = os.path.realpath(sys.argv[0])
 
 def refuse(status, message):
     """Ends the program with a line."""
-    print(f"{os.path.basename(PROGRAM)}: {message}", file=sys.stderr)
+    print(f"{'/'.join(PROGRAM.split('/')[-2:])}: {message}", file=sys.stderr)
     raise SystemExit(status)
 
 

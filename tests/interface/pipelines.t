@@ -22,7 +22,7 @@ with scratch() as folder:
         is_kept = read(kept) == b"precious\n" and os.listdir(folder) == ["kept"]
         ok(said.returncode == 64 and not said.stdout and "Traceback" not in said.stderr and is_kept,
            f"{program} with one argument", f"{said.returncode} {said.stderr}")
-said = subprocess.run(["pipelines/studies/coupled/course", "a", "1", "b", "c"], capture_output=True, text=True)
-ok(said.returncode == 64 and said.stderr == "Usage: pipelines/studies/coupled/course FOLDER N OUT.tsv\n",
+said = subprocess.run(["pipelines/run/picture", "a", "b", "c"], capture_output=True, text=True)
+ok(said.returncode == 64 and said.stderr == "Usage: pipelines/run/picture RUNDIR OUT.svg\n",
    "or with one too many", f"{said.returncode} {said.stderr}")
 done()

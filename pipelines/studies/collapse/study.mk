@@ -14,6 +14,6 @@ collapse: ## the load that the soft aggregate bears as its throats narrow (minut
 
 ifneq ($(call asked,collapse,$(collapse_folder)),)
 $(call must,COLLAPSE_PORTIONS,$(whole),a whole number)
-$(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/studies/collapse/table pipelines/studies/coupled/run pipelines/studies/coupled/course pipelines/lib/common.py $(collapse_scene),pipelines/studies/collapse/table $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
+$(call artifact,$(collapse_folder)/collapse.md,stage=collapse version=$(coupled_version) $(collapse_settings:%=set='%') set='portions=$(COLLAPSE_PORTIONS)',pipelines/studies/collapse/table pipelines/studies/coupled/run pipelines/studies/coupled/course.py pipelines/lib/common.py $(collapse_scene),pipelines/studies/collapse/table $(collapse_scene) $(COLLAPSE_PORTIONS) 1.02 $(collapse_folder)/collapse.md $(collapse_settings),$(coupled_stages:%=$(BUILD)/bin/%))
 $(call study,collapse,$(collapse_folder)/collapse.md)
 endif

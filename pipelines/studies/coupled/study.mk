@@ -19,7 +19,7 @@ coupled_version := $(shell echo $(foreach s,$(coupled_stages),$(call version_of,
 
 # Sample $1 in $2 portions.
 define coupled_run
-$(call artifact,$(coupled_folder)/$1/$2/course.tsv,stage=coupled version=$(coupled_version) $(coupled_scene_$1:%=set='%'),pipelines/studies/coupled/run pipelines/studies/coupled/course pipelines/lib/common.py $(firstword $(coupled_scene_$1)),pipelines/studies/coupled/run $(firstword $(coupled_scene_$1)) $2 $(wordlist 2,99,$(coupled_scene_$1)) $(coupled_folder)/$1/$2/course.tsv,$(coupled_stages:%=$(BUILD)/bin/%))
+$(call artifact,$(coupled_folder)/$1/$2/course.tsv,stage=coupled version=$(coupled_version) $(coupled_scene_$1:%=set='%'),pipelines/studies/coupled/run pipelines/studies/coupled/course.py pipelines/lib/common.py $(firstword $(coupled_scene_$1)),pipelines/studies/coupled/run $(firstword $(coupled_scene_$1)) $2 $(wordlist 2,99,$(coupled_scene_$1)) $(coupled_folder)/$1/$2/course.tsv,$(coupled_stages:%=$(BUILD)/bin/%))
 endef
 
 coupled: ## drying and shrinking in turns, beside one way, and their picture (minutes)
