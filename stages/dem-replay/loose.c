@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-struct loose_grains loose_new(int n)
+struct loose_grains loose_make(int n)
 {
     return (struct loose_grains){.fragments = fragments_new(n),
                                  .is_loose = NEW_ARRAY(bool, n)};

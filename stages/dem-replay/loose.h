@@ -19,7 +19,7 @@ struct loose_grains {
     int n_loose, first_one; // how many, and the lowest of them
 };
 
-struct loose_grains loose_new(int n_particle);
+struct loose_grains loose_make(int n_particle);
 void loose_free(struct loose_grains *loose);
 
 // How things are now. HELD (n_particle) grains are fixed; where there is none the

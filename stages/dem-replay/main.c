@@ -69,11 +69,13 @@ static void choose_grains(const struct replay_parameters *parameters,
     choose_engine(parameters, packing, settings);
     check_bonds(parameters, packing);
     settings->relative_strength = bond_strengths(&scatter, packing);
-    struct held held = parameters->held;
+    struct fixed_grains held = parameters->held;
     if (settings->support != SUPPORT_FIXED)
-        held = (struct held){.lower = {NAN, NAN, NAN}, .upper = {NAN, NAN, NAN}};
+        held =
+            (struct fixed_grains){.lower = {NAN, NAN, NAN}, .upper = {NAN, NAN, NAN}};
     struct reason reason;
-    const enum status status = find_held(packing, &held, &settings->held, &reason);
+    const enum status status =
+        find_fixed_grains(packing, &held, &settings->held, &reason);
     if (status) die(status, "dem-replay.%s", reason.text);
     if (settings->support != SUPPORT_FIXED || packing->n_particle == 0) return;
     const bool one_moves = memchr(settings->held, 0, (size_t)packing->n_particle);
@@ -225,10 +227,10 @@ static void warn_if_restless(const struct load *load,
                              const struct replay_settings *settings,
                              const struct response *response)
 {
-    if (response->n_restless > 0)
+    if (response->n_unconverged > 0)
         report("under %d of the loads not all came to rest within "
                "quasi_static.tolerance, under the last of them grain %d",
-               response->n_restless, response->restless);
+               response->n_unconverged, response->unconverged_grain);
     else if (response->n_unsettled > load->n_time / 2)
         report(
             "%d of %d steps of the load did not come to rest, to an unbalanced ratio "
@@ -271,16 +273,17 @@ static void warn_if_loose(const struct packing *packing,
     const struct far_grains far = find_far_grains(packing, response);
     const int n = packing->n_particle;
     const bool most_are_far = 2 * far.count >= n && far.count > 0;
-    if (response->n_gone > 0)
+    if (response->n_detached > 0)
         report("%d of %d grains came off the aggregate, grain %d the first: nothing "
                "held %s under %s load",
-               response->n_gone, n, response->first_gone,
-               response->n_gone > 1 ? "them" : "it",
-               response->n_gone > 1 ? "their" : "its");
-    if (response->n_snap > 0)
+               response->n_detached, n, response->first_detached,
+               response->n_detached > 1 ? "them" : "it",
+               response->n_detached > 1 ? "their" : "its");
+    if (response->n_instability > 0)
         report("it snapped through or buckled %d time%s, and dashpots brought it to "
                "rest; grain %d moved most at the last",
-               response->n_snap, response->n_snap > 1 ? "s" : "", response->snapped);
+               response->n_instability, response->n_instability > 1 ? "s" : "",
+               response->instability_grain);
     if (far.count > 0)
         report("%s%d of %d grains moved by more than the largest radius, grain %d "
                "most, by %.3g of it; %d of %d bonds broke",
@@ -289,7 +292,7 @@ static void warn_if_loose(const struct packing *packing,
                                    : "the aggregate has given way: ",
                far.count, n, far.furthest, far.moved, response->n_crack,
                packing->n_bond);
-    const bool is_loose = most_are_far || response->n_gone == n;
+    const bool is_loose = most_are_far || response->n_detached == n;
     if (settings->support == SUPPORT_WALL && n > 0 && is_loose)
         report("support=wall holds only what the forces press on it: pressed together "
                "alone an aggregate turns over (support=free takes that off)");

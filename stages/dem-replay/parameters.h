@@ -5,14 +5,14 @@
 
 #include "artifacts/liquid.h"
 #include "bonds.h"
-#include "held.h"
+#include "fixed_grains.h"
 #include "parameters/parameters.h"
 #include "replay.h"
 
 struct replay_parameters {
     struct replay_settings settings;
     struct liquid_properties bridge_liquid; // tension and angle
-    struct held held;
+    struct fixed_grains held;
     struct strength_scatter scatter;
     int support, engine, loose, unsettled, bond, bonds_by, strength_law, bridge_model;
     bool prestress;

@@ -31,7 +31,7 @@ static int first_step(const struct run *run)
     return settings->weight && !settings->begin ? run->engine->first_step : 0;
 }
 
-static enum status go_on(struct run *run, struct reason *reason)
+static enum status continue_replay(struct run *run, struct reason *reason)
 {
     const struct kept_state *state = run->keeper->begin;
     struct response *response = run->response;
@@ -56,7 +56,7 @@ static enum status begin(struct run *run, struct reason *reason)
     if (status) return status;
     run->engine->cracks(run, &run->n_before);
     run->place = (struct replay_place){first_step(run), run->engine->cycles(run)};
-    return run->keeper && run->keeper->begin ? go_on(run, reason) : STATUS_OK;
+    return run->keeper && run->keeper->begin ? continue_replay(run, reason) : STATUS_OK;
 }
 
 // ---- a step of the load -------------------------------------------------------------

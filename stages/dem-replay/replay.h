@@ -98,12 +98,14 @@ struct response {
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
-    int n_gone, first_gone;   // grains that left an equilibrium, or whose loads ended
-    int n_unsettled;          // steps that are not settled
-    int n_restless, restless; // loads under which something held did not come to rest,
-                              // and the grain furthest from it under the last
-    int n_snap, snapped; // ends of equilibrium gone through in time, and the grain that
-                         // moved most at the last
+    int n_detached,
+        first_detached; // grains that left an equilibrium, or whose loads ended
+    int n_unsettled;    // steps that are not settled
+    int n_unconverged,
+        unconverged_grain; // loads under which something held did not come to rest,
+                           // and the grain furthest from it under the last
+    int n_instability, instability_grain; // ends of equilibrium gone through in time,
+                                          // and the grain that moved most at the last
     struct array_list engine; // at the end, if it was to be kept; quasi-static: all
                               // loads up to there
     int n_weight_crack;       // before drying, under the weight alone

@@ -99,7 +99,7 @@ static enum status restore(struct run *run, const struct kept_state *kept,
 static enum status begin(struct run *run, struct reason *reason)
 {
     struct by_cycles *state = run->state = NEW_ARRAY(struct by_cycles, 1);
-    state->loose = loose_new(run->packing->n_particle);
+    state->loose = loose_make(run->packing->n_particle);
     run->is_whole = run->settings->weight && !run->settings->begin;
     const enum status status = create(run, &state->dem, reason);
     const struct array_list *earlier = run->settings->begin;
@@ -404,8 +404,8 @@ static void end(struct run *run)
     if (state->dem) note_time_step(run);
     if (state->dem && unloads(run))
         find_loose(&state->loose, run->packing, run->settings->held, state->dem);
-    run->response->n_gone = state->loose.n_loose;
-    run->response->first_gone = state->loose.first_one;
+    run->response->n_detached = state->loose.n_loose;
+    run->response->first_detached = state->loose.first_one;
     loose_free(&state->loose);
     dem_free(state->dem);
     free(state);

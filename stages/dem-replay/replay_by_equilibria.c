@@ -196,12 +196,14 @@ static void end(struct run *run)
     struct equilibria *state = run->state;
     struct response *response = run->response;
     if (state->last) {
-        response->n_gone = quasi_static_detached(state->last, &response->first_gone);
-        response->n_restless =
-            quasi_static_unconverged(state->last, &response->restless) -
+        response->n_detached =
+            quasi_static_detached(state->last, &response->first_detached);
+        response->n_unconverged =
+            quasi_static_unconverged(state->last, &response->unconverged_grain) -
             state->restless_before;
-        response->n_snap = quasi_static_instabilities(state->last, &response->snapped) -
-                           state->snaps_before;
+        response->n_instability =
+            quasi_static_instabilities(state->last, &response->instability_grain) -
+            state->snaps_before;
     }
     quasi_static_free(state->last);
     free_kept_state(&state->kept);

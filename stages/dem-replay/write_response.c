@@ -235,8 +235,8 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     artifact_put_number(artifact, "/summary/time_step", response->time_step);
     artifact_put_number(artifact, "/summary/time_step_limit",
                         response->time_step_limit);
-    artifact_put_number(artifact, "/summary/gone", response->n_gone);
-    artifact_put_number(artifact, "/summary/snaps", response->n_snap);
+    artifact_put_number(artifact, "/summary/gone", response->n_detached);
+    artifact_put_number(artifact, "/summary/snaps", response->n_instability);
     artifact_put_number(artifact, "/summary/largest_unbalanced_ratio",
                         largest_unbalanced_ratio(load, packing->n_particle, response));
 }

@@ -58,14 +58,14 @@ static struct protocol protocol_now(const struct densification *d)
 static void keep_protocol(const struct densification *d)
 {
     const struct protocol protocol = protocol_now(d);
-    may_keep(d->making, d->dem, (const double *)&protocol, PROTOCOL_NUMBERS);
+    keep_if_due(d->making, d->dem, (const double *)&protocol, PROTOCOL_NUMBERS);
 }
 
-static enum status take_up_protocol(struct densification *d, struct reason *reason)
+static enum status restore_protocol(struct densification *d, struct reason *reason)
 {
     struct protocol protocol = protocol_now(d);
-    const enum status status =
-        go_on(d->making, d->dem, (double *)&protocol, PROTOCOL_NUMBERS, reason);
+    const enum status status = restore_dynamics(d->making, d->dem, (double *)&protocol,
+                                                PROTOCOL_NUMBERS, reason);
     if (status != STATUS_OK) return status;
     d->most = protocol.most;
     d->jammed = protocol.jammed > 0;
@@ -206,7 +206,7 @@ static void stop_rattlers(const struct densification *d)
 }
 
 // Half of the way is to where grains jam, and half to rest, by digits.
-static void say_progress(struct densification *d)
+static void show_progress(struct densification *d)
 {
     const bool flat = d->making->domain->dimensions == 2;
     const double loose = loose_fraction(d->making->domain), jam = flat ? 0.84 : 0.64;
@@ -235,7 +235,7 @@ static enum status press(struct densification *d, double target, double toleranc
         servo(d, now, target);
         if (d->jammed && dem_cycle(d->dem) % OFTEN == 0) stop_rattlers(d);
         keep_protocol(d);
-        say_progress(d);
+        show_progress(d);
     }
     return give_up(d, "stress over its scale", scaled_stress(d), target, reason);
 }
@@ -463,7 +463,7 @@ enum status densify(const struct making *making, int count, bool grow,
     }
 
     const double first_step = 1e-3;
-    struct dem_wall wall[MOST_WALLS];
+    struct dem_wall wall[MAX_WALLS];
     const int n_wall = domain_walls(making->domain, making->how, false, wall);
     struct densification d = {.making = making,
                               .grow = grow,
@@ -477,7 +477,7 @@ enum status densify(const struct making *making, int count, bool grow,
     const struct vector none = {0, 0, 0};
     status = start_dynamics(making, stiffness, making->how->safety, none, wall, n_wall,
                             &d.dem, reason);
-    if (status == STATUS_OK) status = take_up_protocol(&d, reason);
+    if (status == STATUS_OK) status = restore_protocol(&d, reason);
     if (status == STATUS_OK) status = reach_target(&d, reason);
     if (status == STATUS_OK) {
         take_grains(making, d.dem);

@@ -91,17 +91,17 @@ static bool is_settled(const struct making *making, const struct dem *dem,
 static enum status settle(const struct making *making, struct dem *dem,
                           struct reason *reason)
 {
-    enum { LOOK_EVERY = 500 };
+    enum { CHECK_EVERY = 500 };
     const struct packing *packing = making->packing;
     double radius = 0;
     for (int i = 0; i < packing->n_particle; i++)
         radius += packing->radius[i] / packing->n_particle;
     const double typical_speed = sqrt(2 * making->how->gravity * radius);
     double first = 0;
-    enum status status = go_on(making, dem, &first, 1, reason);
+    enum status status = restore_dynamics(making, dem, &first, 1, reason);
     if (status != STATUS_OK) return status;
     while (dem_cycle(dem) < making->how->most_cycles) {
-        status = dem_run(dem, LOOK_EVERY, reason);
+        status = dem_run(dem, CHECK_EVERY, reason);
         if (status != STATUS_OK) return status;
         if (is_settled(making, dem, typical_speed)) return STATUS_OK;
         const double ratio = dem_unbalanced_ratio(dem);
@@ -110,7 +110,7 @@ static enum status settle(const struct making *making, struct dem *dem,
             first = fmax(first, done);
             progress_update(making->progress, first);
         }
-        may_keep(making, dem, &first, 1);
+        keep_if_due(making, dem, &first, 1);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "not settled after %lld cycles: unbalanced ratio %.3g, largest speed "
@@ -155,7 +155,7 @@ enum status deposit(const struct making *making, int count, struct reason *reaso
     enum status status = count ? make_cloud(making, count, &tall, reason)
                                : take_cloud(making, &tall, reason);
     if (status != STATUS_OK) return status;
-    struct dem_wall wall[MOST_WALLS];
+    struct dem_wall wall[MAX_WALLS];
     const bool open = making->domain->shape != DOMAIN_SPHERE;
     const int n_wall = domain_walls(&tall, making->how, open, wall);
     const struct vector down = {0, 0, -making->how->gravity};

@@ -223,8 +223,8 @@ static struct vector random_in_shape(const struct domain *domain, double radius,
 bool domain_random_point(const struct domain *domain, double radius, gsl_rng *random,
                          struct vector *point)
 {
-    enum { MOST_TRIES = 100000 }; // of missing what is cut out
-    for (int k = 0; k < MOST_TRIES; k++) {
+    enum { MAX_TRIES = 100000 }; // of missing what is cut out
+    for (int k = 0; k < MAX_TRIES; k++) {
         *point = domain_wrap(domain, random_in_shape(domain, radius, random));
         if (distance_to_cut(domain, *point) >= radius) return true;
     }

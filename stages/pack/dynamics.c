@@ -80,7 +80,7 @@ double fitting_size(const struct packing *packing)
 }
 
 int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,
-                 bool open, struct dem_wall wall[MOST_WALLS])
+                 bool open, struct dem_wall wall[MAX_WALLS])
 {
     int n = 0;
     const struct vector centre = domain->centre;
@@ -150,8 +150,8 @@ enum status start_dynamics(const struct making *making, double stiffness, double
     return status;
 }
 
-enum status go_on(const struct making *making, struct dem *dem, double *protocol,
-                  int count, struct reason *reason)
+enum status restore_dynamics(const struct making *making, struct dem *dem,
+                             double *protocol, int count, struct reason *reason)
 {
     const struct keeper *keeper = making->how->keeper;
     if (!keeper || !keeper->begin) return STATUS_OK;
@@ -167,8 +167,8 @@ enum status go_on(const struct making *making, struct dem *dem, double *protocol
     return STATUS_OK;
 }
 
-void may_keep(const struct making *making, const struct dem *dem,
-              const double *protocol, int count)
+void keep_if_due(const struct making *making, const struct dem *dem,
+                 const double *protocol, int count)
 {
     struct array_list list = {NULL, 0};
     if (!is_due(making->how->keeper)) return;
@@ -212,8 +212,8 @@ double mean_stress(const struct making *making, const struct dem *dem)
 double backbone_coordination(const struct making *making, const struct dem *dem)
 {
     const int n = making->packing->n_particle;
-    const bool rubs = making->how->friction > 0;
-    const int least = rubs ? 2 : making->domain->dimensions + 1;
+    const bool has_friction = making->how->friction > 0;
+    const int least = has_friction ? 2 : making->domain->dimensions + 1;
     int *contacts = NEW_ARRAY(int, n), count;
     struct dem_contact *contact = dem_contacts(dem, &count);
     for (int k = 0; k < count; k++)

@@ -4,8 +4,8 @@
 #define CRAQUELURE_PACK_DYNAMICS_H
 
 #include "basics/progress.h"
-#include "dem/dem.h"
 #include "checkpoint/keeper.h"
+#include "dem/dem.h"
 #include "domain.h"
 #include "geometry/packing.h"
 #include "sizes.h"
@@ -84,7 +84,7 @@ enum status repel(const struct making *making, int count, struct reason *reason)
 
 // ---- shared by them -----------------------------------------------------------------
 
-enum { MOST_WALLS = 16 };
+enum { MAX_WALLS = 16 };
 
 // How much smaller than they are the grains of PACKING have to be, none to overlap
 // another or a wall: 1 where none does.
@@ -92,7 +92,7 @@ double fitting_size(const struct packing *packing);
 
 // The walls of a domain; without those that close it at the top if OPEN.
 int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,
-                 bool open, struct dem_wall wall[MOST_WALLS]);
+                 bool open, struct dem_wall wall[MAX_WALLS]);
 
 // Solid volume over the domain's (areas in two dimensions), overlaps counted twice.
 double solid_fraction(const struct domain *domain, const struct packing *packing);
@@ -108,12 +108,12 @@ enum status start_dynamics(const struct making *making, double stiffness, double
 // Goes on from the state kept of a run like this one, if there is one: that of the
 // engine into DEM, numbers called "protocol" into COUNT doubles of PROTOCOL.
 // STATUS_BAD_DATA: it is not of such a run.
-enum status go_on(const struct making *making, struct dem *dem, double *protocol,
-                  int count, struct reason *reason);
+enum status restore_dynamics(const struct making *making, struct dem *dem,
+                             double *protocol, int count, struct reason *reason);
 
 // Keeps it if it is time.
-void may_keep(const struct making *making, const struct dem *dem,
-              const double *protocol, int count);
+void keep_if_due(const struct making *making, const struct dem *dem,
+                 const double *protocol, int count);
 
 // Places and radii as they are now; back into a box that repeats.
 void take_grains(const struct making *making, const struct dem *dem);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_LEVELS = 24, MOST_CELLS = 1 << 24 };
+enum { MAX_LEVELS = 24, MAX_CELLS = 1 << 24 };
 
 // One grid: grains with radii above half of LARGEST.
 struct level {
@@ -20,7 +20,7 @@ struct grids {
     const struct domain *domain;
     double expected;
     int n_level;
-    struct level level[MOST_LEVELS];
+    struct level level[MAX_LEVELS];
     int n, capacity_centre, capacity_radius, capacity_next;
     struct vector *centre;
     double *radius;
@@ -33,7 +33,7 @@ struct grids *grids_create(const struct domain *domain, double smallest, double 
     struct grids *grids = NEW_ARRAY(struct grids, 1);
     grids->domain = domain;
     grids->expected = fmax(expected, 1);
-    for (double radius = largest; grids->n_level < MOST_LEVELS; radius /= 2) {
+    for (double radius = largest; grids->n_level < MAX_LEVELS; radius /= 2) {
         grids->level[grids->n_level++].largest = radius;
         if (radius / 2 < smallest) break;
     }
@@ -70,7 +70,7 @@ static void make_cells(struct level *level, const struct domain *domain,
                        double expected)
 {
     const struct vector edge = subtract(domain->upper, domain->lower);
-    const double most = fmin(4 * expected + 64, MOST_CELLS);
+    const double most = fmin(4 * expected + 64, MAX_CELLS);
     const bool flat = domain->dimensions == 2;
     const double share =
         flat ? sqrt(edge.x / most * edge.z) : cbrt(edge.x / most * edge.y * edge.z);
@@ -79,7 +79,7 @@ static void make_cells(struct level *level, const struct domain *domain,
     for (int axis = 0; axis < 3; axis++) {
         const double along = component(edge, axis);
         const double wanted = flat && axis == 1 ? 1 : floor(along / width);
-        level->count[axis] = (int)fmin(fmax(wanted, 1), MOST_CELLS);
+        level->count[axis] = (int)fmin(fmax(wanted, 1), MAX_CELLS);
         level->width[axis] = along / level->count[axis];
         total *= (size_t)level->count[axis];
     }

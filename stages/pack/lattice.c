@@ -2,14 +2,14 @@
 #include "basics/memory.h"
 #include "pack.h"
 
-enum { MOST_IN_CELL = 4 };
+enum { MAX_IN_CELL = 4 };
 
 // A unit cell of touching grains of radius 1: its edges, and where its grains are, as
 // shares of the edges, the lowest at 0.
 struct unit_cell {
     double edge[3];
     int n;
-    double place[MOST_IN_CELL][3];
+    double place[MAX_IN_CELL][3];
 };
 
 static const struct unit_cell simple = {{2, 2, 2}, 1, {{0, 0, 0}}};

@@ -138,21 +138,21 @@ static void write_packing(const struct packing *packing, const struct domain *do
     if (!(porosity > -1e6))
         die(STATUS_BAD_DATA, "the box is too small for its grains: the porosity is %g",
             porosity);
-    struct packing_report said =
+    struct packing_report entry =
         report_packing(packing, domain, contacts, parameters->touching_gap,
                        reached->dynamic && parameters->dynamics.friction > 0);
-    report_number(&said, "/summary/porosity", porosity);
-    report_number(&said, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
+    report_number(&entry, "/summary/porosity", porosity);
+    report_number(&entry, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
 
     struct artifact *artifact = artifact_create("packing", invocation->output);
     artifact_put_packing(artifact, packing);
-    report_put(&said, artifact);
+    report_put(&entry, artifact);
     artifact_put_vtk(artifact, "/particles/position", packing->n_particle,
                      (const char *const[]){"/particles/radius", NULL}, NULL, 0, NULL);
     artifact_finish(artifact, invocation, inputs, model_text(reached, parameters));
     if (invocation->report)
-        report_write(&said, invocation->report, reached_json(parameters, reached));
-    report_free(&said);
+        report_write(&entry, invocation->report, reached_json(parameters, reached));
+    report_free(&entry);
 }
 
 static void make_bonds(struct packing *packing, const struct contacts *contacts,

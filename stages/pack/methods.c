@@ -112,8 +112,8 @@ static enum status make_lattice(const struct pack_parameters *parameters,
 static double least_radius(const struct pack_parameters *parameters,
                            const struct sizes *sizes)
 {
-    const double said = parameters->sizes.smallest;
-    return isnan(said) ? sizes->smallest : said;
+    const double entry = parameters->sizes.smallest;
+    return isnan(entry) ? sizes->smallest : entry;
 }
 
 static enum status place_drawn(const struct pack_parameters *parameters,

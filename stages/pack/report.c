@@ -12,7 +12,7 @@
 #include <string.h>
 
 // 13 classes of inclination: the contacts of no common lattice lie on their edges.
-enum { MOST_SLICES = 4096, INCLINATIONS = 13, SIZES = 24 };
+enum { MAX_SLICES = 4096, INCLINATIONS = 13, SIZES = 24 };
 static const int slices_of_a_diameter = 5, distances_of_a_diameter = 20,
                  diameters_to_look = 5;
 
@@ -22,7 +22,7 @@ struct subject {
     const struct domain *domain;
     struct contacts contacts;
     double gap;
-    bool flat, rubs;
+    bool flat, has_friction;
     bool has_bulk, has_column;
     struct window bulk;   // away from the walls
     struct window column; // what is sliced
@@ -33,8 +33,9 @@ struct subject {
 void report_number(struct packing_report *report, const char *name, double number)
 {
     if (!(fabs(number) <= 1e150)) return; // the largest that artifacts hold
-    if (report->count == MOST_SAID) die(STATUS_INTERNAL, "%s: too much to say", name);
-    report->said[report->count++] = (struct said){.name = name, .number = number};
+    if (report->count == MAX_ENTRIES) die(STATUS_INTERNAL, "%s: too much to say", name);
+    report->entry[report->count++] =
+        (struct report_entry){.name = name, .number = number};
 }
 
 // Takes VALUE over.
@@ -49,8 +50,8 @@ static void report_curve(struct packing_report *report, const char *name, double
         return;
     }
     report_number(report, name, 0);
-    report->said[report->count - 1].count = count;
-    report->said[report->count - 1].value = value;
+    report->entry[report->count - 1].count = count;
+    report->entry[report->count - 1].value = value;
 }
 
 // The middles of COUNT equal classes from LOW on.
@@ -199,8 +200,9 @@ static void say_contacts(const struct subject *subject, struct packing_report *r
     const struct contacts *contacts = &subject->contacts;
     int *walls = touched_walls(subject);
     int *count = grain_contacts(subject->packing, contacts);
-    uint8_t *rattler = find_rattlers(subject->packing, contacts, walls,
-                                     least_contacts(subject->packing, subject->rubs));
+    uint8_t *rattler =
+        find_rattlers(subject->packing, contacts, walls,
+                      least_contacts(subject->packing, subject->has_friction));
     int64_t at_walls = 0;
     int rattlers = 0, firm = 0;
     for (int i = 0; i < n; i++) {
@@ -255,7 +257,7 @@ static void say_porosity(const struct subject *subject, struct packing_report *r
     const double height = column->upper.z - column->lower.z;
     const double wanted =
         round(slices_of_a_diameter * height / (2 * mean_radius(packing)));
-    const int count = (int)fmax(1, fmin(wanted, MOST_SLICES));
+    const int count = (int)fmax(1, fmin(wanted, MAX_SLICES));
     double *porosity = NEW_ARRAY(double, count);
     slice_porosity(packing, &subject->contacts, column, count, porosity);
     report_curve(report, "/structure/slice/position",
@@ -285,13 +287,13 @@ static void say_distances(const struct subject *subject, struct packing_report *
 struct packing_report report_packing(const struct packing *packing,
                                      const struct domain *domain,
                                      const struct contacts *contacts, double gap,
-                                     bool rubs)
+                                     bool has_friction)
 {
     struct subject subject = {.packing = packing,
                               .domain = domain,
                               .contacts = *contacts,
                               .gap = gap,
-                              .rubs = rubs,
+                              .has_friction = has_friction,
                               .flat = packing_is_flat(packing)};
     choose_windows(&subject);
 
@@ -308,41 +310,42 @@ struct packing_report report_packing(const struct packing *packing,
 void report_free(struct packing_report *report)
 {
     for (int k = 0; k < report->count; k++)
-        free(report->said[k].value);
+        free(report->entry[k].value);
     *report = (struct packing_report){0};
 }
 
 // ---- out ----------------------------------------------------------------------------
 
-static bool is_integer(const struct schema *schema, const struct said *said)
+static bool is_integer(const struct schema *schema, const struct report_entry *entry)
 {
-    const json_t *entry = said->count ? schema_dataset(schema, said->name)
-                                      : schema_attribute(schema, said->name);
-    return !strcmp(json_string_value(json_object_get(entry, "type")), "int64");
+    const json_t *row = entry->count ? schema_dataset(schema, entry->name)
+                                     : schema_attribute(schema, entry->name);
+    return !strcmp(json_string_value(json_object_get(row, "type")), "int64");
 }
 
-static void put_curve(const struct said *said, struct artifact *artifact)
+static void put_curve(const struct report_entry *entry, struct artifact *artifact)
 {
-    const bool square = !strcmp(said->name, "/structure/fabric");
-    const int rows = square ? 3 : said->count;
-    if (!is_integer(artifact->schema, said)) {
-        artifact_put(artifact, said->name, said->value, rows);
+    const bool square = !strcmp(entry->name, "/structure/fabric");
+    const int rows = square ? 3 : entry->count;
+    if (!is_integer(artifact->schema, entry)) {
+        artifact_put(artifact, entry->name, entry->value, rows);
         return;
     }
     int64_t *value = NEW_ARRAY(int64_t, rows);
     for (int k = 0; k < rows; k++)
-        value[k] = (int64_t)said->value[k];
-    artifact_put(artifact, said->name, value, rows);
+        value[k] = (int64_t)entry->value[k];
+    artifact_put(artifact, entry->name, value, rows);
     free(value);
 }
 
 void report_put(const struct packing_report *report, struct artifact *artifact)
 {
     for (int k = 0; k < report->count; k++)
-        if (report->said[k].count)
-            put_curve(&report->said[k], artifact);
+        if (report->entry[k].count)
+            put_curve(&report->entry[k], artifact);
         else
-            artifact_put_number(artifact, report->said[k].name, report->said[k].number);
+            artifact_put_number(artifact, report->entry[k].name,
+                                report->entry[k].number);
 }
 
 static json_t *json_number(double number, bool integer)
@@ -350,15 +353,15 @@ static json_t *json_number(double number, bool integer)
     return integer ? json_integer((json_int_t)number) : json_real(number);
 }
 
-static json_t *json_said(const struct said *said, bool integer)
+static json_t *json_said(const struct report_entry *entry, bool integer)
 {
-    if (!said->count) return json_number(said->number, integer);
+    if (!entry->count) return json_number(entry->number, integer);
     json_t *list = json_array();
-    const bool square = !strcmp(said->name, "/structure/fabric");
-    for (int k = 0; k < said->count; k++) {
+    const bool square = !strcmp(entry->name, "/structure/fabric");
+    for (int k = 0; k < entry->count; k++) {
         if (square && k % 3 == 0) json_array_append_new(list, json_array());
         json_t *row = square ? json_array_get(list, (size_t)(k / 3)) : list;
-        json_array_append_new(row, json_number(said->value[k], integer));
+        json_array_append_new(row, json_number(entry->value[k], integer));
     }
     return list;
 }
@@ -384,8 +387,8 @@ void report_write(const struct packing_report *report, const char *path,
     struct schema *schema = schema_find("packing");
     json_t *document = json_object();
     for (int k = 0; k < report->count; k++) {
-        const struct said *said = &report->said[k];
-        set_path(document, said->name, json_said(said, is_integer(schema, said)));
+        const struct report_entry *entry = &report->entry[k];
+        set_path(document, entry->name, json_said(entry, is_integer(schema, entry)));
     }
     json_object_set_new(document, "reached", reached ? reached : json_null());
     write_json(path, document);

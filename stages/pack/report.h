@@ -8,10 +8,10 @@
 #include "domain.h"
 #include "geometry/porosity.h"
 
-enum { MOST_SAID = 32 };
+enum { MAX_ENTRIES = 32 };
 
 // A number, or a curve, under its name in the schema of packings.
-struct said {
+struct report_entry {
     const char *name;
     int count; // values; 0: a number
     double number;
@@ -20,19 +20,20 @@ struct said {
 
 struct packing_report {
     int count;
-    struct said said[MOST_SAID];
+    struct report_entry entry[MAX_ENTRIES];
 };
 
 // Measures PACKING in DOMAIN, CONTACTS being surfaces at most GAP radius sums apart,
-// with friction if it RUBS (two of them then hold a grain that would rattle otherwise):
-// everything but porosity and unbalanced ratio. What makes no sense for this packing is
-// left out, such as the bulk porosity where walls are everywhere near. Bulk, slices and
-// g(r) are taken in a box: for a cylinder or sphere the largest that lies within, for a
-// ring, or where something is cut out, not at all. Freed with report_free.
+// with friction if it HAS_FRICTION (two of them then hold a grain that would rattle
+// otherwise): everything but porosity and unbalanced ratio. What makes no sense for
+// this packing is left out, such as the bulk porosity where walls are everywhere near.
+// Bulk, slices and g(r) are taken in a box: for a cylinder or sphere the largest that
+// lies within, for a ring, or where something is cut out, not at all. Freed with
+// report_free.
 struct packing_report report_packing(const struct packing *packing,
                                      const struct domain *domain,
                                      const struct contacts *contacts, double gap,
-                                     bool rubs);
+                                     bool has_friction);
 
 // Adds a number; NAME must last. One that is not finite is left out.
 void report_number(struct packing_report *report, const char *name, double number);

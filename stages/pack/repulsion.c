@@ -15,7 +15,7 @@ enum { BATCHES = 100, CYCLES_A_BATCH = 200 };
 
 // Two centres in one place have no direction to part: each grain is moved by up to a
 // thousandth of its radius.
-static void part_coincident(const struct making *making)
+static void separate_coincident(const struct making *making)
 {
     struct packing *packing = making->packing;
     gsl_rng *random = making->random;
@@ -93,7 +93,7 @@ static enum status fill(const struct making *making, int count, double stiffness
     const int batch = count / BATCHES > 0 ? count / BATCHES : 1;
     for (int n = batch; status == STATUS_OK; n += batch) {
         status = add_batch(making, radius, n < count ? n : count, reason);
-        if (status == STATUS_OK) part_coincident(making);
+        if (status == STATUS_OK) separate_coincident(making);
         if (status == STATUS_OK)
             status = push_apart(making, stiffness, wall, n_wall, reason);
         progress_update(making->progress, 0.9 * n / count);
@@ -105,7 +105,7 @@ static enum status fill(const struct making *making, int count, double stiffness
 
 enum status repel(const struct making *making, int count, struct reason *reason)
 {
-    struct dem_wall wall[MOST_WALLS];
+    struct dem_wall wall[MAX_WALLS];
     const int n_wall = domain_walls(making->domain, making->how, false, wall);
     const double radius = making->sizes->largest;
     const double stiffness =
@@ -120,7 +120,7 @@ enum status repel(const struct making *making, int count, struct reason *reason)
         const struct packing *packing = making->packing;
         status = domain_check_filling(making->domain, packing->radius,
                                       packing->n_particle, 1, reason);
-        if (status == STATUS_OK) part_coincident(making);
+        if (status == STATUS_OK) separate_coincident(making);
         if (status == STATUS_OK)
             status = push_apart(making, stiffness, wall, n_wall, reason);
     }

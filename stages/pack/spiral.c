@@ -11,7 +11,7 @@
 
 // Walls stand among the grains of a pair as negative numbers: of a box x lower, x
 // upper, z lower, z upper; of a disc its rim.
-enum { WALL_FIRST = -1, WALLS_OF_BOX = 4, MOST_NEAR = 4096, MOST_VISITS = 8 };
+enum { WALL_FIRST = -1, WALLS_OF_BOX = 4, MAX_NEAR = 4096, MAX_VISITS = 8 };
 
 struct pair {
     int a, b;   // a is a grain
@@ -30,7 +30,7 @@ struct spiral {
     int n_along, capacity_along;
     struct pair *front; // a queue, from NEXT on: round after round
     int next, n_front, capacity_front;
-    int near[MOST_NEAR];
+    int near[MAX_NEAR];
 };
 
 // Where the centre of a grain can be that touches one thing: on a circle, or on a line
@@ -127,7 +127,7 @@ static void add_pairs(struct spiral *spiral, int new)
             (struct pair){new, WALL_FIRST - wall, 0};
     }
     const int count =
-        grids_near(spiral->grids, place, radius, 2 * radius, spiral->near, MOST_NEAR);
+        grids_near(spiral->grids, place, radius, 2 * radius, spiral->near, MAX_NEAR);
     qsort(spiral->near, (size_t)count, sizeof *spiral->near, rising_ints);
     for (int k = 0; k < count; k++) {
         const int other = spiral->near[k];
@@ -191,7 +191,7 @@ static void place_first(struct spiral *spiral, double radius)
 static void fill(struct spiral *spiral)
 {
     place_first(spiral, sizes_draw(spiral->sizes, spiral->random));
-    const int most_visits = spiral->sizes->distribution == SIZES_ONE ? 1 : MOST_VISITS;
+    const int most_visits = spiral->sizes->distribution == SIZES_ONE ? 1 : MAX_VISITS;
     double radius = sizes_draw(spiral->sizes, spiral->random);
     struct pair pair;
     while (!complete(spiral) && next_pair(spiral, &pair)) {

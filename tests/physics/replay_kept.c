@@ -118,7 +118,8 @@ static void assert_same(const struct response *a, const struct response *b, int 
     bool same = a->n_crack == b->n_crack && a->n_weight_crack == b->n_weight_crack &&
                 !memcmp(&a->weight_unbalanced_ratio, &b->weight_unbalanced_ratio,
                         sizeof(double)) &&
-                a->n_gone == b->n_gone && a->first_gone == b->first_gone;
+                a->n_detached == b->n_detached &&
+                a->first_detached == b->first_detached;
     for (int k = 0; same && k < a->n_crack; k++)
         same = a->crack[k].bond == b->crack[k].bond &&
                a->crack_step[k] == b->crack_step[k];
@@ -140,11 +141,11 @@ static void goes_on(enum engine engine, enum support support, int from_weight)
     const struct keeper keeper = {now_and_then, remember, &states, NULL};
     struct response whole = replayed(&scene, &keeper);
     print_message("# weight breaks %d, forces %d, loose %d\n", whole.n_weight_crack,
-                  whole.n_crack, whole.n_gone);
+                  whole.n_crack, whole.n_detached);
     if ((support == SUPPORT_FIXED && !whole.n_weight_crack) || !whole.n_crack ||
-        (support != SUPPORT_FIXED && !whole.n_gone))
+        (support != SUPPORT_FIXED && !whole.n_detached))
         fail_msg("weight breaks %d, forces %d, %d are loose", whole.n_weight_crack,
-                 whole.n_crack, whole.n_gone);
+                 whole.n_crack, whole.n_detached);
     int before_drying = 0;
     for (int k = 0; k < states.count; k++) {
         const struct array_list *stage = &states.state[k].stage;

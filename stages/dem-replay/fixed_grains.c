@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "held.h"
+#include "fixed_grains.h"
 
 #include "basics/memory.h"
 #include "geometry/support.h"
@@ -14,7 +14,7 @@ static bool lies_within(struct vector x, const double lower[3], const double upp
     return true;
 }
 
-static enum status check_region(const struct held *held, struct reason *reason)
+static enum status check_region(const struct fixed_grains *held, struct reason *reason)
 {
     if (isnan(held->lower[0]) != isnan(held->upper[0]))
         return refuse(reason, STATUS_BAD_DATA,
@@ -28,8 +28,8 @@ static enum status check_region(const struct held *held, struct reason *reason)
     return STATUS_OK;
 }
 
-static enum status check_grains(const struct packing *packing, const struct held *held,
-                                struct reason *reason)
+static enum status check_grains(const struct packing *packing,
+                                const struct fixed_grains *held, struct reason *reason)
 {
     for (int k = 0; k < held->grains.count; k++) {
         const double grain = held->grains.value[k];
@@ -41,8 +41,9 @@ static enum status check_grains(const struct packing *packing, const struct held
     return STATUS_OK;
 }
 
-enum status find_held(const struct packing *packing, const struct held *held,
-                      uint8_t **is_held, struct reason *reason)
+enum status find_fixed_grains(const struct packing *packing,
+                              const struct fixed_grains *held, uint8_t **is_held,
+                              struct reason *reason)
 {
     enum status status = check_region(held, reason);
     if (!status) status = check_grains(packing, held, reason);
