@@ -160,7 +160,7 @@ static void drain(struct liquid_state *state, int cluster, struct compensated *s
 
 // -------------------------------------------------------------------------------------
 
-// Throats by pieces: those of CLUSTER are list[offset[piece]] ..
+// Throats by clusters: those of cluster c are list[offset[c]] ..
 struct members {
     int *offset, *list;
 };

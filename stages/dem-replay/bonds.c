@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bonds by distance: pairs of grains whose gap is at most a part of the sum of their
+// radii.
 #include "bonds.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which grains are bonded, and how strongly each bond.
+// Which grains are bonded, and the strength of each bond.
 #ifndef CRAQUELURE_BONDS_H
 #define CRAQUELURE_BONDS_H
 
@@ -12,8 +12,8 @@ enum bonds_by {
     BONDS_BY_NONE
 };
 
-// Gives PACKING its bonds, sorted by their two grains; across the sides too where the
-// box repeats. GAP is over the sum of the two radii.
+// Gives PACKING its bonds, sorted by their two grains; in a periodic box across its
+// sides as well. GAP is over the sum of the two radii.
 void bond_grains(struct packing *packing, enum bonds_by by, double gap);
 
 enum strength_law {
@@ -29,16 +29,16 @@ struct strength_scatter {
     int64_t seed;
 };
 
-// N strengths over the mean, that the caller frees; NULL where all are the mean. One
-// random number each (GSL's mt19937): the same seed gives the same, which a larger mean
-// only scales, and the first of more.
+// N strengths over the mean, which the caller frees; NULL if all are the mean. One
+// random number each (GSL's mt19937): the same seed gives the same strengths, and more
+// bonds only add to them.
 double *draw_strengths(const struct strength_scatter *scatter, int n);
 
-// (n_bond) Of the bonds of PACKING: drawn in the order of the places of their middles,
-// from above, then along x, then y, and so whatever the grains are numbered like.
-// Places count as equal that differ by less than about 1e-9 of the extent of the
-// grains; of bonds that cross in the middle the steeper ones come first. As
-// draw_strengths.
+// The strengths (n_bond) of the bonds of PACKING over the mean, drawn in the order of
+// the places of their middles, from above, then along x, then y: so they do not depend
+// on how grains are numbered. Places that differ by less than about 1e-9 of the extent
+// of the grains count as equal; of bonds that cross in the middle the steeper one comes
+// first. Ownership as draw_strengths.
 double *bond_strengths(const struct strength_scatter *scatter,
                        const struct packing *packing);
 

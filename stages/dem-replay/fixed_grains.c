@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A grain is fixed if it touches one of the walls, lies in the region, or is listed.
 #include "fixed_grains.h"
 
 #include "basics/memory.h"

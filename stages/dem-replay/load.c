@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of the load, and the forces of a step.
 #include "replay_engine.h"
 
 #include <string.h>

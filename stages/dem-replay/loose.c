@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Loose fragments: those of the graph of intact bonds without a fixed grain. Each is
+// copied to a packing of its own, and the net force and moment are removed there as
+// inertia forces of a rigid motion (geometry/net_load.h); what remains is in
+// equilibrium with itself.
 #include "loose.h"
 
 #include "basics/memory.h"
@@ -45,7 +49,7 @@ void find_loose(struct loose_grains *loose, const struct packing *packing,
 
 // ---- relief -------------------------------------------------------------------------
 
-// A fragment as a packing of its own: entry k is grain GRAIN[k] of the whole one.
+// A fragment as a packing of its own: its grain k is GRAIN[k] of the whole packing.
 struct part {
     struct packing packing; // positions and radii of its own, the box of the whole
     struct vector *displacement, *force; // (packing.n_particle)

@@ -22,18 +22,18 @@ struct replay_parameters {
 
 extern const struct parameter replay_table[];
 
-// Completes the settings from the rest of PARAMETERS, which must outlive them. Exits
-// where they are not of use.
+// Completes the settings from the rest of PARAMETERS, which must outlive them. Ends the
+// program if they contradict each other.
 void complete_settings(struct replay_parameters *parameters, int threads);
 
-// Gives bridges the liquid of FORCES where nothing else was given; where something was,
-// DIFFERENCE, which it returns, tells so in one line, else it is empty.
+// Gives bridges the liquid of FORCES unless the user gave one. Returns DIFFERENCE (SIZE
+// bytes): one line if the user's liquid differs, else empty.
 const char *complete_bridges(struct replay_parameters *parameters,
                              const struct artifact *forces, char *difference,
                              size_t size);
 
-// The engine that PARAMETERS name, or the one that suits the grains, with its reason.
-// Exits where it does not do what is asked of it.
+// Sets the engine that PARAMETERS name, or the one that suits the grains, with its
+// reason. Ends the program if it cannot do what is asked of it.
 void choose_engine(const struct replay_parameters *parameters,
                    const struct packing *packing, struct replay_settings *settings);
 

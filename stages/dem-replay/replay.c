@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The replay itself, the same for both engines: step after step of the load, the
+// engine advances to rest or equilibrium (replay_engine.h), and what has happened is
+// recorded: cracks with the step they broke in, the unbalanced ratio, the reaction of
+// the supports, and snapshots at chosen saturations. Steps below 0 bring a body to
+// rest under its weight before drying; bonds that break then count as broken before.
 #include "replay.h"
 
 #include "basics/memory.h"
@@ -16,7 +21,7 @@ const struct replay_engine *replay_engine(const struct replay_settings *settings
 
 // ---- begin --------------------------------------------------------------------------
 
-// Of this replay, and so none of an earlier one or of the weight.
+// The cracks of this replay: without those of an earlier one or of the weight.
 static const struct dem_crack *own_cracks(const struct run *run, int *count)
 {
     const struct dem_crack *cracks = run->engine->cracks(run, count);
@@ -24,7 +29,7 @@ static const struct dem_crack *own_cracks(const struct run *run, int *count)
     return cracks + run->n_before;
 }
 
-// Where an earlier replay went before, the body stands already.
+// The first step; after an earlier replay the body is at rest under its weight already.
 static int first_step(const struct run *run)
 {
     const struct replay_settings *settings = run->settings;
@@ -98,7 +103,7 @@ static void note_cracks(struct run *run)
     response->n_crack = response->cracks[step] = count;
 }
 
-// What breaks counts as broken before drying.
+// Bonds that break under the weight count as broken before drying.
 static void note_weight(struct run *run)
 {
     struct response *response = run->response;
@@ -109,7 +114,7 @@ static void note_weight(struct run *run)
     response->weight_unbalanced_ratio = run->engine->unbalanced_ratio(run);
 }
 
-// The first of all: no earlier replay has gone before.
+// The cracks under the weight are the engine's first: there was no earlier replay.
 static void take_weight_cracks(struct run *run)
 {
     struct response *response = run->response;
@@ -154,7 +159,8 @@ static bool is_snapshot_due(const struct run *run)
            run->load->saturation[run->place.step] <= run->settings->snapshot[next];
 }
 
-// Where another replay is to go on, how grains lie at the end is wanted too.
+// Takes the snapshots that are due; if the state is kept for a later replay, also one
+// at the end.
 static void take_snapshots(struct run *run)
 {
     const struct response *response = run->response;

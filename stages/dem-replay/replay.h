@@ -12,8 +12,8 @@
 #include <stdbool.h>
 
 enum support {
-    SUPPORT_FREE,  // nothing holds the aggregate; net force and moment are taken off
-    SUPPORT_FIXED, // some grains are held: they neither move nor turn
+    SUPPORT_FREE,  // no support; net force and moment are removed from the load
+    SUPPORT_FIXED, // some grains are fixed: they neither move nor rotate
     SUPPORT_WALL   // a rigid wall beneath, at the lower z wall
 };
 
@@ -23,8 +23,8 @@ enum engine {
 };
 
 enum loose_loads {
-    LOOSE_LOADED,  // loads of what came loose go on
-    LOOSE_UNLOADED // they end [loose.h]
+    LOOSE_LOADED,  // loose grains keep their loads
+    LOOSE_UNLOADED // their net loads are removed [loose.h]
 };
 
 enum unsettled {
@@ -98,9 +98,8 @@ struct response {
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
-    int n_detached,
-        first_detached; // grains that left an equilibrium, or whose loads ended
-    int n_unsettled;    // steps that are not settled
+    int n_detached, first_detached; // grains that left an equilibrium, or were unloaded
+    int n_unsettled;                // steps that are not settled
     int n_unconverged,
         unconverged_grain; // loads under which something held did not come to rest,
                            // and the grain furthest from it under the last
@@ -113,14 +112,14 @@ struct response {
     double weight_unbalanced_ratio; // when drying began; NAN: without weight
 };
 
-// Told how far the replay is.
+// Who follows the replay: FRACTION of the load that is done.
 struct replay_progress {
     void (*report)(void *context, double fraction); // may be NULL
     void *context;
 };
 
-// Whether STEP has a force on any of N grains. Where none has, [K 4.20] measures what
-// is left of one decay by another.
+// Whether STEP has a force on any of N grains. Without any, the ratio of [K 4.20]
+// divides one decaying number by another.
 bool is_loaded(const struct load *load, int n, int step);
 
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The replay as cycles of discrete elements [K 4, dem/dem.h].
+// The replay as cycles of discrete elements [K 4, dem/dem.h]. At each step of the load
+// the forces are applied and a fixed number of cycles runs; then, if asked for, more
+// until the unbalanced ratio [K 4.20] is below the tolerance. Forces that nothing
+// balances are removed at certain cycles only, counted from the beginning of the step:
+// of a free body every TAKE_OFF_EVERY cycles, of loose fragments every STOP_EVERY, so
+// that a run continued from a checkpoint makes the same bytes. At the first step the
+// load grows linearly.
 #include "replay_engine.h"
 
 #include "basics/memory.h"
@@ -13,9 +19,9 @@
 
 struct by_cycles {
     struct dem *dem;
-    struct loose_grains loose; // none, where they keep their loads
-    bool has_looked;           // for them
-    int n_crack;               // then
+    struct loose_grains loose; // none if they keep their loads
+    bool has_looked;           // whether they have been found
+    int n_crack;               // cracks at that time
 };
 
 static struct dem *dem_of(const struct run *run)
@@ -38,7 +44,7 @@ static void describe(const struct replay_settings *settings, char *text, size_t 
 
 // ---- begin --------------------------------------------------------------------------
 
-// NULL: all have the mean.
+// Strengths of the bonds; NULL: all have the mean.
 static double *strengths(const struct run *run, double mean)
 {
     const double *relative = run->settings->relative_strength;
@@ -84,7 +90,7 @@ static enum status restore_dem(struct run *run, const struct array_list *list,
     return dem_restore(dem_of(run), list->array, list->count, reason);
 }
 
-// With the load as it was: it follows the grains at some cycles only (TAKE_OFF_EVERY).
+// Restores the load too: it is adapted to the grains at certain cycles only.
 static enum status restore(struct run *run, const struct kept_state *kept,
                            struct reason *reason)
 {
@@ -111,27 +117,28 @@ static enum status begin(struct run *run, struct reason *reason)
 
 // ---- loads --------------------------------------------------------------------------
 
-// Forces keep their directions when grains turn as one, and would turn them further:
-// what is taken off follows the grains, often enough to bring all such motion to rest.
-// Loose grains are stopped less often: what they gain meanwhile breaks nothing (their
-// kinetic energy grows with the square of this).
+// Forces keep their directions when a free body rotates, and would rotate it further:
+// the load removed is adapted to the grains often enough to bring such motion to rest.
+// Loose grains are stopped less often: the speed they gain meanwhile breaks nothing
+// (their kinetic energy grows with the square of this number).
 enum { TAKE_OFF_EVERY = 16, STOP_EVERY = 64 }; // cycles
 
-// Nothing can come loose without bonds, and liquid bridges hold what did.
+// Whether loose grains are unloaded. Without bonds nothing can come loose, and liquid
+// bridges hold loose grains.
 static bool unloads(const struct run *run)
 {
     return run->settings->loose == LOOSE_UNLOADED && run->packing->n_bond > 0 &&
            !(run->settings->liquid.volume > 0);
 }
 
-// Cycles after which the load is looked at again.
+// Cycles after which the load is adapted to the grains again.
 static int64_t load_holds(const struct run *run)
 {
     if (run->settings->support == SUPPORT_FREE) return TAKE_OFF_EVERY;
     return unloads(run) ? STOP_EVERY : INT64_MAX;
 }
 
-// Fragments change only as bonds break.
+// Finds the loose grains again if bonds have broken, and stops them when it is time.
 static void follow_loose(struct run *run)
 {
     struct by_cycles *state = run->state;
@@ -147,9 +154,8 @@ static void follow_loose(struct run *run)
         dem_stop(state->dem, state->loose.is_loose);
 }
 
-// What is taken off loose fragments pressed them on the others: what rests on a wall
-// takes it over, so that the wall still bears the net load of all. Held grains bear
-// what comes.
+// Removes the net loads of loose fragments. On a wall, the grains that are not loose
+// take these over, so that the wall still carries the net load of all.
 static void take_off_loose(struct run *run)
 {
     const struct loose_grains *loose = loose_of(run);
@@ -162,7 +168,7 @@ static void take_off_loose(struct run *run)
     free(displacement);
 }
 
-// Of all that is left where nothing holds it.
+// Removes the net load of a free body.
 static void take_off(struct run *run)
 {
     struct vector *state[3];
@@ -180,8 +186,8 @@ static void take_off(struct run *run)
         free(state[k]);
 }
 
-// Time steps before those that every step of the load has. Where an earlier replay went
-// before, its last load is on already.
+// Additional cycles of the first step, in which the load grows. After an earlier replay
+// its last load is applied already.
 static int64_t ramp(const struct run *run)
 {
     const bool is_first = run->place.step == 0 && !run->settings->begin;
@@ -199,7 +205,7 @@ static void grow(struct run *run)
                    : scale(share, run->force[i]);
 }
 
-// The forces of the step, on the grains as they are.
+// Applies the forces of the step to the grains where they are now.
 static void apply_forces(struct run *run)
 {
     take_forces(run);
@@ -212,8 +218,8 @@ static void apply_forces(struct run *run)
 
 // ---- cycles -------------------------------------------------------------------------
 
-// [K 4.20] has no denominator once no contact carries a force: then all that is applied
-// is unbalanced.
+// The ratio of [K 4.20] has no denominator if no contact carries a force: then the
+// whole load is unbalanced.
 static double unbalanced_ratio(const struct run *run)
 {
     const double ratio = dem_unbalanced_ratio(dem_of(run));
@@ -234,8 +240,8 @@ static bool is_settled(const struct run *run)
            !is_loaded(run->load, run->packing->n_particle, run->place.step);
 }
 
-// CYCLES more, cut where the state may be kept, and where the load follows the grains,
-// which must not depend on it.
+// Runs CYCLES, interrupted where the state may be kept, and where the load is adapted
+// to the grains; the latter must not depend on the former.
 static enum status run_cycles(struct run *run, int64_t cycles, struct reason *reason)
 {
     const int64_t end = dem_cycle(dem_of(run)) + cycles, holds = load_holds(run);
@@ -253,8 +259,8 @@ static enum status run_cycles(struct run *run, int64_t cycles, struct reason *re
     return STATUS_OK;
 }
 
-// Until a step is as settled as TOLERANCE says, which is looked at every 16 cycles from
-// the FIRST on, or as long as MOST cycles from there.
+// Runs until the unbalanced ratio is below TOLERANCE, checked every 16 cycles from the
+// FIRST on, but for at most MOST cycles.
 static enum status settle(struct run *run, int64_t first, double tolerance,
                           int64_t most, struct reason *reason)
 {
@@ -291,7 +297,7 @@ static enum status run_on(struct run *run, struct reason *reason)
 
 // ---- weight -------------------------------------------------------------------------
 
-// For statics, as far as the time step is stable with it, which was chosen for less.
+// Local damping for coming to rest, as large as the time step, chosen for less, allows.
 static double calming_share(const struct run *run)
 {
     static const double share = 0.7;
@@ -300,7 +306,8 @@ static double calming_share(const struct run *run)
     return fmax(own, fmin(share, limit / dem_time_step(dem_of(run)) - 1));
 }
 
-// Bonds as strong as they are, the body as it is.
+// Replaces unbreakable bonds by those of true strength, in the present state of the
+// body.
 static enum status give_strengths(struct run *run, struct reason *reason)
 {
     struct by_cycles *state = run->state;
@@ -315,7 +322,7 @@ static enum status give_strengths(struct run *run, struct reason *reason)
     return status;
 }
 
-// Loose grains may fall for longer than anyone waits.
+// Brings the body to rest under its weight; limited, since loose grains may fall long.
 static enum status stand(struct run *run, struct reason *reason)
 {
     static const double settled = 1e-5; // a tenth of [K 5.2], as all goes on from here
@@ -354,7 +361,7 @@ static enum status advance(struct run *run, struct reason *reason)
     return status ? status : run_on(run, reason);
 }
 
-// ---- what there is to see -----------------------------------------------------------
+// ---- observations -------------------------------------------------------------------
 
 static int64_t cycles(const struct run *run)
 {
@@ -386,7 +393,7 @@ static struct array_list save(const struct run *run)
     return list;
 }
 
-// At the end: a time step chosen by the engine may have become shorter.
+// Notes the time step at the end: the engine may have shortened it.
 static void note_time_step(const struct run *run)
 {
     struct response *response = run->response;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The replay as one equilibrium after another [equilibrium.h].
+// The replay as one equilibrium after another (quasi_static/quasi_static.h). The state
+// of a replay is the sequence of its loads: a later one repeats them, each equilibrium
+// starting from the last. Checkpoints are taken where the solver drops its caches, in
+// runs with and without checkpoints alike, so that both make the same bytes.
 #include "replay_engine.h"
 
 #include "basics/memory.h"
@@ -42,7 +45,7 @@ static void describe(const struct replay_settings *settings, char *text, size_t 
 
 // ---- begin --------------------------------------------------------------------------
 
-// Within a step of the load.
+// Reports progress within a step of the load.
 static void tell(void *context, double balanced)
 {
     const struct run *run = context;
@@ -83,7 +86,7 @@ static enum status find(struct run *run, struct reason *reason)
     return status;
 }
 
-// The loads of an earlier replay once more: each takes its equilibrium from the last.
+// Repeats the loads of an earlier replay: each equilibrium starts from the last.
 static enum status repeat(struct run *run, struct reason *reason)
 {
     struct equilibria *state = run->state;
@@ -121,8 +124,8 @@ static enum status restore(struct run *run, const struct kept_state *kept,
 
 // ---- advance ------------------------------------------------------------------------
 
-// Equilibria are kept from where they forget, whether anyone asks or not, so that it
-// makes no difference; what is given away is the last of these.
+// Keeps a state whenever caches are dropped, and gives the last one away when a
+// checkpoint is due.
 static void keep(struct run *run)
 {
     struct equilibria *state = run->state;
@@ -150,7 +153,7 @@ static enum status advance(struct run *run, struct reason *reason)
     return status;
 }
 
-// ---- what there is to see -----------------------------------------------------------
+// ---- observations -------------------------------------------------------------------
 
 static int64_t cycles(const struct run *run)
 {

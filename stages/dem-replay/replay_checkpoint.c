@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The response so far as named arrays, and back, with checks of everything that the
+// run relies on: ranges, ascending steps, ordered pairs, counts that add up.
 #include "replay_checkpoint.h"
 
 #include "basics/memory.h"
@@ -39,7 +41,7 @@ static void save_snapshots(struct array_list *list, const struct response *respo
     free(intact);
 }
 
-// Of all snapshots, one after the other.
+// The contacts of all snapshots, one after the other.
 static struct dem_contact *join_contacts(const struct response *response,
                                          int32_t *of_each, int *count)
 {
@@ -246,7 +248,7 @@ static bool rises(const int32_t *step, int64_t n)
     return true;
 }
 
-// The engine knows the cracks; of those of whole steps the step is known too.
+// Cracks come from the engine; the steps of those of completed steps from the list.
 static enum status restore_cracks(struct response *response, int n_time,
                                   const struct engine_past *past,
                                   struct array_reader *reader)
@@ -299,7 +301,8 @@ static enum status restore_snapshots(struct response *response,
     return STATUS_OK;
 }
 
-// Two grains, the lower first, or a grain and a wall; the first row that is not, or N.
+// The first row that is neither two grains, the lower first, nor a grain and a wall; N
+// if all are.
 static int64_t first_unordered(const int32_t (*particle)[2], int64_t n)
 {
     int64_t k = 0;

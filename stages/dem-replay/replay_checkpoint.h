@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a replay has to remember besides the engine, as named arrays.
+// The state of a replay besides the engine's, as named arrays.
 #ifndef CRAQUELURE_REPLAY_CHECKPOINT_H
 #define CRAQUELURE_REPLAY_CHECKPOINT_H
 
@@ -18,38 +18,40 @@ struct array_list save_response(const struct response *response,
                                 const struct packing *packing, int n_time,
                                 struct replay_place place);
 
-// Adds to LIST the FORCE (n_particle, N) on the grains, and what was TAKEN_OFF it.
+// Adds the FORCE (n_particle, N) on the grains to LIST, and the net load TAKEN_OFF it.
 void save_load(struct array_list *list, const struct vector *force, int n_particle,
                struct net_load taken_off);
 
-// Out of such a LIST into FORCE and *TAKEN_OFF; STATUS_BAD_DATA: it has them not.
+// Reads FORCE and *TAKEN_OFF from such a LIST; STATUS_BAD_DATA: they are not in it.
 enum status restore_load(const struct array_list *list, int n_particle,
                          struct vector *force, struct net_load *taken_off,
                          struct reason *reason);
 
-// An equilibrium follows from all loads that led to it, so these are its state: those
-// of EARLIER (NULL: none), WEIGHT (n_particle; NULL: none), and then LOAD. A new list.
+// An equilibrium is determined by all loads that led to it, so these are its state:
+// those of EARLIER (NULL: none) or WEIGHT (n_particle; NULL: none), and then LOAD. A
+// new list.
 struct array_list save_loads(const struct array_list *earlier,
                              const struct vector *weight, const struct load *load,
                              const struct packing *packing);
 
-// Whether it was kept by equilibria (save_loads), not by cycles; and what an engine
-// says to the list of the other, called NAME.
+// Whether LIST was kept by equilibria (save_loads), not by cycles; and the refusal of a
+// list that was kept by the other engine, NAME.
 bool saved_by_equilibria(const struct array_list *list);
 enum status refuse_other_engine(struct reason *reason, const char *name);
 
-// (*n_load * n_particle) N, of such a LIST, which owns them; NULL with the reason.
+// The loads (*n_load * n_particle, N) in such a LIST, which owns them; NULL with the
+// reason.
 const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,
                                  struct reason *reason);
 
-// Fills in RESPONSE what became of the weight, out of such a LIST; of N_CRACK cracks
-// of the engine.
+// Restores the results under the weight to RESPONSE from such a LIST; the engine has
+// N_CRACK cracks.
 enum status restore_weight(struct response *response, int n_crack,
                            const struct array_list *list, struct reason *reason);
 
-// Of the engine when its state was kept: the cracks but those of an earlier replay and
-// of the weight, and the cycle.
+// The engine when its state was kept: its cycle, and its cracks without those of an
+// earlier replay and of the weight.
 struct engine_past {
     const struct dem_crack *crack;
     int n_crack;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an engine does for a replay: each is a file, replay_by_*.c, behind one table.
+// The interface of an engine to the replay; the two engines are replay_by_*.c.
 #ifndef CRAQUELURE_REPLAY_ENGINE_H
 #define CRAQUELURE_REPLAY_ENGINE_H
 
@@ -15,7 +15,7 @@ struct run {
     struct response *response;
     const struct replay_engine *engine;
     void *state;               // of the engine
-    bool is_whole;             // its bonds hold whatever comes
+    bool is_whole;             // its bonds cannot break yet
     struct vector *force;      // (n_particle) N, of this step
     struct net_load taken_off; // of it, where nothing holds the grains
     int n_before;              // bonds that an earlier replay, or weight, has broken
@@ -24,13 +24,13 @@ struct run {
 
 // Steps before the load, of a body with weight.
 enum {
-    STEP_WHOLE = -2, // under its weight, bonds holding whatever comes: what overshoots
-                     // on the way to rest breaks none. Only for engines with inertia
+    STEP_WHOLE = -2, // under its weight with unbreakable bonds: overshoots on the way
+                     // to rest break none. Only for engines with inertia
     STEP_WEIGHT = -1 // the same, with bonds as strong as they are
 };
 
 struct replay_engine {
-    bool needs_support; // it has no answer where no grain is held
+    bool needs_support; // it cannot solve a body without support
     int first_step;     // of those with weight
     // Whether it does what SETTINGS ask for; NULL: it does.
     enum status (*check)(const struct replay_settings *settings, struct reason *reason);

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bond strengths from one uniform number u each: Weibull's by its inverse, with the
+// scale 1 / Gamma(1 + 1/m) for mean 1; normal ones, cut off at 0, as 1 + variation
+// Q^-1((1 - u) P), P the probability above the cut. Numbers are dealt out in the order
+// of the bonds' places, measured in integer ticks of the extent, so that neither the
+// numbering of grains nor rounding, as from another unit of length, changes which bond
+// gets which.
 #include "bonds.h"
 
 #include "basics/memory.h"
@@ -9,14 +15,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Where the distribution, of mean 1 but for the cut, has the share U in (0,1) below it.
+// The quantile of U in (0,1); the distribution has mean 1 before the cut.
 static double strength_at(const struct strength_scatter *scatter, double u)
 {
     if (scatter->law == STRENGTH_WEIBULL) {
         const double size = 1 / tgamma(1 + 1 / scatter->modulus);
         return gsl_cdf_weibull_Pinv(u, size, scatter->modulus);
     }
-    // From above, where nothing is cut off and no digit of a small share is lost.
+    // By the upper tail, where nothing is cut off and small probabilities keep digits.
     const double kept = gsl_cdf_ugaussian_P(1 / scatter->variation);
     return 1 + scatter->variation * gsl_cdf_ugaussian_Qinv((1 - u) * kept);
 }
@@ -36,7 +42,7 @@ double *draw_strengths(const struct strength_scatter *scatter, int n)
 
 // ---- in order of place --------------------------------------------------------------
 
-// In whole ticks, so that rounding, of another unit of length say, parts no equals.
+// Ticks in the extent of the grains: places equal to rounding have equal ticks.
 static const double TICKS = 0x1p30;
 
 struct ruler {
@@ -72,7 +78,7 @@ static int64_t ticks(const struct ruler *ruler, double length)
     return ruler->extent > 0 ? llround(length / ruler->extent * TICKS) : 0;
 }
 
-// Along AXIS, within one box where it repeats.
+// The place along AXIS in ticks, within one period of a periodic box.
 static int64_t place_along(const struct ruler *ruler, struct vector place, int axis)
 {
     const struct packing *packing = ruler->packing;

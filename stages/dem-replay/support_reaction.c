@@ -13,7 +13,7 @@ static void add_load(const struct packing *packing, int grain, double sign,
     sum->moment = add(sum->moment, scale(sign, add(cross(from, force), moment)));
 }
 
-// Held grains stay where they are: what comes to them goes on to what holds them.
+// Fixed grains do not move: the load on them is passed on to their support.
 struct net_load reaction_of_dem(const struct packing *packing, const struct dem *dem,
                                 const uint8_t *held, bool has_wall)
 {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What supports push back with: held grains, and the wall beneath.
+// The reaction of the supports: fixed grains, and the wall beneath.
 #ifndef CRAQUELURE_SUPPORT_REACTION_H
 #define CRAQUELURE_SUPPORT_REACTION_H
 
 #include "geometry/net_load.h"
 #include "quasi_static/quasi_static.h"
 
-// On the grains, in the last cycle, or of the last equilibrium under FORCE
-// (n_particle). With the load it is what the grains gain of momentum a second, so
-// nothing at rest.
+// Force (N) on the grains and moment (N m) about the lower corner of the box, in the
+// last cycle, or in the last equilibrium under FORCE (n_particle). Reaction and load
+// together are the rate of change of the grains' momentum, 0 at rest.
 struct net_load reaction_of_dem(const struct packing *packing, const struct dem *dem,
                                 const uint8_t *held, bool has_wall);
 struct net_load reaction_of_equilibrium(const struct packing *packing,

@@ -12,7 +12,7 @@ static const double gravity_of_the_earth = 9.80665; // m/s2
 
 // ---- taken --------------------------------------------------------------------------
 
-// What the forces have of it; 0: none.
+// The gravity in the forces; 0: none.
 static double gravity_of_forces(const struct artifact *input)
 {
     return artifact_has_number(input, "/summary/gravity")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weight as the user asks for it, and what is said of it and of other scales.
+// The weight as the user asks for it, and warnings about it and about other scales.
 #ifndef CRAQUELURE_DEM_REPLAY_TAKE_WEIGHT_H
 #define CRAQUELURE_DEM_REPLAY_TAKE_WEIGHT_H
 
@@ -14,23 +14,26 @@ struct taken_weight {
     struct bond_numbers numbers; // with the gravity of the Earth where there is none
 };
 
-// Adds the weight of the grains to LOAD, the forces of INPUT, and tells SETTINGS what
-// stands before drying. The caller frees .standing. Exits where nothing could hold it.
+// Adds the weight of the grains to LOAD, the forces of INPUT, and gives SETTINGS the
+// weight before drying. The caller frees .standing. Ends the program if nothing could
+// support it.
 struct taken_weight take_weight(const struct artifact *input,
                                 const struct replay_parameters *parameters,
                                 const struct packing *packing, struct load *load,
                                 struct replay_settings *settings);
 
-// Lines on standard error: weight that is left out and matters; what it did alone.
+// Warns on standard error if a weight that matters is left out, and of what the weight
+// did alone.
 void warn_of_weight(const struct taken_weight *weight, const struct response *response,
                     const struct packing *packing);
 
-// A line where parameters are the defaults, those of K's grains, and the grains are
-// not.
+// Warns if parameters are the defaults, those of K's grains, and the grains are of
+// another size.
 void warn_of_defaults(const struct replay_parameters *parameters,
                       const struct packing *packing);
 
-// What the model of the response says: without a newline, in TEXT, which it returns.
+// The line of the model of the response, written to TEXT, which it returns; "" without
+// weight.
 const char *describe_weight(const struct taken_weight *weight, char text[200]);
 
 void put_weight(struct artifact *artifact, const struct taken_weight *weight,

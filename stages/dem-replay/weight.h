@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the body weighs: a load that is there, at rest, before drying begins.
+// The weight of the body: a load under which it is at rest before drying begins.
 #ifndef CRAQUELURE_DEM_REPLAY_WEIGHT_H
 #define CRAQUELURE_DEM_REPLAY_WEIGHT_H
 
 #include "replay.h"
 
-// Where a body stands and what it holds.
+// What the weight is computed from.
 struct weighing {
     const struct packing *packing;
     double density;       // of the grains, kg/m3

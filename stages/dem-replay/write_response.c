@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The response artifact. Contacts of all snapshots share one list of pairs, sorted and
+// unique; a snapshot has 0 where it does not have a contact.
 #include "write_response.h"
 
 #include "basics/memory.h"

@@ -11,7 +11,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response);
 
-// Of any grain at any snapshot, m.
+// The largest displacement of any grain at any snapshot, m.
 double largest_displacement(const struct packing *packing,
                             const struct response *response);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cannot come out well when grains move, said before they do.
+// Refuses targets that moving grains cannot reach, before they are moved.
 #include "methods.h"
 #include "pack.h"
 
@@ -11,8 +11,9 @@ static bool is_compressed(const struct pack_parameters *parameters)
            parameters->method == METHOD_DOMAIN_CONTRACTION;
 }
 
-// Spheres of any sizes that touch have fewer contacts on average than 8 + 4 sqrt 3
-// [Kuperberg & Schramm 1994], discs fewer than 6 (Euler: theirs is a plane graph).
+// Touching spheres of any sizes have fewer contacts on average than 8 + 4 sqrt 3
+// [Kuperberg & Schramm 1994], discs fewer than 6 (their contact graph is planar:
+// Euler).
 static enum status check_coordination(const struct pack_parameters *parameters,
                                       struct reason *reason)
 {
@@ -23,7 +24,7 @@ static enum status check_coordination(const struct pack_parameters *parameters,
                   most, parameters->dynamics.value);
 }
 
-// A pressure that a given stiffness cannot hold without grains in one another.
+// A pressure at which grains of the given stiffness would overlap by a tenth.
 static enum status check_pressure(const struct pack_parameters *parameters,
                                   const struct sizes *sizes, struct reason *reason)
 {
@@ -50,7 +51,7 @@ static enum status check_target(const struct pack_parameters *parameters,
     return STATUS_OK;
 }
 
-// The engine knows one image of each neighbour.
+// The engine knows one image of each neighbour, so the box must be wide enough.
 static enum status check_periods(const struct domain *domain, const struct sizes *sizes,
                                  struct reason *reason)
 {

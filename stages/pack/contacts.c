@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Porosity of the box, by ratios of lengths, so that no cube of a length underflows.
 #include "pack.h"
 
 double packing_porosity(const struct packing *packing)

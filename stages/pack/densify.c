@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Radius expansion and domain contraction [K 3.1.1]: from loose points to a dense
-// packing, by grains that grow or by a box that closes in, ever more slowly.
+// packing, by grains that grow or by a box that contracts, more and more slowly.
 //
 // Strain is the relative change of lengths, of all radii or of the box. It is applied
-// in small steps between some cycles of dynamics; whenever the stress is past its
-// target the largest step halves, so that the end is approached quasi-statically.
+// in small steps, with some cycles of dynamics in between. The stress is measured as
+//     scaled stress = mean stress 2 radius / pair_stiffness,
+// about the mean overlap over the diameter, and steered to its target: each step
+// strains by (target - stress) / 1.2, at most `most`, and whenever the stress is above
+// the target `most` halves, so that the end is approached quasi-statically.
 #include "dynamics.h"
 #include "pack.h"
 
@@ -14,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// As loose as random points find room for.
+// The solid fraction that random sequential addition reaches easily.
 static double loose_fraction(const struct domain *domain)
 {
     return domain->dimensions == 2 ? 0.4 : 0.28;
@@ -26,15 +29,15 @@ struct densification {
     bool grow;
     double most;                   // largest strain of a step
     bool jammed;                   // once grains have found their places
-    double done;                   // share of the way, for the progress bar
+    double done;                   // between 0 and 1, for the progress bar
     double pair_stiffness, radius; // N/m, m by volume: the scale of pressure
-    double target;                 // of the pressing under way, 0 when there is none
+    double target;                 // scaled stress being approached, 0: none
     double gone_on_at; // of a run that was stopped: the target it was at; 0 once met
 };
 
 // ---- stopping and going on ----------------------------------------------------------
 
-// What there is to remember, the engine apart: numbers, as they are kept.
+// The state of the protocol besides the engine, as the numbers of a checkpoint.
 struct protocol {
     double most, jammed, target, growth;
     struct vector lower, upper, centre, cut_lower, cut_upper;
@@ -80,7 +83,7 @@ static enum status restore_protocol(struct densification *d, struct reason *reas
     return STATUS_OK;
 }
 
-// Whether the run was past this TARGET when it was stopped.
+// Whether a restored run had reached this TARGET already.
 static bool was_done(struct densification *d, double target)
 {
     const bool done = d->gone_on_at > 0 && target != d->gone_on_at;
@@ -109,7 +112,7 @@ static void thicken_layer(const struct making *making)
     making->packing->upper = domain->upper;
 }
 
-// Lengths that the growth leaves, or the box that closed in.
+// Applies a strain of BY: radii grow, or the box contracts with all positions.
 static void strain(struct densification *d, double by)
 {
     struct domain *domain = d->making->domain;
@@ -130,14 +133,14 @@ static void strain(struct densification *d, double by)
     d->making->packing->upper = domain->upper;
 }
 
-// The strain left to the solid fraction wanted.
+// The strain from now to the SOLID fraction wanted.
 static double strain_to(const struct densification *d, double solid)
 {
     const int dimensions = d->making->domain->dimensions;
     return pow(solid / solid_now(d), 1.0 / dimensions) - 1;
 }
 
-// Stress over its scale: about the mean overlap over the diameter.
+// Stress over its scale, pair_stiffness / (2 radius).
 static double scaled_stress(const struct densification *d)
 {
     return mean_stress(d->making, d->dem) * 2 * d->radius / d->pair_stiffness;
@@ -145,25 +148,24 @@ static double scaled_stress(const struct densification *d)
 
 // ---- to a pressure ------------------------------------------------------------------
 
-// What brings the stress from NOW to TARGET, with a little less than all of it: a
-// jammed packing stiffens at once by about a third of its contacts' stiffness for each
-// of three dimensions of strain.
+// The strain that brings the stress from NOW to TARGET, a little underestimated: a
+// jammed packing has about a third of its contacts' stiffness in each of three
+// dimensions.
 static double strain_for(double now, double target)
 {
     return (target - now) / 1.2;
 }
 
-// As fast as inertia allows at the stress TARGET: in CYCLES time steps of a tenth of a
-// contact's period grains would otherwise be thrown, not pushed (inertial number ~
-// 1e-3).
+// The largest strain of a step for which inertia is negligible at the stress TARGET:
+// with CYCLES time steps of a tenth of a contact's period the inertial number is about
+// 1e-3.
 static double quasi_static_strain(double target)
 {
     return 4e-3 * sqrt(target);
 }
 
-// One step towards TARGET. While grains still find their places the stress is that of
-// collisions and says nothing of how far it is: the box goes on as fast as it may, or
-// waits.
+// One step towards TARGET. Before grains jam, the stress comes from collisions and does
+// not depend on the strain: then the strain is the largest allowed, or none.
 static void servo(struct densification *d, double now, double target)
 {
     const double flowing = 0.05;
@@ -184,8 +186,8 @@ static enum status give_up(const struct densification *d, const char *what, doub
                   dem_unbalanced_ratio(d->dem));
 }
 
-// Rattlers fly from wall to wall of their cages and knock the others for ever: local
-// damping takes nothing from a grain that touches no one.
+// Stops grains without contacts. Rattlers would fly through their cages and hit others
+// forever: local damping takes nothing from a grain without contact.
 static void stop_rattlers(const struct densification *d)
 {
     const int n = d->making->packing->n_particle;
@@ -205,7 +207,8 @@ static void stop_rattlers(const struct densification *d)
     free(velocity);
 }
 
-// Half of the way is to where grains jam, and half to rest, by digits.
+// Progress: the first half until grains jam, the second until rest, by digits of the
+// unbalanced ratio.
 static void show_progress(struct densification *d)
 {
     const bool flat = d->making->domain->dimensions == 2;
@@ -218,7 +221,7 @@ static void show_progress(struct densification *d)
     progress_update(d->making->progress, d->done);
 }
 
-// At rest under the scaled stress TARGET.
+// Presses until the packing is at rest at the scaled stress TARGET, to 1 %.
 static enum status press(struct densification *d, double target, double tolerance,
                          struct reason *reason)
 {
@@ -240,8 +243,8 @@ static enum status press(struct densification *d, double target, double toleranc
     return give_up(d, "stress over its scale", scaled_stress(d), target, reason);
 }
 
-// Without friction a packing keeps no memory of having been pressed harder, and finds
-// its rest sooner from above, where its soft modes are stiffer.
+// A packing without friction has no memory of a higher pressure, and comes to rest
+// sooner from above, where its soft modes are stiffer.
 static enum status press_from_above(struct densification *d, double target,
                                     struct reason *reason)
 {
@@ -256,8 +259,8 @@ static enum status press_from_above(struct densification *d, double target,
 
 // ---- to a porosity ------------------------------------------------------------------
 
-// Rests at the porosity wanted: where grains touch by K 4.20, where they do not when
-// they have stopped.
+// Runs until rest at the porosity wanted: by K 4.20 if grains touch, by their speed if
+// they do not.
 static enum status rest(struct densification *d, struct reason *reason)
 {
     enum { CYCLES = 100 };
@@ -296,7 +299,8 @@ static enum status strain_to_porosity(struct densification *d, double porosity,
 
 // ---- to a coordination --------------------------------------------------------------
 
-// Pressed harder and harder, at rest each time.
+// Raises the pressure by a quarter at a time, at rest each time, until the coordination
+// is reached.
 static enum status press_to_contacts(struct densification *d, double wanted,
                                      struct reason *reason)
 {
@@ -330,7 +334,8 @@ static enum status reach_target(struct densification *d, struct reason *reason)
     }
 }
 
-// N/m of a grain. Only a pressure in Pa has anything to compare it with.
+// Stiffness of a grain, N/m. Its value is arbitrary unless the target is a pressure in
+// Pa.
 static double stiffness_for(const struct dynamics_parameters *how, double radius)
 {
     if (!isnan(how->stiffness)) return how->stiffness;
@@ -340,7 +345,7 @@ static double stiffness_for(const struct dynamics_parameters *how, double radius
     return how->density * radius * radius * radius * 1e12;
 }
 
-// All places, and the box with them, LENGTHS times as far from its lower corner.
+// Scales all positions, and the box with them, by LENGTHS from its lower corner.
 static void stretch_all(const struct making *making, double lengths)
 {
     struct packing *packing = making->packing;
@@ -357,7 +362,7 @@ static void stretch_all(const struct making *making, double lengths)
     packing->upper = domain->upper;
 }
 
-// Loose points of grains as large as their room allows: shrunk, or in a larger box.
+// Random points for grains at the loose fraction: shrunk grains, or a larger box.
 static enum status make_loose(const struct making *making, int count, bool grow,
                               double *shrunk, struct reason *reason)
 {
@@ -385,7 +390,7 @@ static enum status make_loose(const struct making *making, int count, bool grow,
     return status;
 }
 
-// Grains that are there, shrunk or drawn apart until none overlaps another.
+// Given grains, shrunk or moved apart until none overlaps another.
 static enum status loosen(const struct making *making, bool grow, double *shrunk,
                           struct reason *reason)
 {
@@ -407,8 +412,8 @@ static enum status loosen(const struct making *making, bool grow, double *shrunk
     return STATUS_OK;
 }
 
-// By volume: of the grains that carry the stress. By number it would be that of the
-// fines, and the same stress would press large grains into each other.
+// Mean radius by volume: of the grains that carry the stress. By number it would be
+// that of the fines, and the same stress would press large grains into each other.
 static double typical_radius(const struct packing *packing)
 {
     const double first = packing->n_particle > 0 ? packing->radius[0] : 1;
@@ -434,7 +439,7 @@ static enum status check_contraction(const struct domain *domain, struct reason 
                   "all axes (pack.periodic); between walls use radius_expansion");
 }
 
-// Grains that were there keep their SIZES: what they grew becomes room that is gone.
+// Restores the SIZES of given grains: their growth becomes a contraction of the box.
 static void restore_sizes(const struct making *making, const double *sizes)
 {
     const double back = 1 / making->reached->growth;

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gravitational deposition [K 3.1.1, Fig. 3.1].
+// Gravitational deposition [K 3.1.1, Fig. 3.1]: grains fall from a loose cloud onto the
+// floor until they are at rest (K 4.20, and no grain still falls). The stiffness is
+// chosen so that the contacts on the floor overlap by about `overlap` under all the
+// weight above,
+//     F = rho g h (1 - porosity) (2 R)^2,   k = 2 F / (overlap R).
+// The cloud starts at the loose fraction and is made thinner until all grains find a
+// place; in the end the highest grain closes the box.
 #include "dynamics.h"
 #include "pack.h"
 
@@ -8,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The domain drawn out upwards until grains of VOLUME make a cloud as thin as CLOUD.
+// The domain, extended upwards until grains of VOLUME have the solid fraction CLOUD.
 static struct domain cloud_domain(const struct domain *domain, double volume,
                                   double cloud)
 {
@@ -43,8 +49,8 @@ static enum status make_cloud(const struct making *making, int count,
     return status;
 }
 
-// Such that the floor's contacts, which carry all the weight above, overlap by a few
-// times `overlap`: k = 2 F / (overlap R), F = rho g h (1 - porosity) (2R)^2.
+// The stiffness (N/m) at which the floor's contacts, which carry all the weight above,
+// overlap by a few times `overlap`.
 static double stiffness_for(const struct making *making)
 {
     const struct dynamics_parameters *how = making->how;
@@ -80,7 +86,7 @@ static void close_box(const struct making *making)
     packing->upper = domain->upper;
 }
 
-// At rest: K 4.20 is met, and nothing still falls, which a mean over many does not see.
+// At rest: K 4.20 is met, and no single grain still falls, which a mean would not show.
 static bool is_settled(const struct making *making, const struct dem *dem,
                        double typical_speed)
 {
@@ -119,7 +125,7 @@ static enum status settle(const struct making *making, struct dem *dem,
                   largest_speed(making, dem));
 }
 
-// Refuses what could not even fall in the cycles allowed.
+// Refuses if grains could not even fall to the floor in the cycles allowed.
 static enum status check_fall(const struct making *making, const struct domain *tall,
                               const struct dem *dem, struct reason *reason)
 {
@@ -133,7 +139,7 @@ static enum status check_fall(const struct making *making, const struct domain *
         height, cycles, dem_time_step(dem), (long long)making->how->most_cycles);
 }
 
-// Grains that are there fall from where they are.
+// Given grains fall from where they are.
 static enum status take_cloud(const struct making *making, struct domain *tall,
                               struct reason *reason)
 {

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Geometry of the domain: volume, containment, and uniform random points. A cut-out is
+// symmetric about its centre, so the distance to it is that to its nearest periodic
+// image. Uniform points in a disc have the radius sqrt(u) R, in a ball cbrt(u) R with
+// a uniform height (Archimedes); points in a cut-out are drawn again.
 #include "domain.h"
 
 #include <float.h>
@@ -110,8 +114,7 @@ struct vector nearest_apart(const struct domain *domain, struct vector from,
     return apart;
 }
 
-// Every cut is symmetric about its centre, so no other image of POINT lies nearer to
-// it.
+// From the centre of the cut-out to the nearest image of POINT.
 static struct vector from_cut(const struct domain *domain, struct vector point)
 {
     struct vector apart = nearest_apart(domain, domain->cut_centre, point);
@@ -167,7 +170,7 @@ static double between(double low, double high, gsl_rng *random)
     return low + (high - low) * gsl_rng_uniform(random);
 }
 
-// Where the box repeats all of it, elsewhere RADIUS from the walls.
+// Uniform along a periodic axis; else at least RADIUS from the walls.
 static double random_along(const struct domain *domain, int axis, double radius,
                            gsl_rng *random)
 {

@@ -13,7 +13,7 @@
 enum domain_shape { DOMAIN_BOX, DOMAIN_CYLINDER, DOMAIN_RING, DOMAIN_SPHERE };
 enum domain_cut { CUT_NONE, CUT_BOX, CUT_CYLINDER, CUT_SPHERE };
 
-// What the user says; lengths in m, NAN where nothing was said.
+// The user's parameters; lengths in m, NAN where not given.
 struct domain_parameters {
     int shape;                 // enum domain_shape
     double lower[3], upper[3]; // of a box
@@ -56,10 +56,10 @@ enum status domain_around(const struct domain_parameters *parameters, int dimens
                           struct vector lower, struct vector upper,
                           struct domain *domain, struct reason *reason);
 
-// What rounding may put outside a wall that is touched, m.
+// How far rounding may put a grain beyond a wall that it touches, m.
 double domain_rounding(const struct domain *domain);
 
-// From an axis along z.
+// Distance from the z axis.
 static inline double across(double x, double y)
 {
     return sqrt(x * x + y * y);

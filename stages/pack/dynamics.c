@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What the moving methods share: walls of the domain for the engine, an engine for the
+// packing, and measures of its state. Speeds and stresses are compared with scales of
+// the method, never with absolute numbers. Note that the engine's stress is over the
+// box it began with: mean_stress corrects for the volume of the domain.
 #include "dynamics.h"
 
 #include "basics/memory.h"
@@ -197,7 +201,7 @@ double largest_speed(const struct making *making, const struct dem *dem)
     return largest;
 }
 
-// The engine divides by the box it began with.
+// The engine divides by the volume of its box, not of the domain.
 double mean_stress(const struct making *making, const struct dem *dem)
 {
     const struct dem_census census = dem_census(dem);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Packings by moving the grains [K 3.1.1]: what the methods share.
+// Packings by moving grains [K 3.1.1]: what the methods share.
 #ifndef CRAQUELURE_PACK_DYNAMICS_H
 #define CRAQUELURE_PACK_DYNAMICS_H
 
@@ -21,13 +21,13 @@ enum target {
     TARGET_PRESSURE      // mean stress, Pa
 };
 
-// What the user says of grains and of the end; NAN where nothing was said.
+// The user's parameters of grains and target; NAN where not given.
 struct dynamics_parameters {
     double density;       // kg/m3
     double friction;      // between grains
     double wall_friction; // null: the same
     double stiffness;     // N/m of a grain; null: so that `overlap` comes out
-    double overlap;       // typical of the end, over the radius
+    double overlap;       // typical overlap at the end, over the radius
     double shear_ratio;   // shear over normal stiffness
     double damping;       // ratio [K 4.28]
     double local_damping;
@@ -41,7 +41,7 @@ struct dynamics_parameters {
     const struct keeper *keeper; // of deposition and densification; may be NULL
 };
 
-// How it ended.
+// The state at the end.
 struct reached {
     bool dynamic;            // whether any dynamics was run
     double value;            // of the target
@@ -55,7 +55,7 @@ struct reached {
     double stiffness;     // that was used, N/m
 };
 
-// All that a method works on.
+// What a method works on; it owns none of it.
 struct making {
     const struct dynamics_parameters *how;
     const struct sizes *sizes;
@@ -66,28 +66,28 @@ struct making {
     struct reached *reached;
 };
 
-// The methods. Each makes packing, domain and reached; DOMAIN comes as the user wants
-// it, and the box may come out smaller, or with its top on the highest grain. With
-// COUNT 0 they begin from the grains that PACKING has, which keep their sizes.
-// STATUS_NOT_CONVERGED: not reached in most_cycles, with what was. On success the
-// caller frees *PACKING.
+// The methods. Each makes packing, domain and reached. DOMAIN is given as the user
+// wants it; the box may become smaller, or its top that of the highest grain. With
+// COUNT 0 they start from the grains in PACKING, which keep their sizes.
+// STATUS_NOT_CONVERGED: the target was not reached in most_cycles; the reason has what
+// was. On success the caller frees *PACKING.
 
 // COUNT grains dropped into the domain from a loose cloud above it [K Fig. 3.1].
 enum status deposit(const struct making *making, int count, struct reason *reason);
 
-// From loose points, by radii that grow (GROW) or by sides that close in.
+// From loose points, by growing radii (GROW) or a contracting box.
 enum status densify(const struct making *making, int count, bool grow,
                     struct reason *reason);
 
-// Grains at random, overlapping, that push each other away.
+// Overlapping grains at random places that push each other away.
 enum status repel(const struct making *making, int count, struct reason *reason);
 
 // ---- shared by them -----------------------------------------------------------------
 
 enum { MAX_WALLS = 16 };
 
-// How much smaller than they are the grains of PACKING have to be, none to overlap
-// another or a wall: 1 where none does.
+// The factor by which the grains of PACKING must shrink so that none overlaps another
+// or a wall; 1 if none does.
 double fitting_size(const struct packing *packing);
 
 // The walls of a domain; without those that close it at the top if OPEN.
@@ -105,17 +105,17 @@ enum status start_dynamics(const struct making *making, double stiffness, double
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
 
-// Goes on from the state kept of a run like this one, if there is one: that of the
-// engine into DEM, numbers called "protocol" into COUNT doubles of PROTOCOL.
-// STATUS_BAD_DATA: it is not of such a run.
+// Restores the checkpoint of a run like this one, if there is one: the engine's state
+// to DEM, the array "protocol" to the COUNT doubles PROTOCOL. STATUS_BAD_DATA: it is
+// not of such a run.
 enum status restore_dynamics(const struct making *making, struct dem *dem,
                              double *protocol, int count, struct reason *reason);
 
-// Keeps it if it is time.
+// Keeps a checkpoint if it is due.
 void keep_if_due(const struct making *making, const struct dem *dem,
                  const double *protocol, int count);
 
-// Places and radii as they are now; back into a box that repeats.
+// Copies positions and radii from DEM to the packing, wrapped into a periodic box.
 void take_grains(const struct making *making, const struct dem *dem);
 
 // The largest speed of a grain, m/s.
@@ -124,11 +124,11 @@ double largest_speed(const struct making *making, const struct dem *dem);
 // Mean stress, Pa, over the volume of the domain.
 double mean_stress(const struct making *making, const struct dem *dem);
 
-// Mean contacts of the grains with enough to be held: two with friction, four without
-// (two dimensions: three).
+// Mean number of contacts of the grains with enough contacts to be stable: two with
+// friction, four without (three in two dimensions).
 double backbone_coordination(const struct making *making, const struct dem *dem);
 
-// What is true of every end.
+// Fills making->reached from DEM.
 void note_end(const struct making *making, const struct dem *dem);
 
 #endif

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A hierarchy of uniform grids: level k has the grains with radii in (largest/2,
+// largest], in cells at least one diameter wide, as linked lists. A query visits, on
+// each level, the cells within reach of that level's largest radius: so its cost does
+// not depend on the ratio of radii.
 #include "grids.h"
 
 #include "basics/memory.h"
@@ -65,7 +69,7 @@ double grids_radius(const struct grids *grids, int grain)
     return grids->radius[grain];
 }
 
-// Cells at least one largest diameter wide, and no more of them than a few a grain.
+// Cells at least one largest diameter wide, and at most about four a grain.
 static void make_cells(struct level *level, const struct domain *domain,
                        double expected)
 {
@@ -100,8 +104,8 @@ static struct level *level_of(struct grids *grids, double radius)
     return &grids->level[k];
 }
 
-// The cells along AXIS that a sphere at PLACE reaches: FROM, which may be negative
-// where the box repeats, and how many.
+// The cells along AXIS within REACH of PLACE: the first, FROM, which may be negative
+// along a periodic axis, and how many.
 static int reached(const struct grids *grids, const struct level *level, double place,
                    double reach, int axis, int *from)
 {

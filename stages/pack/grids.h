@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains placed so far, found by place: one grid of cells for each halving of the
-// radius, so that asking costs the same at any ratio of radii.
+// Look-up of placed grains by position: one grid of cells for each halving of the
+// radius, so that a query costs the same at any ratio of radii.
 #ifndef CRAQUELURE_PACK_GRIDS_H
 #define CRAQUELURE_PACK_GRIDS_H
 
@@ -17,7 +17,7 @@ void grids_free(struct grids *grids);
 // Adds the next grain: the first is 0.
 void grids_add(struct grids *grids, struct vector centre, double radius);
 
-// What has been added, m.
+// The grains added so far; lengths in m.
 int grids_count(const struct grids *grids);
 struct vector grids_centre(const struct grids *grids, int grain);
 double grids_radius(const struct grids *grids, int grain);

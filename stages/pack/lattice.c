@@ -4,8 +4,8 @@
 
 enum { MAX_IN_CELL = 4 };
 
-// A unit cell of touching grains of radius 1: its edges, and where its grains are, as
-// shares of the edges, the lowest at 0.
+// Lattices by their unit cells, of touching grains of radius 1: edges, and positions of
+// the grains as fractions of the edges, the lowest at 0.
 struct unit_cell {
     double edge[3];
     int n;
@@ -41,7 +41,7 @@ static struct unit_cell unit_cell(enum lattice lattice)
     return simple;
 }
 
-// Highest place of a grain along AXIS.
+// Highest position of a grain along AXIS, in edges of the cell.
 static double highest(const struct unit_cell *cell, int axis)
 {
     double place = 0;
@@ -50,8 +50,9 @@ static double highest(const struct unit_cell *cell, int axis)
     return place;
 }
 
-// Where the box repeats it is whole cells with the grains in their middle; elsewhere it
-// ends where the outermost grains do. Lengths in edges of the cell.
+// Distance from the lower side of the box to the first grain. A periodic box has whole
+// cells with the grains in their middle; else the box ends with the outermost grains.
+// In edges of the cell.
 static double lead(const struct unit_cell *cell, int axis, bool periodic)
 {
     return periodic ? (1 - highest(cell, axis)) / 2 : 1 / cell->edge[axis];

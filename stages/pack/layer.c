@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The extra layer [K 3.3.5]: a regular grid of auxiliary grains of the mean radius,
+// which touches the outermost grain on one side. The grid is spread evenly over the
+// box, so that it also fits a periodic one.
 #include "basics/memory.h"
 #include "pack.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// The mean as the first radius and what the others differ by: exact for equal grains.
+// Mean radius, as the first plus the mean difference: exact for equal grains.
 static double mean_radius(const struct packing *packing)
 {
     const double first = packing->radius[0];
@@ -15,7 +18,7 @@ static double mean_radius(const struct packing *packing)
     return first + more;
 }
 
-// How far along the axis of WALL, towards it, the surface of a grain reaches.
+// The coordinate of the outermost surface of a grain towards WALL.
 static double farthest_surface(const struct packing *packing, int wall)
 {
     const double sign = wall % 2 ? 1 : -1;
@@ -26,7 +29,7 @@ static double farthest_surface(const struct packing *packing, int wall)
     return sign * far;
 }
 
-// Whether the round walls leave room there, whatever the height.
+// Whether a grain fits within the round walls there, at any height.
 static bool within_sides(const struct domain *domain, struct vector place,
                          double radius)
 {
@@ -49,8 +52,7 @@ enum status check_layer(const struct domain *domain, int wall, struct reason *re
                   names[wall]);
 }
 
-// As many as fit side by side, evenly spread, so that they also fit a side that
-// repeats.
+// The number of grains that fit side by side along AXIS.
 static double count_beside(const struct domain *domain, struct vector edge, int axis,
                            double radius)
 {
@@ -58,8 +60,7 @@ static double count_beside(const struct domain *domain, struct vector edge, int 
     return fmax(floor(component(edge, axis) / (2 * radius) * (1 + 1e-9)), 1);
 }
 
-// The place in the layer that is I along the first direction and J along the second, of
-// COUNT.
+// The place (I, J) in the layer, of COUNT along each of its two axes.
 static struct vector place_of(const struct packing *packing, const int axis[2],
                               const double count[2], int i, int j)
 {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The domain that the parameters say.
+// The domain from the user's parameters, with all checks: it must be complete, have
+// room for the largest grain, and contain its cut-out entirely (else its volume is not
+// known).
 #include "domain.h"
 
 static struct vector vector_of(const double three[3])
@@ -144,8 +146,7 @@ static enum status make_cut(const struct domain_parameters *parameters,
     return STATUS_OK;
 }
 
-// Farthest and nearest that the cut comes to the vertical axis through the domain's
-// centre, m.
+// Largest and smallest distance of the cut-out from the vertical axis of the domain, m.
 static double cut_farthest(const struct domain *domain)
 {
     const struct vector apart = subtract(domain->cut_centre, domain->centre);
@@ -163,7 +164,7 @@ static double cut_nearest(const struct domain *domain)
                   fmax(fabs(apart.y) - edge.y / 2, 0));
 }
 
-// Farthest that the cut comes from the centre of the domain, m.
+// Largest distance of the cut-out from the centre of the domain, m.
 static double cut_reach(const struct domain *domain)
 {
     const struct vector apart = subtract(domain->cut_centre, domain->centre);
@@ -178,7 +179,7 @@ static double cut_reach(const struct domain *domain)
                                 flat * (fabs(apart.y) + edge.y / 2), up});
 }
 
-// The volume left is known only when the cut does not stick out.
+// Refuses a cut-out that is not inside the domain: the volume would not be known.
 static enum status check_cut(const struct domain *domain, struct reason *reason)
 {
     const double slack = domain_rounding(domain);

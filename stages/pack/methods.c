@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the parameters to the method that puts the grains there.
+// Chooses the method by the parameters, checks them, and gives it a domain. If the user
+// gives only a count, the domain is a cube of the volume that the method is expected to
+// need (expected_porosity); if only a domain, the count follows alike. Radii are drawn
+// from a clone of the random stream first, so that both see the same grains.
 #include "methods.h"
 
 #include "pack.h"
@@ -62,7 +65,7 @@ static enum status check_lattice(const struct pack_parameters *parameters,
     return STATUS_OK;
 }
 
-// The box of the counts, or the domain to fill and the counts that cover it.
+// The box of the given counts, or the domain to fill and the counts that cover it.
 static enum status lattice_domain(const struct pack_parameters *parameters,
                                   enum lattice lattice, int64_t counts[3],
                                   struct domain *domain, struct reason *reason)
@@ -156,7 +159,7 @@ static enum status make_drawn(const struct pack_parameters *parameters,
 
 // ---- moving grains ------------------------------------------------------------------
 
-// Before anything is known of it.
+// The porosity that the method usually reaches.
 static double expected_porosity(const struct pack_parameters *parameters)
 {
     const struct dynamics_parameters *how = &parameters->dynamics;
@@ -192,7 +195,7 @@ static enum status check_target(const struct pack_parameters *parameters,
     return STATUS_OK;
 }
 
-// Of COUNT grains as they will be drawn; in two dimensions the area, m^2.
+// Volume of COUNT grains as they will be drawn; in two dimensions the area, m^2.
 static double sum_of_sizes(const struct sizes *sizes, int count, int dimensions,
                            const gsl_rng *random)
 {
@@ -206,7 +209,7 @@ static double sum_of_sizes(const struct sizes *sizes, int count, int dimensions,
     return sum;
 }
 
-// A cube, or square, for the count, where the user gives no box.
+// A cube, or square, for the count, if the user gives no box.
 static enum status give_box(const struct pack_parameters *parameters,
                             const struct sizes *sizes, const gsl_rng *random,
                             struct domain_parameters *box, struct reason *reason)
@@ -225,7 +228,7 @@ static enum status give_box(const struct pack_parameters *parameters,
     return STATUS_OK;
 }
 
-// As many as make the domain as full as is expected.
+// The number of grains that fill the domain to the expected porosity.
 static enum status count_grains(const struct pack_parameters *parameters,
                                 const struct domain *domain, const struct sizes *sizes,
                                 const gsl_rng *random, int *count,
@@ -266,7 +269,7 @@ static enum status move_grains_there(const struct making *making,
     }
 }
 
-// Of grains that are there: how large they are is all that moving asks.
+// The sizes of given grains: moving needs only their range.
 static struct sizes sizes_of(const struct packing *packing)
 {
     struct sizes sizes = {.smallest = HUGE_VAL};

@@ -7,17 +7,16 @@
 #include "geometry/packing.h"
 #include "parameters.h"
 
-// Grains by any method but import, the domain they lie in, and how the dynamics ended
-// if there was any. PACKING holds grains already, in DOMAIN, if GIVEN: those that
-// moving begins from. On success the caller frees *PACKING; otherwise the
-// reason names the key.
+// Makes grains by any method but import, the domain they lie in, and the end state of
+// the dynamics, if any. If GIVEN, PACKING and DOMAIN hold the grains that moving starts
+// from. On success the caller frees *PACKING; otherwise the reason names the key.
 enum status make_grains(const struct pack_parameters *parameters, bool given,
                         struct progress *progress, struct domain *domain,
                         struct packing *packing, struct reached *reached,
                         struct reason *reason);
 
-// Refuses what moving grains cannot come to [check_moved.c]: STATUS_BAD_DATA, naming
-// the key.
+// STATUS_BAD_DATA, naming the key, for targets that moving grains cannot reach
+// [check_moved.c].
 enum status check_moved(const struct pack_parameters *parameters, bool given,
                         const struct domain *domain, const struct sizes *sizes,
                         struct reason *reason);

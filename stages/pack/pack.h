@@ -45,8 +45,8 @@ struct packing lattice_packing(enum lattice lattice, const int64_t counts[3],
 
 // ---- random places ------------------------------------------------------------------
 
-// COUNT grains at points that know nothing of each other: they may overlap.
-// On success the caller frees *PACKING.
+// COUNT grains at independent random points: they may overlap. On success the caller
+// frees *PACKING.
 enum status poisson_points(const struct domain *domain, const struct sizes *sizes,
                            int count, gsl_rng *random, struct packing *packing,
                            struct reason *reason);
@@ -72,17 +72,17 @@ enum status inward_spiral(const struct domain *domain, const struct sizes *sizes
 
 // ---- the extra layer ----------------------------------------------------------------
 
-// Lays a regular layer of grains of the mean radius on the outermost grain towards
-// WALL, 0 to 5, all across the box and within the walls of DOMAIN, and ends the box on
-// it [K 3.3.5]. They come last and have no bonds. STATUS_BAD_DATA where that side is
-// not flat, or is none: the box repeats.
+// Adds a regular layer of auxiliary grains of the mean radius on the outermost grain
+// towards WALL, 0 to 5, over the whole box within the walls of DOMAIN, and ends the box
+// with it [K 3.3.5]. They come last and have no bonds. STATUS_BAD_DATA if that side is
+// round or periodic.
 enum status add_layer(const struct domain *domain, int wall, struct packing *packing,
                       struct reason *reason);
 enum status check_layer(const struct domain *domain, int wall, struct reason *reason);
 
 // ---- contacts -----------------------------------------------------------------------
 
-// Void share of the box, counting overlaps twice as solid.
+// Porosity of the box; overlaps count twice as solid.
 double packing_porosity(const struct packing *packing);
 
 #endif

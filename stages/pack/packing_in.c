@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An empty packing in a domain.
 #include "basics/memory.h"
 #include "pack.h"
 

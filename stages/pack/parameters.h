@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the user may say to pack.
+// The parameters of pack.
 #ifndef CRAQUELURE_PACK_PARAMETERS_H
 #define CRAQUELURE_PACK_PARAMETERS_H
 

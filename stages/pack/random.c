@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Random points, and random sequential addition (RSA; Widom 1966): a grain is placed
+// at the first of many uniform points where it overlaps no other. With a fixed count
+// the largest come first, since they have the fewest places; without, grains come in
+// the order drawn until a given number of trials in a row fail.
 #include "basics/memory.h"
 #include "grids.h"
 #include "pack.h"
@@ -28,8 +32,8 @@ static int falling(const void *a, const void *b)
     return (*first < *second) - (*first > *second);
 }
 
-// A place where a grain overlaps none of those placed. False when MOST_TRIALS in a row
-// found none.
+// A place where a grain overlaps no other. False after MOST_TRIALS points in a row
+// without one.
 static bool find_place(const struct grids *grids, const struct domain *domain,
                        double radius, int64_t most_trials, gsl_rng *random,
                        struct vector *place)
@@ -66,7 +70,7 @@ static double solid_share(const struct domain *domain, const struct grids *grids
     return share;
 }
 
-// How many of the smallest would fill the domain.
+// The number of smallest grains that would fill the domain, at most 1e6.
 static double most_grains(const struct domain *domain, double smallest)
 {
     const double volume = 4 * smallest * smallest * smallest;

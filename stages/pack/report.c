@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Measures a packing: sizes, overlaps, contacts, fabric, porosity in slices, and the
+// radial distribution. Porosities are exact (spheres cut by boxes, overlaps counted
+// once). Bulk values are taken in a window away from the walls; for a cylinder or
+// sphere in the largest inscribed cuboid, whose half edge is (R - margin) /
+// sqrt(number of round axes).
 #include "report.h"
 
 #include "artifacts/document.h"
@@ -11,12 +16,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-// 13 classes of inclination: the contacts of no common lattice lie on their edges.
+// 13 classes of inclination: no contact of a common lattice lies on their borders.
 enum { MAX_SLICES = 4096, INCLINATIONS = 13, SIZES = 24 };
 static const int slices_of_a_diameter = 5, distances_of_a_diameter = 20,
                  diameters_to_look = 5;
 
-// What the measurements share.
+// The packing under study, and the windows of its measurements.
 struct subject {
     const struct packing *packing;
     const struct domain *domain;
@@ -65,8 +70,8 @@ static double *class_middles(double low, double width, int count)
 
 // ---- where --------------------------------------------------------------------------
 
-// The largest cuboid of equal sides across in a cylinder or sphere, MARGIN off its
-// wall.
+// The largest cuboid in a cylinder or sphere with equal edges along its round axes,
+// MARGIN away from the wall.
 static bool cuboid_within(const struct subject *subject, double margin,
                           struct window *window)
 {
@@ -112,7 +117,7 @@ static void choose_windows(struct subject *subject)
     subject->column.upper.z = subject->packing->upper.z;
 }
 
-// A grain that reaches round a box which repeats a hundred times is not worth the time.
+// Whether a grain spans a periodic box more than a hundred times: not worth the time.
 static bool reaches_round(const struct packing *packing)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -178,8 +183,8 @@ static void say_histogram(const int *contacts, int n, struct packing_report *rep
     report_curve(report, "/structure/coordination", grains, n ? most + 1 : 0);
 }
 
-// Walls that each grain touches; a round wall or a cut counts as one with all the
-// others.
+// The number of walls that each grain touches; in a domain with round walls or a
+// cut-out all walls together count as one.
 static int *touched_walls(const struct subject *subject)
 {
     const struct packing *packing = subject->packing;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is said of a packing: the numbers and curves of /summary and /structure, and the
-// same as JSON.
+// The report of a packing: the numbers and curves of /summary and /structure, in the
+// artifact and as JSON.
 #ifndef CRAQUELURE_PACK_REPORT_H
 #define CRAQUELURE_PACK_REPORT_H
 
@@ -25,11 +25,11 @@ struct packing_report {
 
 // Measures PACKING in DOMAIN, CONTACTS being surfaces at most GAP radius sums apart,
 // with friction if it HAS_FRICTION (two of them then hold a grain that would rattle
-// otherwise): everything but porosity and unbalanced ratio. What makes no sense for
-// this packing is left out, such as the bulk porosity where walls are everywhere near.
-// Bulk, slices and g(r) are taken in a box: for a cylinder or sphere the largest that
-// lies within, for a ring, or where something is cut out, not at all. Freed with
-// report_free.
+// otherwise): // everything but porosity and unbalanced ratio. Measures without meaning
+// for this packing are left out, such as the bulk porosity if walls are near
+// everywhere. Bulk, slices and g(r) are taken in a box: for a cylinder or sphere the
+// largest that lies within, for a ring, or where something is cut out, not at all.
+// Freed with report_free.
 struct packing_report report_packing(const struct packing *packing,
                                      const struct domain *domain,
                                      const struct contacts *contacts, double gap,

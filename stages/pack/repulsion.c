@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Explosive repulsion [K 3.1.1]: grains of their final size come at random, wherever
-// others are, and a few steps after each batch push apart those that overlap. K adds
-// one at a time; a hundredth of all is as gentle, and costs O(n) for each of the
-// batches.
+// Explosive repulsion [K 3.1.1]: grains of their final size are added at random places,
+// overlapping others, and after each batch a few cycles push overlapping grains apart.
+// K adds one grain at a time; batches of a hundredth of all are as gentle and cost O(n)
+// each. In the end the packing is brought to rest.
 #include "dynamics.h"
 #include "pack.h"
 
@@ -13,8 +13,8 @@
 
 enum { BATCHES = 100, CYCLES_A_BATCH = 200 };
 
-// Two centres in one place have no direction to part: each grain is moved by up to a
-// thousandth of its radius.
+// Two coincident centres have no direction in which to separate: each grain is moved by
+// up to a thousandth of its radius.
 static void separate_coincident(const struct making *making)
 {
     struct packing *packing = making->packing;
@@ -28,8 +28,8 @@ static void separate_coincident(const struct making *making)
     }
 }
 
-// A time step so short that even a grain on top of another leaves it in steps of a few
-// hundredths of a radius.
+// Pushes overlapping grains apart, with a time step so short that even a grain on top
+// of another leaves it in steps of a few hundredths of a radius.
 static enum status push_apart(const struct making *making, double stiffness,
                               const struct dem_wall *wall, int n_wall,
                               struct reason *reason)
@@ -67,7 +67,7 @@ static enum status come_to_rest(const struct making *making, double stiffness,
     return status;
 }
 
-// The next BATCH of grains, at random.
+// Adds grains up to UPTO, at random places.
 static enum status add_batch(const struct making *making, const double *radius,
                              int upto, struct reason *reason)
 {

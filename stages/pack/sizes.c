@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Radii by inversion of the cumulative distribution, truncated to [smallest, largest].
+// A distribution by mass is drawn by number: the number density is the mass density
+// over r^3, so
+//     power law      exponent + 3,
+//     lognormal      mean of ln r lower by 3 variances, the same variance,
+//     normal         no closed inverse: pieces with a truncated normal, thinned by
+//                    rejection with (low / r)^3,
+//     sieve          piecewise constant mass density: number density ~ r^-3 in a piece.
+// Upper tails are drawn by their mirror images: differences of probabilities near 1
+// would cancel.
 #include "sizes.h"
 
 #include "basics/memory.h"
@@ -15,7 +25,7 @@ static double power_integral(double low, double high, double exponent)
     return rise == 0 ? log(high / low) : expm1(rise) / (1 - exponent);
 }
 
-// From LOW to HIGH with a density ~ r^-exponent, by its inverse.
+// Draws from a density ~ r^-exponent between LOW and HIGH, by its inverse.
 static double draw_power(double low, double high, double exponent, gsl_rng *random)
 {
     const double share = gsl_rng_uniform(random), span = log(high / low);
@@ -25,8 +35,7 @@ static double draw_power(double low, double high, double exponent, gsl_rng *rand
     return fmin(fmax(low * exp(along), low), high);
 }
 
-// Probability of a standard normal from LOW to HIGH. In the upper tail by its mirror
-// image: differences of probabilities near one would cancel.
+// Probability of a standard normal between LOW and HIGH.
 static double normal_share(double low, double high)
 {
     if (low > 0) return normal_share(-high, -low);
@@ -51,7 +60,7 @@ static int draw_piece(const struct sizes *sizes, gsl_rng *random)
     return piece;
 }
 
-// ---- from what the user says --------------------------------------------------------
+// ---- from the user's parameters -----------------------------------------------------
 
 static enum status check_range(const struct sizes *sizes, struct reason *reason)
 {

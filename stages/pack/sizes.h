@@ -21,10 +21,10 @@ enum size_distribution {
 
 enum size_share { SHARE_OF_NUMBER, SHARE_OF_MASS };
 
-// What the user says. NAN where nothing was said.
+// The user's parameters; NAN where not given.
 struct size_parameters {
     int distribution; // enum size_distribution
-    int by;           // enum size_share: what the distribution shares out
+    int by;           // enum size_share: a distribution by number or by mass
     double radius; // the one, the mean (normal, lognormal) or the first (two_mode), m
     double smallest, largest;           // m
     double spread;                      // standard deviation over mean, 1

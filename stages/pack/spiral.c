@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The inwards packing method [K 3.1.2, Fig. 3.2]: the front is a queue of pairs of
-// neighbours; a new grain touches both of a pair and makes new pairs.
+// neighbours; a new grain touches both of a pair and makes new pairs. Its centre is an
+// intersection of two loci, circles of radius r_a + r and r_b + r, or a line at r from
+// a wall. With the centres `far` apart the foot on their line is at
+//     from = (far + (r_a - r_b) (r_a + r_b) / far) / 2,
+// and the points are sqrt((r_a - from) (r_a + from)) to either side: products instead
+// of differences of squares, so that grains touch to the last digit.
 #include "basics/memory.h"
 #include "basics/sorted.h"
 #include "grids.h"
@@ -9,13 +14,13 @@
 #include <float.h>
 #include <stdlib.h>
 
-// Walls stand among the grains of a pair as negative numbers: of a box x lower, x
-// upper, z lower, z upper; of a disc its rim.
+// Walls are negative numbers among the grains of a pair: x lower, x upper, z lower, z
+// upper of a box; the rim of a disc.
 enum { WALL_FIRST = -1, WALLS_OF_BOX = 4, MAX_NEAR = 4096, MAX_VISITS = 8 };
 
 struct pair {
     int a, b;   // a is a grain
-    int visits; // how often it was tried in vain
+    int visits; // failed attempts
 };
 
 struct spiral {
@@ -57,8 +62,6 @@ static struct locus locus_of(const struct spiral *spiral, int thing, double radi
 }
 
 // The two points of circle A on B, a circle or a line; false when there are none.
-// Both are exactly on A by construction; products instead of differences of squares
-// keep them on B.
 static bool meet(struct locus a, struct locus b, struct vector points[2])
 {
     struct vector along, side;
@@ -114,8 +117,8 @@ static void queue(struct spiral *spiral, struct pair pair)
     spiral->front[spiral->n_front++] = pair;
 }
 
-// Pairs grain NEW with the walls and the earlier grains from which it is at most one
-// diameter of the smaller away: what a grain could bridge.
+// Pairs grain NEW with the walls and the earlier grains at most one diameter of the
+// smaller away: a gap that a grain could bridge.
 static void add_pairs(struct spiral *spiral, int new)
 {
     const struct vector place = grids_centre(spiral->grids, new);
@@ -145,7 +148,8 @@ static void place_grain(struct spiral *spiral, struct vector place, double radiu
     add_pairs(spiral, grids_count(spiral->grids) - 1);
 }
 
-// Where a grain touches both of PAIR, free of all others, the outer place first.
+// The place where a grain touches both of PAIR and overlaps no other, the outer one
+// first.
 static bool find_place(const struct spiral *spiral, struct pair pair, double radius,
                        struct vector *place)
 {
@@ -186,8 +190,8 @@ static void place_first(struct spiral *spiral, double radius)
     place_grain(spiral, corner, radius);
 }
 
-// A radius that fits nowhere at a pair is kept for the next, so that the grains placed
-// have the sizes that were drawn; the pair gets other radii later.
+// A radius that does not fit at a pair is kept for the next pair, so that the grains
+// placed have the distribution drawn; the pair is tried with other radii later.
 static void fill(struct spiral *spiral)
 {
     place_first(spiral, sizes_draw(spiral->sizes, spiral->random));
@@ -217,8 +221,8 @@ static bool fits(const struct spiral *spiral, struct pair pair, int side, double
     return is_free(spiral, *place, radius);
 }
 
-// The grain that touches both of PAIR and grows until it touches a third: by bisection
-// to the last digit, since a third may be grain or wall.
+// The largest grain that touches both of PAIR and overlaps no third grain or wall: by
+// bisection to the last digit.
 static bool grow_grain(const struct spiral *spiral, struct pair pair, int side,
                        double least, double most, struct vector *place, double *radius)
 {
