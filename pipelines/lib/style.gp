@@ -7,7 +7,7 @@ axes = 'set border 3 linecolor "#555555"; \
     set tics nomirror out scale 0.6 textcolor "#222222"; \
     set grid xtics ytics linetype 1 linecolor "#e4e4e4" linewidth 1'
 
-# Colours: one meaning each, a line each, for `colour` of common.sh reads them too. Nothing must be
+# Colours: one meaning each, a line each, for `colour` of common.py reads them too. Nothing must be
 # told apart by red and green.
 black = "#222222"
 grey = "#777777"

@@ -4,7 +4,6 @@
 #     make boundary-layers  ->  build/runs/boundary-layers/picture.svg [K Figs. 3.17, 3.18, 3.44]
 #     make boundary-study       what the number of layers changes, and no lattice at all
 
-pipeline_goals += boundary-study
 boundary_folder := $(RUNS)/boundary-layers
 boundary_dryings := 2d-surface 2d-auxiliary 3d-surface 3d-auxiliary
 boundary_drawn := $(boundary_dryings:%=$(boundary_folder)/%/drying.h5)
@@ -21,11 +20,6 @@ boundary_3d := $(boundary_folder)/3d-surface
 boundary_studied := $(boundary_counts:%=$(boundary_3d)/layers-%.h5) $(boundary_3d)/lumped.h5
 boundary_law := throat_radius.distribution=normal boundary_layer.columns=surface
 
-# Total time, rate at a saturation of 0.7 of the first, and where the first period ends.
-boundary_row := "\(.summary.boundary_layers)\t\($$t)\t\($$r)\t" + \
-	"\(.summary.first_period_end_saturation)"
-
-.PHONY: boundary-study
 boundary-layers: ## pictures of boundary layers, and of their exchange areas
 
 boundary-study: ## what the number of layers of a boundary layer changes
@@ -39,17 +33,7 @@ $(call report,$(boundary_folder)/picture.svg,figures/boundary-layer,$(boundary_d
 $(foreach n,$(boundary_counts),$(call dry,$(boundary_3d)/layers-$n.h5,samples/boundary-3d.json,$(boundary_law) boundary_layer.layers=$n,$(boundary_3d)/network.h5))
 $(call dry,$(boundary_3d)/lumped.h5,samples/boundary-3d.json,$(boundary_law) boundary_layer.exchange=lumped,$(boundary_3d)/network.h5)
 
-boundary-study: $(boundary_studied)
-ifdef really
-	@printf 'layers\ttime, s\trate at S = 0.7\tfirst period ends at S =\n'
-	@for f in $(boundary_studied); do inspect=$(BUILD)/bin/inspect; \
-		data() { $$inspect --data "/history/$$1" $$f; }; \
-		r=$$(jq -n --argjson s "$$(data saturation)" --argjson r "$$(data rate)" \
-			'[range($$s | length) | select($$s[.] <= 0.7)][0] | $$r[.] / $$r[0]'); \
-		$$inspect $$f | jq -r --argjson t "$$(data time | jq last)" --argjson r "$$r" \
-			'$(boundary_row)'; done
-	@echo 'The last row is lumped.'
-endif
-
+$(call report,$(boundary_3d)/layers.md,studies/boundary-layers/table,$(boundary_studied))
+$(call study,boundary-study,$(boundary_3d)/layers.md)
 $(call study,boundary-layers,$(boundary_folder)/picture.svg)
 endif

@@ -22,7 +22,7 @@ bridges_errors := $(BUILD)/tests/bench/bridge_errors
 bridges: ## every capillary bridge model against the exact solution (two minutes of one core)
 
 ifneq ($(call asked,bridges,$(bridges_folder)),)
-$(foreach c,$(bridges_cases),$(call artifact,$(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(bridges_key) set=case=$c,$(bridges_program) pipelines/lib/common.sh,$(bridges_program) case $c $(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(BUILD)/bin/bridge))
+$(foreach c,$(bridges_cases),$(call artifact,$(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(bridges_key) set=case=$c,$(bridges_program),$(bridges_program) case $c $(bridges_folder)/$(firstword $(subst :, ,$c)).json,$(BUILD)/bin/bridge))
 $(call report,$(bridges_folder)/cases.svg,studies/bridges/report,$(bridges_json),curves $(bridges_json))
 $(call report,$(bridges_folder)/ratios.md,studies/bridges/report,$(bridges_json),ratios $(bridges_json))
 $(call report,$(bridges_folder)/ratios.svg,studies/bridges/report,$(bridges_json),ratios-picture $(bridges_json))

@@ -24,7 +24,7 @@ k_networks := $(foreach f,$(k_frictions),$(k_names:%=%-$f))
 # Network $1, of $2 grains with friction $3, from scene $4: in folder $5.
 define k_network
 $(call pack,$5/packing.h5,$4,count=$2 dynamics.friction=$3,)
-$(if $(findstring open,$1),$(call artifact,$5/open.h5,stage=networks-k version=1,pipelines/studies/networks-k/report pipelines/lib/common.sh $5/packing.h5,pipelines/studies/networks-k/report open $5/packing.h5 $5/open.h5,$(BUILD)/bin/pack))
+$(if $(findstring open,$1),$(call artifact,$5/open.h5,stage=networks-k version=1,pipelines/studies/networks-k/open pipelines/lib/common.py $5/packing.h5,pipelines/studies/networks-k/open $5/packing.h5 $5/open.h5,$(BUILD)/bin/pack))
 $(call tessellate,$5/network.h5,$4,boundary=$(if $(findstring truncate,$1),truncate,eliminate),$5/$(if $(findstring open,$1),open,packing).h5)
 $(foreach s,$(k_shares),$(call merge-nodes,$5/merged-$s.h5,$4,threshold=$s,$5/network.h5))
 endef
@@ -35,7 +35,7 @@ networks-k: ## the networks of K 3.5 and 3.7: counts, merging, distributions (ab
 ifneq ($(call asked,networks-k,$(k_folder)),)
 $(foreach n,$(k_names),$(call k_network,$n,$(word 1,$(k_counts/$n)),0,samples/networks-k-$(firstword $(subst -, ,$n))d.json,$(k_folder)/$n-0))
 $(foreach n,$(k_names),$(call k_network,$n,$(word 2,$(k_counts/$n)),0.5,samples/networks-k-$(firstword $(subst -, ,$n))d.json,$(k_folder)/$n-0.5))
-$(call report,$(k_folder)/table.md,studies/networks-k/report,$(foreach n,$(k_networks),$(call k_files,$n)),table $(k_folder))
+$(call report,$(k_folder)/table.md,studies/networks-k/table,$(foreach n,$(k_networks),$(call k_files,$n)),$(k_folder))
 $(call report,$(k_folder)/layer.svg,figures/network,$(call k_files,2-267-truncate-0))
 $(call report,$(k_folder)/grains.svg,figures/network,$(wordlist 1,2,$(call k_files,3-1220-eliminate-0.5)))
 

@@ -8,7 +8,7 @@ packings_folder := $(RUNS)/packings
 frictions := 0 0.1 0.3 0.5 1
 
 # Packing $1 with the settings $2, and what is said of it.
-packing = $(call artifact,$(packings_folder)/$1.json,stage=pack version=$(call version_of,pack) $(2:%=set='%'),pipelines/studies/packings/report pipelines/lib/common.sh,pipelines/studies/packings/report run $(packings_folder)/$1.h5 $(2:%='%') $(packings_folder)/$1.json,$(BUILD)/bin/pack)
+packing = $(call artifact,$(packings_folder)/$1.json,stage=pack version=$(call version_of,pack) $(2:%=set='%'),pipelines/studies/packings/run pipelines/lib/common.py,pipelines/studies/packings/run $(packings_folder)/$1.h5 $(2:%='%') $(packings_folder)/$1.json,$(BUILD)/bin/pack)
 # $1 grains with friction $2.
 close_packing = $(call packing,close-$1-$2,method=radius_expansion count=$1 periodic=[true$(,)true$(,)true] dynamics.overlap=1e-4 dynamics.friction=$2)
 # $2 grains in $1 dimensions, with friction $3.
@@ -23,7 +23,7 @@ $(foreach f,$(frictions),$(call close_packing,2000,$f))
 $(call close_packing,10000,0)
 packings_said := $(packings_folder)/close-10000-0.json $(frictions:%=$(packings_folder)/close-2000-%.json) \
 	$(foreach n,2d-267 2d-1000 2d-4161 3d-223 3d-1220,$(foreach f,0 0.5,$(packings_folder)/settled-$n-$f.json))
-$(call report,$(packings_folder)/table.md,studies/packings/report,$(packings_said),table $(packings_folder))
+$(call report,$(packings_folder)/table.md,studies/packings/table,$(packings_said),$(packings_folder))
 
 $(call study,packings,$(packings_folder)/table.md)
 endif
