@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -28,7 +29,7 @@ def arguments(said, most=None):
     fewer words, or more (or more than MOST), the program says so and ends (64)."""
     usage = said.partition(":")[0]
     wanted, given = usage.split()[1:], sys.argv[1:]
-    least = sum(not (word[0] == "[" and word.rstrip(".")[-1] == "]") for word in wanted)
+    least = sum(not re.fullmatch(r"\[[^]]*\](\.\.\.)?", word) for word in wanted)
     most = most or (len(given) if "..." in usage else len(wanted))
     if not least <= len(given) <= most:
         print(f"Usage: {sys.argv[0]} {usage.split(maxsplit=1)[1]}", file=sys.stderr)
