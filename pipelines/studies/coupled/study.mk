@@ -13,7 +13,8 @@ coupled_samples := soft weak irregular stiff
 coupled_scene_soft := samples/soft-10x5x5.json force-protocol.force_scale=0.3
 coupled_scene_weak := $(coupled_scene_soft) dem-replay.bond.contact_strength=3e-8
 coupled_scene_irregular := samples/soft-300.json
-coupled_scene_stiff := samples/stiff-5x5x10.json
+# The lowest layer is held: on a wall alone the aggregate may come apart between two portions.
+coupled_scene_stiff := samples/stiff-5x5x10.json force-protocol.force_scale=1 dem-replay.support=fixed dem-replay.damping_ratio=0.7 dem-replay.local_damping=0 dem-replay.time_step_safety=0.045
 coupled_stages := pack tessellate merge-nodes dry force-protocol dem-replay deform crackstats
 coupled_version := $(shell echo $(foreach s,$(coupled_stages),$(call version_of,$s)) | tr ' ' .)
 
