@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Union-find over grains with periodic images: each grain knows the image of its
+// parent it lies in. A broken bond whose two grains are in one tree already, but with
+// another image than the bond's, closes a loop around the box: the cluster spans that
+// axis.
 #include "clusters.h"
 
 #include <stdlib.h>
 
-// Grains in trees, one a cluster; each knows in which repetition of the box it is, seen
-// from its parent, so that a cluster that leads around the box is noticed.
+// A grain in the tree of its cluster; the sums are valid at the root.
 struct tree {
     int parent;
     struct image image; // seen from the parent

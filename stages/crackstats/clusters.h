@@ -12,9 +12,9 @@ struct clusters {
     bool spans[3]; // along x, y, z: whether any one does
 };
 
-// Appends the size of each, in broken bonds, to SIZES. A cluster spans along an axis
-// when it has grains within a mean radius of both ends of the aggregate; where the box
-// repeats, when it leads around the box, back to its own image.
+// Appends the size of each cluster, in broken bonds, to SIZES. A cluster spans along an
+// axis when it has grains within a mean radius of both ends of the aggregate; along a
+// periodic axis, when it leads around the box to its own image.
 struct clusters find_clusters(const struct run *run, struct sizes *sizes);
 
 #endif

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Counts by classes. A share on the border of two classes, to 1e-9, belongs to the
+// lower one; in profiles over the height it counts half in each, so that bonds between
+// two layers of a lattice give a symmetric profile.
 #include "count.h"
 
 #include "basics/memory.h"

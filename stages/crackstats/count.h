@@ -7,14 +7,14 @@
 
 enum { PERIOD_FIRST, PERIOD_SECOND, PERIOD_COUNT };
 
-// In how many equal parts heights, saturations and times are counted.
+// The numbers of equal classes of heights, saturations and times.
 struct classes {
     int n_slice;    // of the height of the box, from the bottom up
     int n_interval; // of the saturation, from 1 down; of the drying time, from the
                     // start
 };
 
-// How many, by mode and drying period, height, saturation and time.
+// Numbers of cracks, by mode and drying period, height, saturation and time.
 struct counts {
     double period[PERIOD_COUNT][MODE_COUNT];
     double (*slice)[MODE_COUNT];      // (n_slice)
@@ -23,13 +23,13 @@ struct counts {
     double *place;                    // (n_interval, n_slice) of saturation; both modes
 };
 
-// The class of SHARE, 0 to 1, in N equal ones. On the border of two, but for rounding,
-// it is the lower: intervals count their ends.
+// The class of SHARE, 0 to 1, among N equal ones. On the border of two, to rounding, it
+// is the lower: intervals include their upper ends.
 int class_of(double share, int n);
 
-// The slices, of N, that hold one half each of what lies at SHARE of the height: twice
-// the same, but on the border of two, where bonds between two layers of a lattice lie.
-// So a body turned upside down has the profile turned upside down.
+// The two slices, among N, that count half each of what lies at SHARE of the height:
+// the same slice twice, except on the border of two, where bonds between two layers of
+// a lattice lie. So a body upside down has its profile upside down.
 struct slices {
     int slice[2];
 };
@@ -38,15 +38,15 @@ struct slices slices_at(double share, int n);
 // Height in the box, 0 to 1.
 double height_share(const struct packing *packing, double z);
 
-// The slices, of N, that a crack of BOND counts in: by the height of the bond before
-// anything moved, so that one between two layers stays on their border however the
-// grains have shifted since.
+// The slices, among N, in which a crack of BOND counts: by the initial height of the
+// bond, so that one between two layers stays on their border however the grains have
+// moved.
 struct slices slices_of_bond(const struct packing *packing, int bond, int n);
 
 struct counts counts_new(struct classes classes);
 void counts_free(struct counts *counts);
 
-// Those of both periods.
+// Sets ALL to the cracks of both periods.
 void count_all(double all[MODE_COUNT], const struct counts *counts);
 
 // Adds the cracks of RUN. One at the very end of the first period counts there.

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Shape change of the largest fragment: the displacement gradient G that fits
+//     u_i = a_i + sum_j G_ij x_j
+// by least squares over its grains (GSL, truncated singular values), with x in units
+// of the body around its middle, where the columns are of one size. Then
+//     shrinkage = 1 - det(1 + G) = -(tr G + sum of principal minors + det G),
+// which does not subtract numbers near 1.
 #include "deformation.h"
 
 #include "basics/memory.h"
@@ -9,8 +15,7 @@
 
 enum { MIN_GRAINS = 4 }; // for 1, x, y, z
 
-// The grains to fit: in units of the body's size around its middle, where the least
-// squares see no difference between nanometres and kilometres.
+// The grains to fit, in units of the body's size around its middle.
 struct fit {
     size_t n;
     gsl_matrix *place;           // (n, 4) 1, x, y, z
@@ -44,8 +49,8 @@ static void fill(struct fit *fit, const struct run *run, const uint8_t *is_in,
     }
 }
 
-// G[i][j]: change of displacement i along axis j. What the grains cannot tell, because
-// they lie in a plane, is singular and comes out as 0.
+// G[i][j]: change of displacement i along axis j. A direction that the grains do not
+// determine, because they lie in a plane, is singular and gives 0.
 static void solve(const struct fit *fit, double G[3][3])
 {
     static const double singular = 1e-9;
@@ -65,7 +70,7 @@ static void solve(const struct fit *fit, double G[3][3])
     gsl_multifit_linear_free(work);
 }
 
-// 1 - det(1 + G) by its terms, without the 1 that would swallow small ones.
+// 1 - det(1 + G), expanded so that the 1 cancels exactly.
 static double shrinkage_of(double G[3][3])
 {
     const double trace = G[0][0] + G[1][1] + G[2][2];

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cracks and liquid by slices of the height. Over all slices s and intervals k of the
+// network's saturation, Pearson's correlation of
+//     left = S_s(k - 1) - S_s(k)    (saturation that the slice loses in the interval)
+//     opened = cracks that open in the slice in the interval
+// says whether cracks open where the liquid leaves. Also counted: the saturation of
+// the slice in which each crack opens.
 #include "drying_front_correlation.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether cracks open where the liquid goes [K 5.8, Fig. 5.19].
+// Whether cracks open where the liquid leaves [K 5.8, Fig. 5.19].
 #ifndef CRAQUELURE_CRACKSTATS_DRYING_FRONT_CORRELATION_H
 #define CRAQUELURE_CRACKSTATS_DRYING_FRONT_CORRELATION_H
 
@@ -8,12 +8,12 @@
 
 enum { LOCAL_CLASSES = 10 };
 
-// Of one run; or, added up, of many.
+// Of one run, or the sum over many.
 struct drying_front {
     double *slice;               // (n_interval, n_slice) saturations, as each ends
-    double local[LOCAL_CLASSES]; // cracks in slices as dry as that: from 1 down to 0
-    double local_sum;            // of those saturations over the cracks
-    double cracks;               // of which it is the sum
+    double local[LOCAL_CLASSES]; // cracks by the saturation of their slice, 1 to 0
+    double local_sum;            // sum of these saturations over the cracks
+    double cracks;               // number of cracks in that sum
 };
 
 struct drying_front drying_front_new(struct classes classes);
@@ -28,9 +28,8 @@ void drying_front_sum(struct drying_front *sum, const struct drying_front *front
                       struct classes classes);
 
 // Pearson's correlation, over all slices and intervals of saturation, of the cracks
-// that opened there then (count.h's PLACE) with the share of the slice's liquid that
-// left, for slice saturations and counts of RUNS runs added up. NAN when either is the
-// same everywhere.
+// that opened in them (counts.place) with the saturation that the slice lost. SLICE and
+// PLACE are sums over RUNS runs. NAN if either is the same everywhere.
 double front_correlation(const double *slice, const double *place,
                          struct classes classes, int runs);
 

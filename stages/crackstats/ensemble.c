@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Adds runs one by one: the statistics of each are kept, tables are sums over the
+// runs. Squares of counts are summed as well, for the scatter over the runs
+// (scatter.h).
 #include "ensemble.h"
 
 #include "clusters.h"
@@ -29,7 +32,7 @@ void ensemble_free(struct ensemble *ensemble)
     *ensemble = (struct ensemble){0};
 }
 
-// ---- facts of one run ---------------------------------------------------------------
+// ---- statistics of one run ----------------------------------------------------------
 
 static void note_modes(double *value, const double of[MODE_COUNT])
 {
@@ -70,7 +73,7 @@ static void note_fragments(double *value, const struct run *run, struct sizes *s
     free(left);
 }
 
-// Spring-back: the share of the largest shrinkage that is gone at the end.
+// Spring-back: the part of the largest shrinkage that has recovered at the end.
 static void note_deformation(double *value, const struct run *run,
                              struct deformation *sum)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs added up: the facts of each, and the tables of all together.
+// An ensemble of runs: the statistics of each, and the sums of their tables.
 #ifndef CRAQUELURE_CRACKSTATS_ENSEMBLE_H
 #define CRAQUELURE_CRACKSTATS_ENSEMBLE_H
 
@@ -30,8 +30,8 @@ struct ensemble {
 struct ensemble ensemble_new(int most_runs, struct classes classes);
 void ensemble_free(struct ensemble *ensemble);
 
-// Adds RUN, which has as many snapshots as those before, and the LIQUID it dried from;
-// NULL: not known.
+// Adds RUN, which must have as many snapshots as the runs before. LIQUID is the drying
+// that loaded it; NULL: not known.
 void ensemble_add(struct ensemble *ensemble, const struct run *run,
                   const struct liquid *liquid);
 

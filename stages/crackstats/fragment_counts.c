@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Fragments by union-find over the intact bonds; auxiliary grains do not count.
 #include "fragment_counts.h"
 
 #include "basics/disjoint_sets.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments: grains that intact bonds still join.
+// Fragments: sets of grains joined by intact bonds.
 #ifndef CRAQUELURE_CRACKSTATS_FRAGMENT_COUNTS_H
 #define CRAQUELURE_CRACKSTATS_FRAGMENT_COUNTS_H
 
@@ -12,8 +12,8 @@ struct fragment_counts {
     int single;  // grains that no bond holds
 };
 
-// 1 for each grain of the largest fragment when the bonds with INTACT hold, the one
-// with the lowest grain of equals. (n_particle); the caller frees it.
+// 1 for each grain (n_particle) of the largest fragment if the bonds with INTACT
+// (n_bond) hold; among equals the one with the lowest grain. The caller frees it.
 uint8_t *largest_fragment(const struct packing *packing, const uint8_t *intact);
 
 // Appends the size of each fragment, in grains, to SIZES, unless that is NULL.

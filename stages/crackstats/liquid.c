@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Saturations of slices at given times. The drying is replayed once, from step to
+// step; within a step every throat is linear in time. The sum over throats is made
+// from scratch at each time, so that a dry slice is exactly 0.
 #include "liquid.h"
 
 #include "basics/memory.h"
@@ -57,7 +60,7 @@ static struct slices *throat_slices(const struct network *network, int n_slice)
     return slice;
 }
 
-// Summed anew at each time: what is dry is 0, not what rounding leaves.
+// Sums over all throats at each time: a dry slice is exactly 0.
 static void sum_slices(const struct interval *interval, double share,
                        const struct slices *in, int n_slice, double *saturation)
 {

@@ -5,14 +5,14 @@
 
 #include "network/drying_record.h"
 
-// What drying.h5 holds.
+// A drying, as read from its artifact.
 struct liquid {
     struct network network;
     struct drying_record record; // at least one step
     double first_period_end;     // s
 };
 
-// When the saturation of the network first is LEVEL, s.
+// The time (s) at which the saturation of the network first is LEVEL.
 double time_of_saturation(const struct liquid *liquid, double level);
 
 // Saturation of N_SLICE slices of equal height, from the bottom up, at N_TIME times

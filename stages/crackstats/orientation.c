@@ -3,7 +3,7 @@
 
 #include "count.h"
 
-// Of a bond along N: 0 upright, 1 level.
+// The class of a bond along N, by its inclination to z: from upright to level.
 static int inclination_class(struct vector n)
 {
     const double angle = atan2(hypot(n.x, n.y), fabs(n.z));

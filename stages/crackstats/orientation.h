@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which way cracked bonds point; the crack itself lies across.
+// Directions of cracked bonds; the crack itself is perpendicular to its bond.
 #ifndef CRAQUELURE_CRACKSTATS_ORIENTATION_H
 #define CRAQUELURE_CRACKSTATS_ORIENTATION_H
 

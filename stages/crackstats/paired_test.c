@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Paired t test and Wilcoxon's signed-rank test (1945). With the differences d_k
+// ranked by size, V is the sum of the ranks of positive ones. Without ties its
+// distribution is counted exactly: ways[s] is the number of subsets of {1..n} with sum
+// s, built rank by rank. Else V is nearly normal, of mean n (n + 1) / 4 and variance
+//     n (n + 1) (2 n + 1) / 24 - sum over ties of (t^3 - t) / 48,
+// with a continuity correction of 1/2.
 #include "paired_test.h"
 
 #include "basics/memory.h"
@@ -40,8 +46,8 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-// Of N differences by size, none 0: the sum of ranks of those above 0, ties sharing
-// theirs; and the sum of t^3 - t over the ties of t.
+// The sum of the ranks of positive differences among N sorted by size, none 0; ties
+// share their mean rank. TIES becomes the sum of t^3 - t over groups of t ties.
 static double positive_ranks(const double *value, int n, double *ties)
 {
     double sum = 0;
@@ -57,8 +63,8 @@ static double positive_ranks(const double *value, int n, double *ties)
     return sum;
 }
 
-// Chance that V is at least LEAST when every sign is as likely as its opposite: by
-// counting the choices of 1, 2, ... N whose sum is S.
+// Probability that V is at least LEAST if both signs are equally likely: by counting
+// the subsets of 1, 2, ... N with sum S.
 static double exact_tail(int n, double least)
 {
     const int width = n * (n + 1) / 2 + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether two samples differ whose values belong together one by one, as those of the
-// same aggregates treated in two ways. All tests are two-sided.
+// Whether two paired samples differ, such as those of the same aggregates treated in
+// two ways. All tests are two-sided.
 #ifndef CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
 #define CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
 
@@ -12,8 +12,8 @@ struct paired_t {
     double t, degrees, p;
 };
 
-// As many of A as of B. At least two pairs; else, as where a value is not known, all
-// NAN. Where differences do not scatter, t is 0 and p 1, or t infinite and p 0.
+// A and B have the same length, at least two; else, and if a value is NAN, all are NAN.
+// If the differences do not scatter, t is 0 and p 1, or t infinite and p 0.
 struct paired_t paired_t_test(struct sample a, struct sample b);
 
 // Wilcoxon's signed ranks, that the differences are symmetric about 0.

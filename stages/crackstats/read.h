@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs and their drying out of artifacts; these end the program where what a schema
-// cannot say is wrong: a bond that breaks twice or after the end, a drying of no step.
+// Reads runs and their drying from artifacts. They end the program if something is
+// wrong that a schema cannot express: a bond that breaks twice or after the end, a
+// drying without a step.
 #ifndef CRAQUELURE_CRACKSTATS_READ_H
 #define CRAQUELURE_CRACKSTATS_READ_H
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// One fact over some of the runs.
+// Some of the runs, of which one statistic is taken.
 struct column {
     const struct ensemble *ensemble;
     int first, n;
@@ -93,7 +93,7 @@ static json_t *test_samples(struct sample a, struct sample b)
                      "exact", rank.exact);
 }
 
-// Of the runs before COLUMN's first against COLUMN's own.
+// Tests the runs before COLUMN's first against COLUMN's own.
 static json_t *test_of(struct column column, enum statistic fact)
 {
     const struct sample a =

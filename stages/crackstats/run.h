@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run, as far as crackstats looks at it: what response.h5 holds.
+// One run, as read from its response artifact.
 #ifndef CRAQUELURE_CRACKSTATS_RUN_H
 #define CRAQUELURE_CRACKSTATS_RUN_H
 
@@ -25,11 +25,10 @@ struct run {
     uint8_t *intact;             // (n_snapshot * n_bond)
 };
 
-// Which repetition of the box the second grain of BOND is in, seen from the first: the
-// nearest one.
+// The periodic image of the second grain of BOND that is nearest to the first.
 struct image bond_image(const struct packing *packing, int bond);
 
-// From the first grain of BOND to the second, where nothing has moved; m.
+// The vector from the first grain of BOND to the second before anything has moved, m.
 struct vector bond_vector(const struct packing *packing, int bond);
 
 // 1 for each bond that holds when drying begins, or that no crack broke. (n_bond); the

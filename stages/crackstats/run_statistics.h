@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers that one run comes down to; means, intervals and tests are over them.
+// The statistics of one run, over which means, intervals and tests are made.
 #ifndef CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
 #define CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
 
@@ -38,7 +38,7 @@ struct statistic_name {
 };
 extern const struct statistic_name statistic_names[STATISTIC_COUNT];
 
-// NAN: the run does not tell.
+// NAN: not known for this run.
 struct run_statistics {
     double value[STATISTIC_COUNT];
 };

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Confidence intervals and two-sample tests. Student's tail comes from the incomplete
+// beta function, P(|t|) = I_x(degrees / 2, 1/2), x = degrees / (degrees + t^2), and a
+// quantile from GSL's with one Newton step. Welch's t test has
+//     t = (mean_a - mean_b) / sqrt(s_a^2 / n_a + s_b^2 / n_b)
+// with Satterthwaite's degrees of freedom. Mann and Whitney's U is exact by counting:
+// the number of ways to choose k of the ranks 1..n with sum s; with ties or many
+// values it is nearly normal, with the variance corrected for ties.
 #include "sample.h"
 
 #include "basics/memory.h"
@@ -24,7 +31,7 @@ double student_p(double t, double degrees)
     return gsl_cdf_beta_P(degrees / (degrees + t * t), degrees / 2, 0.5);
 }
 
-// That of GSL and one step of Newton.
+// GSL's quantile and one Newton step.
 static double student_quantile(double p, double degrees)
 {
     const double t = gsl_cdf_tdist_Qinv(p / 2, degrees);
@@ -86,8 +93,8 @@ static struct ranked *sorted(struct sample a, struct sample b)
     return all;
 }
 
-// Sum of A's ranks, from 1, tied values sharing theirs; and the sum of t^3 - t over the
-// ties of t values.
+// Sum of A's ranks, from 1; tied values share their mean rank. TIES becomes the sum of
+// t^3 - t over groups of t ties.
 static double rank_sum(const struct ranked *all, int n, double *ties)
 {
     double sum = 0;
@@ -103,8 +110,8 @@ static double rank_sum(const struct ranked *all, int n, double *ties)
     return sum;
 }
 
-// Chance that U is at least LEAST when all orders of the two samples are as likely: by
-// counting, of 1, 2, ... of the values, the choices of K whose ranks sum to S.
+// Probability that U is at least LEAST if all orders of the two samples are equally
+// likely: by counting the choices of K ranks among 1, 2, ... with sum S.
 static double exact_tail(int n_a, int n_b, double least)
 {
     const int n = n_a + n_b, lowest = n_a * (n_a + 1) / 2, width = n * n_a + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What samples of runs tell: confidence intervals, and whether two groups differ.
+// Statistics of samples: confidence intervals, and whether two groups differ.
 #ifndef CRAQUELURE_CRACKSTATS_SAMPLE_H
 #define CRAQUELURE_CRACKSTATS_SAMPLE_H
 
@@ -13,8 +13,8 @@ struct sample {
 double sample_mean(struct sample sample);
 double sample_deviation(struct sample sample); // n - 1; NAN for fewer than two
 
-// Chance that Student's t is as far from 0 as this. GSL's own tails are off by up to
-// 7e-7 of themselves above 30 degrees of freedom.
+// Probability that Student's t is at least as far from 0 as T. GSL's own tails have
+// relative errors of up to 7e-7 above 30 degrees of freedom.
 double student_p(double t, double degrees);
 
 // Half the width of the interval around the mean that holds the true one with
@@ -29,8 +29,8 @@ struct welch {
     double t, degrees, p;
 };
 
-// At least two values each; else all NAN. Where neither sample scatters, t is 0 and p
-// 1, or t infinite and p 0.
+// At least two values each; else all NAN. If neither sample scatters, t is 0 and p 1,
+// or t infinite and p 0.
 struct welch welch_test(struct sample a, struct sample b);
 
 // Mann and Whitney's U test, that neither sample tends to larger values. Two-sided.

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sums of squares of counts over the runs; counts are multiples of 1/2, so that
+//     sd^2 = (n sum of squares - (sum)^2) / (n (n - 1))
+// is a difference of exact numbers.
 #include "scatter.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the counts of each period, slice, interval and inclination scatter over the runs.
+// The scatter over the runs of the counts in each period, slice, interval and
+// inclination.
 #ifndef CRAQUELURE_CRACKSTATS_SCATTER_H
 #define CRAQUELURE_CRACKSTATS_SCATTER_H
 

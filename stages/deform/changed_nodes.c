@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the diagram of moved grains is still the same. One that is regular at every
-// facet, between the two cells on its sides, is regular as a whole; the cell on the
-// other side of a facet is the node at the other end of a throat.
+// Whether the diagram of moved grains is still the same. A regular triangulation that
+// is regular at every facet, between the two cells on its sides, is regular as a whole
+// (Edelsbrunner and Shah 1996): no grain of the cell across a facet may have less
+// power
+//     |x_grain - node|^2 - R^2
+// to a node than the node's own grains have. The cell across a facet is the node at
+// the other end of a throat, so neighbouring nodes are all that must be looked at.
+// Nodes on the surface of a hole are an exception: cells reach through it to any other
+// such node.
 #include "move.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-// Of the mean diameter, squared, or of the diameter: less is rounding.
+// Smaller differences, relative to the mean diameter (squared for powers), are
+// rounding.
 static const double negligible = 1e-9;
 
 struct state {
@@ -43,8 +50,8 @@ static double largest_own_power(const struct state *state, int node)
     return largest;
 }
 
-// Seen from NODE, grains of the node OTHER, which lies IMAGE boxes away, come nearer
-// than its own.
+// Whether a grain of the node OTHER, seen in IMAGE, has less power to NODE than its
+// own.
 static bool is_overtaken(const struct state *state, int node, int other,
                          struct image image)
 {
@@ -67,7 +74,8 @@ static bool is_on_hole(const struct state *state, int node)
     return state->around->walls[node] >> WALL_INNER & 1;
 }
 
-// Beyond the walls, or beyond the edge of the hole whose surface it is on.
+// Whether a node is beyond the walls, in a hole, or off the surface of the hole it was
+// on.
 static bool is_outside(const struct state *state, int node)
 {
     const struct packing *packing = &state->network->packing;
@@ -88,7 +96,7 @@ static bool is_outside(const struct state *state, int node)
            distance(nearest_on_wall(packing, WALL_INNER, at), at) > slack;
 }
 
-// The repetition of GRAIN that is nearest to FROM.
+// The periodic image of GRAIN that is nearest to FROM.
 static struct image nearest_image_of(const struct packing *packing, struct vector from,
                                      int grain)
 {
@@ -105,7 +113,7 @@ static struct image nearest_image_of(const struct packing *packing, struct vecto
 
 // ---- holes --------------------------------------------------------------------------
 
-// A throat through a hole, other than along its surface.
+// Whether a throat passes through a hole, other than along its surface.
 static bool is_interrupted(const struct state *state, int t)
 {
     const struct network *network = state->network;
@@ -125,8 +133,8 @@ static bool is_interrupted(const struct state *state, int t)
     return false;
 }
 
-// (n_particle) Grains around the nodes on holes; their cells may reach through these to
-// any other such node. The caller frees it.
+// Marks the grains (n_particle) around nodes on holes: their cells may reach through
+// these to any other such node. The caller frees it.
 static bool *grains_at_holes(const struct state *state)
 {
     bool *at_hole = NEW_ARRAY(bool, state->network->packing.n_particle);

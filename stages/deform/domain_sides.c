@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Finds the surface that a node with a wall's bit lies on: the nearest side of the box
+// or of a body with that wall, and for flat ones how far it has moved.
 #include "domain_sides.h"
 
 enum { ROUND_SIDE = WALL_COUNT, SIDE_COUNT };
@@ -8,7 +10,7 @@ static double corner_of(const struct body *body, int side)
     return component(side % 2 ? body->upper : body->lower, side / 2);
 }
 
-// From AT to a side of the body, or the surface that this is a part of, m.
+// Distance from AT to a side of the body, extended beyond its edges, m.
 static double off_side(const struct body *body, int side, struct vector at)
 {
     if (side < ROUND_SIDE)
@@ -19,7 +21,7 @@ static double off_side(const struct body *body, int side, struct vector at)
     return distance(body_nearest_round(body, at), at);
 }
 
-// Of all bodies with this wall: the side that the node is on, which is the nearest.
+// Adds the nearest side among all bodies with this wall.
 static void add_body(const struct packing *before, const struct packing *after,
                      int wall, struct vector at, struct domain_sides *sides)
 {

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Liquid of throats whose volumes have changed, cluster by cluster. With the
+// saturations kept, a cluster has
+//     surplus = sum of (liquid - saturation capacity)
+// too much. A surplus fills throats at the cluster's edge, the narrowest first, as
+// their suction is largest, and goes on from each throat that it has filled; a
+// shortage empties throats at menisci, the widest first, and gas enters the nodes of
+// those that empty. A priority queue of ranks by radius has the throats that can be
+// filled or emptied next.
 #include "liquid.h"
 
 #include "basics/compensated.h"
@@ -66,8 +74,8 @@ static bool is_wet(const struct liquid_state *state, int throat)
            state->held->saturation[throat] > 0;
 }
 
-// Throats with liquid hang together through nodes that no gas has entered. The first
-// throat of each piece stands for it.
+// Clusters: throats with liquid are connected through nodes without gas. Each is named
+// by its first throat.
 static void find_clusters(struct liquid_state *state)
 {
     const struct incidence *incidence = &state->incidence;
@@ -88,7 +96,7 @@ static void find_clusters(struct liquid_state *state)
 
 // ---- too much -----------------------------------------------------------------------
 
-// The queue takes the lowest first: the narrowest throats have the highest ranks.
+// The rank counted from the narrowest throat: the queue takes the lowest first.
 static int from_narrowest(const struct liquid_state *state, int throat)
 {
     return state->network->n_throat - 1 - state->rank[throat];
@@ -107,7 +115,7 @@ static void queue_capacity(struct liquid_state *state, int throat)
     }
 }
 
-// Takes a piece's SURPLUS into the throats that the queue offers; what is left stays.
+// Fills the queued throats from SURPLUS, until it is used up or no throat is left.
 static void pour(struct liquid_state *state, struct compensated *surplus)
 {
     for (int rank; (rank = rank_queue_take(&state->queue)) >= 0;) {
@@ -179,7 +187,7 @@ static struct members list_members(const struct liquid_state *state)
     return members;
 }
 
-// Gives back what finds no room.
+// Redistributes one cluster. Returns the surplus (m3) that finds no room.
 static double redistribute_cluster(struct liquid_state *state, int cluster,
                                    const int *member, int count)
 {

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Mapping from the old network to a new tessellation of the moved grains, by nearest
+// neighbours. The middle of an old throat is moved by the mean displacement of the
+// grains around its two nodes; a new throat takes its saturation, or radius, from the
+// old middle nearest to its own, and the volume of liquid of an old throat goes to the
+// nearest new throat that has any. So volumes are conserved, saturations are only
+// interpolated, and redistribute_liquid (liquid.h) reconciles both.
 #include "map_radii.h"
 
 #include "basics/memory.h"
@@ -8,7 +14,7 @@
 
 #include <stdlib.h>
 
-// Of the throats that are asked for: their middles, and which they are.
+// The middles of some throats, and their indices.
 struct middles {
     int n;
     struct vector *at;
@@ -34,7 +40,7 @@ static void free_middles(struct middles *middles)
     free(middles->throat);
 }
 
-// Takes the middles to where the grains have gone.
+// Moves the middles with the grains around them.
 static void follow_grains(const struct network *before,
                           const struct neighbour_grains *around,
                           const struct packing *moved, struct middles *middles)
@@ -56,7 +62,7 @@ static void follow_grains(const struct network *before,
     }
 }
 
-// Walls in which throats lie, all of them imposed empty.
+// The walls in which throats lie that are all imposed empty.
 static unsigned empty_walls(const struct network *network)
 {
     unsigned empty = 0, holding = 0;
@@ -71,7 +77,7 @@ static unsigned empty_walls(const struct network *network)
     return empty & ~holding;
 }
 
-// What these shut in from the open walls is empty as well, as dry has it.
+// Throats that these cut off from the open walls are empty as well, as in dry.
 static void empty_enclosed(struct network *network, unsigned open_walls)
 {
     bool *open = NEW_ARRAY(bool, network->n_node);

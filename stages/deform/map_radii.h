@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liquid carried from a network to another of the same grains, which have moved.
+// Mapping of liquid and radii from a network to another of the same grains, moved.
 #ifndef CRAQUELURE_MAP_RADII_H
 #define CRAQUELURE_MAP_RADII_H
 
@@ -12,12 +12,12 @@ struct mapped_liquid {
     double *saturation; // (n_throat) likewise, what it begins with
 };
 
-// Old throats are taken to where the grains around their ends have gone in the mean. A
-// new throat has the saturation of the old one whose middle is then nearest to its own;
-// the liquid of an old throat, SATURATION (n_throat of BEFORE) of its volume, goes to
-// the nearest new throat that has any. Throats of ANEW in walls where the old ones are
-// imposed empty become so, and so do those that these then shut in from OPEN_WALLS
-// (bits of enum wall). The caller frees both arrays.
+// Old throats are moved by the mean displacement of the grains around their ends. A new
+// throat gets the saturation of the old one whose middle is then nearest to its own;
+// the liquid of an old throat, SATURATION (n_throat of BEFORE) times its volume, goes
+// to the nearest new throat that has any. Throats of ANEW in walls where the old ones
+// are imposed empty become so, and so do those that these cut off from OPEN_WALLS (bits
+// of enum wall). The caller frees both arrays.
 struct mapped_liquid map_liquid(const struct network *before,
                                 const struct neighbour_grains *around,
                                 const struct packing *moved, const double *saturation,

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The box and its bodies follow the grains beside them. Along an axis, a wall at w
+// moves by
+//     m + s (w - x),   s = (m' - m) / (x' - x),
+// where x and m are the mean place and displacement of the grains within a diameter of
+// it, and x', m' those at the opposite wall. A round body takes the similarity (shift,
+// rotation, stretch) that fits the displacements of the grains beside it best: with
+// positions a and b about their means before and after, and R from rotation.c,
+//     stretch = sum b . R a / sum a . a.
+// Too few grains, or grains in one layer, do not determine a stretch: then it is 1.
 #include "basics/memory.h"
 #include "move.h"
 #include "rotation.h"
@@ -8,7 +17,7 @@
 
 // ---- flat walls ---------------------------------------------------------------------
 
-// Of the grains beside a wall, along its axis, m.
+// Mean place and displacement of the grains beside a wall, along its axis, m.
 struct layer_of_grains {
     int count;
     double place, moved; // means
@@ -54,7 +63,7 @@ static void move_walls(const struct packing *before, double diameter,
 
 // ---- bodies -------------------------------------------------------------------------
 
-// In a box that repeats, seen from the repetition of the body that is nearest.
+// X in the periodic image that is nearest to the body.
 static struct vector to_nearest_body(const struct packing *packing,
                                      const struct body *body, struct vector x)
 {
@@ -82,7 +91,7 @@ static bool *grains_beside(const struct packing *packing, int k, double reach)
     return beside;
 }
 
-// What grains beside a body have done.
+// The grains beside a body, before and after.
 struct grains {
     int count;
     struct vector *was, *is; // (count) off their means, m
@@ -115,7 +124,7 @@ static struct grains motion_beside(const struct packing *before,
     return grains;
 }
 
-// Along AXIS, in which the body is flat: shift and stretch by least squares.
+// Moves the body along AXIS, in which it is flat: shift and stretch by least squares.
 static void move_flat(const struct grains *grains, int axis, double least,
                       struct body *body)
 {
@@ -136,7 +145,8 @@ static void move_flat(const struct grains *grains, int axis, double least,
     }
 }
 
-// In the plane or space in which it is round: shift, turn and stretch.
+// Moves the body in the plane or space in which it is round: shift, rotation and
+// stretch.
 static void move_round(const struct grains *grains, double least, struct body *body)
 {
     double was = 0;
@@ -162,7 +172,7 @@ static void move_round(const struct grains *grains, double least, struct body *b
     }
 }
 
-// Grains that hardly spread tell nothing of how they stretch.
+// Moves one body. Grains that hardly spread do not determine a stretch (LEAST).
 static void move_body(const struct packing *before, double diameter, int k,
                       struct packing *after)
 {
@@ -176,8 +186,8 @@ static void move_body(const struct packing *before, double diameter, int k,
     free(grains.is);
 }
 
-// Where a side of the box is that of a round body around the grains, it goes with that;
-// flat sides of a body that are sides of the box stay so.
+// A side of the box that touches a round body around the grains moves with that; flat
+// sides of a body that are sides of the box stay so.
 static void join_sides(const struct packing *before, int k, struct packing *after)
 {
     const struct body *was = &before->body[k];

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes follow their grains. A node at c keeps the differences of its powers to the
+// grains around it, P_k = |x_k - c|^2 - R_k^2, scaled with the squared spread of the
+// grains:
+//     P_k(c + step) - mean = scaling (P_k before - mean before),
+// which is linear in the step, since |step|^2 cancels:
+//     -2 (to_k - mean of to) . step = wanted_k.
+// Solved by singular values (shortest step, least squares), within the directions that
+// the node's flat surfaces leave free. On a round surface: tangential steps, each
+// followed by a projection to the surface, from a guess that includes the rotation of
+// the grains. For a vertex of the diagram all differences are 0 and stay 0, so it
+// stays a vertex.
 #include "basics/memory.h"
 #include "domain_sides.h"
 #include "move.h"
@@ -39,15 +50,15 @@ static void view_grains(const struct packing *packing,
     }
 }
 
-// Directions, at right angles, that a node may move in.
+// Orthonormal directions in which a node may move.
 struct directions {
     int n;
     struct vector direction[3];
 };
 
-// The shortest step along these for which every
+// The shortest step along these directions that solves
 //     -2 (to - mean) . step = wanted
-// holds, or nearly so; not a number where there is none.
+// by least squares; NAN if the decomposition fails.
 static struct vector solve(const struct view *view, const double *wanted,
                            const struct directions *along)
 {
@@ -80,7 +91,7 @@ static struct vector solve(const struct view *view, const double *wanted,
     return step;
 }
 
-// The grains' mean, or that of a flat surface along its axis.
+// The mean displacement of the grains; along a held axis that of the flat surface.
 static struct vector first_guess(const struct packing *before,
                                  const struct packing *after,
                                  const struct grain_beside *beside, int n,
@@ -95,7 +106,7 @@ static struct vector first_guess(const struct packing *before,
     return step;
 }
 
-// What the turn of the grains around a node, both times seen from it, adds to that.
+// What the rotation of the grains about their mean adds to the guess.
 static struct vector rotation_of_guess(const struct view view[2])
 {
     struct products products = {0};
@@ -117,7 +128,7 @@ static struct vector onto_round(const struct packing *packing, int k, struct vec
     return body_nearest_round(&body, at);
 }
 
-// Of a node AT on these surfaces: along them.
+// The directions along the surfaces that a node AT is on.
 static struct directions find_directions(const struct packing *packing,
                                          const struct domain_sides *sides,
                                          struct vector at)
@@ -156,8 +167,8 @@ static struct directions find_directions(const struct packing *packing,
     return directions;
 }
 
-// From AT, where the grains are VIEWed from now, to where the differences of powers are
-// those BEFORE, scaled; AT itself where they are so.
+// The step from the present place, with the view NOW, to where the differences of
+// powers are those BEFORE, scaled; 0 if they are so already.
 static struct vector step_to(const struct view *before, struct view *now,
                              const struct directions *along)
 {
@@ -173,7 +184,7 @@ static struct vector step_to(const struct view *before, struct view *now,
     return moves ? solve(now, wanted, along) : (struct vector){0};
 }
 
-// False where no place on its round surface is found.
+// Moves one node. False if no place on its round surface is found.
 static bool move_node(const struct network *before,
                       const struct neighbour_grains *around, int node,
                       struct view view[2], struct network *after)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Nearest neighbour by linked cells of about two points each: rings of cells around
+// the query are searched until the next ring is farther away than the best found.
 #include "nearest.h"
 
 #include <stdlib.h>
@@ -43,7 +45,7 @@ struct search {
     double least;
 };
 
-// CELL may lie beyond the cells.
+// Searches CELL, which may lie beyond the grid: wrapped if periodic, else skipped.
 static void search_cell(struct search *search, const int cell[3])
 {
     const struct places *places = search->places;

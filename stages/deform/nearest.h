@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The nearest of many places in a box that may repeat.
+// The nearest of many points, in a box that may be periodic.
 #ifndef CRAQUELURE_NEAREST_H
 #define CRAQUELURE_NEAREST_H
 
@@ -12,12 +12,13 @@ struct places {
     struct linked_cells cells;
 };
 
-// O(n). PACKING and AT must last as long. The caller frees it with places_free.
+// O(n). Keeps PACKING and AT. The caller frees it with places_free.
 struct places places_make(const struct packing *packing, int n,
                           const struct vector *at);
 void places_free(struct places *places);
 
-// The index of the place nearest to FROM, of equals the lowest; -1 if there is none.
+// The index of the place nearest to FROM, the lowest of equals; -1 if there is none.
+// O(1) for evenly spread places.
 int nearest_place(const struct places *places, struct vector from);
 
 #endif

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Both sides of every face are grains around the nodes of its loop. In a periodic box
+// the image of a grain is relative to the node: image of the side minus image of the
+// corner.
 #include "neighbour_grains.h"
 
 #include "basics/memory.h"
@@ -41,7 +44,7 @@ static void add_sides(const struct network *network, int face, int64_t corner,
         around->walls[node] |= (uint8_t)(1u << (-1 - side[1]));
 }
 
-// Sorts what is around each node, and keeps each grain once.
+// Sorts the grains around each node, and keeps each once.
 static void keep_once(int n_node, const int64_t *end, struct neighbour_grains *around)
 {
     int64_t kept = 0;

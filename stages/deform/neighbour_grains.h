@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which grains lie around each node of a network, read off the faces that meet there.
+// The grains around each node of a network, from the faces that meet there.
 #ifndef CRAQUELURE_NEIGHBOUR_GRAINS_H
 #define CRAQUELURE_NEIGHBOUR_GRAINS_H
 
 #include "network/network.h"
 
-// A grain, and how many boxes away from where it is listed, seen from a node in the
-// box.
+// A grain, and its periodic image as seen from a node in the box.
 struct grain_beside {
     int32_t grain;
     struct image image;
@@ -22,7 +21,7 @@ struct neighbour_grains {
 struct neighbour_grains find_neighbour_grains(const struct network *network);
 void neighbour_grains_free(struct neighbour_grains *surroundings);
 
-// Seen from FROM, where the grain is; m.
+// The vector from FROM to the grain, m.
 struct vector to_grain(const struct packing *packing, struct grain_beside beside,
                        struct vector from);
 

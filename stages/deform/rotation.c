@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rotation R that maximises sum b . R a, by Horn's quaternions (J. Opt. Soc. Am. A
+// 4 (1987) 629): with M_ij = sum a_i b_j, R's quaternion is the eigenvector of the
+// largest eigenvalue of the symmetric 4 x 4 matrix
+//     | tr M     d^T           |
+//     | d        M + M^T - tr M |,   d = (M_yz - M_zy, M_zx - M_xz, M_xy - M_yx),
+// and that eigenvalue is the maximum. If the two largest eigenvalues are equal, as for
+// directions along one line, the rotation is not determined: then there is none.
 #include "rotation.h"
 
 #include <gsl/gsl_eigen.h>
@@ -10,7 +17,7 @@ void add_products(struct products *sum, struct vector a, struct vector b)
             sum->of[i][j] += component(a, i) * component(b, j);
 }
 
-// Its largest eigenvalue is ALONG, the eigenvector the turn as a quaternion.
+// Horn's matrix of the products OF.
 static void fill(const double of[3][3], double matrix[4][4])
 {
     const double trace = of[0][0] + of[1][1] + of[2][2];

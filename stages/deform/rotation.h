@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The turn that takes directions to others best, by least squares.
+// The rotation that fits pairs of directions best, by least squares.
 #ifndef CRAQUELURE_DEFORM_ROTATION_H
 #define CRAQUELURE_DEFORM_ROTATION_H
 
 #include "geometry/vector.h"
 
-// Sums over directions a and what they have become, b, of a_i b_j.
+// Sums of a_i b_j over directions a and their images b.
 struct products {
     double of[3][3];
 };
@@ -15,11 +15,11 @@ void add_products(struct products *sum, struct vector a, struct vector b);
 struct rotation {
     double cosine;      // of half its angle
     struct vector axis; // times the sine of that
-    double along;       // sum of b . (a turned)
+    double along;       // sum of b . (a rotated)
 };
 
-// The turn of most ALONG [Horn, J. Opt. Soc. Am. A 4 (1987) 629]. None where others do
-// as well, as of directions along one line.
+// The rotation with the largest ALONG [Horn, J. Opt. Soc. Am. A 4 (1987) 629]. The
+// identity if it is not unique, as for directions along one line.
 struct rotation find_rotation(const struct products *sum);
 
 struct vector rotated(const struct rotation *turn, struct vector x);

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lengths change with the distance of the nodes, l' = l |d'| / |d|; radii with the
+// clearance, r' = r + (c' - c) min(1, r / c) (throats.h). Volumes that were shares of
+// the void are computed again; others change as the cylinders of their throats and are
+// then scaled by one factor, so that their sum changes by exactly as much as the void
+// of the box does.
 #include "throats.h"
 
 #include "basics/memory.h"
@@ -11,7 +16,8 @@
 
 // ---- lengths and radii --------------------------------------------------------------
 
-// WAY with the sides of FACE, for the throat from its corner FROM to TO.
+// Adds the grains of FACE to WAY, the clearance of the throat from its corner FROM to
+// TO.
 static struct clear_way clear_of_face(struct clear_way way,
                                       const struct network *network, int face,
                                       int64_t from, int64_t to, enum clearance how)
@@ -25,7 +31,8 @@ static struct clear_way clear_of_face(struct clear_way way,
                     how);
 }
 
-// (n_throat) Of the grains beside each; NULL with the reason.
+// The clearance of each throat (n_throat) to the grains beside it; NULL with the
+// reason.
 static struct clear_way *find_clear_ways(const struct network *network,
                                          enum clearance how, struct reason *reason)
 {

@@ -13,7 +13,8 @@
 double *find_clearances(const struct network *network, enum clearance how,
                         struct reason *reason);
 
-// What a throat of RADIUS has when its clearance goes from BEFORE to AFTER, r' below.
+// The radius of a throat of RADIUS when its clearance changes from BEFORE to AFTER: r'
+// below.
 double moved_radius(double radius, double before, double after);
 
 // Gives AFTER, a copy of BEFORE but for the places of grains and nodes, its lengths and
@@ -28,13 +29,13 @@ double moved_radius(double radius, double before, double after);
 enum status move_throats(const struct network *before, enum clearance how,
                          struct network *after, struct reason *reason);
 
-// Where throats have volumes: those that were their shares of the void are so again,
-// unless the diagram has CHANGED; others change as the cylinder of the throat, and all
-// by one factor, so that their sum changes as much as the void of the box.
+// If throats have volumes: volumes that were shares of the void are so again, unless
+// the diagram has CHANGED; others change as the cylinder of the throat, and all by one
+// common factor, so that their sum changes by as much as the void of the box.
 enum status move_volumes(const struct network *before, bool changed,
                          struct network *after, struct reason *reason);
 
-// Of the box, or of the body within it, less what is cut out, m3.
+// Volume of the box, or of the body within it, without what is cut out, m3.
 double domain_volume(const struct packing *packing);
 
 // Throats of kind THROAT_NETWORK that have a radius or volume of 0 in AFTER only.

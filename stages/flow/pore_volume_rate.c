@@ -2,8 +2,8 @@
 // The volume that each facet sweeps per time, less that swept of the grains' sectors
 // in it [C 5]. A facet between three grains moves as the plane through their centres:
 // the normal velocity at barycentric coordinates (a, b) is linear, so
-//     swept = area (v_0 + v_1 + v_2) / 3 - sum over grains of (a (v_j - v_k) + b (v_l -
-//     v_k)),
+//     swept = area (v_0 + v_1 + v_2) / 3
+//             - sum over grains of (a (v_j - v_k) + b (v_l - v_k)),
 // with a and b from the first moment of each sector, 2/3 R^3 sin(angle / 2) along its
 // bisector. Rigid motion of a grain along the normal sweeps no fluid of its own
 // sector, which is why only differences appear. At walls the facet stays perpendicular
