@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Compares all datasets and attributes that the schema lists. The tolerance is
+// relative to the largest value of a dataset, not to each value, so that rounding
+// noise in small values does not count.
 #include "compare.h"
 
 #include <math.h>

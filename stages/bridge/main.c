@@ -86,7 +86,7 @@ static double rupture_distance(const struct bridge *bridge, enum bridge_model mo
     return state.separation;
 }
 
-// Those asked for; the caller frees them.
+// The separations to compute, (COUNT); the caller frees them.
 static double *separations_of(const struct bridge_parameters *given, double rupture,
                               int *count)
 {

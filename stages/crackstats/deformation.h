@@ -12,9 +12,9 @@ struct deformation {
     double strain[STRAIN_COUNT]; // of small displacements: (G + G^T) / 2
 };
 
-// Of the largest fragment at snapshot S. G is the displacement gradient that fits its
-// grains best by least squares; 0 along an axis in which all lie in one plane. All NAN
-// when it has fewer than four grains.
+// Deformation of the largest fragment at snapshot S. G is the displacement gradient
+// that fits its grains best by least squares; 0 along an axis in which all lie in one
+// plane. All NAN when it has fewer than four grains.
 struct deformation body_deformation(const struct run *run, int s);
 
 #endif

@@ -8,7 +8,7 @@
 
 enum { LOCAL_CLASSES = 10 };
 
-// Of one run, or the sum over many.
+// For one run, or summed over many.
 struct drying_front {
     double *slice;               // (n_interval, n_slice) saturations, as each ends
     double local[LOCAL_CLASSES]; // cracks by the saturation of their slice, 1 to 0

@@ -47,7 +47,8 @@ static void check_bonds(const struct replay_parameters *parameters,
         none[parameters->bonds_by], packing->n_particle);
 }
 
-// A body of which little is held moves as the forces have it.
+// Warns when bonds join fewer than half of the grains to fixed ones: the forces can
+// carry the others away.
 static void warn_if_unheld(const struct packing *packing, const uint8_t *held)
 {
     const int n = packing->n_particle, supported = count_supported(packing, held);
@@ -264,8 +265,9 @@ static struct far_grains find_far_grains(const struct packing *packing,
     return far;
 }
 
-// What cracked may still hang together; what has moved by its own size does not. Forces
-// in balance, which keep their directions, turn over what they press together.
+// A body with cracks may still be in one piece; grains that have moved by their own
+// size are not part of it. Forces that balance but keep their directions can turn a
+// body over.
 static void warn_if_loose(const struct packing *packing,
                           const struct replay_settings *settings,
                           const struct response *response)

@@ -112,7 +112,7 @@ static double longer_open_edge(const struct packing *packing, int wall)
                 component(edge, (wall + 4) / 2 % 3));
 }
 
-// A thickness that was given, but does not count.
+// Says that a given thickness of the boundary layer is not used.
 static void note_unused_thickness(const struct dry_parameters *parameters,
                                   double thickness)
 {
@@ -148,7 +148,8 @@ static struct mass_transfer give_mass_transfer(const struct network *network,
     return transfer;
 }
 
-// All from which no way through liquid leads to a column; returns how many throats.
+// Empties the throats from which no path through liquid leads to a column of the
+// boundary layer; returns their number.
 static int empty_enclosed(struct network *network, unsigned open_walls,
                           enum boundary_feet feet)
 {

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stddef.h>
 
-// Of step_interval: null.
+// Up to this size of network step_interval: null means every event, above it steps of
+// COARSE_STEPS.
 enum { MAX_THROATS_BY_EVENTS = 30000 };
 static const double COARSE_STEPS = 1e-3;
 
@@ -128,7 +129,7 @@ static double *even_snapshots(double interval, int *count)
     return snapshot;
 }
 
-// What drying so cannot do without.
+// The fluid properties (bits) that drying with these parameters needs.
 static unsigned needed_properties(const struct dry_parameters *parameters)
 {
     const struct drying_conditions *conditions = &parameters->conditions;

@@ -232,7 +232,7 @@ static double permeability_of(const struct computation *flow,
            flow->grains.unit * component(flow->grains.box, axis) / imposed->drop;
 }
 
-// Of the box along AXIS, what the grains reach over.
+// Share of the box along AXIS that the grains reach over.
 static double bed_share(const struct packing *packing, int axis)
 {
     const double lower = component(packing->lower, axis);
@@ -247,7 +247,7 @@ static double bed_share(const struct packing *packing, int axis)
     return (to - from) / (upper - lower);
 }
 
-// The fluid has an easy way where there are no grains: above a bed that has settled.
+// Fluid passes easily where there are no grains, as above a bed that has settled.
 static void warn_of_empty_space(const struct packing *packing,
                                 const struct imposed *imposed)
 {

@@ -51,8 +51,7 @@ void pressures_free(struct pressures *pressures);
 // The walls that each pore is at, (n_pore) bits. The caller frees it.
 uint8_t *walls_of_pores(const struct cells *cells);
 
-// Of the WALLS that a pore is at, the one through which fluid enters or leaves it; -1:
-// none.
+// The one of a pore's WALLS (bits) through which fluid enters or leaves it; -1: none.
 int feeding_wall(const struct conditions *conditions, unsigned walls);
 
 // p_i - p_j over a throat, Pa, to full precision however small.

@@ -46,7 +46,7 @@ static void put_pores(struct artifact *artifact, const struct flow *flow)
     artifact_put(artifact, "/pores/position", position, n);
     artifact_put(artifact, "/pores/particles", corner, n);
     artifact_put(artifact, "/pores/pressure", value, n);
-    // Of cells that are one pore, the first shows what the pore gives off.
+    // Where several cells are one pore, its outflow is stored at the first.
     for (int c = 0, next = 0; c < n && flow->opening; c++) {
         const int pore = cells->cell[c].pore;
         value[c] = pore == next ? -flow->opening[pore] * cube(flow->grains->unit) : 0;
@@ -72,7 +72,7 @@ static void put_stress(struct artifact *artifact, const struct flow *flow)
     const struct cells *cells = flow->cells;
     double *volume = NEW_ARRAY(double, cells->n), mean[3][3];
     double(*stress)[3][3] = allocate((size_t)cells->n, sizeof *stress);
-    // Of cells that are one pore, the first shows its volume.
+    // Where several cells are one pore, its volume is stored at the first.
     for (int c = 0, next = 0; c < cells->n; c++) {
         const int pore = cells->cell[c].pore;
         volume[c] =

@@ -92,8 +92,8 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table};
 
-// What was not given is that of the drying; what was given otherwise is told in
-// DIFFERENCE.
+// Takes from the drying each property of the liquid that was not given. DIFFERENCE says
+// which given ones are not those of the drying.
 static void complete_liquid(struct force_parameters *parameters,
                             const struct artifact *input, char *difference, size_t size)
 {
@@ -155,7 +155,7 @@ static struct suction_law find_law(const struct network *network,
     return law;
 }
 
-// Of the parameters of the drying, if it says any.
+// The gravity with which the drying was computed; 0 if it does not say.
 static double gravity_of_drying(const struct artifact *input)
 {
     char *text = artifact_get_text(input, "parameters");

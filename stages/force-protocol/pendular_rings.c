@@ -74,7 +74,7 @@ static double suction_bound(const struct trial of[3])
                                 (of[1].suction - of[0].suction) * right / left);
 }
 
-// Of three trials the middle one has the most suction, but too little. Golden-section
+// The middle one of three trials has the most suction, but too little. Golden-section
 // search for one that has enough, until the bound says that there is none.
 static enum status find_most_suction(const double radius[2], double separation,
                                      const struct ring_law *law, struct trial of[3],

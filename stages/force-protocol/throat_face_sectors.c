@@ -151,8 +151,8 @@ static void add_missing(struct sectors *sectors, int a, int b, int *n)
     *append(sectors, n) = seen_from_beyond(&sector);
 }
 
-// Of the N wedges those of grains that have only this one, and so miss a face; returns
-// how many, of which the first two are in SINGLE.
+// Finds grains that have only one of the N sectors, and so miss a face. Returns their
+// number; SINGLE has the sectors of the first two.
 static int find_singles(const struct sector *sector, int n, int single[2])
 {
     int count = 0;

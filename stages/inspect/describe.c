@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An artifact as JSON. The schema says which datasets and attributes there can be,
+// with units and text; shape, extremes and digest are computed from the file.
 #include "describe.h"
 
 #include "basics/memory.h"
@@ -91,7 +93,7 @@ static void put_provenance(json_t *description, const struct artifact *artifact)
     }
 }
 
-// By their groups: "summary", "liquid", ...
+// Puts each attribute into the object of its group: "summary", "liquid", ...
 static void put_attributes(json_t *description, const struct artifact *artifact)
 {
     json_object_set_new(description, "summary", json_object());

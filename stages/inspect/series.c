@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Frames over time, one function for each kind of artifact: throats and their
+// saturation (drying), forces on the grains (forces), moved grains and their contacts
+// (response).
 #include "series.h"
 
 #include "basics/memory.h"

@@ -67,7 +67,8 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table};
 
-// Share of what takes part that is as easy to enter as PRESSURE says.
+// Share of the throats, or of the nodes that have a throat, with an entry pressure up
+// to PRESSURE.
 static double share_up_to(const struct network *network, const struct entry *entry,
                           enum invasion_rule rule, double pressure)
 {

@@ -14,8 +14,8 @@ struct transport {
     double *saturation;                   // (n) falling
     double *relative[PHASES][PROPERTIES]; // (n) each, of what one phase alone has
 
-    // Of one phase alone, in all throats, from inlet to outlet: volume flow times
-    // viscosity over the fall of pressure (m3), and amount over the fall of
+    // Conductances from inlet to outlet when one phase fills all throats: volume flow
+    // times viscosity over the fall of pressure (m3), and amount over the fall of
     // concentration and the diffusivity (m).
     double conductance[PROPERTIES];
     // These as if the box were of one material: times its length over its section, m2

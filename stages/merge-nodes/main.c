@@ -71,7 +71,7 @@ static void merge(struct network *network, const struct merge_parameters *parame
     census_free(&after);
 }
 
-// What an artifact can say of images.
+// Refuses nodes that meet across more periodic images than an artifact can store.
 static void check_images(const struct network *network, const char *path)
 {
     bool far = false;

@@ -48,7 +48,7 @@ static bool takes_input(const struct invocation *invocation, int method)
     return invocation->n_input > 0;
 }
 
-// By any method but import; PACKING and DOMAIN are those to begin with if GIVEN.
+// Any method but import. If GIVEN, PACKING and DOMAIN hold the grains to begin with.
 static void make_packing(const struct invocation *invocation,
                          const struct pack_parameters *parameters, bool given,
                          struct domain *domain, struct packing *packing,
@@ -65,7 +65,8 @@ static void make_packing(const struct invocation *invocation,
     if (status) die(status, "%s", reason.text);
 }
 
-// Of the domain, not of the box around it; a box loses no digit.
+// Porosity of the domain, not of the box around it. For a box the porosity is returned
+// as it is, so that no digit is lost.
 static double porosity_in(const struct domain *domain, const struct packing *packing)
 {
     const double porosity = packing_porosity(packing);
@@ -105,7 +106,7 @@ static const char *model_text(const struct reached *reached,
            "history\nno bonds while they moved\n";
 }
 
-// Stops at what cannot be, and says what can hardly be meant.
+// Refuses a packing that is impossible, and warns of one that is hardly meant.
 static void look_at(const struct packing *packing, const struct contacts *contacts,
                     const struct invocation *invocation,
                     const struct pack_parameters *parameters)
@@ -176,7 +177,7 @@ static void make_layer(struct domain *domain, int wall, struct packing *packing)
     domain->upper = packing->upper;
 }
 
-// The others are done in one go.
+// Whether METHOD keeps checkpoints; the others run in one go.
 static bool keeps_state(int method)
 {
     return method == METHOD_DEPOSITION || method == METHOD_RADIUS_EXPANSION ||

@@ -34,7 +34,7 @@ static struct vector face_area(const struct network *network, int face)
     return scale(0.5, area);
 }
 
-// Of the WALLS (bits) the one that OUTWARDS points to most; a round wall has no
+// The one of the WALLS (bits) that OUTWARDS points to most. A round wall has no
 // direction and is only taken if there is no flat one.
 static int wall_faced(unsigned walls, struct vector outwards)
 {

@@ -209,9 +209,10 @@ static double *find_most(const struct kelvin_viscous *coupling,
     return most;
 }
 
-// Those begin to move that are more curved than their throats by FAR of it, and nearly
-// the most of their cluster; those stop that take up more than NOISE, full. Returns how
-// many; no more than MOST.
+// Revises which menisci move. A stationary one begins to move when it is more curved
+// than its throat, by the fraction FAR at least and by BEGIN_FRACTION of the largest
+// shortfall in its cluster. A moving one at a full throat stops when it would take up
+// more than NOISE. Returns the number of changes, at most MOST.
 static int revise(struct kelvin_viscous *coupling, const struct occupancy *occupancy,
                   double far, double noise, int most)
 {
