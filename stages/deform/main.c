@@ -339,7 +339,7 @@ static void write_packing(const struct scene *scene)
     struct artifact *artifact = artifact_create("packing", scene->invocation->output);
     artifact_put_packing(artifact, packing);
     artifact_put_number(artifact, "/summary/porosity",
-                        1 - solid / domain_volume(packing));
+                        1 - solid / packing_domain_volume(packing));
     artifact_put_number(artifact, "/summary/max_overlap", overlap);
     artifact_put_number(artifact, "/summary/coordination",
                         packing->n_particle ? 2.0 * n / packing->n_particle : 0);

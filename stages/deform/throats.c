@@ -121,7 +121,7 @@ static double volume_of(const struct body *body)
     return share[body->shape] * product(subtract(body->upper, body->lower));
 }
 
-double domain_volume(const struct packing *packing)
+double packing_domain_volume(const struct packing *packing)
 {
     double room = product(subtract(packing->upper, packing->lower)), holes = 0;
     for (int k = 0; k < packing->n_body; k++) {
@@ -140,7 +140,7 @@ static double void_of(const struct packing *packing)
     double porosity;
     slice_porosity(packing, &contacts, &box, 1, &porosity);
     free((void *)(uintptr_t)contacts.pair);
-    return domain_volume(packing) - (1 - porosity) * product(edge);
+    return packing_domain_volume(packing) - (1 - porosity) * product(edge);
 }
 
 // Whether the volumes of NETWORK are what find_void_volumes gives.

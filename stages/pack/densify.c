@@ -61,7 +61,8 @@ static struct protocol protocol_now(const struct densification *d)
 static void keep_protocol(const struct densification *d)
 {
     const struct protocol protocol = protocol_now(d);
-    keep_if_due(d->making, d->dem, (const double *)&protocol, PROTOCOL_NUMBERS);
+    keep_dynamics_if_due(d->making, d->dem, (const double *)&protocol,
+                         PROTOCOL_NUMBERS);
 }
 
 static enum status restore_protocol(struct densification *d, struct reason *reason)

@@ -116,7 +116,7 @@ static enum status settle(const struct making *making, struct dem *dem,
             first = fmax(first, done);
             progress_update(making->progress, first);
         }
-        keep_if_due(making, dem, &first, 1);
+        keep_dynamics_if_due(making, dem, &first, 1);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "not settled after %lld cycles: unbalanced ratio %.3g, largest speed "

@@ -171,8 +171,8 @@ enum status restore_dynamics(const struct making *making, struct dem *dem,
     return STATUS_OK;
 }
 
-void keep_if_due(const struct making *making, const struct dem *dem,
-                 const double *protocol, int count)
+void keep_dynamics_if_due(const struct making *making, const struct dem *dem,
+                          const double *protocol, int count)
 {
     struct array_list list = {NULL, 0};
     if (!is_due(making->how->keeper)) return;

@@ -112,8 +112,8 @@ enum status restore_dynamics(const struct making *making, struct dem *dem,
                              double *protocol, int count, struct reason *reason);
 
 // Keeps a checkpoint if it is due.
-void keep_if_due(const struct making *making, const struct dem *dem,
-                 const double *protocol, int count);
+void keep_dynamics_if_due(const struct making *making, const struct dem *dem,
+                          const double *protocol, int count);
 
 // Copies positions and radii from DEM to the packing, wrapped into a periodic box.
 void take_grains(const struct making *making, const struct dem *dem);
