@@ -33,7 +33,7 @@ struct balance {
     double *injected; // (n_node) sources and fluxes through walls
     double *given;    // (n_node) these, and what the mean gradient drives
     int32_t *unknown; // (n_node) place in the matrix
-    struct matrix matrix;
+    struct conductance_matrix matrix;
 };
 
 static unsigned walls_of_corners(const int32_t *corner, int n)
@@ -218,7 +218,7 @@ static void arrange(struct balance *balance, const struct pressures *pressures)
                 (struct link){{balance->unknown[node[0]], balance->unknown[node[1]]},
                               throat->conductance};
     }
-    balance->matrix = matrix_of_links(n, n_node, n_link, link);
+    balance->matrix = conductance_matrix_of_links(n, n_node, n_link, link);
     free(link);
 }
 
@@ -309,14 +309,14 @@ static enum status close_balances(const struct balance *balance,
                                   const struct solving *solving,
                                   struct pressures *pressures, struct reason *reason)
 {
-    const struct matrix *matrix = &balance->matrix;
+    const struct conductance_matrix *matrix = &balance->matrix;
     struct compensated *x = NEW_ARRAY(struct compensated, matrix->n_all);
     double *residual = NEW_ARRAY(double, matrix->n);
     double *given = NEW_ARRAY(double, matrix->n_all);
     for (int i = 0; i < matrix->n_all; i++)
         given[balance->unknown[i]] = balance->given[i];
     reorder(balance, pressures, x, false);
-    matrix_residual(matrix, given, x, residual);
+    conductance_matrix_residual(matrix, given, x, residual);
     pressures->imbalance = INFINITY;
     struct linear_solver solver;
     enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
@@ -442,7 +442,7 @@ enum status solve_pressures(const struct grains *grains, const struct cells *cel
     free(balance.injected);
     free(balance.given);
     free(balance.unknown);
-    matrix_free(&balance.matrix);
+    conductance_matrix_free(&balance.matrix);
     return status;
 }
 

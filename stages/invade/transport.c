@@ -126,10 +126,11 @@ static enum status iterate(int n, int n_link, const struct link *link,
     struct compensated *x = NEW_ARRAY(struct compensated, n + 2);
     double *residual = NEW_ARRAY(double, n);
     x[n + 1].value = 1; // at the inlet
-    struct matrix matrix = matrix_of_links(n, n + 2, n_link, link);
+    struct conductance_matrix matrix =
+        conductance_matrix_of_links(n, n + 2, n_link, link);
     struct linear_solver solver;
     enum status status = linear_solver_make(&matrix, SOLVER_AUTO, &solver, reason);
-    matrix_residual(&matrix, NULL, x, residual);
+    conductance_matrix_residual(&matrix, NULL, x, residual);
     bool closed = false;
     for (int round = 0, iterations = 0; !status && !closed && round < MAX_ROUNDS;
          round++) {
@@ -139,7 +140,7 @@ static enum status iterate(int n, int n_link, const struct link *link,
         closed = sum_of_sizes(residual, n) <= TOLERANCE * *conductance;
     }
     linear_solver_free(&solver);
-    matrix_free(&matrix);
+    conductance_matrix_free(&matrix);
     free(x);
     free(residual);
     return status || closed ? status : STATUS_NOT_CONVERGED;

@@ -163,7 +163,7 @@ static void check_kernels(const struct kernels kernels[2], bool is_rounded,
     struct dense_front dense[2];
     for (int wide = 0; wide < 2; wide++) {
         dense[wide] = wait_for_products(is_rounded, row, factor);
-        assert_int_equal(dense[wide].n_waiting, SOURCES);
+        assert_int_equal(dense[wide].n_pending, SOURCES);
         kernels[wide].gather(&dense[wide], ROWS, factor, gathered[wide]);
         kernels[wide].pass(&dense[wide], ROWS);
     }

@@ -103,8 +103,8 @@ static void note_dried(struct dried_nodes *dried, struct occupancy *occupancy,
                            occupancy->liquid_beside[end[1]] == 1};
     if (!dries[0] && !dries[1]) return;
     struct kron_fronts *mesh = &occupancy->vapour.mesh;
-    kron_fronts_bring_up_to_date(mesh, end[0]);
-    kron_fronts_bring_up_to_date(mesh, end[1]);
+    kron_fronts_flush(mesh, end[0]);
+    kron_fronts_flush(mesh, end[1]);
     const int one = dries[0] ? end[0] : end[1], other = dries[0] ? end[1] : end[0];
     const double between =
         note_node(dried, mesh, one, other) + occupancy->vapour.conductance[throat];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether the processor has the vectors of eight numbers that *_avx512.c are compiled
 // for.
-#ifndef CRAQUELURE_WIDE_VECTORS_H
-#define CRAQUELURE_WIDE_VECTORS_H
+#ifndef CRAQUELURE_CPU_FEATURES_H
+#define CRAQUELURE_CPU_FEATURES_H
 
 #include <stdbool.h>
 

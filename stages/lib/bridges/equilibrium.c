@@ -1,4 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The stable bridge at a gap, by continuation along the branch of equilibria.
+//
+// Unknowns (newton.h): logarithms of both reaches and of the arc's length, and its
+// turn. A branch begins at contact, from a torus (`torus`), if need be through growing
+// volumes (`grow`). From there `advance` follows it by pseudo-arclength: predict a
+// distance along `direction`, correct by Newton with the fourth equation direction.(x -
+// x_from) = distance (`reach`). The branch is stable while
+//     rate = d gap / d s > 0   (no turning point yet), and
+//     symmetry > 0            (symmetry not broken yet),
+// where symmetry is the determinant of the three other equations and `direction`, with
+// the sign that makes it positive for the thinnest torus.
+//
+// A sign change of either is closed in on by regula falsi; that is rupture. Trap:
+// Newton may land on an unstable branch or an arc with a bulge; near(), goes_on() and
+// least_pull refuse those.
 #include "bridges/equilibrium.h"
 
 #include "bridges/newton.h"
@@ -6,7 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-// Along the branch, in the unknowns: some two from contact to rupture.
+// Distances along the branch, in the unknowns: some two from contact to rupture.
 static const double longest_stride = 0.5, shortest_stride = 1e-10;
 
 // A bridge found, and the direction of the branch there: that in which the gap widens
@@ -93,7 +108,7 @@ static bool equal(const double of[2])
     return !(of[0] < of[1] || of[0] > of[1]);
 }
 
-// What is looked for; with to_turning also past the break of symmetry.
+// The bridge to find; with to_turning also past the break of symmetry.
 struct question {
     const struct bodies *bodies;
     double volume;
@@ -350,7 +365,7 @@ enum status find_equilibrium(const struct bodies *bodies, double volume, double 
     return find_at(&(struct question){bodies, volume, false}, gap, found);
 }
 
-// From the two bridges before by secants.
+// Extrapolates the two bridges before to GAP.
 static struct unknowns extrapolated(const struct state *before,
                                     const struct state *last, double gap)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equilibrium of a bridge: the arc that meets both bodies at their contact angles with
-// a given volume. All lengths over the effective radius [G 1].
+// Equilibrium of a bridge: the arc that meets both bodies at their contact angles and
+// encloses a given volume. Lengths are in effective radii [G 1], volumes in their
+// cubes.
 #ifndef CRAQUELURE_EQUILIBRIUM_H
 #define CRAQUELURE_EQUILIBRIUM_H
 

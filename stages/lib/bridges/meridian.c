@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The arc z(s) = y exp(i psi) of meridian.h between two bodies, its integrals, and all
+// derivatives by the four unknowns (`arc`), in closed form. With h = turn, L = length,
+// x = s / L from 0 to 1,
+//     z(x) = z(0) exp(2ihx) + L (exp(2ihx) - 1) / (2h) ,
+// and at each body y = contact-line radius and psi = pi/2 - half-filling - contact
+// angle.
+//     miss   = exp(-ih) z(1) - exp(ih) z(0) - i L sin(h)/h   (find_miss; 0 in
+//     equilibrium), gap    = integral of Re z / |z| ds - both sagittas, volume = pi
+//     integral of Re z |z| ds - both caps,  area = 2 pi integral of |z| ds.
+// The integrands have square-root singularities beside every neck; the substitution x =
+// middle + scale sinh t moves them to distance pi/2, where 16 Gauss points a panel
+// suffice. Series replace sin(x)/x and its like near 0: no shape is special.
 #include "bridges/meridian.h"
 
 #include <math.h>
@@ -32,7 +44,7 @@ struct contact_line contact_line(const struct bodies *bodies, int which, double 
     return line;
 }
 
-// A contact line, what the slope does there, and how it all changes with the reach.
+// A contact line, the slope there, and their changes with the reach.
 struct foot {
     struct contact_line line;
     double turned; // half-filling and contact angle: pi/2 less the slope outwards

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The closed forms of [G 2] and of Soulie. Each is kept finite where its authors did
-// not mean it to be used.
+// The closed forms of [G 2] and of Soulie, in effective radii and surface tensions:
+// `gap`, `volume` (over the cube) and `angle` give the force. G's equation numbers
+// stand at each. A model stays finite outside the range that its authors meant;
+// flags_of says where that is. Trap: Willett's full fit grows without bound as volumes
+// vanish (least_volume).
 #include "bridges/bridges.h"
 
 #include <math.h>
@@ -16,7 +19,7 @@ double bridge_dimensionless_volume(const struct bridge *bridge)
     return bridge->volume / scale / scale / scale;
 }
 
-// What the models see: all over the effective radius; forces over that and the surface
+// The input of the models: all in effective radii; forces in those and the surface
 // tension.
 struct reduced {
     double gap, volume, angle;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Damped Newton's method for the four equations of a bridge, scaled to order one:
+//     residual[0], [1] = miss / length   (slope and radius at the second body),
+//     residual[2] = (volume + shared) / V - 1,
+//     residual[3] = (gap - wanted gap) / length, or direction.(x - x_from) - distance.
+// For equal bodies residual[0] is reach_1 - reach_2 in logarithms: only symmetric
+// bridges. A step is at most `longest` and is halved while it does not reduce the
+// residuals. It is done when a step is below 1e-8, as the next would be of the order of
+// its square.
 #include "bridges/newton.h"
 
 #include <math.h>

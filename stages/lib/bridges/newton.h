@@ -42,14 +42,16 @@ struct system system_at(const struct problem *problem, const struct unknowns *un
 // Gauss' elimination: RIGHT becomes the solution. Returns the determinant; 0: singular.
 double eliminate(double matrix[ARC_NUMBERS][ARC_NUMBERS], double right[ARC_NUMBERS]);
 
-// FROM and a SHARE of STEP.
+// FROM + SHARE times STEP.
 struct unknowns moved(const struct unknowns *from, const double step[ARC_NUMBERS],
                       double share);
 
-// Whether arcs of these unknowns are any.
+// Whether these unknowns describe an arc: each contact line on its body, turn below 2
+// pi.
 bool sensible(const struct bodies *bodies, const struct unknowns *unknowns);
 
-// Newton's method, damped. Returns whether it converged; COUNT grows by its steps.
+// Newton's method, damped. Returns whether it converged; adds the number of its steps
+// to COUNT.
 bool converge(const struct problem *problem, struct unknowns *unknowns, int *count);
 
 struct arc arc_of(const struct unknowns *unknowns);

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces of bridges between grains of many sizes.
+// Forces between grains of many sizes, by interpolation between tables at seventeen
+// ratios of radii. For asymmetry s, volume V and gap a (ratios_layout.h):
+//     weights  = Lagrange's polynomials at s through the six nearest tables,
+//     1/A      = sum of weights times 1/A of each table,
+//     zeta^2   = (1 - a/A) / (1 + a/C),
+//     F        = (1 + a/C)^-2 sum of weights times the tables' patches at the same
+//     zeta.
+// A volume outside the tables takes the nearest one at the same zeta, with A scaling as
+// V^(1/3) and C as V^(1/2). Trap: asymmetry 0 has a table of its own, as equal grains
+// may rupture by a break of symmetry.
 #include "bridges/ratios_layout.h"
 
 #include <stdlib.h>
@@ -20,7 +29,7 @@ void bridge_ratios_free(struct bridge_ratios *ratios)
     free(ratios);
 }
 
-// Of a pair: six tables from FIRST on, and what each counts for.
+// The six tables of a pair, from FIRST on, and their weights.
 struct blend {
     int first;
     double weight[STENCIL];
@@ -73,15 +82,15 @@ static double unequal_force(const struct bridge_ratios *ratios, double asymmetry
     const double shrink = 1 / (1 + gap * patch->steepness);
     const double x = along(WIDE * sqrt(rest * shrink));
     const int place = x < PLACES ? (int)x : PLACES - 1;
-    eight row[3] = {{0}, {0}, {0}};
+    float8 row[3] = {{0}, {0}, {0}};
     for (int k = 0; k < STENCIL; k++) {
         const float weight = (float)blend.weight[k];
-        const eight *from = patch->force[place][blend.first + k];
+        const float8 *from = patch->force[place][blend.first + k];
         for (int i = 0; i < 3; i++)
             row[i] += weight * from[i];
     }
     row[1] += (float)(u * u) * row[2];
-    const four term = terms_of(row, (float)u, (float)(2 * (x - place) - 1));
+    const float4 term = terms_of(row, (float)u, (float)(2 * (x - place) - 1));
     return shrink * shrink * (double)((term[0] + term[1]) + (term[2] + term[3]));
 }
 
@@ -117,8 +126,8 @@ static double nearest_volume(const struct bridge_ratios *ratios, double asymmetr
     return volume;
 }
 
-// Of a volume that is not: what the nearest has at the same zeta, with A as the cube
-// root of the volume and C as its square root.
+// Force for a volume that is not tabulated, from the nearest one at the same zeta, with
+// A as the cube root of the volume and C as its square root.
 static double other_force(const struct bridge_ratios *ratios, double asymmetry,
                           double volume, double nearest, double gap)
 {

@@ -14,7 +14,7 @@
 
 #include "basics/status.h"
 
-// What bridges there will be: only what they need is tabulated.
+// The range of bridges that will occur: only what they need is tabulated.
 struct bridge_sizes {
     double radius[2]; // of the smallest and largest grain; any unit
     double volume[2]; // of the smallest and largest bridge; its cube

@@ -24,7 +24,7 @@ struct ratio_patch {
     double inverse[RATIOS][HALF_ORDER]; // 1/A as polynomials in u
     double steepness;                   // 1/C
     // Coefficients of u^i w^j as in a table: i = 0 and 1, 2 and 3, 4 and 5.
-    alignas(64) eight force[PLACES][RATIOS][3];
+    alignas(64) float8 force[PLACES][RATIOS][3];
 };
 
 // Patches of a table from FIRST to LAST; none if FIRST is above.

@@ -105,7 +105,7 @@ static double steepness_of(int half)
 
 // Interpolates at HALF_ORDER volumes by ORDER places.
 static void fit_half_place(const double value[HALF_ORDER][SAMPLES], int place,
-                           eight row[HALF_ORDER / 2])
+                           float8 row[HALF_ORDER / 2])
 {
     double across[ORDER][HALF_ORDER], power[HALF_ORDER];
     for (int v = 0; v < HALF_ORDER; v++) {

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact bridge in the units of its user.
+// The exact bridge in SI: bodies in effective radii r = 2 / (1/R1 + 1/R2) go to
+// equilibrium.c, and come back as
+//     force = 2 pi gamma r (arc_force - H rho^2),  suction = 2 gamma H / r,
+//     energy = gamma (free area - sum of cos theta wetted area),
+// with H = turn / length, and rho the radius of the circle in which overlapping bodies
+// meet (the liquid does not press there).
 #include "bridges/bridges.h"
 #include "bridges/equilibrium.h"
 
 #include <math.h>
 
-// Beyond these numbers leave the range of doubles on the way.
+// Outside this range intermediate results overflow or underflow.
 static const double LEAST_VOLUME = 1e-60, MOST_VOLUME = 1e100;
 
 enum status bridge_check(const struct bridge *bridge, struct reason *reason)

@@ -3,18 +3,18 @@
 //
 // With the gap A of the turning point and a length C of 1.2 sqrt(volume),
 //     zeta = sqrt((1 - a/A)/(1 + a/C))
-// runs from 1 at contact to 0 there. It spreads both places where the force is steep:
-// next to contact, where it changes over sqrt(volume), and next to the turning point,
-// where it goes with the root of what is left. Then F (1 + a/C)^2 is a smooth number of
-// order one, which bicubic patches in volume and zeta hold. Where symmetry breaks first
-// the bridge ruptures before, at a zeta above 0; what the table holds beyond is only
-// for the smoothness.
+// runs from 1 at contact to 0 at A. It resolves both places where the force is steep:
+// near contact, where it changes over sqrt(volume), and near the turning point, where
+// it changes as sqrt(1 - a/A). Then F (1 + a/C)^2 is a smooth number of order one,
+// which bicubic patches in volume and zeta represent. Where symmetry breaks first the
+// bridge ruptures before, at a zeta above 0; the table beyond is only for smoothness.
 //
 // The patches in volume are eighths of octaves, found from the bits of the number: a
 // force takes one division and one root, no logarithm and no search.
 #ifndef CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
 #define CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
 
+#include "basics/simd.h"
 #include "bridges/table.h"
 
 #include <math.h>
@@ -27,9 +27,6 @@
 enum { OCTAVES = 30, EIGHTHS = 8, VOLUMES = OCTAVES * EIGHTHS };
 enum { WIDE = 64, NARROW = 4, PLACES = WIDE + NARROW };
 enum { TURNING_ORDER = 6, ORDER = 4 }; // coefficients of 1/A, and of all else
-
-typedef float eight __attribute__((vector_size(32)));
-typedef float four __attribute__((vector_size(16)));
 
 // Of the least volume, those above the third of the fraction.
 static const int least_bits = (1023 - OCTAVES) * EIGHTHS;
@@ -47,7 +44,7 @@ struct bridge_table {
     double end[VOLUMES][ORDER]; // zeta at rupture, as a polynomial in u; below 0: 0
     struct volume_patch volume[VOLUMES];
     // Coefficients of u^i w^j, w from -1 to 1 across the place: i = 0 and 1, 2 and 3.
-    alignas(64) eight force[VOLUMES][PLACES][2];
+    alignas(64) float8 force[VOLUMES][PLACES][2];
 };
 
 struct volume_place {
@@ -100,13 +97,13 @@ static inline double along(double wide)
 }
 
 // The terms of a patch's polynomial, still to be added up.
-static inline four terms_of(const eight row[2], float u, float w)
+static inline float4 terms_of(const float8 row[2], float u, float w)
 {
     const float square = w * w;
-    const eight rows = row[0] + u * u * row[1];
-    const four low = {rows[0], rows[1], rows[2], rows[3]};
-    const four high = {rows[4], rows[5], rows[6], rows[7]};
-    const four powers = {1, w, square, w * square};
+    const float8 rows = row[0] + u * u * row[1];
+    const float4 low = {rows[0], rows[1], rows[2], rows[3]};
+    const float4 high = {rows[4], rows[5], rows[6], rows[7]};
+    const float4 powers = {1, w, square, w * square};
     return (low + u * high) * powers;
 }
 

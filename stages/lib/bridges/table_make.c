@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table from exact solutions at Chebyshev's nodes.
+// A table from exact solutions. In each patch of volumes, at Chebyshev's nodes of u and
+// w,
+//     value = F (1 + a/C)^2 at zeta(w), with 1/A a polynomial in u through turning
+//     points,
+// are interpolated by a polynomial in each direction (fit_place), bicubic. The exact
+// bridges of one volume come from one continuation with rising gaps
+// (follow_to_turning). `measure` then compares with exact solutions between the nodes,
+// at the border of two patches. Patches are independent: OpenMP shares them out.
 #include "bridges/table_make.h"
 #include "basics/memory.h"
 
@@ -106,7 +113,7 @@ static enum status fit_volumes(const struct bodies *bodies, int patch,
 }
 
 // Interpolates at ORDER by ORDER nodes.
-static void fit_place(const double value[ORDER][SAMPLES], int place, eight row[2])
+static void fit_place(const double value[ORDER][SAMPLES], int place, float8 row[2])
 {
     double across[ORDER][ORDER], power[ORDER];
     for (int v = 0; v < ORDER; v++) {
@@ -122,7 +129,7 @@ static void fit_place(const double value[ORDER][SAMPLES], int place, eight row[2
 }
 
 enum status make_patch(const struct bodies *bodies, int patch, struct volume_patch *at,
-                       double end[ORDER], eight force[PLACES][2])
+                       double end[ORDER], float8 force[PLACES][2])
 {
     double value[ORDER][SAMPLES];
     enum status status = fit_volumes(bodies, patch, at, end);

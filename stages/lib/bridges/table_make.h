@@ -23,6 +23,6 @@ enum status sample_forces(const struct bodies *bodies, double volume,
 // zeta they rupture (END; 0 everywhere: at zeta 0) and the forces. STATUS_OK or
 // STATUS_NOT_CONVERGED.
 enum status make_patch(const struct bodies *bodies, int patch, struct volume_patch *at,
-                       double end[ORDER], eight force[PLACES][2]);
+                       double end[ORDER], float8 force[PLACES][2]);
 
 #endif

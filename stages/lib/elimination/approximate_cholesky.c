@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An approximate factor L D L' of the balances of a network, as preconditioner (Kyng
+// and Sachdeva 2016; Gao, Kyng and Spielman 2023).
+//
+// Elimination of vertex i with edge weights w_1 <= w_2 <= ... to its neighbours would
+// leave an edge w_j w_k / sum w between each two of them. Instead, neighbour k gets one
+// edge, to a neighbour `other` drawn among k+1 ... with probability w_other / (sum of
+// those), of weight f (1 - f) `whole`, where `whole` is the sum of the remaining
+// weights and f the part of k in it: its mean is that of elimination. `share` of k is
+// its entry of L, `scale` of i is 1 / D_i.
+//
+// Vertices of low degree that are not neighbours are eliminated together, in rounds;
+// rows of equal length form blocks, so that apply runs without branches. Entries are
+// floats: the factor is approximate anyway, it stays symmetric, and memory traffic
+// decides the speed. The random stream is fixed, so every run does the same.
 #include "approximate_cholesky.h"
 
 #include "basics/memory.h"
@@ -9,12 +23,11 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-// L D L' in the order of elimination. A pore passes a share of what it holds to each of
-// its neighbours. Numbers are rounded to floats: the factor is only near Cholesky's
-// anyway, it stays symmetric, and bytes are time.
-struct sampled_factor {
+// The factor, in the order of elimination. Each vertex passes a share of what it holds
+// to each of its neighbours.
+struct approximate_cholesky {
     int n;
-    int *pore;    // (n) in the order of elimination
+    int *vertex;  // (n) in the order of elimination
     float *scale; // (n) what D divides by
     int n_block;
     struct block *block;
@@ -25,14 +38,14 @@ struct sampled_factor {
     size_t n_entry, capacity;
 };
 
-// Rows of one length, of pores none of which is another's neighbour: to go through them
-// takes no guess of where a row ends, and none waits for another.
+// Rows of one length, of vertices none of which neighbours another: no row waits for
+// another, and the length needs no lookup.
 struct block {
     int end; // row after the last
     int length;
 };
 
-// What a round takes out.
+// The vertices that a round eliminates.
 struct round {
     int n_row, longest;
     struct row *row;
@@ -45,15 +58,15 @@ struct round {
 };
 
 struct row {
-    int pore, length;
+    int vertex, length;
     float scale;
     size_t first;
 };
 
-enum { MOST_DEGREE = 200 };
+enum { MAX_DEGREE = 200 };
 
 // SplitMix64: from 0 to 1.
-static double draw(uint64_t *stream)
+static double random_uniform(uint64_t *stream)
 {
     uint64_t z = *stream += 0x9e3779b97f4a7c15;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
@@ -63,19 +76,19 @@ static double draw(uint64_t *stream)
 
 // ---- elimination --------------------------------------------------------------------
 
-static bool is_narrower(const struct half_throat *a, const struct half_throat *b)
+static bool is_lighter(const struct half_edge *a, const struct half_edge *b)
 {
-    if (a->width < b->width || a->width > b->width) return a->width < b->width;
+    if (a->weight < b->weight || a->weight > b->weight) return a->weight < b->weight;
     return a->to < b->to;
 }
 
-// The narrowest first; nearly always a handful, so by insertion.
-static void sort(struct half_throat *half, int length)
+// Lightest first, by insertion: there is nearly always only a handful.
+static void sort(struct half_edge *half, int length)
 {
     for (int k = 1; k < length; k++) {
-        const struct half_throat here = half[k];
+        const struct half_edge here = half[k];
         int place = k;
-        for (; place > 0 && is_narrower(&here, &half[place - 1]); place--)
+        for (; place > 0 && is_lighter(&here, &half[place - 1]); place--)
             half[place] = half[place - 1];
         half[place] = here;
     }
@@ -103,71 +116,72 @@ static int search(const double *sum, int from, int length, double r)
     return from;
 }
 
-// Takes out pore I. Its throats stay where they are while others are added.
-static void eliminate(struct shrinking_graph *graph, int i, struct round *round)
+// Eliminates vertex I. Its edges stay where they are while others are added.
+static void eliminate(struct elimination_graph *graph, int i, struct round *round)
 {
-    const int first = graph->pore[i].first, length = graph->pore[i].count;
+    const int first = graph->vertex[i].first, length = graph->vertex[i].count;
     reserve(round, length);
     sort(&graph->half[first], length);
     int *neighbour = &round->neighbour[round->n_entry];
     float *share = &round->share[round->n_entry];
     double sum = 0, rest = 1, last = 0;
     for (int k = 0; k < length; k++)
-        round->sum[k] = sum += (double)graph->half[first + k].width;
+        round->sum[k] = sum += (double)graph->half[first + k].weight;
     double whole = sum;
     for (int k = 0; k < length; k++) {
-        const struct half_throat half = graph->half[first + k];
-        neighbour[k] = graph->name[half.to];
-        if (half.to < graph->n) graph->pore[half.to].beside = true;
-        last = (double)half.width * rest;
+        const struct half_edge half = graph->half[first + k];
+        neighbour[k] = graph->index[half.to];
+        if (half.to < graph->n) graph->vertex[half.to].neighbour_eliminated = true;
+        last = (double)half.weight * rest;
         if (k + 1 == length) {
             share[k] = (float)rest;
-            graph_cut(graph, half.to, i);
+            elimination_graph_remove_edge(graph, half.to, i);
             break;
         }
         const double f = last / whole;
-        const double r = round->sum[k] + draw(&round->stream) * (sum - round->sum[k]);
+        const double r =
+            round->sum[k] + random_uniform(&round->stream) * (sum - round->sum[k]);
         const int other = search(round->sum, k + 1, length, r);
         share[k] = (float)(f * rest);
-        graph_replace(graph, half.to, i, graph->half[first + other].to,
-                      (float)(f * (1 - f) * whole));
+        elimination_graph_replace_edge(graph, half.to, i, graph->half[first + other].to,
+                                       (float)(f * (1 - f) * whole));
         rest *= 1 - f;
         whole *= (1 - f) * (1 - f);
     }
-    graph->pore[i].gone = true;
+    graph->vertex[i].eliminated = true;
     GROW_ARRAY(round->row, round->n_row, round->row_capacity);
     round->row[round->n_row++] =
-        (struct row){graph->name[i], length, last > 0 ? (float)(rest * rest / last) : 0,
-                     round->n_entry};
+        (struct row){graph->index[i], length,
+                     last > 0 ? (float)(rest * rest / last) : 0, round->n_entry};
     round->n_entry += (size_t)length;
     if (length > round->longest) round->longest = length;
 }
 
-// So many throats that a third of the pores has no more.
-static int few_throats(const struct shrinking_graph *graph)
+// The least degree that more than a third of the vertices do not exceed.
+static int degree_limit(const struct elimination_graph *graph)
 {
-    int count[MOST_DEGREE] = {0}, sum = 0;
+    int count[MAX_DEGREE] = {0}, sum = 0;
     for (int i = 0; i < graph->n; i++)
-        if (graph->pore[i].count < MOST_DEGREE) count[graph->pore[i].count]++;
-    for (int degree = 0; degree < MOST_DEGREE; degree++)
+        if (graph->vertex[i].count < MAX_DEGREE) count[graph->vertex[i].count]++;
+    for (int degree = 0; degree < MAX_DEGREE; degree++)
         if ((sum += count[degree]) > graph->n / 3) return degree;
     return INT_MAX;
 }
 
-static void take_out(struct shrinking_graph *graph, struct round *round)
+static void eliminate_independent(struct elimination_graph *graph, struct round *round)
 {
-    const int few = few_throats(graph);
+    const int limit = degree_limit(graph);
     round->n_row = round->longest = 0;
     round->n_entry = 0;
     for (int i = 0; i < graph->n; i++)
-        if (!graph->pore[i].beside && graph->pore[i].count <= few)
+        if (!graph->vertex[i].neighbour_eliminated && graph->vertex[i].count <= limit)
             eliminate(graph, i, round);
-    graph_pack(graph);
+    elimination_graph_compact(graph);
 }
 
 // ---- the factor ---------------------------------------------------------------------
 
-static void make_room(struct sampled_factor *factor, size_t more)
+static void reserve_entries(struct approximate_cholesky *factor, size_t more)
 {
     if (factor->n_entry + more <= factor->capacity) return;
     factor->capacity = factor->capacity + factor->capacity / 4 + more;
@@ -175,10 +189,9 @@ static void make_room(struct sampled_factor *factor, size_t more)
     factor->share = reallocate(factor->share, factor->capacity, sizeof(float));
 }
 
-// The rows of a round after those there are, the short ones first. Returns how many
-// rows there are then.
-static int append(struct sampled_factor *factor, int n, const struct round *round,
-                  double widest)
+// Appends the rows of a round, short ones first. Returns the new number of rows.
+static int append(struct approximate_cholesky *factor, int n, const struct round *round,
+                  double max_weight)
 {
     int *begin = NEW_ARRAY(int, round->longest + 2),
         *order = NEW_ARRAY(int, round->n_row);
@@ -194,11 +207,11 @@ static int append(struct sampled_factor *factor, int n, const struct round *roun
     }
     for (int k = 0; k < round->n_row; k++)
         order[begin[round->row[k].length]++] = k;
-    make_room(factor, round->n_entry);
+    reserve_entries(factor, round->n_entry);
     for (int k = 0; k < round->n_row; k++) {
         const struct row *row = &round->row[order[k]];
-        factor->pore[n + k] = row->pore;
-        factor->scale[n + k] = (float)((double)row->scale / widest);
+        factor->vertex[n + k] = row->vertex;
+        factor->scale[n + k] = (float)((double)row->scale / max_weight);
         for (int m = 0; m < row->length; m++, factor->n_entry++) {
             factor->neighbour[factor->n_entry] =
                 round->neighbour[row->first + (size_t)m];
@@ -210,43 +223,45 @@ static int append(struct sampled_factor *factor, int n, const struct round *roun
     return n + round->n_row;
 }
 
-// Neighbours by when they are eliminated: solving then goes through memory in order.
-static void renumber(struct sampled_factor *factor)
+// Renumbers neighbours by the order of elimination: solving then runs through memory in
+// order.
+static void renumber(struct approximate_cholesky *factor)
 {
     int *place = NEW_ARRAY(int, factor->n + 1);
     for (int step = 0; step < factor->n; step++)
-        place[factor->pore[step]] = step;
+        place[factor->vertex[step]] = step;
     place[factor->n] = factor->n;
     for (size_t k = 0; k < factor->n_entry; k++)
         factor->neighbour[k] = place[factor->neighbour[k]];
     free(place);
 }
 
-static double widest_throat(const struct matrix *matrix)
+static double max_conductance(const struct conductance_matrix *matrix)
 {
-    double widest = 0;
+    double max_weight = 0;
     for (int k = 0; k < matrix->offset[matrix->n]; k++)
-        widest = fmax(widest, matrix->value[k]);
-    return widest > 0 ? widest : 1;
+        max_weight = fmax(max_weight, matrix->value[k]);
+    return max_weight > 0 ? max_weight : 1;
 }
 
-struct sampled_factor *sampled_factor_make(const struct matrix *matrix)
+struct approximate_cholesky *
+approximate_cholesky_create(const struct conductance_matrix *matrix)
 {
     const int n = matrix->n;
-    const double widest = widest_throat(matrix);
-    struct shrinking_graph graph = graph_of(matrix, widest);
-    struct sampled_factor *factor = NEW_ARRAY(struct sampled_factor, 1);
-    *factor = (struct sampled_factor){.n = n,
-                                      .pore = NEW_ARRAY(int, n),
-                                      .scale = NEW_ARRAY(float, n),
-                                      .work = NEW_ARRAY(float, n + 1)};
-    make_room(factor, 5 * (size_t)n);
+    const double max_weight = max_conductance(matrix);
+    struct elimination_graph graph = elimination_graph_of(matrix, max_weight);
+    struct approximate_cholesky *factor = NEW_ARRAY(struct approximate_cholesky, 1);
+    *factor = (struct approximate_cholesky){.n = n,
+                                            .vertex = NEW_ARRAY(int, n),
+                                            .scale = NEW_ARRAY(float, n),
+                                            .work = NEW_ARRAY(float, n + 1)};
+    reserve_entries(factor, 5 * (size_t)n);
     struct round round = {0};
     for (int done = 0; graph.n > 0;) {
-        take_out(&graph, &round);
-        done = append(factor, done, &round, widest);
+        eliminate_independent(&graph, &round);
+        done = append(factor, done, &round, max_weight);
     }
-    graph_free(&graph);
+    elimination_graph_free(&graph);
     free(round.row);
     free(round.neighbour);
     free(round.share);
@@ -255,10 +270,10 @@ struct sampled_factor *sampled_factor_make(const struct matrix *matrix)
     return factor;
 }
 
-void sampled_factor_free(struct sampled_factor *factor)
+void approximate_cholesky_free(struct approximate_cholesky *factor)
 {
     if (!factor) return;
-    free(factor->pore);
+    free(factor->vertex);
     free(factor->scale);
     free(factor->block);
     free(factor->neighbour);
@@ -267,14 +282,15 @@ void sampled_factor_free(struct sampled_factor *factor)
     free(factor);
 }
 
-void sampled_factor_apply(struct sampled_factor *factor, const double *b, double *x)
+void approximate_cholesky_apply(struct approximate_cholesky *factor, const double *b,
+                                double *x)
 {
     const int n = factor->n;
     float *restrict y = factor->work;
     const int *neighbour = factor->neighbour;
     const float *share = factor->share;
     for (int step = 0; step < n; step++)
-        y[step] = (float)b[factor->pore[step]];
+        y[step] = (float)b[factor->vertex[step]];
     for (int block = 0, step = 0; block < factor->n_block; block++) {
         const int length = factor->block[block].length;
         for (; step < factor->block[block].end; step++) {
@@ -300,5 +316,5 @@ void sampled_factor_apply(struct sampled_factor *factor, const double *b, double
         }
     }
     for (int step = 0; step < n; step++)
-        x[factor->pore[step]] = (double)y[step];
+        x[factor->vertex[step]] = (double)y[step];
 }

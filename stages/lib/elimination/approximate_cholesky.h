@@ -8,16 +8,18 @@
 
 #include "conductance_matrix.h"
 
-struct sampled_factor;
+struct approximate_cholesky;
 
-// Eliminates the pores, those with few throats first. A pore with d throats leaves d -
-// 1 new ones between its neighbours in place of d (d - 1) / 2: drawn so that their mean
-// is what elimination would leave. The draws are the same every time. O(n log n). The
-// caller frees with sampled_factor_free.
-struct sampled_factor *sampled_factor_make(const struct matrix *matrix);
-void sampled_factor_free(struct sampled_factor *factor);
+// Eliminates the sites, those of low degree first. A site with d links leaves d - 1 new
+// ones between its neighbours in place of d (d - 1) / 2, drawn so that their mean is
+// what elimination would leave. The draws are the same every time. O(n log n). The
+// caller frees the result with approximate_cholesky_free.
+struct approximate_cholesky *
+approximate_cholesky_create(const struct conductance_matrix *matrix);
+void approximate_cholesky_free(struct approximate_cholesky *factor);
 
-// X (n) = the inverse of the factor times B (n).
-void sampled_factor_apply(struct sampled_factor *factor, const double *b, double *x);
+// X (n) = (L D L')^-1 B (n), in single precision.
+void approximate_cholesky_apply(struct approximate_cholesky *factor, const double *b,
+                                double *x);
 
 #endif

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Balances of a network of conductances in compressed rows: row i is
+//     sum_k value_k (x_i - x_column(k)) = diagonal_i x_i - sum_k value_k x_column(k).
+// The residual is summed from differences of compensated numbers, so it keeps its
+// digits where x is nearly constant; the product is for directions of an iteration.
 #include "conductance_matrix.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
-struct matrix matrix_of_links(int n, int n_all, int n_link, const struct link *link)
+struct conductance_matrix conductance_matrix_of_links(int n, int n_all, int n_link,
+                                                      const struct link *link)
 {
-    struct matrix matrix = {.n = n,
-                            .n_all = n_all,
-                            .offset = NEW_ARRAY(int, n_all + 2),
-                            .diagonal = NEW_ARRAY(double, n)};
+    struct conductance_matrix matrix = {.n = n,
+                                        .n_all = n_all,
+                                        .offset = NEW_ARRAY(int, n_all + 2),
+                                        .diagonal = NEW_ARRAY(double, n)};
     for (int l = 0; l < n_link; l++)
         for (int end = 0; end < 2; end++)
             matrix.offset[link[l].site[end] + 2]++;
@@ -30,16 +35,17 @@ struct matrix matrix_of_links(int n, int n_all, int n_link, const struct link *l
     return matrix;
 }
 
-void matrix_free(struct matrix *matrix)
+void conductance_matrix_free(struct conductance_matrix *matrix)
 {
     free(matrix->offset);
     free(matrix->column);
     free(matrix->value);
     free(matrix->diagonal);
-    *matrix = (struct matrix){0};
+    *matrix = (struct conductance_matrix){0};
 }
 
-void matrix_multiply(const struct matrix *matrix, const double *x, double *result)
+void conductance_matrix_multiply(const struct conductance_matrix *matrix,
+                                 const double *x, double *result)
 {
     const int n = matrix->n;
 #pragma omp parallel for schedule(static) if (n > 20000)
@@ -51,8 +57,9 @@ void matrix_multiply(const struct matrix *matrix, const double *x, double *resul
     }
 }
 
-void matrix_residual(const struct matrix *matrix, const double *given,
-                     const struct compensated *x, double *residual)
+void conductance_matrix_residual(const struct conductance_matrix *matrix,
+                                 const double *given, const struct compensated *x,
+                                 double *residual)
 {
 #pragma omp parallel for schedule(static) if (matrix->n > 20000)
     for (int i = 0; i < matrix->n; i++) {

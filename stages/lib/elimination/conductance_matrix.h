@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The balances of a network of conductances: a symmetric positive definite M-matrix.
+// The balances of a network of conductances (its graph Laplacian): a symmetric positive
+// definite M-matrix once some sites have a given potential.
 #ifndef CRAQUELURE_CONDUCTANCE_MATRIX_H
 #define CRAQUELURE_CONDUCTANCE_MATRIX_H
 
@@ -10,9 +11,9 @@ struct link {
     double conductance;
 };
 
-// Row i reads diagonal_i x_i - sum value_k x_column(k). Columns from N on are places
-// where x is given; the solvers take x there to be 0.
-struct matrix {
+// Row i is diagonal_i x_i - sum value_k x_column(k). Columns from N on are sites where
+// x is given; the solvers take x to be 0 there.
+struct conductance_matrix {
     int n, n_all;
     int *offset;      // (n+1)
     int *column;      // (offset[n])
@@ -21,17 +22,20 @@ struct matrix {
 };
 
 // The balances of the first N of N_ALL sites. A row has its links in their order,
-// parallel ones apart. The caller frees with matrix_free.
-struct matrix matrix_of_links(int n, int n_all, int n_link, const struct link *link);
-void matrix_free(struct matrix *matrix);
+// parallel ones separately. The caller frees it with conductance_matrix_free.
+struct conductance_matrix conductance_matrix_of_links(int n, int n_all, int n_link,
+                                                      const struct link *link);
+void conductance_matrix_free(struct conductance_matrix *matrix);
 
-// What the balances of X (n_all) lack where each site is GIVEN (n; NULL: nothing) from
-// outside, into RESIDUAL (n): of differences, so that nothing is lost where X is all
-// but even.
-void matrix_residual(const struct matrix *matrix, const double *given,
-                     const struct compensated *x, double *residual);
+// RESIDUAL (n) = inflow GIVEN from outside (n; NULL: none) plus the flow along X
+// (n_all) to each site, from differences of X: nothing is lost where X is nearly
+// constant.
+void conductance_matrix_residual(const struct conductance_matrix *matrix,
+                                 const double *given, const struct compensated *x,
+                                 double *residual);
 
 // RESULT = MATRIX X; both (n), 0 at given places.
-void matrix_multiply(const struct matrix *matrix, const double *x, double *result);
+void conductance_matrix_multiply(const struct conductance_matrix *matrix,
+                                 const double *x, double *result);
 
 #endif

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A symmetric matrix that gains products factor row row^T again and again: the front of
+// a multifrontal elimination.
+//
+// A small one adds each product at once. A large one defers them: `pending` holds up to
+// MAX_PENDING rows, in blocks of columns that fit in the cache, and a pass adds
+//     entry[i][j] += sum_k factor[k] pending[k][i] pending[k][j]
+// for all of them, which reads the entries once (dense_front_kernel.h). A row that is
+// copied while products are pending is completed from them. The order of the sums is
+// fixed, whatever the processor.
 #include "dense_front.h"
 
 #include "basics/cpu_features.h"
@@ -17,36 +26,36 @@ static void *row_of(const struct dense_front *dense, int i)
     return (char *)dense->entry + dense_front_row(dense, i) * entry_size(dense);
 }
 
-// Entries of N rows; of whole panels if large.
-static size_t room(const struct dense_front *dense, int n)
+// Number of entries of N rows; whole panels if large.
+static size_t n_entries(const struct dense_front *dense, int n)
 {
     return dense_front_row(dense,
                            dense->is_large ? (n + PANEL - 1) / PANEL * PANEL : n);
 }
 
-static void make_room(struct dense_front *dense, int n_before, int n)
+static void reserve_rows(struct dense_front *dense, int n_before, int n)
 {
-    if (room(dense, n) <= dense->capacity) return;
-    dense->capacity = room(dense, n) + room(dense, n) / 2;
+    if (n_entries(dense, n) <= dense->capacity) return;
+    dense->capacity = n_entries(dense, n) + n_entries(dense, n) / 2;
     if (!dense->is_large) {
         dense->entry = reallocate(dense->entry, dense->capacity, sizeof(double));
         return;
     }
     void *entry = allocate_uncleared(dense->capacity, entry_size(dense));
     if (dense->entry)
-        memcpy(entry, dense->entry, room(dense, n_before) * entry_size(dense));
+        memcpy(entry, dense->entry, n_entries(dense, n_before) * entry_size(dense));
     free(dense->entry);
     dense->entry = entry;
 }
 
 // --- what waits --------------------------------------------------------------------
 
-// The more wait, the fewer passes over the entries, and the more to add to each row
-// that is taken.
-static int most_waiting(int n)
+// The more are pending, the fewer passes over the entries, but the more to add to each
+// row that is copied.
+static int max_pending(int n)
 {
     const int most = n / 16;
-    return most < 8 ? 8 : most < MOST_SOURCES ? most : MOST_SOURCES;
+    return most < 8 ? 8 : most < MAX_PENDING ? most : MAX_PENDING;
 }
 
 static int columns_in_block(const struct dense_front *dense)
@@ -54,27 +63,27 @@ static int columns_in_block(const struct dense_front *dense)
     return BLOCK_BYTES / (int)entry_size(dense);
 }
 
-// Where column P of the first that waits stands; those of the others follow, a block
-// after each other.
-static size_t waiting_column(const struct dense_front *dense, int p)
+// Position of column P of the first pending row; those of the others follow, one block
+// of columns apart.
+static size_t pending_column(const struct dense_front *dense, int p)
 {
     const int columns = columns_in_block(dense);
-    return (size_t)(p / columns) * MOST_SOURCES * (size_t)columns +
+    return (size_t)(p / columns) * MAX_PENDING * (size_t)columns +
            (size_t)(p % columns);
 }
 
-static double waiting_entry(const struct dense_front *dense, size_t at)
+static double pending_entry(const struct dense_front *dense, size_t at)
 {
-    return dense->is_rounded ? (double)((float *)dense->waiting)[at]
-                             : ((double *)dense->waiting)[at];
+    return dense->is_rounded ? (double)((float *)dense->pending)[at]
+                             : ((double *)dense->pending)[at];
 }
 
-static void set_waiting(struct dense_front *dense, size_t at, double x)
+static void set_pending(struct dense_front *dense, size_t at, double x)
 {
     if (dense->is_rounded)
-        ((float *)dense->waiting)[at] = (float)x;
+        ((float *)dense->pending)[at] = (float)x;
     else
-        ((double *)dense->waiting)[at] = x;
+        ((double *)dense->pending)[at] = x;
 }
 
 static int blocks_of(const struct dense_front *dense, int n)
@@ -82,69 +91,69 @@ static int blocks_of(const struct dense_front *dense, int n)
     return (n + columns_in_block(dense) - 1) / columns_in_block(dense);
 }
 
-static void make_waiting_room(struct dense_front *dense, int n)
+static void reserve_pending(struct dense_front *dense, int n)
 {
     const int n_block = blocks_of(dense, n);
     if (n_block <= dense->n_block) return;
-    if (!dense->factor) dense->factor = NEW_ARRAY(double, MOST_SOURCES);
-    const size_t size = (size_t)MOST_SOURCES * BLOCK_BYTES;
+    if (!dense->factor) dense->factor = NEW_ARRAY(double, MAX_PENDING);
+    const size_t size = (size_t)MAX_PENDING * BLOCK_BYTES;
     const int capacity = n_block + dense->n_block / 2;
-    void *waiting = allocate_aligned((size_t)capacity, size);
-    if (dense->waiting) memcpy(waiting, dense->waiting, (size_t)dense->n_block * size);
-    free(dense->waiting);
-    dense->waiting = waiting;
+    void *pending = allocate_aligned((size_t)capacity, size);
+    if (dense->pending) memcpy(pending, dense->pending, (size_t)dense->n_block * size);
+    free(dense->pending);
+    dense->pending = pending;
     dense->n_block = capacity;
 }
 
-static void clear_waiting(struct dense_front *dense, int p)
+static void clear_pending(struct dense_front *dense, int p)
 {
     const size_t step = (size_t)columns_in_block(dense);
-    const size_t at = waiting_column(dense, p);
-    for (int k = 0; k < dense->n_waiting; k++)
-        set_waiting(dense, at + (size_t)k * step, 0);
+    const size_t at = pending_column(dense, p);
+    for (int k = 0; k < dense->n_pending; k++)
+        set_pending(dense, at + (size_t)k * step, 0);
 }
 
-static void move_waiting(struct dense_front *dense, int p, int from)
+static void move_pending(struct dense_front *dense, int p, int from)
 {
     const size_t step = (size_t)columns_in_block(dense);
-    const size_t at = waiting_column(dense, p);
-    const size_t was = waiting_column(dense, from);
-    for (int k = 0; k < dense->n_waiting; k++)
-        set_waiting(dense, at + (size_t)k * step,
-                    waiting_entry(dense, was + (size_t)k * step));
+    const size_t at = pending_column(dense, p);
+    const size_t was = pending_column(dense, from);
+    for (int k = 0; k < dense->n_pending; k++)
+        set_pending(dense, at + (size_t)k * step,
+                    pending_entry(dense, was + (size_t)k * step));
 }
 
-static void add_waiting(struct dense_front *dense, int n, double factor,
+static void add_pending(struct dense_front *dense, int n, double factor,
                         const double *row)
 {
-    make_waiting_room(dense, n);
-    const int columns = columns_in_block(dense), k = dense->n_waiting++;
+    reserve_pending(dense, n);
+    const int columns = columns_in_block(dense), k = dense->n_pending++;
     dense->factor[k] = factor;
     for (int first = 0; first < n; first += columns) {
-        const size_t at = waiting_column(dense, first) + (size_t)k * (size_t)columns;
+        const size_t at = pending_column(dense, first) + (size_t)k * (size_t)columns;
         const int end = n - first < columns ? n - first : columns;
         for (int c = 0; c < end; c++)
-            set_waiting(dense, at + (size_t)c, row[first + c]);
+            set_pending(dense, at + (size_t)c, row[first + c]);
     }
 }
 
-void dense_front_bring_up_to_date(struct dense_front *dense, int n)
+void dense_front_flush(struct dense_front *dense, int n)
 {
-    if (dense->n_waiting == 0) return;
+    if (dense->n_pending == 0) return;
     dense_front_pass *const pass[2][2] = {
         {dense_front_pass_avx2_double, dense_front_pass_avx512_double},
         {dense_front_pass_avx2_float, dense_front_pass_avx512_float}};
     pass[dense->is_rounded][has_avx512()](dense, n);
-    dense->n_waiting = 0;
+    dense->n_pending = 0;
 }
 
-static void gather_waiting(const struct dense_front *dense, int n, int p, double *row)
+static void gather_pending(const struct dense_front *dense, int n, int p, double *row)
 {
     const size_t step = (size_t)columns_in_block(dense);
-    const size_t at = waiting_column(dense, p);
-    double weight[MOST_SOURCES];
-    for (int k = 0; k < dense->n_waiting; k++)
-        weight[k] = dense->factor[k] * waiting_entry(dense, at + (size_t)k * step);
+    const size_t at = pending_column(dense, p);
+    double weight[MAX_PENDING];
+    for (int k = 0; k < dense->n_pending; k++)
+        weight[k] = dense->factor[k] * pending_entry(dense, at + (size_t)k * step);
     dense_front_gather *const gather[2][2] = {
         {dense_front_gather_avx2_double, dense_front_gather_avx512_double},
         {dense_front_gather_avx2_float, dense_front_gather_avx512_float}};
@@ -153,27 +162,27 @@ static void gather_waiting(const struct dense_front *dense, int n, int p, double
 
 // --- rows --------------------------------------------------------------------------
 
-// A panel that begins is cleared as a whole: what means nothing is added to as well.
+// A new panel is cleared as a whole, since passes add to its unused part too.
 void dense_front_add_row(struct dense_front *dense, int n)
 {
-    make_room(dense, n, n + 1);
+    reserve_rows(dense, n, n + 1);
     const int end = dense->is_large && n % PANEL == 0 ? n + PANEL : n + 1;
     const size_t length = dense_front_row(dense, end) - dense_front_row(dense, n);
     if (length > 0) memset(row_of(dense, n), 0, length * entry_size(dense));
-    if (dense->n_waiting == 0) return;
-    make_waiting_room(dense, n + 1);
-    clear_waiting(dense, n);
+    if (dense->n_pending == 0) return;
+    reserve_pending(dense, n + 1);
+    clear_pending(dense, n);
 }
 
-void dense_front_take(const struct dense_front *dense, int n, int p, double *row)
+void dense_front_copy_row(const struct dense_front *dense, int n, int p, double *row)
 {
     for (int j = 0; j < p; j++)
         row[j] = dense_front_entry(dense, p, j);
     row[p] = 0;
     for (int i = p + 1; i < n; i++)
         row[i] = dense_front_entry(dense, i, p);
-    if (dense->n_waiting == 0) return;
-    gather_waiting(dense, n, p, row);
+    if (dense->n_pending == 0) return;
+    gather_pending(dense, n, p, row);
     row[p] = 0;
 }
 
@@ -184,7 +193,7 @@ void dense_front_remove(struct dense_front *dense, int n, int p)
     memcpy(row_of(dense, p), row_of(dense, last), (size_t)p * entry_size(dense));
     for (int i = p + 1; i < last; i++)
         dense_front_set(dense, i, p, dense_front_entry(dense, last, i));
-    move_waiting(dense, p, last);
+    move_pending(dense, p, last);
 }
 
 void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded)
@@ -203,8 +212,8 @@ void dense_front_add_products(struct dense_front *dense, int n, double factor,
                               const double *row)
 {
     if (dense->is_large) {
-        add_waiting(dense, n, factor, row);
-        if (dense->n_waiting >= most_waiting(n)) dense_front_bring_up_to_date(dense, n);
+        add_pending(dense, n, factor, row);
+        if (dense->n_pending >= max_pending(n)) dense_front_flush(dense, n);
         return;
     }
     double *entry = dense->entry;
@@ -218,20 +227,20 @@ void dense_front_add_products(struct dense_front *dense, int n, double factor,
 void dense_front_state(struct dense_front *dense, int n,
                        struct checkpoint_stream *stream)
 {
-    int n_waiting = dense->n_waiting;
+    int n_pending = dense->n_pending;
     stream_flags(stream, &dense->is_large, 1);
-    stream_integer(stream, &n_waiting, 0, MOST_SOURCES - 1);
+    stream_integer(stream, &n_pending, 0, MAX_PENDING - 1);
     for (int i = 0; i < n; i++) {
         if (stream->restoring) dense_front_add_row(dense, i);
         stream_numbers(stream, (double *)dense->entry + dense_front_row(dense, i), i);
     }
-    stream->failed |= n_waiting > 0 && !dense->is_large;
-    if (n_waiting == 0 || stream->failed) return;
-    if (stream->restoring) make_waiting_room(dense, n);
-    dense->n_waiting = n_waiting;
-    stream_numbers(stream, dense->factor, n_waiting);
-    stream_numbers(stream, dense->waiting,
-                   (int64_t)blocks_of(dense, n) * MOST_SOURCES *
+    stream->failed |= n_pending > 0 && !dense->is_large;
+    if (n_pending == 0 || stream->failed) return;
+    if (stream->restoring) reserve_pending(dense, n);
+    dense->n_pending = n_pending;
+    stream_numbers(stream, dense->factor, n_pending);
+    stream_numbers(stream, dense->pending,
+                   (int64_t)blocks_of(dense, n) * MAX_PENDING *
                        columns_in_block(dense));
 }
 
@@ -239,6 +248,6 @@ void dense_front_free(struct dense_front *dense)
 {
     free(dense->entry);
     free(dense->factor);
-    free(dense->waiting);
+    free(dense->pending);
     *dense = (struct dense_front){0};
 }

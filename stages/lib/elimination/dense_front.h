@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Symmetric matrices without their diagonals, of numbers from 0 on, that gain products
-// of rows with themselves.
+// Symmetric matrices without their diagonals, with entries >= 0, that gain products of
+// rows with themselves (rank-one updates).
 #ifndef CRAQUELURE_DENSE_FRONT_H
 #define CRAQUELURE_DENSE_FRONT_H
 
@@ -9,26 +9,26 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { MOST_SOURCES = 64, PANEL = 48, BLOCK_BYTES = 576 };
+enum { MAX_PENDING = 64, PANEL = 48, BLOCK_BYTES = 576 };
 
-// Entries i > j, row by row. Small: packed, doubles. Large: rows come in panels, as
-// long as the longest of their panel is with its diagonal block, so that whole vectors
-// fit; what stands at and above the diagonal means nothing.
+// Entries i > j, row by row. Small: packed, doubles. Large: rows lie in panels, all as
+// long as the longest of their panel with its diagonal block, so that whole vectors
+// fit; the entries at and above the diagonal have no meaning.
 //
-// What a large one gains waits until there is much, and then passes over the entries
-// once for all.
+// The updates of a large one are pending until there are many, and then one pass over
+// the entries adds all of them.
 struct dense_front {
     bool is_large;
     bool is_rounded; // large: floats
     size_t capacity; // entries
     void *entry;
 
-    int n_waiting, n_block;
-    double *factor; // (n_waiting)
-    void *waiting;  // (n_block, MOST_SOURCES, BLOCK_BYTES) parts of rows
+    int n_pending, n_block;
+    double *factor; // (n_pending)
+    void *pending;  // (n_block, MAX_PENDING, BLOCK_BYTES) parts of rows
 };
 
-// Where row I begins.
+// Index of the first entry of row I.
 static inline size_t dense_front_row(const struct dense_front *dense, int i)
 {
     const size_t row = (size_t)i, panel = row / PANEL;
@@ -36,7 +36,7 @@ static inline size_t dense_front_row(const struct dense_front *dense, int i)
     return (PANEL * panel / 2 + row % PANEL) * PANEL * (panel + 1);
 }
 
-// Without what waits.
+// Entry (I, J), without pending updates.
 static inline double dense_front_entry(const struct dense_front *dense, int i, int j)
 {
     const size_t at = dense_front_row(dense, i) + (size_t)j;
@@ -53,34 +53,34 @@ static inline void dense_front_set(struct dense_front *dense, int i, int j, doub
         ((double *)dense->entry)[at] = x;
 }
 
-// Of N rows before: one more, of zeros.
+// Adds row N, of zeros, to N rows.
 void dense_front_add_row(struct dense_front *dense, int n);
 
-// Entries P of all N rows, and row P; 0 at P itself.
-void dense_front_take(const struct dense_front *dense, int n, int p, double *row);
+// Copies row and column P of N rows into ROW (n), pending updates included; 0 at P.
+void dense_front_copy_row(const struct dense_front *dense, int n, int p, double *row);
 
-// Row and column P become those of the last of N rows, which goes.
+// Row and column P become those of the last of N rows, which goes. Pending rows too.
 void dense_front_remove(struct dense_front *dense, int n, int p);
 
-// From small to large.
+// Turns a small one of N rows into a large one.
 void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded);
 
 // Adds FACTOR ROW[i] ROW[j] to each entry of N rows.
 void dense_front_add_products(struct dense_front *dense, int n, double factor,
                               const double *row);
 
-// Nothing waits any more.
-void dense_front_bring_up_to_date(struct dense_front *dense, int n);
+// Adds all pending updates to the entries.
+void dense_front_flush(struct dense_front *dense, int n);
 
-// Of N rows, none of them rounded.
+// Keeps or restores N rows of doubles.
 void dense_front_state(struct dense_front *dense, int n,
                        struct checkpoint_stream *stream);
 
 void dense_front_free(struct dense_front *dense);
 
-// What it chooses from if the triangle is large, by its entries and the processor,
-// whose vectors make no difference to the digits: all that waits is added to the
-// entries; WEIGHT (n_waiting) times what waits is added to ROW (n).
+// Kernels of large fronts by type of entry and processor; the digits are the same. A
+// pass adds all pending updates to the entries. A gather adds WEIGHT (n_pending) times
+// the pending rows to ROW (n).
 typedef void dense_front_pass(struct dense_front *dense, int n);
 typedef void dense_front_gather(const struct dense_front *dense, int n,
                                 const double *weight, double *row);

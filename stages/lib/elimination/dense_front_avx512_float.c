@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For processors with AVX-512.
+// The kernel of large fronts for AVX-512.
 #if defined __x86_64__
 #pragma GCC target("avx512f,avx512dq,avx512vl,fma")
 #endif
+#define SIMD_WIDTH 8
 #define NUMBER float
-#define BYTES 64
+#define VECTOR floatw
+#define FMADD fmadd_float
 #define TILE_ROWS 8
 #define VECTORS 3
 #define PASS dense_front_pass_avx512_float

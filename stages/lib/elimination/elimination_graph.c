@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The graph of elimination_graph.h: each vertex has a row of edges with spare room. A
+// row that is full moves to the end of the array with twice the room. Compacting drops
+// eliminated vertices and gaps, so that neighbours lie near each other in memory again.
 #include "elimination_graph.h"
 
 #include "basics/memory.h"
@@ -6,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPARE = 3 }; // throats that a pore may gain before its row moves
+enum { SPARE = 3 }; // edges that a vertex may gain before its row moves
 
-static int find(const struct half_throat *half, int count, int to)
+static int find(const struct half_edge *half, int count, int to)
 {
     int k = 0;
     while (k < count && half[k].to != to)
@@ -16,128 +19,128 @@ static int find(const struct half_throat *half, int count, int to)
     return k;
 }
 
-// The row of pore I of the matrix, parallel throats as one.
-static int copy_row(const struct matrix *matrix, int i, double widest,
-                    struct half_throat *half)
+// Copies row I of the matrix, parallel links merged.
+static int copy_row(const struct conductance_matrix *matrix, int i, double max_weight,
+                    struct half_edge *half)
 {
     int count = 0;
     for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
         const int to = matrix->column[k] < matrix->n ? matrix->column[k] : matrix->n;
         const int place = find(half, count, to);
-        if (place == count) half[count++] = (struct half_throat){0, to};
-        half[place].width += (float)(matrix->value[k] / widest);
+        if (place == count) half[count++] = (struct half_edge){0, to};
+        half[place].weight += (float)(matrix->value[k] / max_weight);
     }
     return count;
 }
 
-// For N pores with COUNT throats, and for what moves.
-static void make_room(struct shrinking_graph *graph, int n, size_t count)
+// Room for N vertices with COUNT edges, and for rows that move.
+static void reserve_entries(struct elimination_graph *graph, int n, size_t count)
 {
     const size_t least = count + SPARE * (size_t)n;
     graph->capacity = least + least / 4 + 64;
     graph->half = allocate_uncleared(graph->capacity, sizeof *graph->half);
 }
 
-struct shrinking_graph graph_of(const struct matrix *matrix, double widest)
+struct elimination_graph elimination_graph_of(const struct conductance_matrix *matrix,
+                                              double max_weight)
 {
     const int n = matrix->n;
-    struct shrinking_graph graph = {.n = n,
-                                    .pore = NEW_ARRAY(struct pore_throats, n),
-                                    .name = NEW_ARRAY(int, n + 1)};
-    make_room(&graph, n, (size_t)matrix->offset[n]);
+    struct elimination_graph graph = {
+        .n = n, .vertex = NEW_ARRAY(struct vertex, n), .index = NEW_ARRAY(int, n + 1)};
+    reserve_entries(&graph, n, (size_t)matrix->offset[n]);
     for (int i = 0; i < n; i++) {
         const int first = (int)graph.n_half;
-        const int count = copy_row(matrix, i, widest, &graph.half[first]);
-        graph.pore[i] =
-            (struct pore_throats){first, count, count + SPARE, false, false};
+        const int count = copy_row(matrix, i, max_weight, &graph.half[first]);
+        graph.vertex[i] = (struct vertex){first, count, count + SPARE, false, false};
         graph.n_half += (size_t)count + SPARE;
-        graph.name[i] = i;
+        graph.index[i] = i;
     }
-    graph.name[n] = n;
+    graph.index[n] = n;
     return graph;
 }
 
-void graph_free(struct shrinking_graph *graph)
+void elimination_graph_free(struct elimination_graph *graph)
 {
-    free(graph->pore);
-    free(graph->name);
+    free(graph->vertex);
+    free(graph->index);
     free(graph->half);
-    *graph = (struct shrinking_graph){0};
+    *graph = (struct elimination_graph){0};
 }
 
-// The row of a pore to the end, with twice the room.
-static void move_row(struct shrinking_graph *graph, struct pore_throats *pore)
+// Moves the row of a vertex to the end, with twice the room.
+static void move_row(struct elimination_graph *graph, struct vertex *vertex)
 {
-    pore->room *= 2;
-    if (graph->n_half + (size_t)pore->room > graph->capacity) {
-        graph->capacity = 2 * graph->capacity + (size_t)pore->room;
+    vertex->capacity *= 2;
+    if (graph->n_half + (size_t)vertex->capacity > graph->capacity) {
+        graph->capacity = 2 * graph->capacity + (size_t)vertex->capacity;
         graph->half = reallocate(graph->half, graph->capacity, sizeof *graph->half);
     }
-    memcpy(&graph->half[graph->n_half], &graph->half[pore->first],
-           (size_t)pore->count * sizeof *graph->half);
-    pore->first = (int)graph->n_half;
-    graph->n_half += (size_t)pore->room;
+    memcpy(&graph->half[graph->n_half], &graph->half[vertex->first],
+           (size_t)vertex->count * sizeof *graph->half);
+    vertex->first = (int)graph->n_half;
+    graph->n_half += (size_t)vertex->capacity;
 }
 
-static void add_width(struct shrinking_graph *graph, int at, int to, float width)
+static void add_weight(struct elimination_graph *graph, int at, int to, float weight)
 {
     if (at == graph->n) return;
-    struct pore_throats *pore = &graph->pore[at];
-    struct half_throat *half = &graph->half[pore->first];
-    const int k = find(half, pore->count, to);
-    if (k < pore->count) {
-        half[k].width += width;
+    struct vertex *vertex = &graph->vertex[at];
+    struct half_edge *half = &graph->half[vertex->first];
+    const int k = find(half, vertex->count, to);
+    if (k < vertex->count) {
+        half[k].weight += weight;
         return;
     }
-    if (pore->count == pore->room) move_row(graph, pore);
-    graph->half[pore->first + pore->count++] = (struct half_throat){width, to};
+    if (vertex->count == vertex->capacity) move_row(graph, vertex);
+    graph->half[vertex->first + vertex->count++] = (struct half_edge){weight, to};
 }
 
-void graph_cut(struct shrinking_graph *graph, int at, int gone)
+void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
+                                   int eliminated)
 {
     if (at == graph->n) return;
-    struct pore_throats *pore = &graph->pore[at];
-    struct half_throat *half = &graph->half[pore->first];
-    half[find(half, pore->count, gone)] = half[pore->count - 1];
-    pore->count--;
+    struct vertex *vertex = &graph->vertex[at];
+    struct half_edge *half = &graph->half[vertex->first];
+    half[find(half, vertex->count, eliminated)] = half[vertex->count - 1];
+    vertex->count--;
 }
 
-void graph_replace(struct shrinking_graph *graph, int at, int gone, int other,
-                   float width)
+void elimination_graph_replace_edge(struct elimination_graph *graph, int at,
+                                    int eliminated, int other, float weight)
 {
-    graph_cut(graph, at, gone);
-    add_width(graph, at, other, width);
-    add_width(graph, other, at, width);
+    elimination_graph_remove_edge(graph, at, eliminated);
+    add_weight(graph, at, other, weight);
+    add_weight(graph, other, at, weight);
 }
 
-void graph_pack(struct shrinking_graph *graph)
+void elimination_graph_compact(struct elimination_graph *graph)
 {
-    const struct shrinking_graph old = *graph;
+    const struct elimination_graph old = *graph;
     int *number = NEW_ARRAY(int, old.n + 1);
     size_t count = 0;
     graph->n = 0;
     for (int i = 0; i < old.n; i++) {
         number[i] = graph->n;
-        graph->n += !old.pore[i].gone;
-        count += old.pore[i].gone ? 0 : (size_t)old.pore[i].count;
+        graph->n += !old.vertex[i].eliminated;
+        count += old.vertex[i].eliminated ? 0 : (size_t)old.vertex[i].count;
     }
     number[old.n] = graph->n;
-    make_room(graph, graph->n, count);
+    reserve_entries(graph, graph->n, count);
     graph->n_half = 0;
     for (int i = 0; i < old.n; i++) {
-        const struct pore_throats from = old.pore[i];
-        if (from.gone) continue;
+        const struct vertex from = old.vertex[i];
+        if (from.eliminated) continue;
         const int first = (int)graph->n_half;
         for (int k = 0; k < from.count; k++) {
-            const struct half_throat half = old.half[from.first + k];
-            graph->half[first + k] = (struct half_throat){half.width, number[half.to]};
+            const struct half_edge half = old.half[from.first + k];
+            graph->half[first + k] = (struct half_edge){half.weight, number[half.to]};
         }
-        graph->pore[number[i]] =
-            (struct pore_throats){first, from.count, from.count + SPARE, false, false};
-        graph->name[number[i]] = old.name[i];
+        graph->vertex[number[i]] =
+            (struct vertex){first, from.count, from.count + SPARE, false, false};
+        graph->index[number[i]] = old.index[i];
         graph->n_half += (size_t)from.count + SPARE;
     }
-    graph->name[graph->n] = old.name[old.n];
+    graph->index[graph->n] = old.index[old.n];
     free(old.half);
     free(number);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A network of throats whose pores are taken out one after the other. Each pore holds
-// its throats in a row, and what is left is moved together now and then: close in
-// space, close in memory.
+// A weighted graph from which vertices are eliminated one by one. Each vertex holds its
+// edges in a row; now and then the rest is compacted.
 #ifndef CRAQUELURE_ELIMINATION_GRAPH_H
 #define CRAQUELURE_ELIMINATION_GRAPH_H
 
@@ -10,39 +9,43 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// A throat, as one of its pores sees it. Widths are of the widest there was.
-struct half_throat {
-    float width;
+// An edge as one of its vertices sees it. Weights are relative to the largest at the
+// start.
+struct half_edge {
+    float weight;
     int to; // n of the graph: a place where the pressure is given
 };
 
-struct pore_throats {
-    int first, count, room;
-    bool gone, beside; // beside: a neighbour went since the graph was last packed
+struct vertex {
+    int first, count, capacity;
+    bool eliminated, neighbour_eliminated; // beside: a neighbour went since the graph
+                                           // was last packed
 };
 
-struct shrinking_graph {
+struct elimination_graph {
     int n;
-    struct pore_throats *pore; // (n)
-    int *name;                 // (n+1) of each in the matrix; the last: given places
-    struct half_throat *half;
+    struct vertex *vertex; // (n)
+    int *index;            // (n+1) of each in the matrix; the last: given places
+    struct half_edge *half;
     size_t n_half, capacity;
 };
 
-// The network of MATRIX, whose widest throat is WIDEST. The caller frees with
-// graph_free.
-struct shrinking_graph graph_of(const struct matrix *matrix, double widest);
-void graph_free(struct shrinking_graph *graph);
+// The graph of MATRIX, whose largest conductance is MAX_WEIGHT. The caller frees it
+// with elimination_graph_free.
+struct elimination_graph elimination_graph_of(const struct conductance_matrix *matrix,
+                                              double max_weight);
+void elimination_graph_free(struct elimination_graph *graph);
 
-// In place of the throat from AT to GONE, one of WIDTH between AT and OTHER, or a wider
-// one where they have one already. Given places keep no throats.
-void graph_replace(struct shrinking_graph *graph, int at, int gone, int other,
-                   float width);
+// Replaces the edge from AT to ELIMINATED by one of WEIGHT between AT and OTHER, merged
+// with one that is there already. Sites of given potential keep no edges.
+void elimination_graph_replace_edge(struct elimination_graph *graph, int at,
+                                    int eliminated, int other, float weight);
 
-// AT loses its throat to GONE.
-void graph_cut(struct shrinking_graph *graph, int at, int gone);
+// Removes the edge from AT to ELIMINATED.
+void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
+                                   int eliminated);
 
-// Leaves out the pores that are gone; those left are numbered anew, in the same order.
-void graph_pack(struct shrinking_graph *graph);
+// Drops the eliminated vertices; the others are renumbered in the same order.
+void elimination_graph_compact(struct elimination_graph *graph);
 
 #endif

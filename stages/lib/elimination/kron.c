@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Kron reduction in sparse rows. Eliminating node i with conductances c_ij:
+//     share_j = c_ij / sum_l c_il,
+//     c_jk += share_j c_ik           (join_mesh, both c_jk and c_kj),
+//     extracted_j += share_j extracted_i.
+// All numbers are positive, so nothing cancels. Rows of eliminated nodes stay as they
+// were at their elimination; kron_potentials uses them backwards,
+//     potential_i = (sum_l c_il potential_l - extracted_i) / sum_l c_il.
+// The node with the fewest neighbours goes first: a search over all, for small
+// networks.
 #include "kron.h"
 
 #include "basics/memory.h"
@@ -91,7 +100,7 @@ static void forget(struct kron_row *row, int site)
     row->link[k] = row->link[--row->n];
 }
 
-// Neighbour J of the star takes its part of the mesh.
+// Adds to neighbour J of the star its part of the mesh.
 static void join_mesh(struct kron *kron, const struct kron_row *star, int j,
                       double share)
 {

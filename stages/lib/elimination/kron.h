@@ -6,8 +6,8 @@
 // c_il (star-mesh transformation, Kron reduction), and hands them what is taken from it
 // in proportion to c_ij. Sums, products and quotients of positive numbers only, so
 // every conductance, potential and flow keeps its digits whatever the range of
-// conductances (Grassmann, Taksar and Heyman 1985): what is lost is only what the given
-// potentials, or opposite flows to one place, lose in their own differences.
+// conductances (Grassmann, Taksar and Heyman 1985): digits are lost only where the
+// given potentials, or opposite flows to one place, cancel in their own differences.
 #ifndef CRAQUELURE_KRON_H
 #define CRAQUELURE_KRON_H
 

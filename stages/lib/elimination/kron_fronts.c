@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Kron reduction on dense fronts, in an order that is given as it goes (the
+// multifrontal method). A front is the set of sites around one connected piece of
+// eliminated sites, all linked with each other. Eliminating site i:
+//     merge all fronts of i into the largest (their links add up),
+//     take the row c_ij of i out, total = air_i + sum_j c_ij,
+//     c_jk += c_ij c_ik / total,   air_j += c_ij air_i / total.
+// The sum of all air conductances falls by air_i^2 / total, as air_i goes and the rest
+// is shared; it is a compensated sum, and is added up again when less than half is
+// left.
 #include "kron_fronts.h"
 
 #include "basics/memory.h"
@@ -8,21 +17,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The triangle of a front that has been larger than this is a large one.
+// A front that has been larger than this is stored as a large one.
 enum { LARGE_FRONT = 96 };
 
 struct kron_fronts kron_fronts_make(int n_site, bool is_rounded)
 {
-    struct kron_fronts mesh = {.n_site = n_site,
-                               .is_rounded = is_rounded,
-                               .air_conductance = NEW_ARRAY(double, n_site),
-                               .first = NEW_ARRAY(int, n_site),
-                               .reached_air = NEW_ARRAY(int, n_site),
-                               .unused_membership = -1,
-                               .unused_front = -1};
+    struct kron_fronts fronts = {.n_site = n_site,
+                                 .is_rounded = is_rounded,
+                                 .air_conductance = NEW_ARRAY(double, n_site),
+                                 .first = NEW_ARRAY(int, n_site),
+                                 .reached_air = NEW_ARRAY(int, n_site),
+                                 .unused_membership = -1,
+                                 .unused_front = -1};
     for (int i = 0; i < n_site; i++)
-        mesh.first[i] = -1;
-    return mesh;
+        fronts.first[i] = -1;
+    return fronts;
 }
 
 static void empty_front(struct front *front)
@@ -32,82 +41,84 @@ static void empty_front(struct front *front)
     *front = (struct front){0};
 }
 
-void kron_fronts_free(struct kron_fronts *mesh)
+void kron_fronts_free(struct kron_fronts *fronts)
 {
-    for (int f = 0; f < mesh->n_front; f++)
-        empty_front(&mesh->front[f]);
-    free(mesh->air_conductance);
-    free(mesh->first);
-    free(mesh->membership);
-    free(mesh->front);
-    free(mesh->reached_air);
-    free(mesh->place);
-    free(mesh->row);
-    free(mesh->pair);
-    free(mesh->wide);
-    *mesh = (struct kron_fronts){0};
+    for (int f = 0; f < fronts->n_front; f++)
+        empty_front(&fronts->front[f]);
+    free(fronts->air_conductance);
+    free(fronts->first);
+    free(fronts->membership);
+    free(fronts->front);
+    free(fronts->reached_air);
+    free(fronts->place);
+    free(fronts->row);
+    free(fronts->pair);
+    free(fronts->wide);
+    *fronts = (struct kron_fronts){0};
 }
 
 // --- who is on which front ---------------------------------------------------------
 
-static int new_front(struct kron_fronts *mesh)
+static int new_front(struct kron_fronts *fronts)
 {
-    const int front = mesh->unused_front;
+    const int front = fronts->unused_front;
     if (front >= 0) {
-        mesh->unused_front = mesh->front[front].next_unused;
-        mesh->front[front].next_unused = -1;
+        fronts->unused_front = fronts->front[front].next_unused;
+        fronts->front[front].next_unused = -1;
         return front;
     }
-    GROW_ARRAY(mesh->front, mesh->n_front, mesh->front_capacity);
-    mesh->front[mesh->n_front] = (struct front){0};
-    return mesh->n_front++;
+    GROW_ARRAY(fronts->front, fronts->n_front, fronts->front_capacity);
+    fronts->front[fronts->n_front] = (struct front){0};
+    return fronts->n_front++;
 }
 
-static void end_front(struct kron_fronts *mesh, int front)
+static void release_front(struct kron_fronts *fronts, int front)
 {
-    empty_front(&mesh->front[front]);
-    mesh->front[front].next_unused = mesh->unused_front;
-    mesh->unused_front = front;
+    empty_front(&fronts->front[front]);
+    fronts->front[front].next_unused = fronts->unused_front;
+    fronts->unused_front = front;
 }
 
-// Of SITE on FRONT, -1 if it is not on it.
-static int membership_of(const struct kron_fronts *mesh, int site, int front)
+// The membership of SITE on FRONT, or -1.
+static int membership_of(const struct kron_fronts *fronts, int site, int front)
 {
-    int membership = mesh->first[site];
-    while (membership >= 0 && mesh->membership[membership].front != front)
-        membership = mesh->membership[membership].next;
+    int membership = fronts->first[site];
+    while (membership >= 0 && fronts->membership[membership].front != front)
+        membership = fronts->membership[membership].next;
     return membership;
 }
 
-static void join(struct kron_fronts *mesh, int site, int front, int place)
+static void add_membership(struct kron_fronts *fronts, int site, int front, int place)
 {
-    int membership = mesh->unused_membership;
+    int membership = fronts->unused_membership;
     if (membership >= 0) {
-        mesh->unused_membership = mesh->membership[membership].next;
+        fronts->unused_membership = fronts->membership[membership].next;
     } else {
-        GROW_ARRAY(mesh->membership, mesh->n_membership, mesh->membership_capacity);
-        membership = mesh->n_membership++;
+        GROW_ARRAY(fronts->membership, fronts->n_membership,
+                   fronts->membership_capacity);
+        membership = fronts->n_membership++;
     }
-    mesh->membership[membership] = (struct membership){front, place, mesh->first[site]};
-    mesh->first[site] = membership;
+    fronts->membership[membership] =
+        (struct membership){front, place, fronts->first[site]};
+    fronts->first[site] = membership;
 }
 
-static void leave(struct kron_fronts *mesh, int site, int front)
+static void remove_membership(struct kron_fronts *fronts, int site, int front)
 {
-    int *link = &mesh->first[site];
-    while (mesh->membership[*link].front != front)
-        link = &mesh->membership[*link].next;
+    int *link = &fronts->first[site];
+    while (fronts->membership[*link].front != front)
+        link = &fronts->membership[*link].next;
     const int membership = *link;
-    *link = mesh->membership[membership].next;
-    mesh->membership[membership].next = mesh->unused_membership;
-    mesh->unused_membership = membership;
+    *link = fronts->membership[membership].next;
+    fronts->membership[membership].next = fronts->unused_membership;
+    fronts->unused_membership = membership;
 }
 
 // SITE comes last on the front, without links.
-static void add_member(struct kron_fronts *mesh, int front_index, int site)
+static void add_member(struct kron_fronts *fronts, int front_index, int site)
 {
-    struct front *front = &mesh->front[front_index];
-    join(mesh, site, front_index, front->n);
+    struct front *front = &fronts->front[front_index];
+    add_membership(fronts, site, front_index, front->n);
     if (front->n == front->capacity) {
         front->capacity = front->capacity ? 2 * front->capacity : 4;
         front->site =
@@ -118,120 +129,123 @@ static void add_member(struct kron_fronts *mesh, int front_index, int site)
 }
 
 // The last member takes the place of member P.
-static void remove_member(struct kron_fronts *mesh, int front_index, int p)
+static void remove_member(struct kron_fronts *fronts, int front_index, int p)
 {
-    struct front *front = &mesh->front[front_index];
-    leave(mesh, front->site[p], front_index);
+    struct front *front = &fronts->front[front_index];
+    remove_membership(fronts, front->site[p], front_index);
     dense_front_remove(&front->dense, front->n, p);
     const int last = --front->n;
     if (p == last) return;
     front->site[p] = front->site[last];
-    mesh->membership[membership_of(mesh, front->site[p], front_index)].place = p;
+    fronts->membership[membership_of(fronts, front->site[p], front_index)].place = p;
 }
 
-void kron_fronts_link(struct kron_fronts *mesh, int a, int b, double conductance)
+void kron_fronts_link(struct kron_fronts *fronts, int a, int b, double conductance)
 {
-    const int front = new_front(mesh);
-    add_member(mesh, front, a);
-    add_member(mesh, front, b);
-    dense_front_set(&mesh->front[front].dense, 1, 0, conductance);
+    const int front = new_front(fronts);
+    add_member(fronts, front, a);
+    add_member(fronts, front, b);
+    dense_front_set(&fronts->front[front].dense, 1, 0, conductance);
 }
 
-static void add_air(struct kron_fronts *mesh, int site, double conductance)
+static void add_air(struct kron_fronts *fronts, int site, double conductance)
 {
     if (!(conductance > 0)) return;
-    if (mesh->air_conductance[site] == 0)
-        mesh->reached_air[mesh->n_reached_air++] = site;
-    mesh->air_conductance[site] += conductance;
+    if (fronts->air_conductance[site] == 0)
+        fronts->reached_air[fronts->n_reached_air++] = site;
+    fronts->air_conductance[site] += conductance;
 }
 
-static void sum_air(struct kron_fronts *mesh)
+static void sum_air(struct kron_fronts *fronts)
 {
-    mesh->all_air = (struct compensated){0};
-    for (int i = 0; i < mesh->n_site; i++)
-        compensated_add(&mesh->all_air, mesh->air_conductance[i]);
-    mesh->summed_air = compensated_value(mesh->all_air);
+    fronts->all_air = (struct compensated){0};
+    for (int i = 0; i < fronts->n_site; i++)
+        compensated_add(&fronts->all_air, fronts->air_conductance[i]);
+    fronts->summed_air = compensated_value(fronts->all_air);
 }
 
-// Digits are lost only when little is left of a large sum: then it is summed anew.
-static void lower_air(struct kron_fronts *mesh, double drop)
+// Digits are lost only when a large sum becomes small: then it is added up again.
+static void lower_air(struct kron_fronts *fronts, double drop)
 {
-    compensated_add(&mesh->all_air, -drop);
-    if (compensated_value(mesh->all_air) < 0.5 * mesh->summed_air) sum_air(mesh);
+    compensated_add(&fronts->all_air, -drop);
+    if (compensated_value(fronts->all_air) < 0.5 * fronts->summed_air) sum_air(fronts);
 }
 
-void kron_fronts_link_air(struct kron_fronts *mesh, int site, double conductance)
+void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductance)
 {
-    add_air(mesh, site, conductance);
-    compensated_add(&mesh->all_air, conductance);
-    mesh->summed_air = fmax(mesh->summed_air, compensated_value(mesh->all_air));
+    add_air(fronts, site, conductance);
+    compensated_add(&fronts->all_air, conductance);
+    fronts->summed_air = fmax(fronts->summed_air, compensated_value(fronts->all_air));
 }
 
 // --- elimination -------------------------------------------------------------------
 
 // The members of front OTHER become members of BASE.
-static void find_places(struct kron_fronts *mesh, int base_index, int other_index)
+static void find_places(struct kron_fronts *fronts, int base_index, int other_index)
 {
-    while (mesh->place_capacity < mesh->front[other_index].n)
-        GROW_ARRAY(mesh->place, mesh->place_capacity, mesh->place_capacity);
-    for (int i = 0; i < mesh->front[other_index].n; i++) {
-        const int site = mesh->front[other_index].site[i];
-        leave(mesh, site, other_index);
-        const int membership = membership_of(mesh, site, base_index);
-        mesh->place[i] = membership < 0 ? mesh->front[base_index].n
-                                        : mesh->membership[membership].place;
-        if (membership < 0) add_member(mesh, base_index, site);
+    while (fronts->place_capacity < fronts->front[other_index].n)
+        GROW_ARRAY(fronts->place, fronts->place_capacity, fronts->place_capacity);
+    for (int i = 0; i < fronts->front[other_index].n; i++) {
+        const int site = fronts->front[other_index].site[i];
+        remove_membership(fronts, site, other_index);
+        const int membership = membership_of(fronts, site, base_index);
+        fronts->place[i] = membership < 0 ? fronts->front[base_index].n
+                                          : fronts->membership[membership].place;
+        if (membership < 0) add_member(fronts, base_index, site);
     }
 }
 
-static void merge(struct kron_fronts *mesh, int base_index, int other_index)
+static void merge(struct kron_fronts *fronts, int base_index, int other_index)
 {
-    find_places(mesh, base_index, other_index);
-    struct front *base = &mesh->front[base_index], *other = &mesh->front[other_index];
-    dense_front_bring_up_to_date(&other->dense, other->n);
+    find_places(fronts, base_index, other_index);
+    struct front *base = &fronts->front[base_index],
+                 *other = &fronts->front[other_index];
+    dense_front_flush(&other->dense, other->n);
     for (int i = 1; i < other->n; i++) {
-        const int p = mesh->place[i];
+        const int p = fronts->place[i];
         for (int j = 0; j < i; j++) {
-            const int q = mesh->place[j];
+            const int q = fronts->place[j];
             const int high = p > q ? p : q, low = p > q ? q : p;
             dense_front_set(&base->dense, high, low,
                             dense_front_entry(&base->dense, high, low) +
                                 dense_front_entry(&other->dense, i, j));
         }
     }
-    end_front(mesh, other_index);
+    release_front(fronts, other_index);
 }
 
-// All fronts that SITE is on, as one: the largest with what the others add.
-static int merge_fronts(struct kron_fronts *mesh, int site)
+// Merges all fronts of SITE into the largest; returns its index, or -1 if there is
+// none.
+static int merge_fronts(struct kron_fronts *fronts, int site)
 {
     int largest = -1;
-    for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
-        const int front = mesh->membership[k].front;
-        if (largest < 0 || mesh->front[front].n > mesh->front[largest].n)
+    for (int k = fronts->first[site]; k >= 0; k = fronts->membership[k].next) {
+        const int front = fronts->membership[k].front;
+        if (largest < 0 || fronts->front[front].n > fronts->front[largest].n)
             largest = front;
     }
-    for (int k = mesh->first[site]; k >= 0;) {
-        const int front = mesh->membership[k].front;
-        k = mesh->membership[k].next;
-        if (front != largest) merge(mesh, largest, front);
+    for (int k = fronts->first[site]; k >= 0;) {
+        const int front = fronts->membership[k].front;
+        k = fronts->membership[k].next;
+        if (front != largest) merge(fronts, largest, front);
     }
     return largest;
 }
 
-// Out of the front, into mesh->row: the links of SITE with those that stay.
-static void take_out(struct kron_fronts *mesh, int front_index, int site)
+// Takes SITE out of the front, and its links into fronts->row.
+static void extract_row(struct kron_fronts *fronts, int front_index, int site)
 {
-    struct front *front = &mesh->front[front_index];
-    while (mesh->row_capacity < front->n)
-        GROW_ARRAY(mesh->row, mesh->row_capacity, mesh->row_capacity);
-    const int place = mesh->membership[membership_of(mesh, site, front_index)].place;
-    dense_front_take(&front->dense, front->n, place, mesh->row);
-    remove_member(mesh, front_index, place);
-    mesh->row[place] = mesh->row[front->n];
+    struct front *front = &fronts->front[front_index];
+    while (fronts->row_capacity < front->n)
+        GROW_ARRAY(fronts->row, fronts->row_capacity, fronts->row_capacity);
+    const int place =
+        fronts->membership[membership_of(fronts, site, front_index)].place;
+    dense_front_copy_row(&front->dense, front->n, place, fronts->row);
+    remove_member(fronts, front_index, place);
+    fronts->row[place] = fronts->row[front->n];
 }
 
-// In eight parts, which wide vectors add at once.
+// Eight partial sums, which vectors add at once.
 static double sum_of(const double *row, int n)
 {
     enum { PARTS = 8 };
@@ -246,37 +260,38 @@ static double sum_of(const double *row, int n)
            ((part[4] + part[5]) + (part[6] + part[7]));
 }
 
-// What flowed to the eliminated site flows on into the air.
-static void raise_air(struct kron_fronts *mesh, const struct front *front, double share)
+// The flow to the eliminated site goes on into the air.
+static void raise_air(struct kron_fronts *fronts, const struct front *front,
+                      double share)
 {
     for (int i = 0; i < front->n; i++)
-        add_air(mesh, front->site[i], mesh->row[i] * share);
+        add_air(fronts, front->site[i], fronts->row[i] * share);
 }
 
-void kron_fronts_eliminate(struct kron_fronts *mesh, int site)
+void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
 {
-    const double air = mesh->air_conductance[site];
-    mesh->air_conductance[site] = 0;
-    const int front_index = merge_fronts(mesh, site);
+    const double air = fronts->air_conductance[site];
+    fronts->air_conductance[site] = 0;
+    const int front_index = merge_fronts(fronts, site);
     if (front_index < 0) {
-        lower_air(mesh, air);
+        lower_air(fronts, air);
         return;
     }
-    take_out(mesh, front_index, site);
-    struct front *front = &mesh->front[front_index];
-    const double total = air + sum_of(mesh->row, front->n);
+    extract_row(fronts, front_index, site);
+    struct front *front = &fronts->front[front_index];
+    const double total = air + sum_of(fronts->row, front->n);
     if (total > 0) {
-        dense_front_add_products(&front->dense, front->n, 1 / total, mesh->row);
+        dense_front_add_products(&front->dense, front->n, 1 / total, fronts->row);
         if (!front->dense.is_large && front->n > LARGE_FRONT)
-            dense_front_enlarge(&front->dense, front->n, mesh->is_rounded);
-        if (air > 0) raise_air(mesh, front, air / total);
+            dense_front_enlarge(&front->dense, front->n, fronts->is_rounded);
+        if (air > 0) raise_air(fronts, front, air / total);
     }
-    if (air > 0) lower_air(mesh, air * (air / total));
+    if (air > 0) lower_air(fronts, air * (air / total));
     if (front->n == 1) { // a dead end
-        leave(mesh, front->site[0], front_index);
+        remove_membership(fronts, front->site[0], front_index);
         front->n = 0;
     }
-    if (front->n == 0) end_front(mesh, front_index);
+    if (front->n == 0) release_front(fronts, front_index);
 }
 
 // --- state -------------------------------------------------------------------------
@@ -294,43 +309,43 @@ static void front_state(struct front *front, int n_site, int n_front,
     dense_front_state(&front->dense, front->n, stream);
 }
 
-static void fronts_state(struct kron_fronts *mesh, struct checkpoint_stream *stream)
+static void fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)
 {
-    int64_t n = mesh->n_front;
+    int64_t n = fronts->n_front;
     if (stream->restoring)
-        for (int f = 0; f < mesh->n_front; f++)
-            empty_front(&mesh->front[f]);
-    mesh->front = stream_room(stream, mesh->front, &n, sizeof *mesh->front);
+        for (int f = 0; f < fronts->n_front; f++)
+            empty_front(&fronts->front[f]);
+    fronts->front = stream_room(stream, fronts->front, &n, sizeof *fronts->front);
     if (stream->restoring) {
-        memset(mesh->front, 0, (size_t)n * sizeof *mesh->front);
-        mesh->n_front = mesh->front_capacity = (int)n;
+        memset(fronts->front, 0, (size_t)n * sizeof *fronts->front);
+        fronts->n_front = fronts->front_capacity = (int)n;
     }
-    stream_integer(stream, &mesh->unused_front, -1, (int)n - 1);
-    for (int f = 0; f < mesh->n_front; f++)
-        front_state(&mesh->front[f], mesh->n_site, mesh->n_front, stream);
+    stream_integer(stream, &fronts->unused_front, -1, (int)n - 1);
+    for (int f = 0; f < fronts->n_front; f++)
+        front_state(&fronts->front[f], fronts->n_site, fronts->n_front, stream);
 }
 
-static void memberships_state(struct kron_fronts *mesh,
+static void memberships_state(struct kron_fronts *fronts,
                               struct checkpoint_stream *stream)
 {
-    int64_t n = mesh->n_membership;
-    mesh->membership =
-        stream_room(stream, mesh->membership, &n, sizeof *mesh->membership);
-    if (stream->restoring) mesh->n_membership = mesh->membership_capacity = (int)n;
-    stream_integer(stream, &mesh->unused_membership, -1, (int)n - 1);
-    stream_integers(stream, mesh->first, mesh->n_site, -1, (int)n - 1);
-    for (int k = 0; k < mesh->n_membership; k++) {
-        stream_integer(stream, &mesh->membership[k].front, 0, mesh->n_front - 1);
-        stream_integer(stream, &mesh->membership[k].place, 0, mesh->n_site - 1);
-        stream_integer(stream, &mesh->membership[k].next, -1, (int)n - 1);
+    int64_t n = fronts->n_membership;
+    fronts->membership =
+        stream_room(stream, fronts->membership, &n, sizeof *fronts->membership);
+    if (stream->restoring) fronts->n_membership = fronts->membership_capacity = (int)n;
+    stream_integer(stream, &fronts->unused_membership, -1, (int)n - 1);
+    stream_integers(stream, fronts->first, fronts->n_site, -1, (int)n - 1);
+    for (int k = 0; k < fronts->n_membership; k++) {
+        stream_integer(stream, &fronts->membership[k].front, 0, fronts->n_front - 1);
+        stream_integer(stream, &fronts->membership[k].place, 0, fronts->n_site - 1);
+        stream_integer(stream, &fronts->membership[k].next, -1, (int)n - 1);
     }
 }
 
-void kron_fronts_state(struct kron_fronts *mesh, struct checkpoint_stream *stream)
+void kron_fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)
 {
-    stream_numbers(stream, mesh->air_conductance, mesh->n_site);
-    stream_sums(stream, &mesh->all_air, 1);
-    stream_numbers(stream, &mesh->summed_air, 1);
-    fronts_state(mesh, stream);
-    memberships_state(mesh, stream);
+    stream_numbers(stream, fronts->air_conductance, fronts->n_site);
+    stream_sums(stream, &fronts->all_air, 1);
+    stream_numbers(stream, &fronts->summed_air, 1);
+    fronts_state(fronts, stream);
+    memberships_state(fronts, stream);
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Conductances between sites, and between each site and the air, from which sites are
 // eliminated one by one. An eliminated site leaves links between all its neighbours,
-//     c_jk += c_ij c_ik / sum_l c_il   (star-mesh transformation),
-// so what is left carries the same flows. Sums and products of positive numbers only:
-// every conductance keeps its digits over any range (Grassmann, Taksar and Heyman
-// 1985).
+//     c_jk += c_ij c_ik / sum_l c_il   (star-mesh transformation, Kron reduction),
+// so the remaining network carries the same flows. Sums, products and quotients of
+// positive numbers only: every conductance keeps its digits over any range (Grassmann,
+// Taksar and Heyman 1985).
 //
 // All sites beside one connected piece of eliminated ones are linked with each other;
-// such a front is kept as a dense triangle. A site may be on several fronts, which
-// become one when it is eliminated (the multifrontal method, in an order that is given
+// such a front is stored as a dense triangle. A site may be on several fronts, which
+// are merged when it is eliminated (the multifrontal method, in an order that is given
 // as it goes).
 #ifndef CRAQUELURE_KRON_FRONTS_H
 #define CRAQUELURE_KRON_FRONTS_H
@@ -55,33 +55,33 @@ struct kron_fronts kron_fronts_make(int n_site, bool is_rounded);
 
 // Adds to the conductance between A and B, of which none has been eliminated, or
 // between SITE and the air.
-void kron_fronts_link(struct kron_fronts *mesh, int a, int b, double conductance);
-void kron_fronts_link_air(struct kron_fronts *mesh, int site, double conductance);
+void kron_fronts_link(struct kron_fronts *fronts, int a, int b, double conductance);
+void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductance);
 
-// SITE leaves the mesh. O(n^2) for a front of n sites.
-void kron_fronts_eliminate(struct kron_fronts *mesh, int site);
+// Eliminates SITE. O(n^2) for a front of n sites.
+void kron_fronts_eliminate(struct kron_fronts *fronts, int site);
 
-// Does what eliminations have left to do at SITE; before kron_fronts_list_links.
-void kron_fronts_bring_up_to_date(struct kron_fronts *mesh, int site);
+// Adds the pending updates of the fronts of SITE; before kron_fronts_list_links.
+void kron_fronts_flush(struct kron_fronts *fronts, int site);
 
 // Does that everywhere, and lists all links; before kron_fronts_add_flows.
-void kron_fronts_list(struct kron_fronts *mesh);
+void kron_fronts_list(struct kron_fronts *fronts);
 
-// Adds to FLOW (n_site) what flows to each site from the others when sites are at LEVEL
-// (n_site). Not where links are floats.
-void kron_fronts_add_flows(const struct kron_fronts *mesh, const double *level,
+// Adds to FLOW (n_site) the flow to each site from the others when sites have the
+// potential LEVEL (n_site). Not where links are floats.
+void kron_fronts_add_flows(const struct kron_fronts *fronts, const double *level,
                            double *flow);
 
 // Lists in OTHER the sites that SITE is linked with, and in LINK (n_site), which is 0
 // before, the conductances at their places. Returns how many there are.
-int kron_fronts_list_links(const struct kron_fronts *mesh, int site, int *other,
+int kron_fronts_list_links(const struct kron_fronts *fronts, int site, int *other,
                            double *link);
 
-void kron_fronts_state(struct kron_fronts *mesh, struct checkpoint_stream *stream);
+void kron_fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream);
 
-// Of a state that was read: whether fronts and memberships agree.
-bool kron_fronts_fit(const struct kron_fronts *mesh);
+// Whether fronts and memberships of a restored state agree.
+bool kron_fronts_fit(const struct kron_fronts *fronts);
 
-void kron_fronts_free(struct kron_fronts *mesh);
+void kron_fronts_free(struct kron_fronts *fronts);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a star mesh is made of; for kron_fronts*.c only.
+// What fronts are made of; for kron_fronts*.c only.
 #ifndef CRAQUELURE_KRON_FRONTS_INTERNAL_H
 #define CRAQUELURE_KRON_FRONTS_INTERNAL_H
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is left of a star mesh, link by link, and what flows through it.
+// The remaining network, link by link, and the flow c_jk (level_k - level_j) through
+// it.
 #include "kron_fronts.h"
 
 #include "basics/memory.h"
@@ -7,46 +8,46 @@
 
 #include <stdlib.h>
 
-void kron_fronts_bring_up_to_date(struct kron_fronts *mesh, int site)
+void kron_fronts_flush(struct kron_fronts *fronts, int site)
 {
-    for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
-        struct front *front = &mesh->front[mesh->membership[k].front];
-        dense_front_bring_up_to_date(&front->dense, front->n);
+    for (int k = fronts->first[site]; k >= 0; k = fronts->membership[k].next) {
+        struct front *front = &fronts->front[fronts->membership[k].front];
+        dense_front_flush(&front->dense, front->n);
     }
 }
 
-// Fronts of two sites come as pairs: most are, and far apart in memory.
-void kron_fronts_list(struct kron_fronts *mesh)
+// Fronts of two sites are listed as pairs: most are, and they lie far apart in memory.
+void kron_fronts_list(struct kron_fronts *fronts)
 {
-    mesh->n_pair = mesh->n_wide = mesh->widest = 0;
-    for (int f = 0; f < mesh->n_front; f++) {
-        struct front *front = &mesh->front[f];
+    fronts->n_pair = fronts->n_wide = fronts->widest = 0;
+    for (int f = 0; f < fronts->n_front; f++) {
+        struct front *front = &fronts->front[f];
         if (front->n == 2) {
-            GROW_ARRAY(mesh->pair, mesh->n_pair, mesh->pair_capacity);
-            mesh->pair[mesh->n_pair++] = (struct pair){
+            GROW_ARRAY(fronts->pair, fronts->n_pair, fronts->pair_capacity);
+            fronts->pair[fronts->n_pair++] = (struct pair){
                 front->site[0], front->site[1], dense_front_entry(&front->dense, 1, 0)};
         } else if (front->n > 2) {
-            dense_front_bring_up_to_date(&front->dense, front->n);
-            GROW_ARRAY(mesh->wide, mesh->n_wide, mesh->wide_capacity);
-            mesh->wide[mesh->n_wide++] = f;
-            if (front->n > mesh->widest) mesh->widest = front->n;
+            dense_front_flush(&front->dense, front->n);
+            GROW_ARRAY(fronts->wide, fronts->n_wide, fronts->wide_capacity);
+            fronts->wide[fronts->n_wide++] = f;
+            if (front->n > fronts->widest) fronts->widest = front->n;
         }
     }
 }
 
-// What flows over N links of one site that is at HERE; taken from FLOW (n) of the
-// others. In lanes of their own, so that the compiler may keep them in one register.
+// Flow over N links to one site with potential HERE; subtracted from FLOW (n) of the
+// others. Partial sums, so that the compiler can use one register for them.
 static double add_row_flows(const double *restrict link, int n,
                             const double *restrict level, double here,
                             double *restrict flow)
 {
-    enum { LANES = 4 };
-    double lane[LANES] = {0}, sum = 0;
+    enum { PARTIAL_SUMS = 4 };
+    double part[PARTIAL_SUMS] = {0}, sum = 0;
     int i = 0;
-    for (; i + LANES <= n; i += LANES)
-        for (int l = 0; l < LANES; l++) {
+    for (; i + PARTIAL_SUMS <= n; i += PARTIAL_SUMS)
+        for (int l = 0; l < PARTIAL_SUMS; l++) {
             const double through = link[i + l] * (level[i + l] - here);
-            lane[l] += through;
+            part[l] += through;
             flow[i + l] -= through;
         }
     for (; i < n; i++) {
@@ -54,16 +55,16 @@ static double add_row_flows(const double *restrict link, int n,
         sum += through;
         flow[i] -= through;
     }
-    for (int l = 0; l < LANES; l++)
-        sum += lane[l];
+    for (int l = 0; l < PARTIAL_SUMS; l++)
+        sum += part[l];
     return sum;
 }
 
 static void add_front_flows(const struct front *front, const double *level,
-                            double *flow, double *room)
+                            double *flow, double *n_entries)
 {
     const int n = front->n;
-    double *here = room, *gain = room + n;
+    double *here = n_entries, *gain = n_entries + n;
     for (int i = 0; i < n; i++) {
         here[i] = level[front->site[i]];
         gain[i] = 0;
@@ -76,28 +77,28 @@ static void add_front_flows(const struct front *front, const double *level,
         flow[front->site[i]] += gain[i];
 }
 
-void kron_fronts_add_flows(const struct kron_fronts *mesh, const double *level,
+void kron_fronts_add_flows(const struct kron_fronts *fronts, const double *level,
                            double *flow)
 {
-    for (int p = 0; p < mesh->n_pair; p++) {
-        const struct pair *pair = &mesh->pair[p];
+    for (int p = 0; p < fronts->n_pair; p++) {
+        const struct pair *pair = &fronts->pair[p];
         const double through = pair->conductance * (level[pair->a] - level[pair->b]);
         flow[pair->a] -= through;
         flow[pair->b] += through;
     }
-    double *room = NEW_ARRAY(double, 2 * mesh->widest);
-    for (int f = 0; f < mesh->n_wide; f++)
-        add_front_flows(&mesh->front[mesh->wide[f]], level, flow, room);
-    free(room);
+    double *n_entries = NEW_ARRAY(double, 2 * fronts->widest);
+    for (int f = 0; f < fronts->n_wide; f++)
+        add_front_flows(&fronts->front[fronts->wide[f]], level, flow, n_entries);
+    free(n_entries);
 }
 
-int kron_fronts_list_links(const struct kron_fronts *mesh, int site, int *other,
+int kron_fronts_list_links(const struct kron_fronts *fronts, int site, int *other,
                            double *link)
 {
     int n = 0;
-    for (int k = mesh->first[site]; k >= 0; k = mesh->membership[k].next) {
-        const struct front *front = &mesh->front[mesh->membership[k].front];
-        const int p = mesh->membership[k].place;
+    for (int k = fronts->first[site]; k >= 0; k = fronts->membership[k].next) {
+        const struct front *front = &fronts->front[fronts->membership[k].front];
+        const int p = fronts->membership[k].place;
         for (int i = 0; i < front->n; i++) {
             if (i == p) continue;
             const int at = front->site[i];

@@ -2,56 +2,51 @@
 // Centres of power, of four cells at a time.
 #include "geometry/insertion_cell.h"
 
+#include "basics/simd.h"
+
 #include <float.h>
 
-// A number of each of four cells.
-typedef double quad __attribute__((vector_size(32)));
-typedef int64_t mask __attribute__((vector_size(32)));
-
-struct quads {
-    quad x, y, z;
+struct vector_of_four {
+    double4 x, y, z;
 };
 
-static inline quad quad_size(quad x)
+static inline double4 larger(double4 x, double4 y)
 {
-    return (quad)((mask)x & INT64_MAX);
+    const mask4 first = x > y;
+    return (double4)((first & (mask4)x) | (~first & (mask4)y));
 }
 
-static inline quad larger(quad x, quad y)
+static inline double4 largest(struct vector_of_four v)
 {
-    const mask first = x > y;
-    return (quad)((first & (mask)x) | (~first & (mask)y));
+    return larger(larger(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
 }
 
-static inline quad largest(struct quads v)
-{
-    return larger(larger(quad_size(v.x), quad_size(v.y)), quad_size(v.z));
-}
-
-static inline quad dot_quads(struct quads a, struct quads b)
+static inline double4 dot_of_four(struct vector_of_four a, struct vector_of_four b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static inline struct quads cross_quads(struct quads a, struct quads b)
+static inline struct vector_of_four cross_of_four(struct vector_of_four a,
+                                                  struct vector_of_four b)
 {
-    return (struct quads){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                          a.x * b.y - a.y * b.x};
+    return (struct vector_of_four){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                                   a.x * b.y - a.y * b.x};
 }
 
 // Vertex K of each, from FROM, and its weight.
-static inline struct quads vertices(const struct weighted_point *point,
-                                    struct live_cell *const cell[4], int k,
-                                    struct quads from, quad *weight)
+static inline struct vector_of_four vertices(const struct weighted_point *point,
+                                             struct live_cell *const cell[4], int k,
+                                             struct vector_of_four from,
+                                             double4 *weight)
 {
     const struct weighted_point *p[4];
     for (int lane = 0; lane < 4; lane++)
         p[lane] = &point[cell[lane]->vertex[k]];
-    *weight = (quad){p[0]->weight, p[1]->weight, p[2]->weight, p[3]->weight};
-    return (struct quads){
-        (quad){p[0]->at.x, p[1]->at.x, p[2]->at.x, p[3]->at.x} - from.x,
-        (quad){p[0]->at.y, p[1]->at.y, p[2]->at.y, p[3]->at.y} - from.y,
-        (quad){p[0]->at.z, p[1]->at.z, p[2]->at.z, p[3]->at.z} - from.z};
+    *weight = (double4){p[0]->weight, p[1]->weight, p[2]->weight, p[3]->weight};
+    return (struct vector_of_four){
+        (double4){p[0]->at.x, p[1]->at.x, p[2]->at.x, p[3]->at.x} - from.x,
+        (double4){p[0]->at.y, p[1]->at.y, p[2]->at.y, p[3]->at.y} - from.y,
+        (double4){p[0]->at.z, p[1]->at.z, p[2]->at.z, p[3]->at.z} - from.z};
 }
 
 // For the rows r_k from the last vertex to the other three, 2 r_k . c = |r_k|^2 - w_k +
@@ -59,35 +54,37 @@ static inline struct quads vertices(const struct weighted_point *point,
 static void find_four_centres(const struct weighted_point *point,
                               struct live_cell *const cell[4])
 {
-    quad weight[4], right[3], terms[3], size[3], error = {0};
-    const struct quads origin = {0},
-                       last = vertices(point, cell, 3, origin, &weight[3]);
-    struct quads row[3], centre = {0};
+    double4 weight[4], right[3], terms[3], size[3], error = {0};
+    const struct vector_of_four origin = {0},
+                                last = vertices(point, cell, 3, origin, &weight[3]);
+    struct vector_of_four row[3], centre = {0};
     for (int k = 0; k < 3; k++) {
         row[k] = vertices(point, cell, k, last, &weight[k]);
-        const quad square = dot_quads(row[k], row[k]), lighter = weight[3] - weight[k];
+        const double4 square = dot_of_four(row[k], row[k]),
+                      lighter = weight[3] - weight[k];
         right[k] = 0.5 * (square + lighter);
-        terms[k] = square + quad_size(lighter);
+        terms[k] = square + magnitude(lighter);
         size[k] = largest(row[k]);
     }
-    const struct quads across[3] = {cross_quads(row[1], row[2]),
-                                    cross_quads(row[2], row[0]),
-                                    cross_quads(row[0], row[1])};
+    const struct vector_of_four across[3] = {cross_of_four(row[1], row[2]),
+                                             cross_of_four(row[2], row[0]),
+                                             cross_of_four(row[0], row[1])};
     for (int k = 0; k < 3; k++) {
         centre.x += right[k] * across[k].x;
         centre.y += right[k] * across[k].y;
         centre.z += right[k] * across[k].z;
         error += terms[k] * size[(k + 1) % 3] * size[(k + 2) % 3];
     }
-    const quad determinant = dot_quads(row[0], across[0]), one_over = 1 / determinant;
-    const quad slack = 16 * DBL_EPSILON * size[0] * size[1] * size[2];
-    centre =
-        (struct quads){one_over * centre.x, one_over * centre.y, one_over * centre.z};
-    const quad far = largest(centre);
+    const double4 determinant = dot_of_four(row[0], across[0]),
+                  one_over = 1 / determinant;
+    const double4 slack = 16 * DBL_EPSILON * size[0] * size[1] * size[2];
+    centre = (struct vector_of_four){one_over * centre.x, one_over * centre.y,
+                                     one_over * centre.z};
+    const double4 far = largest(centre);
     error = 1.01 * (8 * DBL_EPSILON * error + far * slack) /
-                (quad_size(determinant) - slack) +
+                (magnitude(determinant) - slack) +
             8 * DBL_EPSILON * far;
-    const mask flat = quad_size(determinant) <= 2 * slack;
+    const mask4 flat = magnitude(determinant) <= 2 * slack;
     for (int lane = 0; lane < 4; lane++) {
         cell[lane]->at = flat[lane] ? (struct vector){0}
                                     : (struct vector){centre.x[lane], centre.y[lane],

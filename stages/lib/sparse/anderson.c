@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Anderson acceleration with f = G(x) - x (`step`) and, of the last m <= ANDERSON_DEPTH
+// steps, the changes df_k (`residual_change`) and dG_k (`image_change`):
+//     basis, r:  df = basis r, by Gram and Schmidt, twice;
+//     part = basis . f,  r c = part (backwards);
+//     x_new = x + f - sum_k c_k dG_k.
+// The sum is the best combination of the changes for f in least squares, so where G is
+// linear this is GMRES. A df_k nearly dependent on newer ones (below ALIKE) is left
+// out. When |f| grows by more than LOST, G is not linear here: all changes are dropped.
 #include "sparse/anderson.h"
 
 #include "basics/memory.h"
@@ -8,20 +16,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A step after which the difference has grown by this much has left where G is linear.
+// Growth of |f| after which the changes are dropped.
 static const double LOST = 10;
 
-// A fall of which so little is left at right angles to the others adds nothing.
+// A change with less than this share normal to the others adds nothing.
 static const double ALIKE = 1e-3;
 
 struct anderson anderson_make(int most)
 {
-    struct anderson anderson = {.last = NEW_ARRAY(double, most),
-                                .sent = NEW_ARRAY(double, most)};
+    struct anderson anderson = {.last_residual = NEW_ARRAY(double, most),
+                                .last_step = NEW_ARRAY(double, most)};
     for (int k = 0; k < ANDERSON_DEPTH; k++) {
-        anderson.fall[k] = NEW_ARRAY(double, most);
-        anderson.rise[k] = NEW_ARRAY(double, most);
-        anderson.base[k] = NEW_ARRAY(double, most);
+        anderson.residual_change[k] = NEW_ARRAY(double, most);
+        anderson.image_change[k] = NEW_ARRAY(double, most);
+        anderson.basis[k] = NEW_ARRAY(double, most);
     }
     return anderson;
 }
@@ -29,12 +37,12 @@ struct anderson anderson_make(int most)
 void anderson_free(struct anderson *anderson)
 {
     for (int k = 0; k < ANDERSON_DEPTH; k++) {
-        free(anderson->fall[k]);
-        free(anderson->rise[k]);
-        free(anderson->base[k]);
+        free(anderson->residual_change[k]);
+        free(anderson->image_change[k]);
+        free(anderson->basis[k]);
     }
-    free(anderson->last);
-    free(anderson->sent);
+    free(anderson->last_residual);
+    free(anderson->last_step);
     *anderson = (struct anderson){0};
 }
 
@@ -53,16 +61,17 @@ static double product(const double *a, const double *b, int n)
     return sum;
 }
 
-// The oldest difference makes room for a new one, which comes first.
-static void move_down(struct anderson *anderson)
+// The oldest change is replaced by a new one, which comes first.
+static void make_place(struct anderson *anderson)
 {
     const int last = ANDERSON_DEPTH - 1;
-    double *fall = anderson->fall[last], *rise = anderson->rise[last];
-    const size_t bytes = (size_t)last * sizeof *anderson->fall;
-    memmove(anderson->fall + 1, anderson->fall, bytes);
-    memmove(anderson->rise + 1, anderson->rise, bytes);
-    anderson->fall[0] = fall;
-    anderson->rise[0] = rise;
+    double *residual_change = anderson->residual_change[last],
+           *image_change = anderson->image_change[last];
+    const size_t bytes = (size_t)last * sizeof *anderson->residual_change;
+    memmove(anderson->residual_change + 1, anderson->residual_change, bytes);
+    memmove(anderson->image_change + 1, anderson->image_change, bytes);
+    anderson->residual_change[0] = residual_change;
+    anderson->image_change[0] = image_change;
 }
 
 static void keep(struct anderson *anderson, const double *step)
@@ -70,35 +79,36 @@ static void keep(struct anderson *anderson, const double *step)
     const double norm = sqrt(product(step, step, anderson->n));
     if (norm > LOST * anderson->norm) anderson->n_kept = -1;
     anderson->norm = norm;
-    if (anderson->n_kept >= 0) move_down(anderson);
+    if (anderson->n_kept >= 0) make_place(anderson);
     for (int i = 0; anderson->n_kept >= 0 && i < anderson->n; i++) {
-        anderson->fall[0][i] = step[i] - anderson->last[i];
-        anderson->rise[0][i] = anderson->fall[0][i] + anderson->sent[i];
+        anderson->residual_change[0][i] = step[i] - anderson->last_residual[i];
+        anderson->image_change[0][i] =
+            anderson->residual_change[0][i] + anderson->last_step[i];
     }
     if (anderson->n_kept < ANDERSON_DEPTH) anderson->n_kept++;
-    memcpy(anderson->last, step, (size_t)anderson->n * sizeof *step);
+    memcpy(anderson->last_residual, step, (size_t)anderson->n * sizeof *step);
 }
 
-// Gram and Schmidt's, twice for the digits. What remains of the K-th fall, and its
-// parts along those before it in R (k+1).
-static bool straighten(struct anderson *anderson, int k, double *r)
+// Orthogonalises the K-th change by Gram and Schmidt, twice for the digits; its parts
+// along the changes before it go to R (k+1). Returns whether it is independent of them.
+static bool orthogonalise(struct anderson *anderson, int k, double *r)
 {
-    double *base = anderson->base[k];
+    double *basis = anderson->basis[k];
     const int n = anderson->n;
-    memcpy(base, anderson->fall[k], (size_t)n * sizeof *base);
-    const double before = sqrt(product(base, base, n));
+    memcpy(basis, anderson->residual_change[k], (size_t)n * sizeof *basis);
+    const double before = sqrt(product(basis, basis, n));
     memset(r, 0, (size_t)(k + 1) * sizeof *r);
     for (int pass = 0; pass < 2; pass++)
         for (int j = 0; j < k; j++) {
-            const double part = product(anderson->base[j], base, n);
+            const double part = product(anderson->basis[j], basis, n);
             r[j] += part;
             for (int i = 0; i < n; i++)
-                base[i] -= part * anderson->base[j][i];
+                basis[i] -= part * anderson->basis[j][i];
         }
-    r[k] = sqrt(product(base, base, n));
+    r[k] = sqrt(product(basis, basis, n));
     const bool good = r[k] > ALIKE * before;
     for (int i = 0; i < n; i++)
-        base[i] = good ? base[i] / r[k] : 0;
+        basis[i] = good ? basis[i] / r[k] : 0;
     return good;
 }
 
@@ -109,8 +119,8 @@ void anderson_step(struct anderson *anderson, double *step)
     double r[ANDERSON_DEPTH][ANDERSON_DEPTH], part[ANDERSON_DEPTH];
     bool good[ANDERSON_DEPTH];
     for (int k = 0; k < m; k++) {
-        good[k] = straighten(anderson, k, r[k]);
-        part[k] = product(anderson->base[k], step, n);
+        good[k] = orthogonalise(anderson, k, r[k]);
+        part[k] = product(anderson->basis[k], step, n);
     }
     for (int k = m - 1; k >= 0; k--) {
         if (!good[k]) continue;
@@ -118,7 +128,7 @@ void anderson_step(struct anderson *anderson, double *step)
         for (int j = 0; j < k; j++)
             part[j] -= part[k] * r[k][j];
         for (int i = 0; i < n; i++)
-            step[i] -= part[k] * anderson->rise[k][i];
+            step[i] -= part[k] * anderson->image_change[k][i];
     }
-    memcpy(anderson->sent, step, (size_t)n * sizeof *step);
+    memcpy(anderson->last_step, step, (size_t)n * sizeof *step);
 }

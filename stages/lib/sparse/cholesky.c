@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Balances of a network by CHOLMOD's simplicial L D L^T: lower triangle, AMD ordering,
+// one right side at a time.
 #include "cholesky.h"
 
 #include "basics/memory.h"
@@ -12,7 +14,7 @@ struct cholesky {
     cholmod_factor *factor;
 };
 
-static cholmod_sparse *lower_triangle(const struct matrix *matrix,
+static cholmod_sparse *lower_triangle(const struct conductance_matrix *matrix,
                                       cholmod_common *common)
 {
     const int n = matrix->n;
@@ -28,8 +30,8 @@ static cholmod_sparse *lower_triangle(const struct matrix *matrix,
     return take_matrix(common, entries);
 }
 
-enum status cholesky_make(const struct matrix *matrix, struct cholesky **made,
-                          struct reason *reason)
+enum status cholesky_make(const struct conductance_matrix *matrix,
+                          struct cholesky **made, struct reason *reason)
 {
     struct cholesky *cholesky = *made = NEW_ARRAY(struct cholesky, 1);
     cholmod_common *common = &cholesky->common;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The balances by CHOLMOD.
+// Balances of a network of conductances by CHOLMOD: exact to rounding, for up to some
+// thousand unknowns (README.md).
 #ifndef CRAQUELURE_CHOLESKY_H
 #define CRAQUELURE_CHOLESKY_H
 
@@ -10,10 +11,11 @@
 
 struct cholesky;
 
-// Factorises. STATUS_NOT_CONVERGED: it has no factor to rounding; STATUS_INTERNAL: out
-// of memory. The caller frees with cholesky_free, also after a failure.
-enum status cholesky_make(const struct matrix *matrix, struct cholesky **made,
-                          struct reason *reason);
+// Factors MATRIX. STATUS_NOT_CONVERGED: it is not positive definite to rounding;
+// STATUS_INTERNAL: out of memory. The caller frees *MADE with cholesky_free, also after
+// a failure.
+enum status cholesky_make(const struct conductance_matrix *matrix,
+                          struct cholesky **made, struct reason *reason);
 void cholesky_free(struct cholesky *cholesky);
 
 // Solves for B (n) into X (n); false when out of memory.

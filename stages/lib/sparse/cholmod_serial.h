@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CHOLMOD as every stage uses it.
-#ifndef CRAQUELURE_PLAIN_CHOLMOD_H
-#define CRAQUELURE_PLAIN_CHOLMOD_H
+// CHOLMOD as every stage uses it: simplicial, one ordering, silent, without BLAS, so
+// the same bytes for any number of threads.
+#ifndef CRAQUELURE_CHOLMOD_SERIAL_H
+#define CRAQUELURE_CHOLMOD_SERIAL_H
 
 #include <cholmod.h>
 
@@ -17,8 +18,8 @@ static inline void cholmod_serial_start(cholmod_common *common)
     common->method[0].ordering = CHOLMOD_AMD;
 }
 
-// The lower triangle of a symmetric matrix of N rows, entry by entry, at MOST so many;
-// NULL: out of memory, as take_matrix, which frees the entries.
+// The lower triangle of a symmetric matrix of N rows, entry by entry, at most MOST of
+// them. NULL: out of memory, for take_matrix too, which frees the entries.
 static inline cholmod_triplet *new_entries(cholmod_common *common, int n, size_t most)
 {
     return cholmod_allocate_triplet((size_t)n, (size_t)n, most, -1, CHOLMOD_REAL,

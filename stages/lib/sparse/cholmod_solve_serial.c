@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Solves L D L^T x = b with CHOLMOD's simplicial factor, faster than cholmod_solve2
+// where columns are alike. Columns j, j+1, ... with the same rows below form a panel:
+// the part of x in these rows is gathered once for all of its columns.
+//     forward:  x_below -= L_below,j x_j,  panel by panel upwards in j;
+//     backward: x_j = x_j / D_j - L_below,j . x_below,  downwards.
 #include "cholmod_solve_serial.h"
 
-enum { LANES = 4 };
+enum { PARTIAL_SUMS = 4 };
 
-// Columns one after the other that have the same rows below the last of them, and all
-// of them above: there, the rows' part of X is gathered once for all.
+// A panel: successive columns that have the same rows below the last of them, and all
+// rows between.
 struct panel {
     int first, width;
     int n_below;
@@ -29,18 +34,18 @@ static void subtract(double *restrict to, const double *restrict column, int n,
         to[k] -= column[k] * factor;
 }
 
-// In lanes that processors add side by side.
+// In partial sums that processors add side by side.
 static inline double product(const double *restrict a, const double *restrict b, int n)
 {
-    double lane[LANES] = {0}, sum = 0;
+    double partial[PARTIAL_SUMS] = {0}, sum = 0;
     int k = 0;
-    for (; k + LANES <= n; k += LANES)
-        for (int l = 0; l < LANES; l++)
-            lane[l] += a[k + l] * b[k + l];
+    for (; k + PARTIAL_SUMS <= n; k += PARTIAL_SUMS)
+        for (int l = 0; l < PARTIAL_SUMS; l++)
+            partial[l] += a[k + l] * b[k + l];
     for (; k < n; k++)
         sum += a[k] * b[k];
-    for (int l = 0; l < LANES; l++)
-        sum += lane[l];
+    for (int l = 0; l < PARTIAL_SUMS; l++)
+        sum += partial[l];
     return sum;
 }
 
@@ -51,8 +56,8 @@ static void gather(const struct panel *panel, const double *x, double *work)
 }
 
 // The same for a column alone.
-static void go_down_one(const cholmod_factor *factor, const struct panel *panel,
-                        double *x)
+static void forward_column(const cholmod_factor *factor, const struct panel *panel,
+                           double *x)
 {
     const double *column =
         (const double *)factor->x + ((const int *)factor->p)[panel->first] + 1;
@@ -61,8 +66,8 @@ static void go_down_one(const cholmod_factor *factor, const struct panel *panel,
         x[panel->below[k]] -= column[k] * here;
 }
 
-static void come_up_one(const cholmod_factor *factor, const struct panel *panel,
-                        double *x)
+static void backward_column(const cholmod_factor *factor, const struct panel *panel,
+                            double *x)
 {
     const double *column =
         (const double *)factor->x + ((const int *)factor->p)[panel->first] + 1;
@@ -77,8 +82,8 @@ static void come_up_one(const cholmod_factor *factor, const struct panel *panel,
     x[panel->first] = x[panel->first] / column[-1] - (even + odd);
 }
 
-static void go_down(const cholmod_factor *factor, const struct panel *panel, double *x,
-                    double *work)
+static void forward_panel(const cholmod_factor *factor, const struct panel *panel,
+                          double *x, double *work)
 {
     const int *begin = factor->p;
     gather(panel, x, work);
@@ -92,8 +97,8 @@ static void go_down(const cholmod_factor *factor, const struct panel *panel, dou
         x[panel->below[k]] = work[k];
 }
 
-static void come_up(const cholmod_factor *factor, const struct panel *panel, double *x,
-                    double *work)
+static void backward_panel(const cholmod_factor *factor, const struct panel *panel,
+                           double *x, double *work)
 {
     const int *begin = factor->p;
     gather(panel, x, work);
@@ -111,9 +116,9 @@ void cholmod_solve_serial(const cholmod_factor *factor, double *x, double *work)
     for (int j = 0; j < n;) {
         const struct panel panel = panel_from(factor, j);
         if (panel.width == 1)
-            go_down_one(factor, &panel, x);
+            forward_column(factor, &panel, x);
         else
-            go_down(factor, &panel, x, work);
+            forward_panel(factor, &panel, x, work);
         j += panel.width;
     }
     for (int j = n - 1; j >= 0;) {
@@ -124,9 +129,9 @@ void cholmod_solve_serial(const cholmod_factor *factor, double *x, double *work)
             first--;
         const struct panel panel = panel_from(factor, first);
         if (panel.width == 1)
-            come_up_one(factor, &panel, x);
+            backward_column(factor, &panel, x);
         else
-            come_up(factor, &panel, x, work);
+            backward_panel(factor, &panel, x, work);
         j = first - 1;
     }
 }

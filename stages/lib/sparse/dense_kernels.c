@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Dispatch of the dense product to the kernel of this processor.
 #include "dense_kernels.h"
 
 #include "vector_kernels.h"

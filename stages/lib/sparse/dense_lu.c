@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Dispatch of the dense factor, and its substitution: with P A = L U in rows ROW,
+//     y_k = b_row(k) - L_k . y,   x_k = (y_k - U_k . x) / U_kk backwards.
 #include "dense_lu.h"
 
 #include "dense_kernels.h"

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// dense_lu.h's factor, after vector_kernels_of.h: columns by panels, so that the
-// rest is read and written as much less often. Every number is what row by row and
-// column by column would make it.
+// The factor of dense_lu.h, right-looking by panels of DENSE_PANEL columns; for
+// vector_kernels_template.h. In each panel: copy its columns, factor them with row
+// exchanges in `row` only, copy back; then finish the pivot rows right of the panel
+// (finish_pivots) and subtract L U from the rows below, tile by tile (subtract_rows).
+// The panels reduce memory traffic; every number is what elimination column by column
+// gives.
 
-enum { SIDE = 2 * NUMBERS, HEIGHT = NUMBERS == 8 ? 8 : 4 }; // of a tile in registers
+enum {
+    SIDE = 2 * SIMD_WIDTH,
+    HEIGHT = SIMD_WIDTH == 8 ? 8 : 4
+}; // of a tile in registers
 
 // The first of the largest; -1: there is none above 0.
 static int find_pivot(int n, const double *column)
@@ -37,12 +43,13 @@ static void exchange_rows(double *panel, int height, int width, int *row, int k,
 }
 
 // TO -= SHARE FROM
-INLINE void take_off_column(int n, double share, const double *restrict from,
-                            double *restrict to)
+SIMD_INLINE void subtract_column(int n, double share, const double *restrict from,
+                                 double *restrict to)
 {
     int k = 0;
-    for (; k + NUMBERS <= n; k += NUMBERS)
-        store(to + k, fused(all_of(-share), load(from + k), load(to + k)));
+    for (; k + SIMD_WIDTH <= n; k += SIMD_WIDTH)
+        store_unaligned(to + k, fmadd(splat(-share), load_unaligned(from + k),
+                                      load_unaligned(to + k)));
     for (; k < n; k++)
         to[k] = fma(-share, from[k], to[k]);
 }
@@ -60,7 +67,7 @@ static bool factor_panel(double *panel, int height, int width, int *row)
             column[r] /= by;
         for (int l = k + 1; l < width; l++) {
             double *other = panel + (long)l * height;
-            take_off_column(height - k - 1, other[k], column + k + 1, other + k + 1);
+            subtract_column(height - k - 1, other[k], column + k + 1, other + k + 1);
         }
     }
     return true;
@@ -75,39 +82,40 @@ static void finish_pivots(double *matrix, int stride, const int *row, int width,
         double *to = matrix + (long)row[p] * stride;
         memset(tile[p], 0, sizeof tile[p]);
         memcpy(tile[p], to + last, (size_t)columns * sizeof *to);
-        vector left[2] = {load(tile[p]), load(tile[p] + NUMBERS)};
+        doublew left[2] = {load_unaligned(tile[p]),
+                           load_unaligned(tile[p] + SIMD_WIDTH)};
         for (int i = 0; i < p; i++)
             for (int q = 0; q < 2; q++)
-                left[q] =
-                    fused(all_of(to[first + i]), load(tile[i] + NUMBERS * q), left[q]);
+                left[q] = fmadd(splat(to[first + i]),
+                                load_unaligned(tile[i] + SIMD_WIDTH * q), left[q]);
         for (int q = 0; q < 2; q++)
-            store(tile[p] + NUMBERS * q, left[q]);
+            store_unaligned(tile[p] + SIMD_WIDTH * q, left[q]);
         memcpy(to + last, tile[p], (size_t)columns * sizeof *to);
         for (int q = 0; q < 2; q++)
-            store(tile[p] + NUMBERS * q, -left[q]);
+            store_unaligned(tile[p] + SIMD_WIDTH * q, -left[q]);
     }
 }
 
 // ROWS rows of numbers TO grow by WIDTH of SHARE times the rows of TILE.
-INLINE void add_tile_rows(int rows, int width, double *const share[],
-                          double *const to[], double tile[][SIDE])
+SIMD_INLINE void add_tile_rows(int rows, int width, double *const share[],
+                               double *const to[], double tile[][SIDE])
 {
-    vector sum[HEIGHT][2];
+    doublew sum[HEIGHT][2];
     for (int r = 0; r < rows; r++)
         for (int q = 0; q < 2; q++)
-            sum[r][q] = load(to[r] + NUMBERS * q);
+            sum[r][q] = load_unaligned(to[r] + SIMD_WIDTH * q);
     for (int p = 0; p < width; p++)
         for (int r = 0; r < rows; r++)
             for (int q = 0; q < 2; q++)
-                sum[r][q] =
-                    fused(all_of(share[r][p]), load(tile[p] + NUMBERS * q), sum[r][q]);
+                sum[r][q] = fmadd(splat(share[r][p]),
+                                  load_unaligned(tile[p] + SIMD_WIDTH * q), sum[r][q]);
     for (int r = 0; r < rows; r++)
         for (int q = 0; q < 2; q++)
-            store(to[r] + NUMBERS * q, sum[r][q]);
+            store_unaligned(to[r] + SIMD_WIDTH * q, sum[r][q]);
 }
 
 // The same of COUNT rows of the matrix, in COLUMNS columns from LAST on.
-static void take_off_rows(double *matrix, int stride, const int *row, int count,
+static void subtract_rows(double *matrix, int stride, const int *row, int count,
                           int width, int first, int last, int columns,
                           double tile[][SIDE])
 {
@@ -149,7 +157,7 @@ static bool factor_dense(int n, double *matrix, int stride, int *row, double *wo
             double tile[DENSE_PANEL][SIDE];
             finish_pivots(matrix, stride, row + first, width, first, last, columns,
                           tile);
-            take_off_rows(matrix, stride, row + end, n - end, width, first, last,
+            subtract_rows(matrix, stride, row + end, n - end, width, first, last,
                           columns, tile);
         }
     }

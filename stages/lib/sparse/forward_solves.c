@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forward solves L y = b for sparse b: rows on the reach of b in the elimination tree,
-// the paths from its rows to the root, in ascending order [Davis 2006, 3.2]. A column
-// alone lies as such; more lie side by side in four or eight lanes, the last of them
-// perhaps 0.
+// Forward solves L y = b for sparse b, and products of such solutions, which are
+// entries of B^T A^-1 B = (L^-1 B)^T (L^-1 B). y is zero except on the reach of b in
+// the elimination tree: the paths from its rows to the root, in ascending order [Davis
+// 2006, 3.2].
+//
+// One column is stored as such. Two to eight are stored side by side in four or eight
+// lanes, the unused ones 0, and one sweep through the supernodes serves all of them. A
+// product of two solutions sums over the supernodes that both reaches have.
 #include "supernodal_internal.h"
 
 #include "basics/memory.h"
@@ -13,27 +17,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void reach(struct supernodal *f, int count, const int *index,
-                  struct forward_solves *solves)
+static void find_reach(struct supernodal *f, int count, const int *index,
+                       struct forward_solves *solves)
 {
     int capacity = 0;
     for (int k = 0; k < count; k++)
         for (int s = index[k] < 0 ? -1 : f->super_of[f->place[index[k]]];
-             s >= 0 && !f->is_on_way[s]; s = f->super[s].parent) {
-            f->is_on_way[s] = true;
+             s >= 0 && !f->in_reach[s]; s = f->super[s].parent) {
+            f->in_reach[s] = true;
             GROW_ARRAY(solves->super, solves->n_super, capacity);
             solves->super[solves->n_super++] = s;
             solves->size += f->super[s].columns;
         }
     for (int k = 0; k < solves->n_super; k++)
-        f->is_on_way[solves->super[k]] = false;
+        f->in_reach[solves->super[k]] = false;
     if (solves->n_super > 0)
         qsort(solves->super, (size_t)solves->n_super, sizeof(int), rising_ints);
 }
 
-// One more supernode of the reach, to where its numbers lie in SOLVES.
-static double *go_through(struct supernodal *f, const struct supernode *super,
-                          struct forward_solves *solves, double *x, double *to)
+// Solves in one supernode, and moves its numbers from X to TO, their place in SOLVES.
+static double *solve_supernode(struct supernodal *f, const struct supernode *super,
+                               struct forward_solves *solves, double *x, double *to)
 {
     const int lanes = solves->lanes;
     if (lanes == 1)
@@ -53,7 +57,7 @@ static void begin_forward_solves(struct supernodal *f, int columns, int count,
 {
     const int lanes = columns == 1 ? 1 : columns <= 4 ? 4 : BATCH;
     *solves = (struct forward_solves){.columns = columns, .lanes = lanes};
-    reach(f, columns * count, index, solves);
+    find_reach(f, columns * count, index, solves);
     solves->value =
         allocate_uncleared((size_t)lanes * (size_t)solves->size, sizeof *solves->value);
     for (int c = 0; c < columns; c++)
@@ -61,7 +65,8 @@ static void begin_forward_solves(struct supernodal *f, int columns, int count,
             if (index[k] >= 0) x[f->place[index[k]] * lanes + c] = value[k];
 }
 
-// Each supernode for all groups that it is on the way of, while it is near.
+// Supernode by supernode, for all groups that reach it, while its panel is in the
+// cache.
 void supernodal_forward_solves(struct supernodal *f, int groups, const int *columns,
                                int count, const int *index, const double *value,
                                struct forward_solves *solves)
@@ -78,7 +83,7 @@ void supernodal_forward_solves(struct supernodal *f, int groups, const int *colu
     for (int s = 0; s < f->n_super; s++)
         for (int g = 0; g < groups; g++)
             if (at[g] < solves[g].n_super && solves[g].super[at[g]] == s) {
-                to[g] = go_through(f, &f->super[s], &solves[g], x[g], to[g]);
+                to[g] = solve_supernode(f, &f->super[s], &solves[g], x[g], to[g]);
                 at[g]++;
             }
 }
@@ -92,7 +97,7 @@ void forward_solves_free(struct forward_solves *solves)
 
 // ---- products -----------------------------------------------------------------------
 
-// B has four lanes or eight.
+// B has four or eight lanes.
 static void add_product(int n, const double *a, int a_lanes, const double *b,
                         int b_lanes, double sum[BATCH][BATCH])
 {
@@ -100,8 +105,7 @@ static void add_product(int n, const double *a, int a_lanes, const double *b,
                   : vector_kernels()->add_product_of_eight)(n, a, a_lanes, b, sum);
 }
 
-// Both ways, from the first supernode that they share: where they run together, at
-// once.
+// Runs over both reaches; supernodes that they share in succession go in one product.
 void forward_solves_product(const struct supernodal *f, const struct forward_solves *a,
                             const struct forward_solves *b, double *product)
 {

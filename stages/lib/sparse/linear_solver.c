@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Corrections of pressures so that balances close, by iterative refinement: with
+// residual r = balances of x (in compensated numbers), solve A c = r, then x += c, and
+// find r again. Conjugate gradients reduce r by
+// `reduction` in each. The right side is scaled to norm 1, as the preconditioner holds
+// floats.
 #include "linear_solver.h"
 
 #include "basics/memory.h"
@@ -7,30 +12,33 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Up to so many unknown pressures Cholesky's factor is the faster (make bench-flow).
+// Up to this number of unknowns the Cholesky factor is faster (make bench-flow).
 enum { DIRECT_MOST = 1500 };
 
 enum { MOST_ITERATIONS = 500 };
 
 static void multiply(void *context, const double *x, double *image)
 {
-    matrix_multiply(((const struct linear_solver *)context)->matrix, x, image);
+    conductance_matrix_multiply(((const struct linear_solver *)context)->matrix, x,
+                                image);
 }
 
 static void precondition(void *context, const double *residual, double *z)
 {
-    sampled_factor_apply(((const struct linear_solver *)context)->factor, residual, z);
+    approximate_cholesky_apply(((const struct linear_solver *)context)->factor,
+                               residual, z);
 }
 
-enum status linear_solver_make(const struct matrix *matrix, enum solver solver,
-                               struct linear_solver *linear, struct reason *reason)
+enum status linear_solver_make(const struct conductance_matrix *matrix,
+                               enum solver solver, struct linear_solver *linear,
+                               struct reason *reason)
 {
     *linear = (struct linear_solver){.matrix = matrix,
                                      .correction = NEW_ARRAY(double, matrix->n)};
     if (solver == SOLVER_CHOLESKY ||
         (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
         return cholesky_make(matrix, &linear->cholesky, reason);
-    linear->factor = sampled_factor_make(matrix);
+    linear->factor = approximate_cholesky_create(matrix);
     linear->residual = NEW_ARRAY(double, matrix->n);
     for (int k = 0; k < 3; k++)
         linear->work[k] = NEW_ARRAY(double, matrix->n);
@@ -39,7 +47,7 @@ enum status linear_solver_make(const struct matrix *matrix, enum solver solver,
 
 void linear_solver_free(struct linear_solver *linear)
 {
-    sampled_factor_free(linear->factor);
+    approximate_cholesky_free(linear->factor);
     cholesky_free(linear->cholesky);
     free(linear->correction);
     free(linear->residual);
@@ -48,7 +56,7 @@ void linear_solver_free(struct linear_solver *linear)
     *linear = (struct linear_solver){0};
 }
 
-// In units of the norm of B, for the preconditioner has floats.
+// Solves for B, scaled to norm 1, as the preconditioner holds floats.
 static int iterate(struct linear_solver *linear, const double *b, double *x,
                    double reduction)
 {
@@ -81,6 +89,6 @@ enum status linear_correct(struct linear_solver *linear, const double *given,
                       "out of memory in the balances of %d pores", n);
     for (int i = 0; i < n; i++)
         compensated_add(&x[i], linear->correction[i]);
-    matrix_residual(linear->matrix, given, x, residual);
+    conductance_matrix_residual(linear->matrix, given, x, residual);
     return STATUS_OK;
 }

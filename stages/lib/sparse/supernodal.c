@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Supernodal Cholesky factor, left to right: P A P^T = L L^T. CHOLMOD orders the matrix
+// and finds supernodes (successive columns with the same rows below), once for a
+// pattern. For each supernode s, with its panel holding rows `row` of columns
+// first..first+columns-1:
+//     factor_panel: L_ss = chol(A_ss), rows below = A_below L_ss^-T;
+//     update_above: for each later supernode that has some of these rows, subtract
+//         L_rows L_rows^T from its panel (rows found by `local`).
+// A pivot below DBL_EPSILON times the matrix's own diagonal is replaced by that, so the
+// factor exists for a semidefinite matrix; supernodal_is_positive then says no.
 #include "supernodal_internal.h"
 
 #include "basics/memory.h"
@@ -102,7 +111,7 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     find_targets(f, start, row);
     f->work = NEW_ARRAY(double, ((size_t)f->tallest + PACKED) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
-    f->is_on_way = NEW_ARRAY(bool, f->n_super);
+    f->in_reach = NEW_ARRAY(bool, f->n_super);
     f->lanes = allocate_aligned((size_t)n, MOST_SOLVES * BATCH * sizeof *f->lanes);
     return f;
 }
@@ -110,8 +119,8 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
 void supernodal_free(struct supernodal *f)
 {
     if (!f) return;
-    void *const owned[] = {f->super,  f->super_of, f->place, f->row,       f->panels,
-                           f->target, f->work,     f->local, f->is_on_way, f->lanes};
+    void *const owned[] = {f->super,  f->super_of, f->place, f->row,      f->panels,
+                           f->target, f->work,     f->local, f->in_reach, f->lanes};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(f);
@@ -128,8 +137,8 @@ double supernodal_work(const struct supernodal *f)
 
 // ---- numbers ------------------------------------------------------------------------
 
-// Columns FIRST to END - 1 of a panel, whose earlier columns are done with. A pivot is
-// not less than what rounding leaves of the matrix's own.
+// Factors columns FIRST to END - 1 of a panel whose earlier columns are done. A pivot
+// is at least the rounding of the matrix's own diagonal.
 static bool factor_columns(const struct supernode *super, int first, int end,
                            const double *diagonal)
 {
@@ -150,8 +159,8 @@ static bool factor_columns(const struct supernode *super, int first, int end,
     return true;
 }
 
-// Takes what the columns from FROM to TO - 1 say off those from FIRST to END - 1.
-static void take_off_columns(struct supernodal *f, const struct supernode *super,
+// Subtracts the products of columns FROM to TO - 1 from columns FIRST to END - 1.
+static void subtract_columns(struct supernodal *f, const struct supernode *super,
                              int from, int to, int first, int end)
 {
     if (from == to) return;
@@ -168,20 +177,20 @@ static void take_off_columns(struct supernodal *f, const struct supernode *super
     }
 }
 
-// Wide parts of a panel one after another, narrow ones within: what is before them is
-// read as much less often.
+// Factors a panel in wide parts, and these in narrow ones, to read what lies before
+// them less often.
 static bool factor_panel(struct supernodal *f, const struct supernode *super)
 {
-    enum { AVX512 = 48, AVX2 = 8 };
-    double diagonal[AVX512];
+    enum { WIDE_PART = 48, NARROW_PART = 8 };
+    double diagonal[WIDE_PART];
     for (int first = 0, end; first < super->columns; first = end) {
-        end = first + AVX512 < super->columns ? first + AVX512 : super->columns;
+        end = first + WIDE_PART < super->columns ? first + WIDE_PART : super->columns;
         for (int j = first; j < end; j++)
             diagonal[j - first] = super->panel[(long)j * super->rows + j];
-        take_off_columns(f, super, 0, first, first, end);
+        subtract_columns(f, super, 0, first, first, end);
         for (int k = first, last; k < end; k = last) {
-            last = k + AVX2 < end ? k + AVX2 : end;
-            take_off_columns(f, super, first, k, k, last);
+            last = k + NARROW_PART < end ? k + NARROW_PART : end;
+            subtract_columns(f, super, first, k, k, last);
             if (!factor_columns(super, k, last, diagonal + k - first)) return false;
         }
     }
@@ -233,7 +242,7 @@ bool supernodal_factor(struct supernodal *f, const double *value)
     return true;
 }
 
-// One that was not is left negative, or made the least there is of its size.
+// A pivot that was not positive is negative, or the least for its size.
 bool supernodal_is_positive(const struct supernodal *f, const double *diagonal)
 {
     for (int r = 0; r < f->n; r++) {

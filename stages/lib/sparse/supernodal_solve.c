@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Solution with a supernodal factor, supernode by supernode: forward L y = b gathers
+// the rows of a panel, solves in its triangle and subtracts from the rows below;
+// backward L^T x = y subtracts the rows below first. Columns go four, two or one at a
+// time, so that each number of a row is read once for several columns.
 #include "supernodal_internal.h"
 
 #include "dense_kernels.h"
@@ -7,7 +11,7 @@
 
 // ---- one supernode ------------------------------------------------------------------
 
-// WIDE columns from FIRST on; X are the rows of the panel.
+// Solves in WIDE columns from FIRST on; X are the rows of the panel.
 static inline __attribute__((always_inline)) void
 forward_columns(const struct supernode *super, int first, int wide, double *restrict x)
 {
@@ -34,13 +38,13 @@ backward_columns(const struct supernode *super, int first, int wide, double *res
 {
     const int rows = super->rows, begin = first + wide;
     const double *restrict panel = super->panel + (long)first * rows;
-    four sum[4] = {{0}};
+    double4 sum[4] = {{0}};
     double own[4];
     int i = begin;
     for (; i + 4 <= rows; i += 4)
         for (int j = 0; j < wide; j++)
-            sum[j] =
-                fused(load_four(panel + (long)j * rows + i), load_four(x + i), sum[j]);
+            sum[j] = fmadd(load_unaligned(panel + (long)j * rows + i),
+                           load_unaligned(x + i), sum[j]);
     for (int j = 0; j < wide; j++)
         own[j] = (sum[j][0] + sum[j][1]) + (sum[j][2] + sum[j][3]);
     for (; i < rows; i++)

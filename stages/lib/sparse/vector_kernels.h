@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What most of the work on factors is done by, for the vectors that the processor has.
+// The kernels in which factors spend their time, for the vectors of this processor.
+// Each number has the same digits with AVX2 and AVX-512.
 #ifndef CRAQUELURE_VECTOR_KERNELS_H
 #define CRAQUELURE_VECTOR_KERNELS_H
 
@@ -11,20 +12,20 @@ struct supernode;
 enum { PACKED = 48 }; // columns of B that multiply_transposed takes together
 
 struct vector_kernels {
-    // X (n * BATCH), in the order of the factor, as far as SUPER is concerned: becomes
-    // L^-1 X.
+    // X (n * BATCH), in the order of the factor, becomes L^-1 X as far as SUPER is
+    // concerned.
     void (*forward_eight)(const struct supernode *super, double *x);
-    // The rows below END of the columns FIRST to END - 1, eight at most, of a panel
-    // that is done with so far.
+    // Divides the rows below END of the columns FIRST to END - 1, at most eight, by the
+    // triangle of these columns.
     void (*finish_columns)(const struct supernode *super, int first, int end);
-    // SUM grows by A^T B, (n) rows of lanes, one, four or eight of A, eight of B.
+    // SUM += A^T B, over N rows: one, four or eight columns (lanes) of A, eight of B.
     void (*add_product_of_eight)(int n, const double *a, int a_lanes, const double *b,
                                  double sum[BATCH][BATCH]);
-    // As dense_kernels.h says.
+    // See dense_kernels.h.
     void (*multiply_transposed)(int m, int n, int k, const double *a, int a_stride,
                                 const double *b, int b_stride, double *c, int c_stride,
                                 bool lower, double *work);
-    // As dense_lu.h says of dense_factor.
+    // See dense_factor in dense_lu.h.
     bool (*factor_dense)(int n, double *matrix, int stride, int *row, double *work);
 };
 extern const struct vector_kernels vector_kernels_avx2, vector_kernels_avx512;
@@ -34,7 +35,7 @@ static inline const struct vector_kernels *vector_kernels(void)
     return has_avx512() ? &vector_kernels_avx512 : &vector_kernels_avx2;
 }
 
-// Of four lanes.
+// The same for four lanes.
 void forward_four(const struct supernode *super, double *x);
 void add_product_of_four(int n, const double *a, int a_lanes, const double *b,
                          double sum[BATCH][BATCH]);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define BYTES 32
+// The kernels for AVX2.
+#define SIMD_WIDTH 4
 #define NAMED(name) name##_avx2
 #include "vector_kernels_template.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For processors with AVX-512.
+// The kernels for AVX-512.
 #if defined __x86_64__
 #pragma GCC target("avx512f,avx512dq,avx512vl,fma")
 #endif
-#define BYTES 64
+#define SIMD_WIDTH 8
 #define NAMED(name) name##_avx512
 #include "vector_kernels_template.h"
