@@ -60,7 +60,7 @@ function viewOf(page, width, height) {
   }
   const show = Object.fromEntries([...element("shown").querySelectorAll("input")].map((box) => [box.name, box.checked]));
   return { turn: turnOf(camera), frame: [-camera.x, -camera.y, wide, high], clip, key: course ? course.key : 0, show, colours: page.colours,
-    grow: Number(element("size").value) / 100, pixel: 2 * wide / width, longest: page.longest };
+    grow: Number(element("size").value) / 100, pixel: 2 * wide / width, longest: page.longest, plain: page.moving && page.isSlow };
 }
 
 // ---- drawing ------------------------------------------------------------------------
@@ -74,9 +74,8 @@ function resize(page, scale) {
 }
 
 function updateShown(page, view) {
-  const seen = visibleOf(page.body, page.camera, view.clip, view.show.grains ? view.grow : 0);
-  page.seen = view.show.grains ? seen : null;
-  if (page.scene) fillBody(page.scene, page.seen);
+  page.seen = visibleOf(page.body, view, page.canvas.width, page.canvas.height);
+  if (page.scene) putBody(page.scene, page.seen);
   page.stale = false;
   page.tinted = page.forced = null;
   sayDrawn(page);
@@ -86,23 +85,31 @@ function updateMoment(page, view) {
   const tinted = `${page.colourBy} ${dependsOnMoment(page.colourBy) ? view.key : ""} ${page.picked ? page.picked.kind + page.picked.index : ""}`;
   if (page.tinted !== tinted) {
     page.tints = tintsOf(page, view.key);
-    const bytes = (tint) => (k) => tint(k).map((v) => 255 * v);
     if (page.scene) {
-      fillTint(page.scene, "grain", bytes(page.tints.grain));
-      fillTint(page.scene, "throat", bytes(page.tints.throat));
+      putTints(page.scene, "grain", page.tints.grain);
+      putTints(page.scene, "throat", page.tints.throat);
     }
     page.tinted = tinted;
   }
   const m = momentAt(page.body, view.key);
   if (page.scene && view.show.forces && page.forced !== m) {
-    fillForces(page.scene, forcesAt(page.body, m));
+    putForces(page.scene, forcesAt(page.body, m));
     page.forced = m;
   }
 }
 
+// What moves and cannot follow is drawn with half of the points, and throats as strokes;
+// when it rests, with all.
+function followMotion(page) {
+  const now = performance.now(), since = now - page.drawnAt;
+  page.drawnAt = now;
+  if (page.moving && isLarge(page.body) && since < 1000) page.isSlow = page.isSlow || since > 50;
+  resize(page, page.moving && page.isSlow ? 0.5 : 1);
+}
+
 function draw(page) {
   page.waiting = false;
-  resize(page, page.moving ? page.coarse : 1);
+  followMotion(page);
   const view = viewOf(page, page.canvas.width, page.canvas.height);
   if (page.stale) updateShown(page, view);
   updateMoment(page, view);
@@ -117,10 +124,17 @@ function askDraw(page) {
   requestAnimationFrame(() => draw(page));
 }
 
+// For as long as the moment goes on.
+function keepMoving(page) {
+  page.moving = true;
+  clearTimeout(page.rest);
+  page.rest = setTimeout(() => { page.moving = false; askDraw(page); }, 160);
+}
+
 function sayDrawn(page) {
   const { body, seen } = page, words = [];
   const count = (n) => n.toLocaleString("en");
-  if (seen) words.push(`Of ${count(body.grain.n)} grains and ${count(body.throat.n)} throats, ${count(seen.grains.length)} and ${count(seen.throats.length)} are drawn: what lies ${LAYERS} or more grains behind the front is left out; a cut brings it back.`);
+  if (seen) words.push(`Of ${count(body.grain.n)} grains and ${count(body.throat.n)} throats, ${count(seen.grains.length)} and ${count(seen.throats.length)} are drawn; grains hide the others.`);
   if (body.meta.dryThroats) words.push(`${count(body.meta.dryThroats)} throats that never hold liquid are not drawn.`);
   words.push("Places are within a thousandth of a grain; forces within 1/250 of the largest.");
   element("drawn").textContent = words.join(" ");
@@ -158,11 +172,13 @@ function choose(page, picked) {
   askDraw(page);
 }
 
+const isLarge = ({ grain, throat }) => grain.n + throat.n > ALWAYS_ALL;
+
 function listen(page) {
   const again = (stale) => () => { page.stale ||= stale; askDraw(page); };
   steer(page.canvas, page.camera, page.body, (moving) => {
     page.moving = moving;
-    if (!moving) page.stale = true;
+    page.stale ||= isLarge(page.body) || !moving;
     askDraw(page);
   }, (event) => pick(page, event));
   element("shown").addEventListener("change", again(true));
@@ -173,7 +189,7 @@ function listen(page) {
     again(true)();
   });
   element("colour").addEventListener("change", (event) => { page.colourBy = event.target.value; askDraw(page); });
-  new ResizeObserver(again(false)).observe(page.canvas);
+  new ResizeObserver(again(isLarge(page.body))).observe(page.canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { page.colours = readColours(); page.tinted = null; askDraw(page); });
   for (const button of document.querySelectorAll("button.go")) button.addEventListener("click", () => {
     page.course.set(Number(button.dataset.key));
@@ -199,7 +215,7 @@ function drawStrip(page) {
 // ---- the beginning ------------------------------------------------------------------
 
 function prepareControls(body) {
-  const small = body.grain.n + body.throat.n <= ALWAYS_ALL;
+  const small = !isLarge(body);
   element("size").value = small ? 62 : 100;
   element("shown").querySelector("[name=empty]").checked = small && body.grain.n < 1000;
   const without = (name, there) => { if (!there) { const box = element("shown").querySelector(`[name=${name}]`); box.checked = false; box.disabled = true; } };
@@ -226,7 +242,7 @@ function telling(cracks, last) {
   return keys.length ? keys[keys.length >> 1] : last / 2;
 }
 
-const page = { camera: newCamera(), canvas: element("view"), colourBy: "none", coarse: 1, stale: true, longest: 1 };
+const page = { camera: newCamera(), canvas: element("view"), colourBy: "none", drawnAt: 0, isSlow: false, stale: true, longest: 1 };
 
 async function start() {
   const meta = JSON.parse(element("meta").textContent);
@@ -238,7 +254,7 @@ async function start() {
   startScene(page);
   if (meta.rows > 1) {
     page.course = newCourse(page.body);
-    page.course.listeners.push(() => { sayNow(page); askDraw(page); });
+    page.course.listeners.push(() => { sayNow(page); askDraw(page); keepMoving(page); });
     page.course.set(telling(page.cracks, page.course.last));
     drawCurves(page.body, page.course);
   } else {

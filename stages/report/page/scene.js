@@ -1,49 +1,36 @@
-// The body in WebGL: buffers of what is drawn, a picture of it, and what lies under a
+// The body in WebGL: textures of what is drawn, a picture of it, and what lies under a
 // point of it.
 
-const QUAD = [-1, -1, 1, -1, -1, 1, 1, 1];
-const ARROW = [0, -1, 0, 1, -1, 0, 0, 1, 0, 0, 1, 0, 1, -1, 0, 1, 1, 0, 0, -1, 1, 1, 0, 1, 0, 1, 1];
 const KINDS = { grain: 1, throat: 2, crack: 3 };
+const CORNERS = { grain: 3, crack: 3, arrow: 9, line: 1 };
+const TEXTURES = ["things", "tints", "numbers", "forces"]; // by unit
 
 function newScene(canvas, body, cracks) {
   const gl = canvas.getContext("webgl2", { antialias: body.grain.n < 5000, alpha: false, preserveDrawingBuffer: true });
   if (!gl) return null;
-  const scene = { gl, canvas, body, cracks, programs: {}, sets: {}, seen: null };
-  for (const name in SHADERS) scene.programs[name] = buildProgram(gl, name);
-  scene.quad = fill(gl, gl.createBuffer(), new Float32Array(QUAD));
-  scene.arrowShape = fill(gl, gl.createBuffer(), new Float32Array(ARROW));
-  scene.sets.line = vertexSet(scene, "line", [["from", 3]], null, 0);
-  fill(gl, scene.sets.line.buffers.from, boxLines(body));
-  scene.sets.grain = vertexSet(scene, "sphere", [["sphere", 4], ["tint", 3], ["id", 1]], scene.quad, 2);
-  scene.sets.throat = vertexSet(scene, "throat", [["from", 3], ["to", 3], ["life", 3], ["tint", 3], ["id", 1]], scene.quad, 2);
-  scene.sets.crack = vertexSet(scene, "crack", [["disc", 4], ["normal", 3], ["life", 2], ["id", 1]], scene.quad, 2);
-  scene.sets.arrow = vertexSet(scene, "arrow", [["sphere", 4], ["force", 3]], scene.arrowShape, 3);
-  fillCracks(scene);
+  const scene = { gl, canvas, body, cracks, programs: {}, sets: {}, squares: 0 };
+  for (const name in SHADERS) {
+    scene.programs[name] = buildProgram(gl, name);
+    scene.sets[name] = { count: 0, textures: {} };
+  }
+  put(scene, "line", "things", boxLines(body), 3);
+  scene.sets.line.count = 24;
+  putCracks(scene);
   return scene;
 }
 
-function fill(gl, buffer, data) {
-  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-  gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
-  return buffer;
-}
+const TEXELS = 1024; // a row of a texture
 
-// The arrays of one kind of thing, each entry for a whole instance; SHAPE has its corners.
-function vertexSet({ gl, programs }, name, columns, shape, size) {
-  const { program } = programs[name], set = { array: gl.createVertexArray(), buffers: {}, count: 0 };
-  gl.bindVertexArray(set.array);
-  const use = (key, buffer, width, each) => {
-    const at = gl.getAttribLocation(program, key);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    if (at < 0) return;
-    gl.enableVertexAttribArray(at);
-    gl.vertexAttribPointer(at, width, gl.FLOAT, false, 0, 0);
-    gl.vertexAttribDivisor(at, each);
-  };
-  if (shape) use("corner", shape, size, 0);
-  for (const [key, width] of columns) use(key, set.buffers[key] = gl.createBuffer(), width, shape ? 1 : 0);
-  gl.bindVertexArray(null);
-  return set;
+// VALUES, WIDTH of them a texel, as the texture NAME of the set; a texel has room for four.
+function put({ gl, sets }, set, name, values, width) {
+  const texels = values.length / width, rows = Math.max(1, Math.ceil(texels / TEXELS)), wide = width === 1 ? 1 : 4;
+  const data = new Float32Array(rows * TEXELS * wide);
+  if (wide === width) data.set(values);
+  else for (let k = 0; k < texels; k++) for (let c = 0; c < width; c++) data[4 * k + c] = values[width * k + c];
+  const texture = sets[set].textures[name] ||= gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texImage2D(gl.TEXTURE_2D, 0, wide === 1 ? gl.R32F : gl.RGBA32F, TEXELS, rows, 0, wide === 1 ? gl.RED : gl.RGBA, gl.FLOAT, data);
+  for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
 }
 
 function boxLines({ size }) {
@@ -57,102 +44,120 @@ function boxLines({ size }) {
   return new Float32Array(points);
 }
 
-function fillCracks({ gl, sets, cracks }) {
-  const column = (width, of) => {
-    const data = new Float32Array(width * cracks.length);
-    cracks.forEach((crack, k) => data.set(of(crack, k), width * k));
-    return data;
-  };
-  fill(gl, sets.crack.buffers.disc, column(4, (crack) => [...crack.at, crack.radius]));
-  fill(gl, sets.crack.buffers.normal, column(3, (crack) => crack.normal));
-  fill(gl, sets.crack.buffers.life, column(2, (crack) => [crack.key, crack.mode]));
-  fill(gl, sets.crack.buffers.id, column(1, (crack, k) => [k]));
-  sets.crack.count = cracks.length;
+function putCracks(scene) {
+  const texels = scene.cracks.flatMap(({ at, radius, normal, key, mode }, k) => [...at, radius, ...normal, key, mode, k, 0, 0]);
+  put(scene, "crack", "things", Float32Array.from(texels), 4);
+  scene.sets.crack.count = scene.cracks.length;
+}
+
+// Two triangles a square, of four corners.
+function putSquares(scene, count) {
+  const { gl } = scene;
+  if (count <= scene.squares) return;
+  scene.squares = count;
+  const corner = new Uint32Array(6 * count);
+  for (let k = 0; k < count; k++) corner.set([4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 2, 4 * k + 1, 4 * k + 3], 6 * k);
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, scene.corners ||= gl.createBuffer());
+  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corner, gl.STATIC_DRAW);
 }
 
 const upTo = (n) => Int32Array.from({ length: n }, (_, k) => k);
 
 // Takes what visibleOf found, or all where SEEN is null.
-function fillBody(scene, seen) {
-  const { gl, sets, body: { grain, throat, node } } = scene;
-  const grains = seen ? seen.grains : upTo(grain.n), throats = seen ? seen.throats : upTo(throat.n);
-  const sphere = new Float32Array(4 * grains.length);
+function putBody(scene, seen) {
+  const { body: { grain, throat, node } } = scene;
+  const grains = seen ? seen.grains : upTo(grain.n), throats = Int32Array.from(seen ? seen.throats : upTo(throat.n)).sort((s, t) => throat.ends[t] - throat.ends[s]);
+  const sphere = new Float32Array(4 * grains.length), tube = new Float32Array(12 * throats.length);
   for (let k = 0; k < grains.length; k++) {
-    sphere.set(grain.at.subarray(3 * grains[k], 3 * grains[k] + 3), 4 * k);
+    for (let axis = 0; axis < 3; axis++) sphere[4 * k + axis] = grain.at[3 * grains[k] + axis];
     sphere[4 * k + 3] = grain.radius[grains[k]];
   }
-  const from = new Float32Array(3 * throats.length), to = from.slice(), life = from.slice();
   for (let k = 0; k < throats.length; k++) {
     const t = throats[k];
     for (let axis = 0; axis < 3; axis++) {
-      from[3 * k + axis] = node.at[3 * throat.first[t] + axis];
-      to[3 * k + axis] = node.at[3 * throat.second[t] + axis];
+      tube[12 * k + axis] = node.at[3 * throat.first[t] + axis];
+      tube[12 * k + 4 + axis] = node.at[3 * throat.second[t] + axis];
     }
-    life[3 * k] = throat.radius[t]; life[3 * k + 1] = throat.leaves[t]; life[3 * k + 2] = throat.ends[t];
+    tube[12 * k + 3] = throat.radius[t]; tube[12 * k + 7] = t;
+    tube[12 * k + 8] = throat.leaves[t]; tube[12 * k + 9] = throat.ends[t];
   }
-  fill(gl, sets.grain.buffers.sphere, sphere);
-  fill(gl, sets.arrow.buffers.sphere, sphere);
-  fill(gl, sets.grain.buffers.id, Float32Array.from(grains));
-  fill(gl, sets.throat.buffers.from, from);
-  fill(gl, sets.throat.buffers.to, to);
-  fill(gl, sets.throat.buffers.life, life);
-  fill(gl, sets.throat.buffers.id, Float32Array.from(throats));
+  put(scene, "grain", "things", sphere, 4);
+  put(scene, "grain", "numbers", Float32Array.from(grains), 1);
+  put(scene, "throat", "things", tube, 4);
+  putSquares(scene, throats.length);
+  scene.sets.arrow.textures.things = scene.sets.grain.textures.things;
   scene.shown = { grains, throats };
-  sets.grain.count = sets.arrow.count = grains.length;
-  sets.throat.count = throats.length;
+  scene.sets.grain.count = scene.sets.arrow.count = grains.length;
+  scene.sets.throat.count = throats.length;
 }
 
-// Colours from COLOUR (index to 0..255) of what is shown.
-function fillTint(scene, kind, colour) {
-  const shown = scene.shown[`${kind}s`], tint = new Float32Array(3 * shown.length);
-  for (let k = 0; k < shown.length; k++) {
-    const rgb = colour(shown[k]);
-    for (let c = 0; c < 3; c++) tint[3 * k + c] = rgb[c] / 255;
-  }
-  fill(scene.gl, scene.sets[kind].buffers.tint, tint);
+// Colours from COLOUR (index to 0..1) of what is shown.
+function putTints(scene, kind, colour) {
+  const tint = Float32Array.from(scene.shown[`${kind}s`], (index) => {
+    const [r, g, b] = colour(index);
+    return Math.round(255 * r) + 256 * Math.round(255 * g) + 65536 * Math.round(255 * b);
+  });
+  put(scene, kind, "tints", tint, 1);
 }
 
 // FORCES (3 a grain, shares of the largest).
-function fillForces(scene, forces) {
+function putForces(scene, forces) {
   const { grains } = scene.shown, shown = new Float32Array(3 * grains.length);
   for (let k = 0; k < grains.length; k++)
     for (let axis = 0; axis < 3; axis++) shown[3 * k + axis] = forces[3 * grains[k] + axis];
-  fill(scene.gl, scene.sets.arrow.buffers.force, shown);
+  put(scene, "arrow", "forces", shown, 3);
 }
 
-function begin({ gl, programs }, name, view, picking, opacity) {
-  const { program, uniform } = programs[name];
-  gl.useProgram(program);
-  const kind = { sphere: KINDS.grain, throat: KINDS.throat, crack: KINDS.crack }[name] || 0;
-  gl.uniformMatrix3fv(uniform.turn, true, view.turn);
-  gl.uniform4fv(uniform.frame, view.frame);
+// How many throats there are to draw: those that empty last stand first.
+function wetOf({ shown: { throats }, body: { throat } }, view) {
+  if (view.show.empty) return throats.length;
+  let low = 0, high = throats.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (throat.ends[throats[middle]] > view.key) low = middle + 1; else high = middle;
+  }
+  return low;
+}
+
+function drawSet(scene, name, view, mode, picking = false, opacity = 1) {
+  const { gl } = scene, { program, uniform } = scene.programs[name], { count, textures } = scene.sets[name];
+  if (!count) return;
   const set = (key, how, ...values) => uniform[key] && gl[how](uniform[key], ...values);
+  gl.useProgram(program);
+  gl.uniformMatrix3fv(uniform.turn, true, view.turn);
+  set("frame", "uniform4fv", view.frame);
   set("clip", "uniform4fv", view.clip);
   set("now", "uniform1f", view.key);
   set("picking", "uniform1f", picking ? 1 : 0);
-  set("kind", "uniform2f", kind / 255, opacity);
+  set("kind", "uniform2f", (KINDS[name] || 0) / 255, opacity);
   set("grow", "uniform1f", view.grow);
   set("least", "uniform1f", view.pixel * 0.6);
   set("drawEmpty", "uniform1f", view.show.empty ? 1 : 0);
+  set("drawLiquid", "uniform1f", view.show.liquid ? 1 : 0);
   set("emptyColour", "uniform3fv", view.colours.empty);
   set("modeColour", "uniform3fv", [...view.colours.tension, ...view.colours.shear]);
   set("rimColour", "uniform3fv", view.colours.rim);
   set("arrowColour", "uniform3fv", view.colours.force);
   set("lineColour", "uniform3fv", view.colours.line);
   set("longest", "uniform1f", view.longest);
-}
-
-function drawSet({ gl, sets }, name, mode, corners) {
-  if (!sets[name].count) return;
-  gl.bindVertexArray(sets[name].array);
-  gl.drawArraysInstanced(mode, 0, corners, sets[name].count);
+  TEXTURES.forEach((key, unit) => {
+    set(key, "uniform1i", unit);
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, textures[key] || textures.things);
+  });
+  gl.activeTexture(gl.TEXTURE0);
+  set("asLine", "uniform1f", view.plain ? 1 : 0);
+  const wet = name === "throat" ? wetOf(scene, view) : count;
+  if (name !== "throat") gl.drawArrays(mode, 0, count * CORNERS[name]);
+  else if (view.plain) gl.drawArrays(gl.LINES, 0, 2 * wet);
+  else gl.drawElements(mode, 6 * wet, gl.UNSIGNED_INT, 0);
 }
 
 function drawThings(scene, view, picking) {
   const { gl } = scene, { show } = view;
-  if (show.grains) { begin(scene, "sphere", view, picking, 1); drawSet(scene, "grain", gl.TRIANGLE_STRIP, 4); }
-  if (show.liquid || show.empty) { begin(scene, "throat", view, picking, 1); drawSet(scene, "throat", gl.TRIANGLE_STRIP, 4); }
-  if (show.cracks) { begin(scene, "crack", view, picking, 1); drawSet(scene, "crack", gl.TRIANGLE_STRIP, 4); }
+  if (show.grains) drawSet(scene, "grain", view, gl.TRIANGLES, picking);
+  if (show.liquid || show.empty) drawSet(scene, "throat", view, gl.TRIANGLES, picking);
+  if (show.cracks) drawSet(scene, "crack", view, gl.TRIANGLES, picking);
 }
 
 // Broken bonds that something hides shine through it, pale.
@@ -162,26 +167,23 @@ function drawHiddenCracks(scene, view) {
   gl.depthMask(false);
   gl.enable(gl.BLEND);
   gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-  begin(scene, "crack", view, false, 0.3);
-  drawSet(scene, "crack", gl.TRIANGLE_STRIP, 4);
+  drawSet(scene, "crack", view, gl.TRIANGLES, false, 0.3);
   gl.disable(gl.BLEND);
   gl.depthMask(true);
   gl.depthFunc(gl.LEQUAL);
 }
 
 function drawScene(scene, view) {
-  const { gl, canvas, sets } = scene;
+  const { gl, canvas } = scene;
   gl.viewport(0, 0, canvas.width, canvas.height);
   gl.clearColor(...view.colours.panel, 1);
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   gl.enable(gl.DEPTH_TEST);
   gl.depthFunc(gl.LEQUAL);
-  begin(scene, "line", view, false, 1);
-  gl.bindVertexArray(sets.line.array);
-  gl.drawArrays(gl.LINES, 0, 24);
+  drawSet(scene, "line", view, gl.LINES);
   drawThings(scene, view, false);
   if (view.show.cracks) drawHiddenCracks(scene, view);
-  if (view.show.forces) { begin(scene, "arrow", view, false, 1); drawSet(scene, "arrow", gl.TRIANGLES, 9); }
+  if (view.show.forces) drawSet(scene, "arrow", view, gl.TRIANGLES);
 }
 
 // {kind, index} of what is at X, Y (pixels from the lower left corner), or null.

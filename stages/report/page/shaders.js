@@ -1,32 +1,56 @@
-// What WebGL draws: flat quads that look like spheres, cylinders and discs. A picture of
+// What WebGL draws: flat triangles that look like spheres, cylinders and discs. A picture of
 // numbers (`picking`) tells what lies under the pointer.
 
 const SHADER_HEAD = `#version 300 es
 precision highp float;
+precision highp sampler2D;
 uniform mat3 turn;      // world to eye: right, up, near
 uniform vec4 frame;     // middle and half extent of what is seen
 uniform vec4 clip;      // direction and place of the cut
 uniform float now;      // key
 uniform float picking;  // 1: draw numbers
 uniform vec2 kind;      // kind of thing / 255, opacity
+uniform sampler2D things; // numbers of each thing, some texels a thing
+uniform sampler2D tints;  // its colour, 0xbbggrr
 vec4 onScreen(vec3 eye) { return vec4((eye.xy - frame.xy) / frame.zw, -eye.z * 0.4, 1.0); }
 bool isCut(vec3 at) { return dot(clip.xyz, at) > clip.w; }
+vec4 texel(sampler2D from, int k) { return texelFetch(from, ivec2(k & 1023, k >> 10), 0); }
+vec3 colourOf(int k) { int c = int(texel(tints, k).x); return vec3(c & 255, c >> 8 & 255, c >> 16) / 255.0; }
 const vec4 nowhere = vec4(2.0, 2.0, 2.0, 1.0);
 vec4 numbered(float id, float kind) {
   return vec4(mod(id, 256.0), mod(floor(id / 256.0), 256.0), floor(id / 65536.0), 255.0 * kind) / 255.0;
 }
 `;
 
+// Which thing, and which corner of it, a vertex is. Things are not drawn as instances:
+// small ones are slow everywhere, and a thousand times too slow where a processor draws.
+const TRIANGLE = `
+const vec2 corners[3] = vec2[](vec2(-1.7321, -1.0), vec2(1.7321, -1.0), vec2(0.0, 2.0));
+#define THING (gl_VertexID / 3)
+#define CORNER corners[gl_VertexID % 3]
+`;
+const SQUARE = `
+const vec2 corners[4] = vec2[](vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1));
+uniform float asLine; // 1: two ends, no width
+#define THING (asLine > 0.5 ? gl_VertexID / 2 : gl_VertexID / 4)
+#define CORNER (asLine > 0.5 ? vec2(2 * (gl_VertexID & 1) - 1, 0) : corners[gl_VertexID & 3])
+`;
+const ARROW = `
+const vec3 corners[9] = vec3[](vec3(0, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0), vec3(0, 1, 0), vec3(1, -1, 0), vec3(1, 1, 0), vec3(0, -1, 1), vec3(1, 0, 1), vec3(0, 1, 1));
+#define THING (gl_VertexID / 9)
+#define CORNER corners[gl_VertexID % 9]
+`;
+
 // In a fragment shader uniforms of the head that are not used do no harm.
 const SHADERS = {
-  sphere: [`
-in vec2 corner; in vec4 sphere; in vec3 tint; in float id;
-uniform float grow;
+  // Texels: place and radius.
+  grain: [`${TRIANGLE}
+uniform float grow; uniform sampler2D numbers;
 out vec2 at; flat out vec3 colour; flat out float number;
 void main() {
-  vec3 eye = turn * sphere.xyz;
-  at = corner; colour = tint; number = id;
-  gl_Position = isCut(sphere.xyz) ? nowhere : onScreen(eye + vec3(corner, 0.0) * sphere.w * grow);
+  vec4 sphere = texel(things, THING);
+  at = CORNER; colour = colourOf(THING); number = texel(numbers, THING).x;
+  gl_Position = isCut(sphere.xyz) ? nowhere : onScreen(turn * sphere.xyz + vec3(at, 0.0) * sphere.w * grow);
 }`, `
 in vec2 at; flat in vec3 colour; flat in float number; out vec4 result;
 void main() {
@@ -38,26 +62,28 @@ void main() {
   result = picking > 0.5 ? numbered(number, kind.x) : vec4(colour * light, 1.0);
 }`],
 
-  // A throat: full until it leaves, empty when it ends, and thinner in between.
-  throat: [`
-in vec2 corner; in vec3 from; in vec3 to; in vec3 life; in vec3 tint; in float id;
-uniform float least; uniform float drawEmpty; uniform vec3 emptyColour;
+  // Texels: one end and radius; the other end and number; keys. A throat is full until it
+  // leaves, empty when it ends, and thinner in between.
+  throat: [`${SQUARE}
+uniform float least; uniform float drawEmpty; uniform float drawLiquid; uniform vec3 emptyColour;
 out float across; flat out vec3 colour; flat out float number;
 void main() {
-  float wet = life.z > now ? clamp((life.z - now) / max(life.z - life.y, 1.0), 0.0, 1.0) : 0.0;
-  if (life.y > now) wet = 1.0;
-  vec3 a = turn * from, b = turn * to;
-  vec2 along = b.xy - a.xy;
+  vec4 life = texel(things, 3 * THING + 2);
+  float wet = life.x > now ? 1.0 : life.y > now ? clamp((life.y - now) / max(life.y - life.x, 1.0), 0.0, 1.0) : 0.0;
+  gl_Position = nowhere;
+  if (wet > 0.0 ? drawLiquid < 0.5 : drawEmpty < 0.5) return;
+  vec4 from = texel(things, 3 * THING), to = texel(things, 3 * THING + 1);
+  if (isCut(0.5 * (from.xyz + to.xyz))) return;
+  vec3 a = turn * from.xyz, b = turn * to.xyz;
+  vec2 along = b.xy - a.xy, corner = CORNER;
   float far = length(along);
   along = far > 1e-7 ? along / far : vec2(1.0, 0.0);
-  float half_ = max(wet > 0.0 ? life.x * (0.35 + 0.65 * wet) : 0.0, least);
-  float t = corner.x * 0.5 + 0.5;
-  vec3 eye = mix(a, b, t);
-  eye.xy += along * corner.x * (wet > 0.0 ? half_ : 0.0) + vec2(-along.y, along.x) * corner.y * half_;
-  across = corner.y; number = id;
-  colour = wet > 0.0 ? tint : emptyColour;
-  bool gone = isCut(0.5 * (from + to)) || (wet <= 0.0 && drawEmpty < 0.5);
-  gl_Position = gone ? nowhere : onScreen(eye);
+  float wide = max(wet > 0.0 ? from.w * (0.35 + 0.65 * wet) : 0.0, least);
+  vec3 eye = mix(a, b, corner.x * 0.5 + 0.5);
+  eye.xy += along * corner.x * (wet > 0.0 ? wide : 0.0) + vec2(-along.y, along.x) * corner.y * wide;
+  across = corner.y; number = to.w;
+  colour = wet > 0.0 ? colourOf(THING) : emptyColour;
+  gl_Position = onScreen(eye);
 }`, `
 in float across; flat in vec3 colour; flat in float number; out vec4 result;
 void main() {
@@ -65,21 +91,20 @@ void main() {
   result = picking > 0.5 ? numbered(number, kind.x) : vec4(colour * light, 1.0);
 }`],
 
-  // A broken bond: a disc across it, never thinner than a stroke.
-  crack: [`
-in vec2 corner; in vec4 disc; in vec3 normal; in vec2 life; in float id;
+  // Texels: place and radius; normal and key; mode and number. A broken bond is a disc
+  // across it, never thinner than a stroke.
+  crack: [`${TRIANGLE}
 uniform vec3 modeColour[2];
 out vec2 at; flat out vec3 colour; flat out float number;
 void main() {
-  vec3 n = turn * normal;
+  vec4 disc = texel(things, 3 * THING), normal = texel(things, 3 * THING + 1), rest = texel(things, 3 * THING + 2);
+  vec3 n = turn * normal.xyz;
   float flat_ = length(n.xy);
   vec2 minor = flat_ > 1e-5 ? n.xy / flat_ : vec2(0.0, 1.0);
   vec3 u = vec3(-minor.y, minor.x, 0.0), w = cross(n, u);
-  float thin = length(w.xy);
-  w.xy = thin > 0.16 ? w.xy : 0.16 * minor;
-  vec3 eye = turn * disc.xyz + disc.w * (corner.x * u + corner.y * w);
-  at = corner; colour = modeColour[int(life.y)]; number = id;
-  gl_Position = life.x > now || isCut(disc.xyz) ? nowhere : onScreen(eye);
+  w.xy = length(w.xy) > 0.16 ? w.xy : 0.16 * minor;
+  at = CORNER; colour = modeColour[int(rest.x)]; number = rest.y;
+  gl_Position = normal.w > now || isCut(disc.xyz) ? nowhere : onScreen(turn * disc.xyz + disc.w * (at.x * u + at.y * w));
 }`, `
 in vec2 at; flat in vec3 colour; flat in float number; out vec4 result;
 uniform vec3 rimColour;
@@ -89,11 +114,13 @@ void main() {
   result = picking > 0.5 ? numbered(number, kind.x) : vec4(far > 0.74 ? rimColour : colour, kind.y);
 }`],
 
-  // A force: an arrow from the middle of its grain, in front of it.
-  arrow: [`
-in vec3 corner; in vec4 sphere; in vec3 force;
-uniform float grow; uniform float longest;
+  // Texels: those of the grains, and forces. An arrow from the middle of its grain, in
+  // front of it.
+  arrow: [`${ARROW}
+uniform float grow; uniform float longest; uniform sampler2D forces;
 void main() {
+  vec4 sphere = texel(things, THING);
+  vec3 force = texel(forces, THING).xyz, corner = CORNER;
   vec3 a = turn * sphere.xyz, f = turn * force * longest;
   float far = length(f.xy), width = longest * 0.045;
   vec2 along = far > 1e-7 ? f.xy / far : vec2(1.0, 0.0);
@@ -106,9 +133,9 @@ out vec4 result;
 uniform vec3 arrowColour;
 void main() { result = vec4(arrowColour, 1.0); }`],
 
+  // Texels: ends of the edges of the box.
   line: [`
-in vec3 from;
-void main() { gl_Position = onScreen(turn * from); }`, `
+void main() { gl_Position = onScreen(turn * texel(things, gl_VertexID).xyz); }`, `
 out vec4 result;
 uniform vec3 lineColour;
 void main() { result = vec4(lineColour, 1.0); }`],
