@@ -79,7 +79,7 @@ sections: | $(run_stages:%=$(BUILD)/bin/%)
 endif
 run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
 ifdef really
-	@$(call headline,$(run_folder)/crackstats.json) 2>/dev/null || true
+	@$(call headline,$(run_folder)/crackstats.json,) 2>/dev/null || true
 	@echo 'artifacts: $(run_folder)'
 endif
 report: $(run_page) ## a page that shows a run: make report SCENE=samples/x.json
