@@ -14,7 +14,7 @@ struct pore_cell {
     struct image corner_image[4], neighbour_image[4];
     struct vector centre; // point of equal power, exactly on the walls among the
                           // corners; in a flat cell, that of a neighbour
-    int32_t pore; // cells whose centres coincide are one pore
+    int32_t pore;         // cells whose centres coincide are one pore
 };
 
 struct cells {

@@ -4,8 +4,8 @@
 #include "crack_lattice.h"
 #include "crackstats/clusters.h"
 #include "crackstats/deformation.h"
-#include "crackstats/orientation.h"
 #include "crackstats/fragment_counts.h"
+#include "crackstats/orientation.h"
 
 #include <gsl/gsl_rng.h>
 
