@@ -12,7 +12,7 @@
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
-#include "geometry/triangulation_in_walls.h"
+#include "geometry/triangulation/triangulation_in_walls.h"
 
 #include <stdlib.h>
 

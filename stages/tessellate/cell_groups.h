@@ -4,7 +4,7 @@
 #define CRAQUELURE_CELL_GROUPS_H
 
 #include "generators.h"
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 // Cells with a grain among their corners, grouped by the lowest base of their corners:
 // those of generator i, which is that base, from offset[i] to offset[i + 1], ascending.

@@ -9,8 +9,8 @@
 #include "generators.h"
 
 #include "basics/memory.h"
-#include "geometry/insertion_order.h"
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/insertion_order.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 #include <stdlib.h>
 

@@ -15,7 +15,7 @@
 #define CRAQUELURE_GENERATORS_H
 
 #include "basics/status.h"
-#include "geometry/exact.h"
+#include "geometry/triangulation/exact.h"
 #include "geometry/image.h"
 #include "geometry/packing.h"
 

@@ -13,7 +13,7 @@
 
 #include "basics/memory.h"
 #include "cell_groups.h"
-#include "geometry/exact.h"
+#include "geometry/triangulation/exact.h"
 #include "sort_rows.h"
 
 #include <stdbool.h>

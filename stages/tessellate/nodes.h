@@ -4,7 +4,7 @@
 #define CRAQUELURE_NODES_H
 
 #include "generators.h"
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 struct nodes {
     int n;

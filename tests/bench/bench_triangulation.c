@@ -3,8 +3,8 @@
 //
 //     bench_triangulation POINTS
 #include "basics/memory.h"
-#include "geometry/insertion_order.h"
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/insertion_order.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 #include "../test.h"
 #include "basics/memory.h"
 #include "flow/cells.h"
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,12 +2,12 @@
 // Regular triangulations by their definition, with exact numbers: no point has less
 // power to the centre of a cell than its corners have, cells fill the hull, and which
 // they are depends on the points alone.
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/regular_triangulation.h"
 #include "../test.h"
-#include "geometry/insertion_order.h"
+#include "geometry/triangulation/insertion_order.h"
 
 #include "basics/memory.h"
-#include "geometry/exact.h"
+#include "geometry/triangulation/exact.h"
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_TRIANGULATION_IN_WALLS_H
 #define CRAQUELURE_TRIANGULATION_IN_WALLS_H
 
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 // As triangulate, in any order, between the WALLS (bits of enum wall) of a box from the
 // origin to UPPER, which are vertices too: wall 0..5 is -1..-6. A wall is the limit of

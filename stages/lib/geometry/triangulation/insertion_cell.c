@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Centres of power, of four cells at a time.
-#include "geometry/insertion_cell.h"
+#include "geometry/triangulation/insertion_cell.h"
 
 #include "basics/simd.h"
 

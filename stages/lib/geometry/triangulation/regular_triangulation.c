@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Incremental insertion [Bowyer 1981, Watson 1981]: each point in turn takes away the
 // cells whose spheres it lies in, and is joined to the rim of the cavity they leave.
-#include "geometry/regular_triangulation.h"
+#include "geometry/triangulation/regular_triangulation.h"
 
 #include "basics/memory.h"
-#include "geometry/insertion.h"
+#include "geometry/triangulation/insertion.h"
 
 #include <stdlib.h>
 #include <string.h>

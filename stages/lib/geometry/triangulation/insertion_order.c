@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/insertion_order.h"
+#include "geometry/triangulation/insertion_order.h"
 
 #include "basics/memory.h"
 

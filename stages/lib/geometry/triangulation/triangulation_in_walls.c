@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "geometry/triangulation_in_walls.h"
+#include "geometry/triangulation/triangulation_in_walls.h"
 
 #include "basics/memory.h"
-#include "geometry/insertion_order.h"
+#include "geometry/triangulation/insertion_order.h"
 
 #include <float.h>
 #include <stdlib.h>

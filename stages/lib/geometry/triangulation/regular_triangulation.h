@@ -5,7 +5,7 @@
 #define CRAQUELURE_REGULAR_TRIANGULATION_H
 
 #include "basics/memory.h"
-#include "geometry/exact.h"
+#include "geometry/triangulation/exact.h"
 #include "geometry/image.h"
 #include "geometry/vector.h"
 

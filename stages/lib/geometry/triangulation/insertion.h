@@ -4,7 +4,7 @@
 #ifndef CRAQUELURE_INSERTION_H
 #define CRAQUELURE_INSERTION_H
 
-#include "geometry/insertion_cell.h"
+#include "geometry/triangulation/insertion_cell.h"
 
 #include <float.h>
 

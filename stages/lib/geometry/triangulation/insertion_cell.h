@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_LIVE_CELL_H
 #define CRAQUELURE_LIVE_CELL_H
 
-#include "geometry/exact.h"
+#include "geometry/triangulation/exact.h"
 
 #include <assert.h>
 

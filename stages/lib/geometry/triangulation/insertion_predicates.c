@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests in rounded numbers where their error bounds allow, in exact ones elsewhere.
-#include "geometry/exact.h"
-#include "geometry/insertion.h"
+#include "geometry/triangulation/exact.h"
+#include "geometry/triangulation/insertion.h"
 
 int orientation(const struct weighted_point *const p[4])
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CGAL's exact numbers, for the signs that rounding must not decide.
-#include "geometry/exact.h"
+#include "geometry/triangulation/exact.h"
 
 #define CGAL_NDEBUG
 #define CGAL_HAS_NO_THREADS // looking up what each thread has of its own costs time
