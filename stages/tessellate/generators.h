@@ -15,9 +15,9 @@
 #define CRAQUELURE_GENERATORS_H
 
 #include "basics/status.h"
-#include "geometry/triangulation/exact.h"
 #include "geometry/image.h"
 #include "geometry/packing.h"
+#include "geometry/triangulation/exact.h"
 
 #include <stdbool.h>
 

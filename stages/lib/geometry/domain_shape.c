@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Convex domains (box, cylinder, disc, sphere): inside or not, the span of a line, the
+// nearest surface point and the outward normal. The roots of |from + t along| = radius
+// come from the root without cancellation and the product of both.
 #include "geometry/domain_shape.h"
 
 bool body_is_round(const struct body *body, int axis)

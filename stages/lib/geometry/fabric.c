@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts, coordination, rattlers and the fabric tensor
+//     F_kl = mean over contacts of n_k n_l,
+// with n the unit vector between the centres of two grains. Rattlers are found by
+// removing grains with fewer contacts than `least` until none is left, as each removal
+// may make another one loose.
 #include "geometry/fabric.h"
 
 #include "basics/memory.h"

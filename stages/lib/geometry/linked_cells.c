@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Places sorted into cells at least as wide as asked (linked cells): counting sort,
+// O(n).
 #include "geometry/linked_cells.h"
 
 #include "basics/memory.h"

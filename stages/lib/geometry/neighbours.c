@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pairs of near spheres of any range of sizes: spheres are sorted into levels of size,
+// a grid for each, with cells at least as wide as two of its largest reaches; every
+// sphere looks in the grids of its own and larger levels, in neighbouring cells only.
+// O(n) for each level. Pairs come sorted.
 #include "geometry/neighbours.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The net load of an aggregate that nothing holds, and its removal. In units of one
+// radius (`length`), with masses r^3 of the grains that are not gone:
+//     force  = sum f_i,   moment = sum (r_i - c) x f_i   about the centre of mass c,
+//     inertia = sum m (r.r 1 - r r),   turn = inertia^-1 moment,
+//     f_i -= m_i (force / mass + turn x r_i):
+// one acceleration and one angular acceleration of all grains. A box that repeats along
+// two axes or more allows no rotation, along one only that about this axis; inertias
+// that are zero to rounding (grains in a line) are skipped.
 #include "geometry/net_load.h"
 
 #include <gsl/gsl_eigen.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What a packing looks like, for the warnings of packing_check.c: quantiles of radii,
+// extent, grains beyond walls, empty space (share of places further than `far` from any
+// grain), coincident and overlapping pairs, free grains.
 #include "geometry/packing_check.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Porosity of a window and of its slices along z: solid = spheres - lenses of touching
+// pairs, each cut by the slice (sphere_box_volume.h); porosity = 1 - solid / volume.
 #include "geometry/porosity.h"
 
 #include "geometry/neighbours.h"

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The radial distribution function
+//     g(r) = pairs found in the shell / (references (n - 1) shell / space),
+// where `shell` is the mean volume of the shell of r inside the window, over all places
+// of its centre there (ball_in_window): so the finite window leaves no bias, and pairs
+// of a periodic box are counted in all images. At most MOST_REFERENCES centres are
+// looked around, evenly chosen.
 #include "geometry/radial_distribution.h"
 
 #include "basics/memory.h"

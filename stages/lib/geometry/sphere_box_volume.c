@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes of spheres and of lenses (what two spheres share) inside an axis-parallel
+// box.
+//
+// The unit ball in a box is the signed sum over the eight corners of `corner(a, b, c)`,
+// the volume of x > a, y > b, z > c. By the theorem of Gauss that is
+//     (spherical area - a face_a - b face_b - c face_c) / 3,
+// with the area by Gauss and Bonnet; negative a, b, c by reflection. A lens is two
+// caps; below a plane each is a `wedge` between two planes, by the same theorem. In a
+// box that cuts a lens along more than one axis the shares are multiplied, an
+// approximation.
 #include "geometry/sphere_box_volume.h"
 
 static double square(double x)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes of spheres, and of what two of them share, inside an axis-parallel box.
-#ifndef CRAQUELURE_SPHERE_CUT_H
-#define CRAQUELURE_SPHERE_CUT_H
+#ifndef CRAQUELURE_SPHERE_BOX_VOLUME_H
+#define CRAQUELURE_SPHERE_BOX_VOLUME_H
 
 #include "geometry/vector.h"
 

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells of a box, each with all spheres whose surface comes within `reach` of it, the
+// largest first. Where the box repeats, spheres are copied across its sides. Cells
+// widen until the lists are short on average, so memory stays O(n) for any range of
+// radii.
 #include "geometry/sphere_cells.h"
 
 #include "basics/memory.h"

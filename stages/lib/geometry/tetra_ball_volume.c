@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangle is the signed sum of six right triangles in its plane: from the foot of
-// the origin's perpendicular to the nearest point of an edge's line, and along it. Over
-// each, what the ball takes is an integral over the angle at the foot.
+// The volume outside a ball in a tetrahedron whose apex is the ball's centre.
+//
+// The base triangle is the signed sum of six right triangles in its plane: from the
+// foot of the centre's perpendicular to the foot on an edge's line (h), and along that
+// line (t). With d the height of the plane, each tetrahedron has the volume d h t / 6,
+// less the ball's part:
+//     d >= radius: radius^3 / 3 times the solid angle (ball_below),
+//     d <  radius: the cone inside the disc of the plane, the ball beyond
+//     (ball_through).
+// Arc tangents of single quotients, so nothing cancels where a triangle is small.
 #include "geometry/tetra_ball_volume.h"
 
 static double square(double x)

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The least clearance of a throat: from those grains beside it, then from larger grains
+// in the cells around it (clearance.h says why only those). A grain nearer than the
+// clearance so far reaches into the box around the throat with that margin.
 #include "network/clearance.h"
 
 struct throat {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Order of entry, with ties decided by geometry. Lengths, volumes and places become
+// whole ticks of 2^-30 of the network's extent (or largest volume), so that rounding,
+// another unit of length or another numbering does not change who is first.
 #include "network/entry_order.h"
 
 #include "basics/memory.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The order in which gas enters throats, or nodes, that it could enter: the easiest
 // first. Throats that share their narrowest place have equal radii, so which of them is
-// first must not hang on how the network is numbered.
+// first must not depend on how the network is numbered.
 #ifndef CRAQUELURE_ENTRY_ORDER_H
 #define CRAQUELURE_ENTRY_ORDER_H
 

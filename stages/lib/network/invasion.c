@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Invasion percolation (Wilkinson and Willemsen 1983). A queue by rank holds what gas
+// touches; each step enters the first, and adds what lies beyond it (`enter`). Trapping
+// is found backwards (Masson 2016): gas is taken back from the last event to the first,
+// liquid regions grow together in disjoint sets with the outlet as set 0, and what was
+// not connected to it just before its event had been trapped.
 #include "network/invasion.h"
 
 #include "basics/disjoint_sets.h"

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Random throat radii [K 2.2, 3.11] and their spatial correlation. For a correlation
+// length l, the drawn radii are sorted and handed out in the order of a Gaussian random
+// field
+//     h(x) = sum over 1000 waves of cos(k.x + phase),  k normal with deviation 1/l,
+// whose covariance is exp(-d^2 / (2 l^2)). So the distribution is exactly the drawn
+// one. Trap: a normal law is cut at 0, which shifts its mean and deviation
+// (cut_normal).
 #include "network/throat_radius.h"
 
 #include "basics/memory.h"

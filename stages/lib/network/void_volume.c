@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The void of each throat: over the faces around it, the pyramids from the grain
+// centres on both sides over the triangle (face middle, node a, node b), less the balls
+// of the grains (geometry/tetra_ball_volume.h). The sum over all throats is the void of
+// the domain.
 #include "network/void_volume.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Centres of power, of four cells at a time.
+// Power centres of cells, four cells at a time. With rows r_k from the last vertex to
+// the other three and weights w, the centre c (relative to the last vertex) solves
+//     2 r_k.c = |r_k|^2 - w_k + w_last,
+// by Cramer's rule. `error` bounds the rounding of each coordinate; where the
+// determinant is mere rounding it is infinite, and takes() asks exact arithmetic.
 #include "geometry/triangulation/insertion_cell.h"
 
 #include "basics/simd.h"

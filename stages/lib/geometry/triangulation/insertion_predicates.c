@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests in rounded numbers where their error bounds allow, in exact ones elsewhere.
+// Orientation and power tests: in doubles where an error bound decides, otherwise in
+// exact arithmetic (exact.h). Ties are decided by a symbolic perturbation of the
+// weights in lexicographic order of the points (Devillers and Teillaud 2011), so that
+// co-spherical grains, as on lattices, always give the same cells.
 #include "geometry/triangulation/exact.h"
 #include "geometry/triangulation/insertion.h"
 

@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Incremental insertion [Bowyer 1981, Watson 1981]: each point in turn takes away the
-// cells whose spheres it lies in, and is joined to the rim of the cavity they leave.
+// Incremental insertion (Bowyer 1981, Watson 1981). For each point e, in a spatial
+// order:
+//     locate       walk to the cell that holds e,
+//     find_cavity  all cells whose sphere takes e (power of e to the cell's centre
+//     below
+//                  that of its vertices), and the facets around them (`rim`),
+//     fill_cavity  one new cell for each facet of the rim with e, linked by a hash
+//     table of
+//                  the directed edges of the rim.
+// Cells with the vertex INFINITE close the hull; between walls, negative vertices name
+// walls as limit planes (triangulation_in_walls.h), which CGAL does not offer.
+// Decisions are exact (insertion_predicates.c), so the result does not depend on the
+// order.
 #include "geometry/triangulation/regular_triangulation.h"
 
 #include "basics/memory.h"

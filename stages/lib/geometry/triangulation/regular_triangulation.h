@@ -5,8 +5,8 @@
 #define CRAQUELURE_REGULAR_TRIANGULATION_H
 
 #include "basics/memory.h"
-#include "geometry/triangulation/exact.h"
 #include "geometry/image.h"
+#include "geometry/triangulation/exact.h"
 #include "geometry/vector.h"
 
 #include <stdint.h>
