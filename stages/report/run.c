@@ -96,20 +96,32 @@ static bool is_folder(const char *path)
     return !stat(path, &there) && S_ISDIR(there.st_mode);
 }
 
+// The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
+static char *find_in(const char *folder, const char *name)
+{
+    char *path = NULL;
+    if (asprintf(&path, "%s/%s", folder, name) < 0)
+        die(STATUS_INTERNAL, "out of memory");
+    if (!access(path, F_OK)) return path;
+    free(path);
+    return NULL;
+}
+
 static void keep_folder(struct run *run, const char *folder)
 {
     static const int n_usual = sizeof usual / sizeof *usual, n_shared = 3;
+    char *path[sizeof usual / sizeof *usual];
     int found = 0;
-    for (int k = 0; k < n_usual; k++) {
-        char path[4096];
-        snprintf(path, sizeof path, "%s/%s", folder, usual[k]);
-        if (k < n_shared && access(path, F_OK))
-            snprintf(path, sizeof path, "%s/../%s", folder, usual[k]);
-        if (access(path, F_OK)) continue;
-        found++;
-        keep(run, path);
-    }
+    for (int k = 0; k < n_usual; k++)
+        found += (path[k] = find_in(folder, usual[k])) != NULL;
     if (!found) die(STATUS_NO_INPUT, "%s: holds no artifact of a run", folder);
+    char above[4096];
+    snprintf(above, sizeof above, "%.4000s/..", folder);
+    for (int k = 0; k < n_usual; k++) {
+        if (!path[k] && k < n_shared) path[k] = find_in(above, usual[k]);
+        if (path[k]) keep(run, path[k]);
+        free(path[k]);
+    }
 }
 
 // ---- whether they are of one run ----------------------------------------------------

@@ -80,7 +80,7 @@ void main() {
   along = far > 1e-7 ? along / far : vec2(1.0, 0.0);
   float wide = max(wet > 0.0 ? from.w * (0.35 + 0.65 * wet) : 0.0, least);
   vec3 eye = mix(a, b, corner.x * 0.5 + 0.5);
-  eye.xy += along * corner.x * (wet > 0.0 ? wide : 0.0) + vec2(-along.y, along.x) * corner.y * wide;
+  eye.xy += along * corner.x * (wet > 0.0 ? min(wide, 0.4 * far) : 0.0) + vec2(-along.y, along.x) * corner.y * wide;
   across = corner.y; number = to.w;
   colour = wet > 0.0 ? colourOf(THING) : emptyColour;
   gl_Position = onScreen(eye);
