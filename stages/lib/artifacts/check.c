@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A file against its schema, dataset by dataset: presence, class, shape with its
+// symbols (n_particle and so on, defined where they first occur), range and order of
+// values. Large datasets are read in blocks. The first breach ends the check with its
+// row and value.
 #include "artifacts/check.h"
 
 #include "basics/memory.h"

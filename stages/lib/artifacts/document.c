@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// JSON artifacts: told apart from HDF5 by their first bytes, checked against a schema,
+// written whole or not at all.
 #include "artifacts/document.h"
 
 #include "artifacts/artifact.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Artifacts in: the image, the checks, the datasets.
+// Opening an artifact: kind, schema and links are checked before anything is read.
 #include "artifacts/artifact.h"
 #include "artifacts/check.h"
 #include "basics/memory.h"

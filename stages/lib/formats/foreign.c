@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What readers of networks share: empty networks, checks of throats and their ends, the
+// box around the nodes and the walls that nodes lie on.
 #include "formats/foreign.h"
 
 #include "basics/memory.h"

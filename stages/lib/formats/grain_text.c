@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Grains as text: a line each, x y z radius in m; the box is drawn around them.
 #include "formats/grains.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Networks as JSON Graph Format, written and read: nodes, edges, and in the metadata
+// what the format has no place for (grains, faces, bodies, box). Reading checks every
+// entry and names the row that is wrong.
 #include "formats/jsongraph.h"
 
 #include "basics/memory.h"

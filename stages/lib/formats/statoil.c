@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Networks as the four text files of Statoil, written and read. Nodes and throats count
+// from 1; reservoirs are the nodes -1 (inlet) and 0 (outlet), and throats to them come
+// after all others.
 #include "formats/statoil.h"
 
 #include "basics/memory.h"

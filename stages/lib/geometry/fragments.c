@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Fragments by disjoint sets of grains, joined over the intact bonds.
 #include "fragments.h"
 
 #include "basics/disjoint_sets.h"

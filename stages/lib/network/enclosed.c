@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A search from the open nodes along throats of the network; what it does not reach is
+// enclosed, and its throats count as emptied from outside.
 #include "network/enclosed.h"
 
 #include "basics/memory.h"
