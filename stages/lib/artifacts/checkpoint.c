@@ -99,7 +99,7 @@ struct array_list artifact_get_arrays(const struct artifact *artifact,
     return list;
 }
 
-// Of the arrays by name, as their order in the file tells nothing.
+// Sorts the arrays by name, as their order in the file has no meaning.
 static int by_name(const void *a, const void *b)
 {
     const struct named_array *const *p = a, *const *q = b;

@@ -28,7 +28,7 @@ enum { OCTAVES = 30, EIGHTHS = 8, VOLUMES = OCTAVES * EIGHTHS };
 enum { WIDE = 64, NARROW = 4, PLACES = WIDE + NARROW };
 enum { TURNING_ORDER = 6, ORDER = 4 }; // coefficients of 1/A, and of all else
 
-// Of the least volume, those above the third of the fraction.
+// Patch bits (exponent, and the eighth of an octave) of the least volume.
 static const int least_bits = (1023 - OCTAVES) * EIGHTHS;
 
 // For one patch of volumes, with u from -1 to 1 across it; two quads.

@@ -5,7 +5,7 @@
 
 #include "checkpoint/named_arrays.h"
 
-// Of the engine, and what the stage that runs it has to remember.
+// Arrays of the engine, and of the stage that runs it.
 struct kept_state {
     struct array_list engine, stage;
 };

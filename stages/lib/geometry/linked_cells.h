@@ -31,7 +31,7 @@ void linked_cells_free(struct linked_cells *cells);
 // Which cell X lies in along AXIS; beyond the cells the last one, unless they repeat.
 int cell_along(const struct linked_cells *cells, int axis, double x);
 
-// Of the cell that CELL counts along the axes: its place in OFFSET.
+// Index in OFFSET of the cell that CELL counts along the axes.
 int cell_number(const struct linked_cells *cells, const int cell[3]);
 
 #endif

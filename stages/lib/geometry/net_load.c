@@ -52,8 +52,8 @@ struct whole whole_of(const struct packing *packing, const bool *is_gone,
     return whole;
 }
 
-// Of a box that repeats along one axis only what turns about that one is free; along
-// two, nothing is.
+// Whether the body may turn about AXIS. In a box that repeats along one axis it turns
+// about that one only; along two, about none.
 static bool turns_about(const struct packing *packing, int axis)
 {
     return !packing->periodic[(axis + 1) % 3] && !packing->periodic[(axis + 2) % 3];

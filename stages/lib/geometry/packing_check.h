@@ -29,7 +29,7 @@ struct packing_facts {
     int plane;    // axis along which all centres lie in one plane; -1: none
 };
 
-// Of the smaller radius: more closes throats between grains.
+// Share of the smaller radius: a larger overlap closes throats between grains.
 static const double OVERLAP_MOST = 0.1;
 
 // CONTACTS are the pairs within GAP, of the sum of the radii.

@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Of the sum of two radii: nearer is one place, as coordinates of 16 digits have it.
+// Share of the sum of two radii: nearer centres coincide, to the 16 digits of
+// coordinates.
 static const double one_place = 1e-12;
 static const double stuck_out =
     0.01; // of the radius: DEM grains press into walls by less

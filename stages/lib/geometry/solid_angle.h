@@ -12,7 +12,8 @@ struct half_angle {
     double real, imaginary;
 };
 
-// Of the triangle U V W; positive where they turn anticlockwise seen from outside.
+// Solid angle of the triangle U V W; positive where they turn anticlockwise seen from
+// outside.
 static inline struct half_angle half_solid_angle(struct vector u, struct vector v,
                                                  struct vector w)
 {

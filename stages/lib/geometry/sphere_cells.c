@@ -71,7 +71,7 @@ static void arrange_spheres(struct spheres *all, const struct sphere_cells *cell
 
 // ---- cells --------------------------------------------------------------------------
 
-// Of what is in the box, along an axis.
+// Extent along an axis: the box where it repeats, otherwise that of the grains.
 static double length_along(struct sphere_cells *cells, const struct packing *packing,
                            int axis)
 {
@@ -127,8 +127,8 @@ static double count_members(const struct sphere_cells *cells, const struct spher
     return sum;
 }
 
-// Of the widths and reaches tried these cost least, for the throats of packings of 34
-// and 64 % solids.
+// Widths and reaches that cost least among those tried, for the throats of packings of
+// 34 and 64 % solids.
 static void size_cells(struct sphere_cells *cells, const struct spheres *all,
                        const double length[3])
 {

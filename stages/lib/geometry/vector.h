@@ -65,7 +65,7 @@ static inline void set_component(struct vector *a, int axis, double value)
     *(axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z) = value;
 }
 
-// Of the absolute values.
+// The largest absolute value of a component.
 static inline double largest_component(struct vector a)
 {
     const double x = fabs(a.x), y = fabs(a.y), z = fabs(a.z);

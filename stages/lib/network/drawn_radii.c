@@ -6,7 +6,7 @@
 
 static const struct parameter rows[] = {DRAWN_RADII_ROWS(0), {0}};
 
-// Of radii that are not drawn nothing may be asked: all must be as by default.
+// When no radii are drawn, all keys that describe the draw must have their defaults.
 static enum status refuse_unused(const json_t *parameters, struct reason *reason)
 {
     struct drawn_radii unused;
