@@ -69,7 +69,7 @@ run_page := $(run_folder)/report.html
 $(call page,$(run_page),$(SCENE),$(notdir $(run_folder)),$(call network_artifacts,$(run_folder)) $(call \
 	history_artifacts,$(run_folder)))
 # A wrong key of the last stage is not to be found after the others have run.
-run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats report
+run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats $(filter report,$(MAKECMDGOALS))
 ifdef really
 .PHONY: sections
 $(run_folder)/packing.h5: | sections

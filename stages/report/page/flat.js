@@ -14,7 +14,7 @@ function flatThings(body, cracks, view, seen) {
     if (wet ? !view.show.liquid : !view.show.empty) continue;
     const a = eye(node.at, throat.first[t]), b = eye(node.at, throat.second[t]);
     if (isCut(...[0, 1, 2].map((axis) => (node.at[3 * throat.first[t] + axis] + node.at[3 * throat.second[t] + axis]) / 2))) continue;
-    things.push({ kind: "throat", index: t, eye: [0, 1, 2].map((axis) => (a[axis] + b[axis]) / 2), a, b, wet, radius: throat.radius[t] });
+    things.push({ kind: "throat", index: t, eye: [0, 1, 2].map((axis) => (a[axis] + b[axis]) / 2), a, b, wet, radius: throat.radius[t] * view.grow });
   }
   cracks.forEach((crack, k) => {
     if (!view.show.cracks || crack.key > view.key || isCut(...crack.at)) return;

@@ -167,7 +167,7 @@ function drawHiddenCracks(scene, view) {
   gl.depthMask(false);
   gl.enable(gl.BLEND);
   gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-  drawSet(scene, "crack", view, gl.TRIANGLES, false, 0.3);
+  drawSet(scene, "crack", view, gl.TRIANGLES, false, 0.55);
   gl.disable(gl.BLEND);
   gl.depthMask(true);
   gl.depthFunc(gl.LEQUAL);

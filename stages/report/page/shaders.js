@@ -65,7 +65,7 @@ void main() {
   // Texels: one end and radius; the other end and number; keys. A throat is full until it
   // leaves, empty when it ends, and thinner in between.
   throat: [`${SQUARE}
-uniform float least; uniform float drawEmpty; uniform float drawLiquid; uniform vec3 emptyColour;
+uniform float grow; uniform float least; uniform float drawEmpty; uniform float drawLiquid; uniform vec3 emptyColour;
 out float across; flat out vec3 colour; flat out float number;
 void main() {
   vec4 life = texel(things, 3 * THING + 2);
@@ -78,7 +78,7 @@ void main() {
   vec2 along = b.xy - a.xy, corner = CORNER;
   float far = length(along);
   along = far > 1e-7 ? along / far : vec2(1.0, 0.0);
-  float wide = max(wet > 0.0 ? from.w * (0.35 + 0.65 * wet) : 0.0, least);
+  float wide = max(wet > 0.0 ? grow * from.w * (0.35 + 0.65 * wet) : 0.0, least);
   vec3 eye = mix(a, b, corner.x * 0.5 + 0.5);
   eye.xy += along * corner.x * (wet > 0.0 ? min(wide, 0.4 * far) : 0.0) + vec2(-along.y, along.x) * corner.y * wide;
   across = corner.y; number = to.w;

@@ -28,7 +28,7 @@ function frontOf({ grain }, view, wide, high) {
 // Whether a throat, as thick as it gets, is before the front at one of fifteen points.
 function showsThroat({ node, throat }, t, view, front) {
   const { turn: m, frame } = view, { depth, wide, high, points } = front;
-  const a = 3 * throat.first[t], b = 3 * throat.second[t], r = throat.radius[t] * points;
+  const a = 3 * throat.first[t], b = 3 * throat.second[t], r = throat.radius[t] * view.grow * points;
   const ax = node.at[a], ay = node.at[a + 1], az = node.at[a + 2], dx = node.at[b] - ax, dy = node.at[b + 1] - ay, dz = node.at[b + 2] - az;
   if (view.clip[0] * (ax + dx / 2) + view.clip[1] * (ay + dy / 2) + view.clip[2] * (az + dz / 2) > view.clip[3]) return false;
   const x = (m[0] * ax + m[1] * ay + m[2] * az - frame[0] + frame[2]) * points, across = (m[0] * dx + m[1] * dy + m[2] * dz) * points;
