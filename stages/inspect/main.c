@@ -7,15 +7,16 @@
 #include "export.h"
 #include "parameters/command_line.h"
 #include "series.h"
+#include "xyz.h"
 
 #include <stdlib.h>
 
 struct options {
-    const char *input, *data, *vtk, *openpnm, *statoil;
+    const char *input, *data, *vtk, *openpnm, *statoil, *xyz;
     int frames;
 };
 
-enum { KEY_VTK = 256, KEY_FRAMES, KEY_OPENPNM, KEY_STATOIL };
+enum { KEY_VTK = 256, KEY_FRAMES, KEY_OPENPNM, KEY_STATOIL, KEY_XYZ };
 
 static const struct argp_option option_table[] = {
     {"data", 'd', "NAME", 0, "Print one dataset, as nested lists", 0},
@@ -28,6 +29,11 @@ static const struct argp_option option_table[] = {
      "Write a network as JSON graph, which OpenPNM and import-network read", 0},
     {"statoil", KEY_STATOIL, "PREFIX", 0,
      "Write a network as PREFIX_node1.dat, _node2.dat, _link1.dat and _link2.dat", 0},
+    {"xyz", KEY_XYZ, "FILE", 0,
+     "Write the grains as extended XYZ, for OVITO: places, radii, and over time "
+     "forces, "
+     "displacements and broken bonds",
+     0},
     VERSION_OPTION,
     {0}};
 
@@ -50,6 +56,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_STATOIL:
         options->statoil = argument;
         return 0;
+    case KEY_XYZ:
+        options->xyz = argument;
+        return 0;
     case ARGP_KEY_ARG:
         if (state->arg_num) die(STATUS_USAGE, "%s: one input only", argument);
         options->input = argument;
@@ -71,7 +80,8 @@ int main(int argc, char **argv)
 
     struct bytes bytes = read_whole_of(options.input, may_be_either);
     if (is_document(&bytes)) { // describes itself
-        if (options.data || options.vtk || options.openpnm || options.statoil)
+        if (options.data || options.vtk || options.openpnm || options.statoil ||
+            options.xyz)
             die(STATUS_USAGE, "%s: is JSON: read it with jq",
                 input_name(options.input));
         write_json("-", document_of(options.input, &bytes));
@@ -81,6 +91,8 @@ int main(int argc, char **argv)
     struct artifact *artifact = artifact_open_bytes(options.input, bytes, NULL);
     if (options.openpnm || options.statoil)
         export_network(artifact, options.openpnm, options.statoil);
+    else if (options.xyz)
+        write_xyz(artifact, options.xyz, options.frames);
     else if (options.vtk)
         write_series(artifact, options.vtk, options.frames);
     else

@@ -4,6 +4,7 @@
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -41,6 +42,41 @@ with scratch() as folder:
            for n, d in found.items()), "and the digest of its values")
     data = json.loads(run("inspect", "--data", "throats/nodes", path))
     ok(np.array_equal(data, file["throats/nodes"]), "--data prints one, value for value")
+
+    # Extended XYZ, read by its own header.
+    def frames(name):
+        lines = run("inspect", "--xyz", "-", "--frames", "3", os.path.join(folder, name)).decode().split("\n")
+        while lines[0]:
+            n, head = int(lines[0]), lines[1]
+            columns = re.search(r"Properties=(\S+)", head)[1].split(":")
+            rows, table, at = [line.split() for line in lines[2:2 + n]], {}, 0
+            for key, width in zip(columns[::3], map(int, columns[2::3])):
+                table[key] = np.array(rows, float).reshape(n, -1)[:, at:at + width].squeeze()
+                at += width
+            yield head, table
+            lines = lines[2 + n:]
+
+    small = ["--set", "counts=[2,2,3]"]
+    for stage, source, made, words in [
+            ("pack", "", "packing", small), ("tessellate", "packing", "raw", ()), ("merge-nodes", "raw", "merged", ()),
+            ("dry", "merged", "drying", ()), ("force-protocol", "drying", "forces", ["--set", "steps=9", "--set", "force_scale=3"]),
+            ("dem-replay", "forces", "response", ["--set", "cycles=50"])]:
+        run(stage, "-q", "-p", SCENE, *words, *([os.path.join(folder, source)] if source else []),
+            "-o", os.path.join(folder, made))
+    own = {name: h5py.File(os.path.join(folder, name)) for name in ["packing", "forces", "response"]}
+    same = lambda a, b: a.shape == b.shape and np.allclose(a, b, rtol=1e-8, atol=0)
+    (head, table), = frames("packing")
+    ok(same(table["pos"], own["packing"]["particles/position"][:]) and same(table["radius"], own["packing"]["particles/radius"][:])
+       and 'pbc="F F F"' in head, "--xyz has the grains")
+    found = [table["force"] for _, table in frames("forces")]
+    ok(len(found) == 3 and all(same(a, b) for a, b in zip(found, own["forces"]["force"][:][[0, 4, 8]])), "their forces")
+    found, moments = list(frames("response")), own["response"]["snapshots"]
+    ok(len(found) == len(moments["time"]) > 1, "a frame for each snapshot of a response", len(found))
+    broken = [np.bincount(own["response"]["bonds/particles"][:][whole == 0].ravel(), minlength=12) for whole in moments["bond_intact"][:]]
+    ok(all(same(table["displacement"], moved) and np.array_equal(table["broken_bonds"], count)
+           and same(table["pos"], own["packing"]["particles/position"][:] + moved)
+           for (_, table), moved, count in zip(found, moments["displacement"][:], broken)) and np.any(broken),
+       "with displacements and broken bonds", broken)
 
     def refused(document, says):
         done = subprocess.run([f"{BIN}/inspect"], input=json.dumps(document).encode(),
