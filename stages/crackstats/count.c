@@ -2,6 +2,9 @@
 // Counts by classes. A share on the border of two classes, to 1e-9, belongs to the
 // lower one; in profiles over the height it counts half in each, so that bonds between
 // two layers of a lattice give a symmetric profile.
+//
+//     class = floor((share - border) n), 0 to n - 1;  border = 1e-9.
+// Shares of the saturation count from 1 down, so the first class is the wettest.
 #include "count.h"
 
 #include "basics/memory.h"

@@ -5,6 +5,7 @@
 
 #include "run.h"
 
+// The drying periods: that of a nearly constant rate, and what follows.
 enum { PERIOD_FIRST, PERIOD_SECOND, PERIOD_COUNT };
 
 // The numbers of equal classes of heights, saturations and times.
@@ -14,7 +15,9 @@ struct classes {
                     // start
 };
 
-// Numbers of cracks, by mode and drying period, height, saturation and time.
+// Numbers of cracks, by mode and drying period, height, saturation and time. Of one
+// run, or sums over runs. Counts are multiples of 1/2 by height, whole elsewhere. It
+// owns its arrays.
 struct counts {
     double period[PERIOD_COUNT][MODE_COUNT];
     double (*slice)[MODE_COUNT];      // (n_slice)
@@ -43,13 +46,16 @@ double height_share(const struct packing *packing, double z);
 // moved.
 struct slices slices_of_bond(const struct packing *packing, int bond, int n);
 
+// All 0, in the shapes of CLASSES. The caller frees them with counts_free.
 struct counts counts_new(struct classes classes);
 void counts_free(struct counts *counts);
 
 // Sets ALL to the cracks of both periods.
 void count_all(double all[MODE_COUNT], const struct counts *counts);
 
-// Adds the cracks of RUN. One at the very end of the first period counts there.
+// Adds the cracks of RUN. One at the very end of the first period counts there. Classes
+// of time are of the time of the last load; a run that ends at 0 has all cracks in the
+// first.
 void count_cracks(struct counts *counts, const struct run *run, struct classes classes);
 
 #endif

@@ -3,8 +3,10 @@
 // network's saturation, Pearson's correlation of
 //     left = S_s(k - 1) - S_s(k)    (saturation that the slice loses in the interval)
 //     opened = cracks that open in the slice in the interval
-// says whether cracks open where the liquid leaves. Also counted: the saturation of
-// the slice in which each crack opens.
+// says whether cracks open where the liquid leaves. Also counted: the saturation of the
+// slice in which each crack opens. Before the first interval every slice counts as
+// full: S_s(-1) = 1. For sums over runs 1 becomes the number of runs, which scales
+// `left` and so leaves the correlation as it is for means.
 #include "drying_front_correlation.h"
 
 #include "basics/memory.h"

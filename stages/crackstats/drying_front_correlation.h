@@ -8,22 +8,27 @@
 
 enum { LOCAL_CLASSES = 10 };
 
-// For one run, or summed over many.
+// For one run, or summed over many. A crack counts half in each slice of its bond
+// (slices_of_bond).
 struct drying_front {
-    double *slice;               // (n_interval, n_slice) saturations, as each ends
+    double *slice; // (n_interval, n_slice) saturation of each slice when the network's
+                   // is (n_interval - k - 1) / n_interval; NAN without liquid
     double local[LOCAL_CLASSES]; // cracks by the saturation of their slice, 1 to 0
     double local_sum;            // sum of these saturations over the cracks
     double cracks;               // number of cracks in that sum
 };
 
+// All 0. The caller frees it with drying_front_free.
 struct drying_front drying_front_new(struct classes classes);
 void drying_front_free(struct drying_front *front);
 
-// Adds RUN, whose forces come from LIQUID.
+// Adds RUN, whose forces come from LIQUID: the saturations of its slices, and for each
+// crack the saturation of its slice at that time. Cracks where there never was liquid
+// are left out. O(throats) for each different time of a crack.
 void drying_front_add(struct drying_front *front, const struct run *run,
                       const struct liquid *liquid, struct classes classes);
 
-// Adds one to another.
+// Adds FRONT to SUM, both made for CLASSES.
 void drying_front_sum(struct drying_front *sum, const struct drying_front *front,
                       struct classes classes);
 

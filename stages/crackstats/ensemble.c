@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Adds runs one by one: the statistics of each are kept, tables are sums over the
-// runs. Squares of counts are summed as well, for the scatter over the runs
-// (scatter.h).
+// Adds runs one by one: the statistics of each are kept, tables are sums over the runs.
+// Squares of counts are summed as well, for the scatter over the runs (scatter.h).
+//
+// For one run
+//     spring_back     = (largest shrinkage - last shrinkage) / largest shrinkage,
+//     front saturation = sum over cracks of their slice's saturation / cracks.
+// A snapshot with fewer than four grains in its largest fragment has no deformation
+// (NAN), and then neither has the mean over the runs at that snapshot.
 #include "ensemble.h"
 
 #include "clusters.h"

@@ -11,27 +11,31 @@
 #include "scatter.h"
 #include "sizes.h"
 
+// Sums over the runs, not means: the report divides by n_run. It owns all arrays.
 struct ensemble {
     struct classes classes;
-    int n_run;
+    int n_run;                         // added so far
     double bonds;                      // of all runs together, at their start
     struct run_statistics *statistics; // (n_run)
     struct counts counts;              // this and what follows: sums over the runs
-    struct squares squares;
-    struct sizes clusters, fragments;
+    struct squares squares;            // for the scatter over the runs (scatter.h)
+    struct sizes clusters, fragments;  // of all runs, in their order
     struct orientation orientation;
     int n_snapshot;
-    double *snapshot_saturation;     // (n_snapshot)
-    struct deformation *deformation; // (n_snapshot)
+    double *snapshot_saturation;     // (n_snapshot) at which they were taken
+    struct deformation *deformation; // (n_snapshot) of the largest fragment
     int n_liquid;                    // runs whose drying is known
-    struct drying_front front;
+    struct drying_front front; // over the n_liquid runs; reported if these are all
 };
 
+// An empty ensemble with room for MOST_RUNS runs, counted by CLASSES. The caller frees
+// it with ensemble_free.
 struct ensemble ensemble_new(int most_runs, struct classes classes);
 void ensemble_free(struct ensemble *ensemble);
 
 // Adds RUN, which must have as many snapshots as the runs before. LIQUID is the drying
-// that loaded it; NULL: not known.
+// that loaded it; NULL: not known. Neither is needed afterwards. The caller has checked
+// that they belong together.
 void ensemble_add(struct ensemble *ensemble, const struct run *run,
                   const struct liquid *liquid);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments by union-find over the intact bonds; auxiliary grains do not count.
+// Fragments by union-find over the intact bonds; auxiliary grains do not count. A bond
+// across a periodic side joins its grains like any other. A single grain is a fragment
+// too.
 #include "fragment_counts.h"
 
 #include "basics/disjoint_sets.h"

@@ -6,6 +6,7 @@
 #include "run.h"
 #include "sizes.h"
 
+// Auxiliary grains (an extra layer) belong to none.
 struct fragment_counts {
     int count;
     int largest; // grains in it
@@ -16,7 +17,9 @@ struct fragment_counts {
 // (n_bond) hold; among equals the one with the lowest grain. The caller frees it.
 uint8_t *largest_fragment(const struct packing *packing, const uint8_t *intact);
 
-// Appends the size of each fragment, in grains, to SIZES, unless that is NULL.
+// Appends the size of each fragment, in grains, to SIZES, unless that is NULL. INTACT:
+// (n_bond), 1 where a bond holds. Sizes are appended in the order of their root grains.
+// O(grains + bonds).
 struct fragment_counts count_fragments(const struct packing *packing,
                                        const uint8_t *intact, struct sizes *sizes);
 

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Saturations of slices at given times. The drying is replayed once, from step to
-// step; within a step every throat is linear in time. The sum over throats is made
-// from scratch at each time, so that a dry slice is exactly 0.
+// Saturations of slices at given times. The drying is replayed once, from step to step;
+// within a step every throat is linear in time. The sum over throats is made from
+// scratch at each time, so that a dry slice is exactly 0.
+//
+// The saturation of a slice at `time`, between the steps k and k + 1 of the drying, is
+//     share      = (time - t_k) / (t_k+1 - t_k),
+//     saturation = sum V_t (before_t + share (after_t - before_t)) / sum V_t
+// over throats that take part, with half of each V_t in either slice of its middle.
 #include "liquid.h"
 
 #include "basics/memory.h"

@@ -5,14 +5,16 @@
 
 #include "network/drying_record.h"
 
-// A drying, as read from its artifact.
+// A drying, as read from its artifact. Freed with liquid_free.
 struct liquid {
     struct network network;
     struct drying_record record; // at least one step
     double first_period_end;     // s
 };
 
-// The time (s) at which the saturation of the network first is LEVEL.
+// The time (s) at which the saturation of the network first is LEVEL, linear between
+// the recorded steps. The first time if it begins at or below LEVEL, the last if it
+// never falls so far.
 double time_of_saturation(const struct liquid *liquid, double level);
 
 // Saturation of N_SLICE slices of equal height, from the bottom up, at N_TIME times

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// crackstats: cracks counted, over one run or many.
+// crackstats: cracks counted, over one run or many. It reads the inputs one after the
+// other: a response is a run, and a drying right after it is that run's. Runs must have
+// as many snapshots and (same_bonds) bonds as the first. Each is added to the ensemble
+// and freed, so memory holds one run at a time. In the end the report is written:
+// tables first, then statistics and tests.
 #include "basics/status.h"
 #include "read.h"
 #include "report.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// With n the unit vector along a bond before drying,
+//     inclination = atan2(hypot(n_x, n_y), |n_z|),  0 (upright) to pi/2 (level),
+//     fabric     += n n  for each crack, by its mode.
+// The report divides the fabric by its trace (report_tables.c).
 #include "orientation.h"
 
 #include "count.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From artifacts to struct run and struct liquid. A schema checks types and shapes;
+// here is checked what relates rows to each other: bonds never heal, and nothing breaks
+// after the last load.
 #include "read.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The statistics as JSON. mean, sd, confidence_interval, each and test are tables of
+// the same shape: `table` goes through the statistics once and asks a function for the
+// value of each, from the runs that a struct column selects. A statistic that some run
+// does not have (NAN) is null in mean, sd, confidence_interval and test.
 #include "basics/memory.h"
 #include "paired_test.h"
 #include "report.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The tables as JSON: sums over the runs, divided by their number. The scatter of a
+// count is computed from its mean in the entry that was just made: mean times runs,
+// rounded to a multiple of 1/2, is the exact sum again (scatter.h).
 #include "basics/memory.h"
 #include "report.h"
 #include "sample.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bonds of a periodic packing join a grain to the nearest image of another: along each
+// axis that repeats,
+//     image = -round((x_1 - x_0) / edge),
+// from the positions before drying.
 #include "run.h"
 
 #include "basics/memory.h"

@@ -7,25 +7,27 @@
 
 enum { MODE_NORMAL, MODE_SHEAR, MODE_COUNT };
 
+// It owns all arrays. Lengths in m, in the packing before anything has moved.
 struct run {
     struct packing packing;
     int n_crack;
-    int32_t *bond;                // (n_crack)
+    int32_t *bond;                // (n_crack) row of packing.bond, each at most once
     double *time;                 // (n_crack) s, nondecreasing
-    double *saturation;           // (n_crack) of the network
+    double *saturation;           // (n_crack) of the network at that time
     uint8_t *mode;                // (n_crack) 0 normal, 1 shear
     int n_weight_crack;           // under the weight alone, before drying
     int32_t *weight_crack;        // (n_weight_crack) bonds
-    double first_period_end, end; // s
+    double first_period_end, end; // s; end: of the last load
     int n_unsettled;              // loads that did not come to rest
     int n_unsettled_crack;        // cracks that opened under them
     int n_snapshot;
-    double *snapshot_saturation; // (n_snapshot)
-    struct vector *displacement; // (n_snapshot * n_particle) m
-    uint8_t *intact;             // (n_snapshot * n_bond)
+    double *snapshot_saturation; // (n_snapshot) of the network
+    struct vector *displacement; // (n_snapshot, n_particle) m, since the start
+    uint8_t *intact;             // (n_snapshot, n_bond) 1: holds
 };
 
-// The periodic image of the second grain of BOND that is nearest to the first.
+// The periodic image of the second grain of BOND that is nearest to the first. 0 along
+// an axis that does not repeat.
 struct image bond_image(const struct packing *packing, int bond);
 
 // The vector from the first grain of BOND to the second before anything has moved, m.

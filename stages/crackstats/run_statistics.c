@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Names of the statistics in the report: keys of mean, sd, confidence_interval, each
+// and test. Readers depend on them: never rename.
 #include "run_statistics.h"
 
 const struct statistic_name statistic_names[STATISTIC_COUNT] = {

@@ -3,36 +3,40 @@
 #ifndef CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
 #define CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
 
+// Cracks are broken bonds; those that the weight alone broke before drying do not
+// count. Three in a row are normal, shear and total, which note_modes in ensemble.c
+// relies on. run_statistics.c gives each its name in the report.
 enum statistic {
-    CRACKS_NORMAL,
-    CRACKS_SHEAR,
+    CRACKS_NORMAL, // broken by the normal stress, over the whole drying
+    CRACKS_SHEAR,  // by the shear stress
     CRACKS_TOTAL,
-    CRACKS_SHARE,
-    FIRST_NORMAL,
+    CRACKS_SHARE, // total over the bonds of the packing; NAN without bonds
+    FIRST_NORMAL, // the same in the first drying period
     FIRST_SHEAR,
     FIRST_TOTAL,
-    SECOND_NORMAL,
+    SECOND_NORMAL, // and after it
     SECOND_SHEAR,
     SECOND_TOTAL,
-    CLUSTERS_COUNT,
-    CLUSTERS_LARGEST,
-    CLUSTERS_SPAN_X,
+    CLUSTERS_COUNT,   // connected cracks (clusters.h)
+    CLUSTERS_LARGEST, // broken bonds in the largest
+    CLUSTERS_SPAN_X,  // 1: one of them spans the body along x; else 0
     CLUSTERS_SPAN_Y,
     CLUSTERS_SPAN_Z,
-    FRAGMENTS_BEFORE,
-    FRAGMENTS_COUNT,
-    FRAGMENTS_LARGEST,
-    FRAGMENTS_SINGLE,
-    SHRINKAGE_LARGEST,
-    SHRINKAGE_LAST,
-    SPRING_BACK,
-    FRONT_CORRELATION,
-    FRONT_SATURATION,
-    UNSETTLED_LOADS,
-    UNSETTLED_CRACKS,
+    FRAGMENTS_BEFORE,  // fragments (fragment_counts.h) when drying begins
+    FRAGMENTS_COUNT,   // when it ends
+    FRAGMENTS_LARGEST, // grains in the largest, at the end
+    FRAGMENTS_SINGLE,  // grains without an intact bond, at the end
+    SHRINKAGE_LARGEST, // of all snapshots (deformation.h); NAN without any
+    SHRINKAGE_LAST,    // of the last snapshot
+    SPRING_BACK,       // (largest - last) / largest; NAN if largest is not > 0
+    FRONT_CORRELATION, // of cracks with lost liquid; NAN without a drying
+    FRONT_SATURATION,  // mean, over the cracks, of the saturation of their slice
+    UNSETTLED_LOADS,   // loads that did not come to rest
+    UNSETTLED_CRACKS,  // cracks under them (unsettled.h)
     STATISTIC_COUNT
 };
 
+// Keys of a statistic in the report, where statistics with one group are together.
 struct statistic_name {
     const char *group, *name; // "cracks", "total"
 };

@@ -5,11 +5,13 @@
 
 #include "basics/memory.h"
 
+// An empty one is {0}.
 struct sizes {
     int *size; // (count) the caller frees it
     int count, capacity;
 };
 
+// Appends SIZE; O(1) on average.
 static inline void add_size(struct sizes *sizes, int size)
 {
     GROW_ARRAY(sizes->size, sizes->count, sizes->capacity);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A crack has the time of the load that it opened under. Both lists rise in time, so
+// one pass finds the load of every crack.
 #include "unsettled.h"
 
 int unsettled_cracks(const struct run *run, const struct loads *loads)

@@ -13,7 +13,8 @@ struct loads {
     const uint8_t *settled; // (n) 1: came to rest
 };
 
-// Cracks of RUN under loads that are not settled.
+// Cracks of RUN under loads that are not settled. Its cracks must be in order of time,
+// none later than the last load. O(cracks + loads).
 int unsettled_cracks(const struct run *run, const struct loads *loads);
 
 #endif
