@@ -15,12 +15,15 @@
 #include "network/network.h"
 #include "parameters/stage.h"
 
+// One that is read lives from artifact_open to artifact_close, one that is written from
+// artifact_create to artifact_finish. Names of datasets and attributes are paths,
+// "/particles/position"; one that its schema does not have is an internal error (70).
 struct artifact {
-    const char *path;      // for messages
+    const char *path;      // for messages; not owned
     struct schema *schema; // what it is
     hid_t file;
-    struct bytes image; // of one that was read
-    char sha256[65];    // of one that was read
+    struct bytes image; // of one that was read: the whole file
+    char sha256[65];    // of one that was read, hexadecimal
     int descriptor;     // of one that is being written
 };
 
@@ -78,21 +81,24 @@ char *artifact_get_text(const struct artifact *artifact, const char *name);
 extern const char *const provenance_names[]; // ends with NULL
 
 // Everything a packing or network artifact holds (also drying, forces, response, which
-// carry one along).
+// carry one along). The caller frees it with packing_free or network_free. What no
+// schema can say is checked here (65): that bodies are whole, that walls exist, that no
+// throat leads from a node to itself but around the box.
 struct packing artifact_get_packing(const struct artifact *artifact);
-//
 // Exits 65 on a network in a box that repeats, unless asked for such a one: a stage
 // that does not know of images would take a throat across a side for one across the
 // box.
 struct network artifact_get_network(const struct artifact *artifact);
 struct network artifact_get_periodic_network(const struct artifact *artifact);
 
-// What happened in a drying. A foreign one may have no step.
+// What happened in a drying. A foreign one may have no step. The caller frees it with
+// drying_record_free.
 struct drying_record artifact_get_drying(const struct artifact *artifact);
 
 // ---- writing ------------------------------------------------------------------------
 
-// An empty artifact of schema NAME, to be written to PATH ("-": standard output).
+// An empty artifact of schema NAME, to be written to PATH ("-": standard output), which
+// is not touched before artifact_finish. PATH must last as long.
 struct artifact *artifact_create(const char *name, const char *path);
 
 // Writes a whole dataset of ROWS rows; the other extents are those of the schema, where
@@ -113,8 +119,10 @@ void artifact_put_vtk(struct artifact *artifact, const char *points, int n_point
                       int n_line, const char *const *cell_data);
 
 // Provenance: from the call, the digests of its inputs (a list, taken over), and MODEL
-// (one line a feature that was modelled or left out). Then writes the artifact, which
-// must keep its own schema, to its path, whole or not at all. Closes it.
+// (one line a feature that was modelled or left out). Then checks the artifact against
+// its own schema, writes it to its path, whole or not at all, and frees it. A breach
+// exits 65 where input, checkpoint or mere size of numbers is to blame, else 70; 73 or
+// 74 when it cannot be written.
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
                      json_t *inputs, const char *model);
 

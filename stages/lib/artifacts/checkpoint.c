@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// In the order of the file: signals set a flag; arrays become datasets of the restart
+// artifact, under one digest; a child process writes it, so that a full disk does not
+// end the run; a restart artifact is taken only by a call of the same program,
+// parameters and inputs; and the keeper asks flag and clock whether a state is due.
 #include "artifacts/checkpoint.h"
 
 #include "basics/memory.h"

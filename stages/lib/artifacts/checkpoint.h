@@ -15,6 +15,9 @@ void artifact_put_arrays(struct artifact *artifact, const char *group,
 struct array_list artifact_get_arrays(const struct artifact *artifact,
                                       const char *group);
 
+// One for the whole run: begin reads or sets it up, its keeper goes to the engine, end
+// tidies up. States are written by a child process; a failure is reported once and the
+// run goes on without.
 struct checkpoint {
     const struct invocation *invocation;
     json_t *inputs;          // digests, as in the provenance of the output
@@ -24,11 +27,11 @@ struct checkpoint {
     struct keeper keeper;    // for the run
 };
 
-// Reads the file of --checkpoint if there is one. From here on SIGTERM,
-// SIGINT and SIGHUP wait until the run asks; a second one ends the program at once.
-// Without
-// --checkpoint does nothing. INPUTS must last as long. Exits 65 when the file is not a
-// whole restart artifact or one of another run, which it then leaves where it is.
+// Reads the file of --checkpoint if there is one. From here on SIGTERM, SIGINT and
+// SIGHUP wait until the run asks; a second one of a kind ends the program at once.
+// Without --checkpoint does nothing. INPUTS must last as long. Exits 65 when the file
+// is not a whole restart artifact, or of another program, parameters or inputs; it then
+// leaves the file where it is.
 void checkpoint_begin(struct checkpoint *checkpoint, struct invocation *invocation,
                       json_t *inputs);
 

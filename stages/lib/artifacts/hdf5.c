@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What concerns the HDF5 library and format as a whole, not one artifact.
 #include "artifacts/artifact.h"
 
 #include <hdf5.h>

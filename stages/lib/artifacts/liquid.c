@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One table gives each member its attribute in the group /liquid; reading, writing and
+// comparing go by it or by the two that another stage needs: surface tension and
+// contact angle.
 #include "artifacts/liquid.h"
 
 #include <math.h>

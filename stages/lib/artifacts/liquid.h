@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The liquid in an artifact, /liquid: what the drying was told goes along to whoever
-// has need of it, so that it is said once.
+// The liquid in an artifact, attributes of the group /liquid: what the drying was told
+// goes along to the stages behind it, so that a user says it once. Each attribute may
+// be missing.
 #ifndef CRAQUELURE_ARTIFACT_LIQUID_H
 #define CRAQUELURE_ARTIFACT_LIQUID_H
 
@@ -19,10 +20,10 @@ struct liquid_properties {
     double molar_mass;      // kg/mol
 };
 
-// Of conditions that are complete.
+// The properties in CONDITIONS, which conditions_complete has completed.
 struct liquid_properties liquid_of(const struct conditions *conditions);
 
-// Those that ARTIFACT has, the others NAN; and writes those that are known.
+// Reads those that ARTIFACT has, the others are NAN; writes those that are known.
 struct liquid_properties artifact_get_liquid(const struct artifact *artifact);
 void artifact_put_liquid(struct artifact *artifact,
                          const struct liquid_properties *liquid);
@@ -32,8 +33,8 @@ void liquid_complete(struct liquid_properties *told,
                      const struct liquid_properties *has);
 
 // Whether surface tension or contact angle differ by more than a thousandth, where both
-// know them; then TEXT says so in one line: "surface_tension = 0.0727 N/m, but that of
-// NAME is 0.0223".
+// know them; then TEXT (SIZE bytes) says so in one line: "surface_tension = 0.0727 N/m,
+// but that of NAME is 0.0223". It is empty where they do not differ.
 bool liquid_differs(const struct liquid_properties *told,
                     const struct liquid_properties *has, const char *name, char *text,
                     size_t size);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The first 8 bytes tell an HDF5 artifact, a LAMMPS dump and plain text apart; each has
+// its reader (read.c, formats/lammps.c, formats/grain_text.c).
 #include "artifacts/read_grains.h"
 
 #include "artifacts/artifact.h"

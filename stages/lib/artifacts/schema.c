@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The JSON texts are part of the program (schema_NAME). Each call parses the one asked
+// for; datasets of the schemas it "extends" come first, in their order.
 #include "artifacts/schema.h"
 
 #include "basics/memory.h"

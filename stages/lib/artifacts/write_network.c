@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The datasets first, then the numbers of /summary, then the ParaView view, in which a
+// throat that leads around a periodic box is drawn as a point.
 #include "artifacts/write_network.h"
 
 #include <stdlib.h>

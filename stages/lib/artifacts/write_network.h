@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Network artifacts as stages that make or change networks write them.
 #ifndef CRAQUELURE_WRITE_NETWORK_H
 #define CRAQUELURE_WRITE_NETWORK_H
 
 #include "artifacts/artifact.h"
 
-// Writes a network artifact, made from INPUT, to the output of the call: summary,
-// ParaView view and provenance included.
+// Writes a network artifact, made from INPUT, to the output of the call: summary
+// (coordination, void volume, and the length from before merging if there is one),
+// ParaView view and provenance included. Exits as artifact_finish.
 void write_network(const struct network *network, const struct invocation *invocation,
                    const struct artifact *input, const char *model);
 

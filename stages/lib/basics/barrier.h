@@ -8,8 +8,10 @@
 #include <sched.h>
 #include <stdatomic.h>
 
+// Begin with {.size = threads}; there is nothing to free.
 struct barrier {
     int size; // threads, each of which must come
+    // Those that have come in this round; 0 or 1, changed by the last to come.
     atomic_int waiting, round;
 };
 

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A running sum that keeps what rounding takes away (Neumaier 1974): a million small
-// amounts off a large one leave an error of a few units in the last place.
+// amounts off a large one leave an error of a few units in the last place. With s the
+// value and x what is added,
+//     total = fl(s + x),  lost += (larger - total) + smaller,
+// larger and smaller of s and x by size. -ffast-math would drop it all.
 #ifndef CRAQUELURE_COMPENSATED_H
 #define CRAQUELURE_COMPENSATED_H
 
 #include <math.h>
 
+// The sum is value + lost; {0} is the empty sum, {x} begins at x.
 struct compensated {
     double value, lost;
 };
 
+// Adds X, of any sign and size.
 static inline void compensated_add(struct compensated *sum, double x)
 {
     const double total = sum->value + x;
@@ -18,6 +23,7 @@ static inline void compensated_add(struct compensated *sum, double x)
     sum->value = total;
 }
 
+// The sum, rounded once.
 static inline double compensated_value(struct compensated sum)
 {
     return sum.value + sum.lost;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether the processor has the vectors of eight numbers that *_avx512.c are compiled
-// for.
+// for. False on other processors, which take the files for AVX2 or plain C: the digits
+// are the same.
 #ifndef CRAQUELURE_CPU_FEATURES_H
 #define CRAQUELURE_CPU_FEATURES_H
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets without common members, each a tree: PARENT[i] is i at a root.
+// Sets without common members, each a tree: PARENT[i] is i at a root. Begin with
+// PARENT[i] = i for all. The root is always the lowest member, so results do not depend
+// on the order in which sets are united.
 #ifndef CRAQUELURE_DISJOINT_SETS_H
 #define CRAQUELURE_DISJOINT_SETS_H
 

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reading takes what comes until the end, for pipes have no size. Writing: what is new
+// has no name (O_TMPFILE) or is in memory, is synced, and then takes the place of the
+// old by link or rename, which are atomic. Where the file system knows no nameless
+// files it gets another name in the same folder instead. Standard output and devices
+// have nothing to rename over and are written straight.
 #include "basics/file.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Every function asks for at least one byte, as malloc(0) may return NULL. Blocks of a
+// megabyte or more that are aligned start on a 2 MB page and ask the kernel for huge
+// ones.
 #include "basics/memory.h"
 
 #include "basics/status.h"

@@ -20,7 +20,9 @@ void *allocate_aligned(size_t count, size_t size)
 void *allocate_uncleared(size_t count, size_t size)
     __attribute__((malloc, returns_nonnull, warn_unused_result));
 
-// OLD grown or shrunk to COUNT elements of SIZE bytes; what is new is not zeroed.
+// OLD (NULL: none yet) grown or shrunk to COUNT elements of SIZE bytes; what is new is
+// not zeroed. OLD may have moved; not for what allocate_aligned gave, whose alignment
+// it would lose.
 void *reallocate(void *old, size_t count, size_t size)
     __attribute__((returns_nonnull, warn_unused_result));
 

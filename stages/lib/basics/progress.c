@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Time left. With `elapsed` since the beginning, `since` since the last estimate,
+//     at_mean_speed = elapsed / fraction - elapsed,
+//     now_left = left - since,
+//     left = now_left + (at_mean_speed - now_left) min(since / memory, 1),
+//     memory = 2 s + elapsed / 4:
+// the estimate counts down by itself and approaches the one by the mean speed slowly.
 #include "basics/progress.h"
 
 #include <math.h>

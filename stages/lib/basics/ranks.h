@@ -9,7 +9,8 @@
 
 // ORDER (n): indices of VALUE, descending, ties by index. O(n) but for long runs of
 // values that are equal to nine digits and not quite. SAME (n), unless NULL: whether
-// the value is that of the rank before to 12 digits.
+// the value is that of the rank before to 12 digits. Values must be finite or infinite,
+// not NAN. -0 and 0 are equal.
 void rank_descending(const double *value, int n, int *order, bool *same);
 
 // A set of numbers below N, kept as bits, bits for words of bits, and so on: adding and

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers in rising order.
+// Numbers in rising order. Comparing, not subtracting: differences of int may overflow.
 #ifndef CRAQUELURE_SORTED_H
 #define CRAQUELURE_SORTED_H
 
-// For qsort.
+// For qsort of int and of double; NAN has no place in that order.
 static inline int rising_ints(const void *a, const void *b)
 {
     const int first = *(const int *)a, second = *(const int *)b;
@@ -16,7 +16,8 @@ static inline int rising_doubles(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-// Where the first of N sorted numbers is that is not below WANTED; N: none is.
+// Where the first of N sorted numbers is that is not below WANTED; N: none is. Binary
+// search, O(log n).
 static inline int first_not_below(const int *sorted, int n, int wanted)
 {
     int low = 0, high = n;

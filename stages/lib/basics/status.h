@@ -28,7 +28,8 @@ struct reason {
 enum status refuse(struct reason *reason, enum status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// Prints "PROGRAM: line" on stderr and exits with STATUS. Not for physics.
+// Prints "PROGRAM: line" on stderr and exits with STATUS. Not for physics. Control
+// characters in the line, as in names of files, are printed as "?".
 _Noreturn void die(enum status status, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The two small calls that every long run shares; artifacts/checkpoint.c says when a
+// state is due and what keeps it.
 #include "checkpoint/keeper.h"
 
 void free_kept_state(struct kept_state *stream)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lists are short: arrays are found by name one after the other. Values are compared as
+// doubles, which 64-bit integers up to 2^53 are without loss.
 #include "checkpoint/named_arrays.h"
 
 #include "basics/memory.h"

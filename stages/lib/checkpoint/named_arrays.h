@@ -12,26 +12,30 @@
 
 enum array_type { ARRAY_FLOAT64, ARRAY_INT32, ARRAY_INT64, ARRAY_UINT8 };
 
+// One array. Longer names are cut.
 struct named_array {
     char name[32]; // "pair_shear_force"
     enum array_type type;
-    int64_t count;
-    void *data;
+    int64_t count; // numbers
+    void *data;    // (count) of type; owned
 };
 
+// Arrays of different names, in any order; {NULL, 0} is the empty list.
 struct array_list {
-    struct named_array *array;
+    struct named_array *array; // (count) owned
     int count;
 };
 
-size_t number_size(enum array_type type); // bytes
+// Bytes that one number of TYPE takes.
+size_t number_size(enum array_type type);
 
 // COUNT zeros, to be freed with free_arrays.
 struct named_array new_array(const char *name, enum array_type type, int64_t count);
 
-// Adds a copy of the COUNT numbers of DATA to LIST.
+// Adds a copy of the COUNT numbers of DATA to LIST; does not look for the name there.
 void add_array(struct array_list *list, const char *name, enum array_type type,
                int64_t count, const void *data);
+// Frees COUNT arrays and ARRAY itself, which may be NULL.
 void free_arrays(struct named_array *array, int count);
 
 // The one of COUNT that is called NAME, or NULL.
@@ -42,12 +46,13 @@ const struct named_array *find_array(const struct named_array *array, int count,
 int64_t array_count(const struct array_list *list, const char *name);
 
 // Whether ARRAY, which may be NULL, is of TYPE and has COUNT numbers from LEAST to
-// MOST: STATUS_BAD_DATA if not.
+// MOST: STATUS_BAD_DATA if not, with NAME and the number in REASON. NAN never is.
 enum status check_array(const struct named_array *array, const char *name,
                         enum array_type type, int64_t count, double least, double most,
                         struct reason *reason);
 
-// Reads LIST; after the first array that is not as it should be, nothing any more.
+// Reads LIST; after the first array that is not as it should be, nothing any more, so
+// that a caller reads all it needs and asks `failed` once. Begin with the first two.
 struct array_reader {
     const struct array_list *list;
     struct reason *reason; // of that
@@ -55,6 +60,7 @@ struct array_reader {
 };
 
 // The numbers called NAME if they are COUNT, each from LEAST to MOST; otherwise NULL.
+// They stay the list's.
 const void *read_array(struct array_reader *reader, const char *name,
                        enum array_type type, int64_t count, double least, double most);
 

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Three lists, of numbers, integers and bytes, that grow while a state is kept and are
+// walked through from the front while it is restored. A damaged state must not lead an
+// engine astray: after the first value that is missing or out of bounds all others are
+// read as 0, and stream_is_whole says so at the end.
 #include "checkpoint/stream.h"
 
 #include "basics/memory.h"

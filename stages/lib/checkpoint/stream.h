@@ -11,11 +11,14 @@
 
 #include <stdint.h>
 
+// Values of one type, one after the other. Kept: owned, room for CAPACITY.
 struct value_list {
     void *data;
     int64_t n, capacity; // read: up to CAPACITY, N of them so far
 };
 
+// Values have no names: they are read in the order in which they were written, so a
+// NAME_state function must not branch on anything but what it has already passed.
 struct checkpoint_stream {
     bool restoring;
     bool failed; // restoring: there was less, or other, than must be; zeros since then
@@ -29,8 +32,9 @@ struct checkpoint_stream stream_to_keep(void);
 struct checkpoint_stream stream_to_restore(const struct array_list *list,
                                            const char *prefix);
 
-// Each writes N values at AT, or reads them. Integers lie from LEAST to MOST, bytes
-// from 0 to MOST; a state with others has failed.
+// Each writes N values at AT, or reads them; AT has room for N. Integers lie from LEAST
+// to MOST, bytes from 0 to MOST; a state with others has failed. Bounds are checked on
+// reading only. Numbers are any doubles: their caller checks them.
 void stream_numbers(struct checkpoint_stream *stream, double *at, int64_t n);
 void stream_sums(struct checkpoint_stream *stream, struct compensated *at, int64_t n);
 void stream_integers(struct checkpoint_stream *stream, int32_t *at, int64_t n,
@@ -53,6 +57,7 @@ struct array_list stream_list(const struct checkpoint_stream *stream,
 // All is read: whether that was all there is, and none failed.
 bool stream_is_whole(const struct checkpoint_stream *stream);
 
+// Frees what was written; what is read belongs to the list.
 void stream_free(struct checkpoint_stream *stream);
 
 #endif

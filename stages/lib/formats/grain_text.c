@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains as text: a line each, x y z radius in m; the box is drawn around them.
+// Grains as text: a line each, x y z radius in m; the box is drawn around them. Numbers
+// are separated by blanks, tabs, commas or semicolons, so CSV without a heading is read
+// as well. Empty lines and comments count when a message names a line.
 #include "formats/grains.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LAMMPS dumps in text: frames of "ITEM: ..." lines, each followed by its data.
+// LAMMPS dumps in text: frames of "ITEM: ..." lines, each followed by its data. The
+// frame is found first; then its box and periodic sides are read, then the names of the
+// columns, then a row a grain; at the end grains are sorted by id, as LAMMPS writes
+// them in any order.
 #include "formats/grains.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Where walls, bodies and images are. A body whose flat end lies on a side of the box,
+// to 1e-9 of its edge, is made longer there by four boxes: the side is no end of it.
 #include "geometry/packing.h"
 
 #include <stdlib.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// packing_facts.c measures, here is judged: each function turns some of the facts into
+// findings, and says what to do, with the key that does it. The limits stand below.
 #include "geometry/packing_check.h"
 
 #include <math.h>

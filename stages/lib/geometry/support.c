@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bonded pieces are found as disjoint sets whose root is the lowest grain.
 #include "geometry/support.h"
 
 #include "basics/disjoint_sets.h"

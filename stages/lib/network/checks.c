@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One rule each, for all stages that let gas into a network.
 #include "network/checks.h"
 
 #include <math.h>

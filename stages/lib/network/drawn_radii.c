@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From the user's keys to throat_radius.c: law 0 keeps the network's radii and refuses
+// keys of a draw that would have no effect; the others are enum radius_law plus 1.
 #include "network/drawn_radii.h"
 
 #include <stdio.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A step names only the throats that change: saturations of step k are those of step
+// k - 1 with the changes of step k.
 #include "network/drying_record.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// With X the edges of the box and `image` the boxes that lie between,
+//     along_throat = (position[second] - position[first]) + image * X.
+// Incidence is built by counting throats per node, summing the counts to offsets, and
+// filling in the order of the throats, which makes each row ascending.
 #include "network/network.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Thin wrappers of argp and strtol/strtod. Standard output is flushed and checked at
+// exit, as a full disk shows only then.
 #include "parameters/command_line.h"
 
 #include "basics/status.h"

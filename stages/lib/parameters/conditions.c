@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What is given stands; what is not comes from lib/fluids for the named liquid at the
+// temperature; air_vapour_pressure comes last, as relative_humidity needs the
+// saturation pressure:
+//     air_vapour_pressure = relative_humidity * saturation_pressure.
 #include "parameters/conditions.h"
 
 #include <math.h>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the table of a stage's parameters tells its user: --help and --schema.
+// What the table of a stage's parameters tells its user: --help and --schema. Dots in
+// keys become nested objects in the JSON Schema; bounds become minimum, maximum and
+// exclusiveMinimum, choices an enum.
 #include "parameters/parameters.h"
 
 #include <stdio.h>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A section is filled in this order: unknown keys are reported with the nearest known
+// one, then for each row of the table the value is found (given, or the default), its
+// type and bounds are checked, and it is stored at its offset. Problems are counted and
+// reported all together, so that a user corrects them in one go.
 #include "parameters/parameters.h"
 
 #include "basics/memory.h"

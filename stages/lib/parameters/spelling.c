@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Levenshtein's distance by dynamic programming, one row of the table at a time: O(a b)
+// steps, O(b) memory.
 #include "parameters/spelling.h"
 
 enum { LONGEST = 127 };

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A call in order: options are parsed (argp), the parameter file is read, its section
+// found and completed from the scene's "conditions", --set is put in, the struct of
+// parameters filled; then outputs are checked, before hours of work: that they can be
+// made, and that none replaces an input or another output.
 #include "parameters/stage.h"
 
 #include "basics/file.h"
