@@ -29,16 +29,16 @@ function drawFlatThing(pen, thing, view, x, y, pixels) {
   if (thing.kind === "grain") {
     pen.arc(x(thing.eye[0]), y(thing.eye[1]), thing.radius * pixels, 0, 7);
     pen.fillStyle = css(view.grainTint(thing.index)); pen.fill();
-    pen.strokeStyle = css(colours.line); pen.lineWidth = 0.6; pen.stroke();
+    pen.strokeStyle = css(colours.line); pen.lineWidth = 0.6 * view.dense; pen.stroke();
   } else if (thing.kind === "throat") {
     pen.moveTo(x(thing.a[0]), y(thing.a[1])); pen.lineTo(x(thing.b[0]), y(thing.b[1]));
     pen.strokeStyle = css(thing.wet ? view.throatTint(thing.index) : colours.empty);
-    pen.lineWidth = thing.wet ? Math.max(1, 2 * thing.radius * pixels) : 0.8; pen.stroke();
+    pen.lineWidth = thing.wet ? Math.max(view.dense, 2 * thing.radius * pixels) : 0.8 * view.dense; pen.stroke();
   } else {
     const [nx, ny, nz] = thing.normal;
     pen.ellipse(x(thing.eye[0]), y(thing.eye[1]), thing.radius * pixels, thing.radius * pixels * Math.max(0.16, Math.abs(nz)), Math.atan2(nx, ny), 0, 7);
     pen.fillStyle = css(thing.mode ? colours.shear : colours.tension); pen.fill();
-    pen.strokeStyle = css(colours.rim); pen.lineWidth = 1; pen.stroke();
+    pen.strokeStyle = css(colours.rim); pen.lineWidth = view.dense; pen.stroke();
   }
 }
 
@@ -55,9 +55,12 @@ function drawFlat(canvas, body, cracks, view, seen) {
     const [u, v] = applyTurn(view.turn, lines[k], lines[k + 1], lines[k + 2]);
     pen[k % 6 ? "lineTo" : "moveTo"](x(u), y(v));
   }
-  pen.strokeStyle = css(view.colours.line); pen.lineWidth = 1; pen.stroke();
+  pen.strokeStyle = css(view.colours.line); pen.lineWidth = view.dense; pen.stroke();
   const things = flatThings(body, cracks, view, seen);
   for (const thing of things) drawFlatThing(pen, thing, view, x, y, pixels);
+  pen.globalAlpha = 0.5; // those that something hides shine through it
+  for (const thing of things) if (thing.kind === "crack") drawFlatThing(pen, thing, view, x, y, pixels);
+  pen.globalAlpha = 1;
   return things;
 }
 

@@ -60,13 +60,15 @@ function viewOf(page, width, height) {
   }
   const show = Object.fromEntries([...element("shown").querySelectorAll("input")].map((box) => [box.name, box.checked]));
   return { turn: turnOf(camera), frame: [-camera.x, -camera.y, wide, high], clip, key: course ? course.key : 0, show, colours: page.colours,
-    grow: Number(element("size").value) / 100, pixel: 2 * wide / width, longest: page.longest, plain: page.moving && page.isSlow };
+    grow: Number(element("size").value) / 100, dense: page.dense, pixel: 2 * wide / width * page.dense, longest: page.longest, plain: page.moving && page.isSlow };
 }
 
 // ---- drawing ------------------------------------------------------------------------
 
-function resize(page, scale) {
-  const { canvas } = page, dense = Math.min(2, window.devicePixelRatio || 1) * scale;
+// DENSE points for each of the page's.
+function resize(page, dense) {
+  const { canvas } = page;
+  page.dense = dense;
   const width = Math.max(1, Math.round(canvas.clientWidth * dense)), height = Math.max(1, Math.round(canvas.clientHeight * dense));
   if (canvas.width === width && canvas.height === height) return;
   canvas.width = width;
@@ -98,13 +100,14 @@ function updateMoment(page, view) {
   }
 }
 
-// What moves and cannot follow is drawn with half of the points, and throats as strokes;
-// when it rests, with all.
+// A small body at rest has twice the points of the screen, so that its edges are smooth. A
+// large one that cannot follow has half of them, and strokes for throats, while it moves.
 function followMotion(page) {
   const now = performance.now(), since = now - page.drawnAt;
   page.drawnAt = now;
   if (page.moving && isLarge(page.body) && since < 1000) page.isSlow = page.isSlow || since > 50;
-  resize(page, page.moving && page.isSlow ? 0.5 : 1);
+  const screen = Math.min(2, window.devicePixelRatio || 1), still = isLarge(page.body) ? screen : Math.max(2, screen);
+  resize(page, !page.moving ? still : page.isSlow ? screen / 2 : screen);
 }
 
 function draw(page) {
@@ -204,7 +207,7 @@ function drawStrip(page) {
   const { course, body, cracks } = page, shares = course ? [0.1, 0.25, 0.4, 0.7, 1] : [1];
   const figures = shares.map((share) => {
     const canvas = html("canvas", { width: 440, height: 640 }), colours = readColours();
-    const key = course ? Math.round(share * course.last) : 0, view = { ...viewOf(page, 440, 640), key, colours };
+    const key = course ? Math.round(share * course.last) : 0, view = { ...viewOf(page, 440, 640), key, colours, dense: 1 };
     const tints = tintsOf({ ...page, colours, picked: null }, key);
     drawFlat(canvas, body, cracks, { ...view, grainTint: tints.grain, throatTint: tints.throat }, page.seen);
     return html("figure", {}, canvas, html("figcaption", { textContent: course ? whenText(course, key) : "" }));
@@ -242,7 +245,7 @@ function telling(cracks, last) {
   return keys.length ? keys[keys.length >> 1] : last / 2;
 }
 
-const page = { camera: newCamera(), canvas: element("view"), colourBy: "none", drawnAt: 0, isSlow: false, stale: true, longest: 1 };
+const page = { camera: newCamera(), canvas: element("view"), colourBy: "none", drawnAt: 0, dense: 1, isSlow: false, stale: true, longest: 1 };
 
 async function start() {
   const meta = JSON.parse(element("meta").textContent);

@@ -6,7 +6,7 @@ const CORNERS = { grain: 3, crack: 3, arrow: 9, line: 1 };
 const TEXTURES = ["things", "tints", "numbers", "forces"]; // by unit
 
 function newScene(canvas, body, cracks) {
-  const gl = canvas.getContext("webgl2", { antialias: body.grain.n < 5000, alpha: false, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true });
   if (!gl) return null;
   const scene = { gl, canvas, body, cracks, programs: {}, sets: {}, squares: 0 };
   for (const name in SHADERS) {
