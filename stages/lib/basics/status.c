@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One line a message, of 2047 bytes at most.
+// A message is one line of 2047 bytes at most.
 #include "basics/status.h"
 
 #include <errno.h> // program_invocation_short_name: set by the C library, read-only here

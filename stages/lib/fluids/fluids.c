@@ -18,8 +18,8 @@
 // SR6-08 ends at 383.15 K. Saturation pressure and surface tension begin at the triple
 // point, 0.01 K above.
 static const struct fluid_range water_range = {273.15, 383.15};
-// Of the PPDS equations, which hold from the melting to near the critical point: what
-// was compared with other sources.
+// The PPDS equations hold from the melting to near the critical point; this part of
+// their range was compared with other sources.
 static const struct fluid_range ppds_range = {263.15, 383.15};
 static const struct fluid_range diffusivity_range = {200, 600};
 static const struct fluid_range unknown = {0, -1};

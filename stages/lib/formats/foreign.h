@@ -6,21 +6,24 @@
 #include "basics/status.h"
 #include "network/network.h"
 
-// Room for that many nodes and throats; no grains, no faces. The caller frees it.
+// Room for that many nodes and throats, zeroed, throat volumes included; no grains, no
+// faces. The caller frees it with network_free.
 struct network new_network(int n_node, int n_throat);
 
-// Lower node first; refuses nodes that are not there, both ends at one, radii, lengths
-// and volumes below 0, and what is not finite. Rows count from 0.
+// Puts the lower node of each throat first. STATUS_BAD_DATA: nodes that are not there,
+// both ends at one node, radii, lengths or volumes below 0, and what is not finite or
+// beyond 1e150, the most that artifacts hold. Rows in REASON count from 0.
 enum status check_network(struct network *network, struct reason *reason);
 
 // The box around the nodes; where they all lie in one plane, as thick as throats are
 // long.
 void box_around_nodes(struct network *network);
 
-// Which walls of the box nodes lie on, to the last digit.
+// Marks in node_walls which walls of the box nodes lie on, to the last digit: those of
+// box_around_nodes are node coordinates.
 void find_walls(struct network *network);
 
-// Volumes that are those of the cylinders to the last digit need not be said.
+// Frees throat_volume where all volumes are those of the cylinders to the last digit.
 void drop_cylinder_volumes(struct network *network);
 
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains of other makers: text, and dumps of LAMMPS.
+// Grains of other makers: text, and dumps of LAMMPS. Packings have no bonds, and all
+// grains are solid.
 #ifndef CRAQUELURE_GRAINS_H
 #define CRAQUELURE_GRAINS_H
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Convex bodies that grains lie in or around: what bounds them besides a box.
+// Convex bodies that grains lie in or around: what bounds them besides a box. All
+// lengths in m. Nothing here knows of periodic boxes: body_near (packing.h) gives the
+// repetition of a body that a place has to do with.
 #ifndef CRAQUELURE_BODY_H
 #define CRAQUELURE_BODY_H
 
@@ -11,7 +13,7 @@
 enum body_shape { BODY_BOX, BODY_CYLINDER, BODY_SPHERE, BODY_DISC, BODY_SHAPES };
 
 // A cylinder stands along z, a disc (of a layer of grains) along y; both end at lower
-// and upper.
+// and upper. The radius of a round body is half its width along x.
 struct body {
     uint8_t shape;              // enum body_shape
     uint8_t within;             // 1 where the grains lie in it, 0 around it
@@ -27,10 +29,11 @@ static inline bool body_is_one(const struct body *body)
 
 // Whether it is round in the plane that AXIS, 0 to 2, lies in.
 bool body_is_round(const struct body *body, int axis);
-// What of X counts for the round side.
+// What of X, a vector, counts for the round side: 0 along the axis of a cylinder or
+// disc, and all of it for a box.
 struct vector body_round_part(const struct body *body, struct vector x);
 
-// Whether X lies in it.
+// Whether X lies in it or on its surface.
 bool body_holds(const struct body *body, struct vector x);
 
 // The part of the line FROM + t (TO - FROM) that lies in it: from t = SPAN[0] to
@@ -38,14 +41,15 @@ bool body_holds(const struct body *body, struct vector x);
 bool body_span(const struct body *body, struct vector from, struct vector to,
                double span[2]);
 
-// Away from its axis or centre through X; of a box along its z.
+// Unit vector away from its axis or centre through X, along x when X lies there; of a
+// box along z.
 struct vector body_outward(const struct body *body, struct vector x);
 
-// The point of its surface nearest to X.
+// The point of its surface, ends included, nearest to X, in it or outside.
 struct vector body_nearest(const struct body *body, struct vector x);
 
-// Of its round side, which goes on beyond the ends of a cylinder or disc; of a box of
-// its surface.
+// The nearest point of the round side alone, which goes on beyond the ends of a
+// cylinder or disc; for a box that of its surface.
 struct vector body_nearest_round(const struct body *body, struct vector x);
 
 #endif

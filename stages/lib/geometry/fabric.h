@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the grains of a packing hold one another.
+// How the grains of a packing hold one another. Contacts are always those of
+// find_contacts for the same packing; directions take the nearest image where the box
+// repeats.
 #ifndef CRAQUELURE_FABRIC_H
 #define CRAQUELURE_FABRIC_H
 
@@ -9,7 +11,7 @@
 // their pair.
 struct contacts find_contacts(const struct packing *packing, double gap);
 
-// Bonds them all, and no others.
+// Bonds them all, and no others: what bonds there were go.
 void bond_contacts(struct packing *packing, const struct contacts *contacts);
 
 // Walls of the box that each grain touches, a surface at most GAP radii off: not where

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments by disjoint sets of grains, joined over the intact bonds.
+// Fragments by disjoint sets of grains, joined over the intact bonds; the root of a set
+// is its lowest grain. When all are joined each grain gets its root, and the fragments
+// with a fixed grain are held, else the largest.
 #include "fragments.h"
 
 #include "basics/disjoint_sets.h"

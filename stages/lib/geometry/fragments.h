@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments: grains that intact bonds join.
+// Fragments: grains that intact bonds join. A fragment is known by its lowest grain; a
+// grain without intact bonds is a fragment of its own.
 #ifndef CRAQUELURE_FRAGMENTS_H
 #define CRAQUELURE_FRAGMENTS_H
 
@@ -12,6 +13,7 @@ struct fragments {
     bool *is_held; // (n) by that grain: never let go
 };
 
+// For N grains. The caller frees them with fragments_free.
 struct fragments fragments_new(int n);
 void fragments_free(struct fragments *fragments);
 
@@ -19,8 +21,8 @@ void fragments_free(struct fragments *fragments);
 void fragments_begin(struct fragments *fragments);
 void fragments_join(struct fragments *fragments, int grain, int other);
 
-// Held are those with a FIXED grain, or where there is none, the largest (the first of
-// equals), if it is more than one grain. Grains that ARE GONE (NULL: none) do not
+// Held are those with a FIXED (n) grain, or where there is none, the largest (the first
+// of equals), if it is more than one grain. Grains that ARE GONE (NULL: none) do not
 // count.
 void fragments_end(struct fragments *fragments, const uint8_t *fixed,
                    const bool *is_gone);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which repetition of a periodic box something lies in: whole boxes along x, y, z.
+// {0, 0, 0} is the box itself. Seen from A, B lies in the image of B less that of A;
+// seen from B, A lies in the opposite one. Sums of images that are not far stay within
+// int8_t; whether they are not far again, is_far says.
 #ifndef CRAQUELURE_IMAGE_H
 #define CRAQUELURE_IMAGE_H
 
@@ -37,6 +40,7 @@ static inline bool same_image(struct image a, struct image b)
            a.along[2] == b.along[2];
 }
 
+// Whether a component is beyond FARTHEST_IMAGE, where images have no number.
 static inline bool is_far(struct image a)
 {
     for (int axis = 0; axis < 3; axis++)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places sorted into cells at least as wide as asked (linked cells): counting sort,
-// O(n).
+// O(n). Per axis
+//     count = floor(length / width),  cell = floor((x - lower) count / length),
+// length being the period or the extent of the places; while there are more than
+// 2 members + 64 cells, the longest count is halved.
 #include "geometry/linked_cells.h"
 
 #include "basics/memory.h"

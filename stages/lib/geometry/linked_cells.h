@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places sorted into cubic cells of a box that may repeat.
+// Places sorted into the cells of a grid over a box that may repeat: what lies within
+// WIDTH of a place is in its cell or one of the 26 around it.
 #ifndef CRAQUELURE_LINKED_CELLS_H
 #define CRAQUELURE_LINKED_CELLS_H
 
@@ -13,8 +14,9 @@ struct box_of_places {
     double lower[3], period[3]; // m
 };
 
+// Cells are numbered with z fastest.
 struct linked_cells {
-    int count[3];
+    int count[3]; // along each axis
     double lower[3], per_length[3];
     bool repeats[3];
     int *offset, *member; // places of cell c are member[offset[c]] ..., rising

@@ -25,7 +25,8 @@ int32_t (*near_pairs(const struct spheres *all, int *count))[2];
 // (overlapping ones too); otherwise as above.
 int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2];
 
-// Orders pairs of grains by the first, then the second; for qsort and bsearch.
+// Orders pairs of grains (int32_t[2]) by the first, then the second; for qsort and
+// bsearch.
 int compare_pairs(const void *a, const void *b);
 
 // From grain I to grain J, to its nearest image where the box repeats, m.

@@ -47,6 +47,7 @@ struct whole {
     struct vector inertia[3];          // rows of the tensor about it
 };
 
+// What belongs to the grains that are not gone, where DISPLACEMENT has moved them.
 struct whole whole_of(const struct packing *packing, const bool *is_gone,
                       const struct vector *displacement);
 double whole_mass(const struct whole *whole, int grain);         // 0 if it is gone

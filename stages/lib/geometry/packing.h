@@ -32,6 +32,7 @@ enum grain_kind {
     GRAIN_AUXILIARY = 1 // not there: only gives the boundary layer its nodes [K 3.3.5]
 };
 
+// It owns its arrays. Their rows are those of /particles and /bonds.
 struct packing {
     int n_particle;
     struct vector *position; // (n_particle) m
@@ -49,6 +50,7 @@ struct packing {
 // Whether the box repeats along any direction.
 bool is_periodic(const struct packing *packing);
 
+// Whether GRAIN is of kind GRAIN_AUXILIARY: it bounds cells but is not solid.
 bool is_auxiliary(const struct packing *packing, int grain);
 
 // Where wall 0..5 of the box stands along its axis, wall / 2; m.
@@ -60,7 +62,8 @@ static inline int body_wall(const struct body *body)
     return body->within ? WALL_OUTER : WALL_INNER;
 }
 
-// The point nearest to X on wall 0..5, WALL_OUTER or WALL_INNER (the nearest body's).
+// The point nearest to X on wall 0..5, WALL_OUTER or WALL_INNER (the nearest body's; X
+// itself where there is no such body).
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x);
 
 // Body K in the repetition of the box nearest to X, going on beyond the sides of the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Are these grains what one thinks? Units, diameters for radii, overlaps, grains
 // outside the box, grains in one place, empty space within the walls, squashed layers.
+// Facts are measured (packing_facts.c), then judged (packing_check.c); who has other
+// facts adds findings of its own.
 #ifndef CRAQUELURE_PACKING_CHECK_H
 #define CRAQUELURE_PACKING_CHECK_H
 
@@ -42,7 +44,8 @@ enum severity {
     FINDING_IMPOSSIBLE // no packing of grains is like this
 };
 
-// One line that says what was found, with numbers, and what to do.
+// One line that says what was found, with numbers, and what to do. NAME is fixed, for
+// programs that read it; the text is cut at its size.
 struct finding {
     enum severity severity;
     const char *name; // "overlaps"
@@ -56,7 +59,8 @@ struct findings {
     struct finding item[MOST_FINDINGS];
 };
 
-// Adds a finding.
+// Adds a finding behind those that are as severe or more; nothing once there are
+// MOST_FINDINGS.
 void add_finding(struct findings *findings, enum severity severity, const char *name,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 

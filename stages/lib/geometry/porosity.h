@@ -19,8 +19,8 @@ struct window {
     struct vector lower, upper; // m
 };
 
-// Whether the grains are one layer: all centres in one plane y, and the box, which has
-// walls there, no thicker than the largest grain.
+// Whether the grains are one layer: all centres have the same y, to the last digit, and
+// the box, which does not repeat along y, is thinner than two of the largest grains.
 bool packing_is_flat(const struct packing *packing);
 
 // Mean radius, m; 0 when there is no grain.
@@ -30,7 +30,7 @@ double mean_radius(const struct packing *packing);
 // when the packing is flat. False when nothing is left.
 bool inner_window(const struct packing *packing, struct window *window);
 
-// Volume of all grains, wherever they are, m^3.
+// Volume of all grains, wherever they are, less the lenses that CONTACTS share, m^3.
 double solid_volume(const struct packing *packing, const struct contacts *contacts);
 
 // Void share of COUNT slices of equal thickness along z, in a window; 1 slice: of the

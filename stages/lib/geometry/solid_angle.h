@@ -12,8 +12,10 @@ struct half_angle {
     double real, imaginary;
 };
 
-// Solid angle of the triangle U V W; positive where they turn anticlockwise seen from
-// outside.
+// Solid angle W of the triangle U V W, positive where they turn anticlockwise seen from
+// outside:
+//     tan(W/2) = u . (v x w) / (u v w + (u.v) w + (v.w) u + (w.u) v),
+// u, v, w the lengths; numerator and denominator are the imaginary and real part.
 static inline struct half_angle half_solid_angle(struct vector u, struct vector v,
                                                  struct vector w)
 {

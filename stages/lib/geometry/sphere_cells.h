@@ -8,13 +8,16 @@
 
 #include <stdint.h>
 
+// A grain, where its cell sees it; m.
 struct sphere {
     struct vector centre;
     double radius;
 };
 
+// A sphere is listed in every cell that it comes near, so a search looks into one cell,
+// or into those that a longer way crosses. Cells are numbered with z fastest.
 struct sphere_cells {
-    int count[3];
+    int count[3]; // of cells along each axis
     bool repeats[3];
     double lower[3], per_length[3], period[3];
     double reach;          // a cell has the spheres that, so much larger, would meet it

@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Whether GRAIN touches one of WALLS (bit k: wall k of the box), to 1e-6 of its radius.
+// Whether GRAIN touches one of WALLS (bit k: wall k of the box), to 1e-6 of its radius,
+// or reaches beyond it. Where the box repeats there are no walls: leave the bits out.
 bool touches_walls(const struct packing *packing, int grain, unsigned walls);
 
 // The lowest grain of those that bonds join to each grain, itself included

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Spheres and the cells around them.
+// Spheres and the cells around them: how much of a polyhedral cell lies outside the
+// grain in it.
 #ifndef CRAQUELURE_SPHERE_CONE_H
 #define CRAQUELURE_SPHERE_CONE_H
 

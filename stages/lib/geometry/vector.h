@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors in three dimensions. An array of struct vector has the layout of an (n,3)
-// dataset of doubles.
+// Vectors in three dimensions, by value. An array of struct vector has the layout of an
+// (n,3) dataset of doubles. Nothing is scaled: squares of lengths must neither overflow
+// nor vanish.
 #ifndef CRAQUELURE_VECTOR_H
 #define CRAQUELURE_VECTOR_H
 
@@ -49,6 +50,7 @@ static inline double distance(struct vector a, struct vector b)
     return norm(subtract(a, b));
 }
 
+// Halfway from A to B; A itself when they are equal, without rounding.
 static inline struct vector midpoint(struct vector a, struct vector b)
 {
     return add(a, scale(0.5, subtract(b, a)));

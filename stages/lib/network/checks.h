@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a network must be for gas to come in.
+// What a network must be for gas to come in. On STATUS_BAD_DATA the reason names the
+// dataset and row, or the parameter.
 #ifndef CRAQUELURE_NETWORK_CHECKS_H
 #define CRAQUELURE_NETWORK_CHECKS_H
 

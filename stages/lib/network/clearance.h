@@ -19,8 +19,11 @@ enum clearance {
     CLEARANCE_BESIDE   // from the throat itself to those beside it
 };
 
-// How far the surface of a grain is from the throat between END [K 3.7, 3.8]; below 0
-// where they overlap.
+// How far the surface of a grain (CENTRE, RADIUS, m) is from the throat between END
+// [K 3.7, 3.8], m; below 0 where they overlap. With t the share of the way from END[0]
+// to END[1] at which the centre's foot lies (cut to 0..1 but for CLEARANCE_LINE),
+//     clearance = |centre - (end[0] + t (end[1] - end[0]))| - radius.
+// A throat without length is a point.
 static inline double clearance_of(struct vector centre, double radius,
                                   const struct vector end[2], enum clearance how)
 {
@@ -38,6 +41,7 @@ struct clear_way {
     double largest; // radius of the grains beside it
 };
 
+// To begin with; then clear_of for each grain beside the throat.
 static const struct clear_way nothing_beside = {HUGE_VAL, 0};
 
 // With one more grain beside the throat.

@@ -7,6 +7,7 @@
 #include "network/throat_radius.h"
 #include "parameters/parameters.h"
 
+// What the rows below fill. In `how`, law and seed are not used: the two here are.
 struct drawn_radii {
     int law; // 0: as in the network; the others are those of enum radius_law, from 1
     int64_t seed;
@@ -20,7 +21,8 @@ enum status give_radii(struct network *network, const struct drawn_radii *radii,
                        const json_t *parameters, struct reason *reason);
 
 // What cutting normal radii at 0 makes of their mean and standard deviation: a line for
-// each mode of which at least a thousandth is cut.
+// each mode of which at least a thousandth is cut, into TEXT, which is returned; empty
+// for other laws.
 enum { RADII_TEXT = 400 };
 const char *describe_cut_radii(const struct drawn_radii *radii, char text[RADII_TEXT]);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Liquid that throats imposed empty, or closed, have shut in.
+// Liquid that throats imposed empty, or closed, have shut in: no gas can reach it.
 #ifndef CRAQUELURE_ENCLOSED_H
 #define CRAQUELURE_ENCLOSED_H
 

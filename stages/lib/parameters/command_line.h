@@ -15,10 +15,13 @@
 error_t parse_common_option(int key, struct argp_state *state, const char *program,
                             int version);
 
-// Parses into INPUT, of the program's own parser. Exits on --help and on errors (64).
+// Parses into INPUT, which the program's own parser knows. Exits on --help and on
+// errors (64, one line). To be called once, and first: from here on a standard output
+// that cannot be written at the end exits 74.
 void parse_command_line(const struct argp *argp, int argc, char **argv, void *input);
 
-// The number that TEXT is. Exits (64) unless it is from LEAST to MOST.
+// The number that TEXT is, all of it. Exits (64) unless it is from LEAST to MOST;
+// OPTION names it in the message.
 long whole_of_option(const char *option, const char *text, long least, long most);
 double number_of_option(const char *option, const char *text, double least,
                         double most);

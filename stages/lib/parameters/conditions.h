@@ -9,15 +9,18 @@
 #include "fluids/fluids.h"
 #include "parameters/parameters.h"
 
+// Life of one: a stage's table fills it by the rows below, NAN where a user gave
+// nothing; conditions_complete fills in the rest; conditions_describe and _note tell
+// the user what holds.
 struct conditions {
     int fluid;            // enum fluid
     double temperature;   // K
     double gas_pressure;  // Pa
     double contact_angle; // degrees
     // NAN: not given.
-    double relative_humidity;   // of water vapour in the air, 0 to 1
-    double air_vapour_pressure; // of the liquid's vapour in the air, Pa
-    double property[FLUID_PROPERTIES];
+    double relative_humidity; // share of saturation of water vapour in the air, 0 to 1
+    double air_vapour_pressure;        // of the liquid's vapour in the air, Pa
+    double property[FLUID_PROPERTIES]; // by enum fluid_property, in its units
     unsigned given; // bit k: property k was given, and is not the liquid's by its name
 };
 
@@ -41,7 +44,9 @@ void conditions_share(json_t *section, const struct parameter *table,
 enum status conditions_complete(struct conditions *conditions, unsigned needed,
                                 struct reason *reason);
 
-// One line: the liquid by name, and those properties with their bit in SHOWN.
+// One line into TEXT (SIZE bytes), which is returned: the liquid by name, temperature,
+// and those properties with their bit in SHOWN; beside a given one also the liquid's
+// own.
 const char *conditions_describe(const struct conditions *conditions, unsigned shown,
                                 char *text, size_t size);
 
@@ -49,9 +54,11 @@ const char *conditions_describe(const struct conditions *conditions, unsigned sh
 // such as a saturation pressure that stays when the temperature is changed.
 void conditions_note(const struct conditions *conditions, unsigned needed);
 
-// ---- rows of a stage's table, AT: where struct conditions lies in its struct
-// ---------
+// ---- rows of a stage's table --------------------------------------------------------
 
+// A stage takes those rows whose quantities it needs; all are `shared`, so a scene may
+// give them once. AT is where struct conditions lies in the stage's parameter struct;
+// MOST is the largest contact angle, degrees, that its model can take.
 #define CONDITION_AT(at, member) (at) + offsetof(struct conditions, member)
 // clang-format off
 #define FLUID_ROWS(at) \

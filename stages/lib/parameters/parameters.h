@@ -25,7 +25,7 @@ enum parameter_type {
     PARAMETER_LIST    // struct number_list
 };
 
-// A list of numbers, in the order given.
+// A list of numbers, in the order given; a longer one is refused.
 enum { LIST_MOST = 1024 };
 struct number_list {
     int count;
@@ -56,7 +56,8 @@ struct parameter {
 #define ABOVE(limit) .bound = BOUND_ABOVE, .low = (limit)
 #define BETWEEN(least, most) .bound = BOUND_BETWEEN, .low = (least), .high = (most)
 
-// A table ends with a row whose key is NULL.
+// A table ends with a row whose key is NULL. All tables are static: keys, texts and
+// choices are kept as pointers.
 
 // Reads SECTION (an object; may be NULL: all defaults) by TABLE, checks every entry and
 // fills the stage's struct PARAMETERS. WHERE names the file and section in messages.
@@ -68,7 +69,8 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
                         const char *where, void *parameters);
 
 // Puts "key.path=value" into SECTION; the value is read as JSON, or else as text.
-// Exits 64 when there is no "=" or no key.
+// Exits 64 when there is no "=" or no key, or what is not UTF-8. Whether the key is
+// known and the value fits is for parameters_fill to say.
 void parameters_set(json_t *section, const char *assignment);
 
 // Gives SECTION what it lacks at KEY from OTHER, where that is under the last part of
@@ -84,7 +86,8 @@ const char *parameter_rule(const struct parameter *parameter, char text[80]);
 // The JSON Schema (2020-12) of a table; the caller owns it.
 json_t *parameters_schema(const struct parameter *table, const char *stage);
 
-// Appends the table to STREAM as --help shows it: key, unit, default, range, text.
+// Appends the table to STREAM as --help shows it: key, default, unit, choices or range,
+// an asterisk for shared ones, text.
 void parameters_print(const struct parameter *table, FILE *stream);
 
 // Sorted keys, no white space, 17 digits: equal parameters give equal bytes.

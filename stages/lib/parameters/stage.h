@@ -16,9 +16,9 @@ struct stage {
     const char *summary; // one line
     const char *reads;   // schema name of its inputs, "packing"; NULL: takes none
     const char *writes;  // schema name of its output
-    int most_inputs;
-    const struct parameter *parameters;
-    const char *notes;   // more for --help; may be NULL
+    int most_inputs;     // on one call; 0: it takes none
+    const struct parameter *parameters; // ends with a row without a key
+    const char *notes;                  // more for --help; may be NULL
     const char *reports; // what --report FILE writes; NULL: there is no such option
     bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
     bool tells;          // without -o it tells people, in text, what it found
@@ -50,7 +50,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters);
 void invocation_free(struct invocation *invocation);
 
-// "dry 1": what an artifact's `program` attribute says.
+// "dry 1" into TEXT, which is returned: what an artifact's `program` attribute says.
 const char *stage_program(const struct stage *stage, char text[64]);
 
 #endif
