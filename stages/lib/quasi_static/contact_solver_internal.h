@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside struct contact_solver, for its own files only. Symbols as in contact_solver.c.
+// Inside struct contact_solver, for its own files only. Symbols as in contact_solver.c:
+//     e = free_deformation - f W q(e),  W = B K^-1 B^T,  f the compliance factor.
+// Rows are numbered as they were activated; those of one pair need not lie together.
 #ifndef CRAQUELURE_CONTACT_SOLVER_INTERNAL_H
 #define CRAQUELURE_CONTACT_SOLVER_INTERNAL_H
 
@@ -20,12 +22,14 @@ struct active_pair {
                                  // moments, each with its own
 };
 
+// Up to BATCH rows that were activated together, with their L^-1 B^T.
 struct row_group {
     int first; // row
     struct forward_solves solves;
 };
 
-// W and the matrix have rows CAPACITY apart.
+// It owns all but STIFFNESS, PAIR, TANGENT and FROM. Arrays without a shape are of
+// `count` rows, with room for CAPACITY. W and the matrix have rows CAPACITY apart.
 struct contact_solver {
     struct stiffness *stiffness;
     int n_pair;
@@ -52,6 +56,7 @@ struct contact_solver {
     double *residual, *step, *rhs, *solution;
 };
 
+// Row ROW of W.
 static inline double *compliance_of(const struct contact_solver *c, int row)
 {
     return c->compliance + (size_t)row * (size_t)c->capacity;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments, grains that intact bonds join, and how they leave the aggregate.
+// Fragments, grains that intact bonds join, and how they leave the aggregate: those
+// that nothing holds and that would move too far lose their load, their pairs are
+// detached, and the residual of the rest is found again.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Displacement of a grain; of the same shape, force and moment on it.
+// Displacement of a grain; of the same shape, force and moment on it. In the units of
+// the engine: lengths in mean radii, stiffnesses in the largest of a pair, so forces in
+// their product and moments in that times a mean radius. Translation and rotation then
+// are of like size, and one number, displacement_size, judges both.
 #ifndef CRAQUELURE_DISPLACEMENT_H
 #define CRAQUELURE_DISPLACEMENT_H
 
@@ -13,6 +16,7 @@ struct displacement {
 
 static const struct displacement no_displacement = {{0, 0, 0}, {0, 0, 0}};
 
+// FACTOR times A.
 static inline struct displacement displacement_scaled(double factor,
                                                       struct displacement a)
 {
@@ -20,6 +24,7 @@ static inline struct displacement displacement_scaled(double factor,
                                  scale(factor, a.rotation)};
 }
 
+// TO less FROM. Rotations are subtracted as vectors: small ones.
 static inline struct displacement displacement_between(const struct displacement *from,
                                                        const struct displacement *to)
 {
@@ -34,6 +39,7 @@ static inline void displacement_subtract(struct displacement *sum,
     *sum = displacement_between(&load, sum);
 }
 
+// The larger of |translation| and |rotation|.
 static inline double displacement_size(struct displacement a)
 {
     return fmax(norm(a.translation), norm(a.rotation));

@@ -7,6 +7,8 @@
 #include "contact_pair.h"
 #include "dem/dem.h"
 
+// What pairs are made from; in SI units but for `rolling`. Made pairs are in units of
+// `length` and `stiffness`.
 struct contact_pair_setup {
     const struct packing *packing;
     const struct dem_material *material;
@@ -22,7 +24,9 @@ struct contact_pair_setup {
 // touch. Displacements are smaller, or pairs are sought again.
 static const double search_range = 0.1;
 
-// Of grains I and J, which lie SEPARATION apart, m; of grain I and the wall beneath.
+// The contact pair of grains I and J, where J lies SEPARATION (m) from I; of grain I
+// and the wall beneath. Without a bond, whatever the packing lists; a contact that
+// overlaps sticks, with its shear spring free where it is.
 struct contact_pair grain_pair(const struct contact_pair_setup *setup, int i, int j,
                                struct vector separation);
 struct contact_pair wall_pair(const struct contact_pair_setup *setup, int i);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // residual = load - damping dashpot_force - B^T response(B u), 0 for grains that are
-// held or detached.
+// fixed or detached. A residual is as large as the larger of its force and its moment;
+// the largest of all grains is what the tolerance judges.
 #include "quasi_static_internal.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of the last equilibrium, in SI units.
+// Results of the last equilibrium, in SI units: displacements times `length`, forces
+// times `stiffness` times `length`, moments times that times `length` again.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

@@ -6,8 +6,9 @@
 
 #include "contact_pair.h"
 
-// The first three components go on from FROM by x = given - compliance q(x), where q is
-// by how much the load grows more, from LOAD on, than TANGENT says.
+// The first three components (normal, two of shear) go on from FROM by x = given -
+// compliance q(x), where q is by how much the load grows more, from LOAD on, than
+// TANGENT says.
 struct local_problem {
     double from[3], load[3], tangent[3];
     double given[3];

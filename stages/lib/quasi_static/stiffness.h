@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sparse stiffness K of all pairs, factored.
+// The sparse stiffness of all pairs, factored,
+//     K = sum over pairs of (B^T tangent B + geometric) + soft 1 = L L^T,
+// six unknowns for each grain that moves, in the units of displacement.h. No memory of
+// the load is kept but that of the last stiffness_begin.
 #ifndef CRAQUELURE_STIFFNESS_H
 #define CRAQUELURE_STIFFNESS_H
 
@@ -22,7 +25,8 @@ void stiffness_free(struct stiffness *stiffness);
 bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[COMPONENTS],
                       const struct pair_stiffness *geometric, const double soft[2]);
 
-// Whether K, as last factored, is positive definite to what rounding leaves.
+// Whether K, as last factored, is positive definite to what rounding leaves. If not
+// there still are solutions, with a factor whose lost pivots were replaced.
 bool stiffness_is_positive(const struct stiffness *stiffness);
 
 // Solves K ANSWER = LOAD (n) by the last factor, forward and then backward. The
@@ -34,6 +38,7 @@ void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 // L^-1 B^T of single components, in up to MOST_SOLVES GROUPS of COUNT (groups) each,
 // BATCH at most. PRODUCT of two such: entries of W = B K^-1 B^T, a row for each of A.
 // The caller frees each (groups) with forward_solves_free.
+// A load of 1 in COMPONENT (enum component) of PAIR.
 struct unit_load {
     int32_t pair, component;
 };
@@ -51,7 +56,7 @@ void stiffness_deformation(const struct stiffness *stiffness,
 void stiffness_subtract(struct stiffness *stiffness,
                         const struct forward_solves *solves, const double *load);
 
-// Multiplications that a factor takes.
+// Multiplications that a factor takes: to judge whether a new one is due.
 double stiffness_work(const struct stiffness *stiffness);
 
 #endif

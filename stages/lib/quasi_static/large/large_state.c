@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What large displacements add to an engine: frames of all pairs at the start, the last
+// equilibrium and the iterate, and their geometric stiffness, which the factor counts:
+//     K = sum over pairs of B^T k B + geometric(load / (1 + damping)).
 #include "large_state.h"
 
 #include "basics/memory.h"

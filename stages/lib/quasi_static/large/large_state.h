@@ -38,7 +38,7 @@ void large_state_free(struct large_state *large);
 // All arrays (n_pair), with what they hold, for the pairs that there are.
 void large_state_allocate_pairs(struct quasi_static *qs);
 
-// Of GRAIN, from the last equilibrium to the iterate.
+// The displacement of GRAIN from the last equilibrium to the iterate.
 struct displacement displacement_since_previous(const struct quasi_static *qs,
                                                 int grain);
 

@@ -7,7 +7,7 @@
 
 #include "quasi_static/contact_pair.h"
 
-// As of struct contact_pair.
+// Axes and arms, as in struct contact_pair.
 struct pair_frame {
     struct vector axis[3];
     double arm[2];

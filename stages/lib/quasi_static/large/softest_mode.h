@@ -6,11 +6,12 @@
 
 #include "large_state.h"
 
-// At the last equilibrium; of a body that nothing holds, without rigid motion.
+// The mode at the last equilibrium; for a body that nothing holds, without rigid
+// motion.
 int find_softest_mode(struct quasi_static *qs);
 
-// Of a body that nothing holds, by Davidson's method [davidson.c] with the factor there
-// is; its STIFFNESS, which may be NULL, does not count the stabilisation.
+// The same for a body that nothing holds, by Davidson's method [davidson.c] with the
+// factor there is; its STIFFNESS, which may be NULL, does not count the stabilisation.
 int davidson_softest_mode(struct quasi_static *qs, double *stiffness);
 // Whether that stiffness is positive.
 bool davidson_is_stable(struct quasi_static *qs);
