@@ -47,7 +47,8 @@ enum feature {
 };
 enum { FEATURE_SETS = 32 };
 
-// Place of a grain: its displacement from where it began; the radius fills the record.
+// Place of a grain: its displacement from where it began; the radius fills the record,
+// so that the kernel loads four doubles at once.
 struct place {
     _Alignas(32) double displacement[3];
     double radius;
@@ -96,6 +97,7 @@ struct rigid_wall {
     double resistance; // of its contacts now: stiffness times dt plus damping, in sum
 };
 
+// What 1 is in scaled units: m, kg, N/m and s.
 struct units {
     double length, mass, stiffness, time;
 };
@@ -112,6 +114,8 @@ EACH_PARALLEL_BOND_SET(DECLARE)
 extern pair_sweep *const pair_sweeps_avx2[FEATURE_SETS];
 extern pair_sweep *const pair_sweeps_avx512[FEATURE_SETS];
 
+// It owns all its arrays. Grains are in the order of `id`, not of the packing; results
+// are put back into that order before they leave the engine.
 struct dem {
     struct units unit;
     enum dem_law kind;
@@ -327,6 +331,7 @@ double automatic_time_step(const struct dem *dem);
 // Shortens an automatic step that is too long for the pairs that have been found.
 void shorten_time_step(struct dem *dem);
 
+// Groups that a thread sweeps; the last chunk may have fewer.
 static inline int groups_in_chunk(const struct dem *dem)
 {
     return (dem->pairs.n_group + dem->n_chunk - 1) / dem->n_chunk;
@@ -337,6 +342,8 @@ static inline struct vector as_vector(const double a[3])
     return (struct vector){a[0], a[1], a[2]};
 }
 
+// Where the centre of PARTICLE is, scaled: for geometry only, as the sum rounds what
+// the displacement keeps.
 static inline struct vector position_now(const struct dem *dem, int particle)
 {
     return add(dem->start[particle], as_vector(dem->place[particle].displacement));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the engine and of its stage, given to a keeper (checkpoint/keeper.h).
+// Between two questions lie about a million moves of a grain.
 #include "dem/keep.h"
 
 void keep_state(const struct keeper *keeper, const struct dem *dem,

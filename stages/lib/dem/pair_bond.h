@@ -7,6 +7,10 @@
 //     sigma = tension / A + beta |M^s| R / I  or  tau = |F^s| / A + beta |M^n| R / J
 // reaches a strength. Contact bonds pull with the springs of the contact instead [K
 // 4.2].
+//
+// One pair a lane, as in pair_contact.h. The state of a bond lies in bond_group: R,
+// F^s, M^s, M^n along n, and both strengths, for parallel bonds times A R. A broken one
+// has R = 0 and strengths of -1. beta is dem->moment_contribution.
 #include "dem/pair_contact.h"
 
 #include <math.h>
@@ -17,6 +21,7 @@ struct bond_law {
     doublew tension, shear, twist, bending;
 };
 
+// With A / R^2 = pi, I / R^4 = pi / 4, J / R^4 = pi / 2.
 SIMD_INLINE struct bond_law bond_law(const struct dem *dem, doublew time_step)
 {
     const doublew along = splat(M_PI * dem->bond_normal_stiffness);
@@ -60,6 +65,9 @@ struct bond_forces {
     struct vectorw shear, bending;
 };
 
+// What the springs of a bond hold, and lose when it breaks:
+//     (tension^2 / (k^n A) + |F^s|^2 / (k^s A) + |M^s|^2 / (k^n I) + (M^n)^2 / (k^s J))
+//     / 2.
 // SQUARE is R^2.
 SIMD_INLINE doublew bond_energy(const struct dem *dem, const struct bond_forces *c,
                                 doublew square)
@@ -154,7 +162,11 @@ SIMD_INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, in
 }
 
 // Contact bonds pull with the springs of the contact; those past a strength break and
-// leave what friction allows [K 4.2]. BONDED loses the lanes that broke.
+// leave what friction allows [K 4.2]:
+//     spring = k^n U, negative in tension;  F^s = rotated F^s - k^s dt V^s;
+//     breaks when -spring >= normal_strength or |F^s| >= shear_strength.
+// BONDED loses the lanes that broke, LAW gets the spring also in tension. Returns how
+// many broke.
 SIMD_INLINE int break_contact_bonds(struct lane_law *law, const struct dem *dem, int k,
                                     int at, const struct pair_motion *m, maskw touch,
                                     maskw *bonded, doublew time_step, unsigned features)

@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts and dashpots; for pair_kernel.h.
+// Contacts and dashpots; for pair_kernel.h. Every doublew has one pair a lane: lanes
+// AT .. AT + SIMD_WIDTH - 1 of group K. Scaled units. With U the overlap, n from the
+// first grain to the second, V^n > 0 where they part, V^s the shear velocity, per lane:
+//     linear: spring = k^n U, and k^s, c^n, c^s as they are;
+//     Hertz:  spring = k^n U^1.5, k^s U^0.5, c^n U^0.25, c^s U^0.25;
+//     normal = spring - c^n V^n                                [K 4.11, 4.27-4.30]
+//     limit  = friction times the normal force that counts     [K 4.25]
+//     trial  = rotated F^s - k^s dt V^s                        [K 4.12-4.16]
+//     F^s    = trial, or trial limit / |trial| where that slips [K 4.26]
+//     shear  = F^s - c^s V^s where it does not slip
+// F^s is kept for the next step; normal n and shear act on the second grain. All is 0
+// where neither contact nor bond acts (masks `touch`, `bonded`).
 //
 // Dashpots act where grains touch or an intact bond holds them: without them a bonded
 // pair in tension would ring for ever. While an unbonded contact slides its shear
@@ -26,6 +37,9 @@ struct lane_law {
     doublew shear_retained, shear_stiffness_before;
 };
 
+// The law of the lanes: spring, stiffness and damping at the overlaps that M has; the
+// spring is 0 where grains do not TOUCH. From pairs.laws where pairs differ, else from
+// dem->law.
 SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
                                    const struct pair_motion *m, maskw touch,
                                    doublew time_step, unsigned features)
@@ -64,13 +78,16 @@ SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
     return law;
 }
 
-// Load of a pair: along n, in the contact plane, and moments carried by the bond.
+// Load of a pair on its second grain: along n (positive pushes), in the contact plane,
+// and moments carried by the bond.
 struct pair_load {
     doublew normal;
     struct vectorw shear;
     struct vectorw moment;
 };
 
+// ENTRY grows by AMOUNT, an energy, in the lanes WHERE; only if the balance is wanted
+// (pairs.loss).
 SIMD_INLINE void add_to_ledger(double *entry, maskw where, doublew amount)
 {
     store(entry, load(entry) + only_where(where, amount));

@@ -110,6 +110,9 @@ SIMD_INLINE void scatter_loads(const struct dem *dem, int k, int at,
     store3(dem->pairs.moment[k].second, at, on_second);
 }
 
+// The loads of lanes AT .. AT + SIMD_WIDTH - 1 of group K, whose MOTION is known.
+// Returns how many bonds broke; BUSY is set where a pair touches, is bonded or pulls.
+// Lanes of a group that was idle and is so still are left out: their loads are 0.
 SIMD_INLINE int sweep_lanes(const struct dem *dem, int k, int at,
                             const struct pair_motion *motion,
                             const struct bond_law *bonds, doublew time_step, int *busy,
@@ -163,6 +166,7 @@ SIMD_INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
     }
 }
 
+// One cycle of groups BEGIN .. END - 1. Returns how many bonds broke.
 SIMD_INLINE int sweep_groups(const struct dem *dem, int begin, int end,
                              unsigned features)
 {

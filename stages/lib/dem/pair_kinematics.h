@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How pairs are placed and move [K 4.7-4.17]; for pair_kernel.h.
+// How pairs are placed and move [K 4.7-4.17]; for pair_kernel.h. One pair a lane, in
+// scaled units; i is the first grain, j the second, w their spins. In code order:
+//     du = u_j - u_i,  s = s0 + du,  n = s / d,
+//     U = U0 - stretch,  arm_i = R_i - U/2,  arm_j = R_j - U/2,
+//     v = v_j - v_i,  V^n = v.n (positive where they part),
+//     V^s = v - V^n n - (arm_i w_i + arm_j w_j) x n,
+//     t = (v - V^n n) dt/d,  a = dt/2 (w_i + w_j).n for the rotation below.
+// Places are at the present step, velocities and spins half a step behind (leapfrog).
 //
 // The overlap never is the difference of two large numbers. With s0 = x_j - x_i where
 // the grains began, d0 = |s0| and du = u_j - u_i what the displacements add,
@@ -24,6 +31,8 @@ struct plane_rotation {
     doublew shrink;        // 1 - a^2/2
 };
 
+// F, a vector in the old contact plane, in the new one: with flat = F - (F.n)(n - t/2),
+//     (1 - a^2/2) flat + a n x flat.
 SIMD_INLINE struct vectorw rotate_history(struct plane_rotation by, struct vectorw f,
                                           unsigned features)
 {
@@ -191,6 +200,9 @@ SIMD_INLINE struct lane_distance find_distance(const struct dem *dem, int k, int
     return pair;
 }
 
+// All of the above for lanes AT .. AT + SIMD_WIDTH - 1 of group K. Without
+// FEATURE_ROTATION shear velocity, relative spin and rotation but its normal are not
+// set.
 SIMD_INLINE struct pair_motion find_pair_motion(const struct dem *dem, int k, int at,
                                                 doublew time_step, unsigned features)
 {

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Three components of SIMD_WIDTH pairs at once, and the way between records in memory
 // (four or eight doubles of one grain) and lanes; for pair_kernel.h.
+//
+// In memory a grain is a record: {x, y, z, fourth} of a place or of forces, twice that
+// of a motion or of forces and moments. In the kernel a doublew is one component of
+// SIMD_WIDTH pairs, lane k being pair AT + k. `rows` lie between: for SIMD_WIDTH = 4
+// row k is the record of lane k; for 8 the rows are the records of lanes 0 and 2, 1 and
+// 3, 4 and 6, 5 and 7, which takes the fewest shuffles. transpose leads from rows to
+// components, rows_of back.
 #include "dem/engine.h"
 
 #include "basics/simd.h"
 
+// One vector of each pair.
 struct vectorw {
     doublew x, y, z;
 };
 
+// Lanes AT .. AT + SIMD_WIDTH - 1 of a vector in a group; and back.
 SIMD_INLINE struct vectorw load3(const double (*p)[PAIRS_IN_GROUP], int at)
 {
     return (struct vectorw){load(&p[0][at]), load(&p[1][at]), load(&p[2][at])};
@@ -36,6 +45,7 @@ SIMD_INLINE struct vectorw scale3(doublew s, struct vectorw a)
     return (struct vectorw){s * a.x, s * a.y, s * a.z};
 }
 
+// A + S B; below A - S B. Fused.
 SIMD_INLINE struct vectorw add_scaled3(struct vectorw a, doublew s, struct vectorw b)
 {
     return (struct vectorw){fmadd(s, b.x, a.x), fmadd(s, b.y, a.y), fmadd(s, b.z, a.z)};
@@ -132,6 +142,8 @@ struct rows {
     doublew row[4];
 };
 
+// The records, of STRIDE doubles from P on, of the grains with the scaled indices I
+// (SIMD_WIDTH); of each the first four.
 SIMD_INLINE struct rows fetch(const double *p, size_t stride, const uint32_t *i)
 {
     return (struct rows){ROWS};
@@ -151,6 +163,7 @@ SIMD_INLINE struct rows subtract_rows(struct rows a, struct rows b)
     return a;
 }
 
+// From records to components, lanes in the order of the indices that were fetched.
 SIMD_INLINE struct vectorw_and_fourth transpose(struct rows a)
 {
     const doublew xz0 = EVEN(a.row[0], a.row[1]), xz1 = EVEN(a.row[2], a.row[3]);

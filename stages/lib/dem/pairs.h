@@ -15,8 +15,8 @@ enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
 // 32 or 64 bytes by one scaled address.
 enum { INDEX_SCALE = 8 };
 
-// Eight pairs. Unused lanes at the end pair the dummy grain (index n_particle) with
-// itself, far apart.
+// Eight pairs: pair p is lane p % PAIRS_IN_GROUP of group p / PAIRS_IN_GROUP. Unused
+// lanes at the end pair the dummy grain (index n_particle) with itself, far apart.
 struct pair_group {
     _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
     uint32_t second[PAIRS_IN_GROUP];
@@ -47,6 +47,7 @@ struct moment_group {
 struct shear_group {
     _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
 };
+// Coefficients of each pair, as in struct contact_law, where pairs differ.
 struct law_group {
     _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
     double shear_stiffness[PAIRS_IN_GROUP];
@@ -54,6 +55,7 @@ struct law_group {
     double shear_damping[PAIRS_IN_GROUP];
     double friction[PAIRS_IN_GROUP];
 };
+// Bonds, and what parallel ones carry on the second grain.
 struct bond_group {
     _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without an intact bond
     double normal_strength[PAIRS_IN_GROUP];             // -1 without an intact bond
@@ -63,12 +65,14 @@ struct bond_group {
     double twist[PAIRS_IN_GROUP];          // M^n along n
     int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
 };
+// Energy that each pair has lost since close_pair_ledger, by the way it went.
 struct loss_group {
     _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
     double slip[PAIRS_IN_GROUP];
     double broken[PAIRS_IN_GROUP];
     double bridges[PAIRS_IN_GROUP];
 };
+// Liquid bridges.
 struct liquid_group {
     _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
     double radius[PAIRS_IN_GROUP];                    // effective [G 1]
@@ -88,6 +92,7 @@ struct contact_law {
     double shear_damping;
 };
 
+// All pairs that are swept, in the order in which loads are added.
 struct pair_list {
     int n_pair;
     int32_t (*particle)[2]; // (n_pair) sorted by first, then second
@@ -109,6 +114,7 @@ struct pair_list {
     struct liquid_group *liquid;
 };
 
+// The grains of LANE, as indices; set_grains scales them.
 static inline int first_grain(const struct pair_group *group, int lane)
 {
     return (int)(group->first[lane] / INDEX_SCALE);
@@ -125,6 +131,7 @@ static inline void set_grains(struct pair_group *group, int lane, int first, int
     group->second[lane] = INDEX_SCALE * (uint32_t)second;
 }
 
+// The vector of LANE in a group's components.
 static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int lane)
 {
     return (struct vector){a[0][lane], a[1][lane], a[2][lane]};

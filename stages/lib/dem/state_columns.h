@@ -5,7 +5,8 @@
 
 #include "dem/engine.h"
 
-// WIDTH numbers in each of ROWS rows, each between LEAST and MOST.
+// WIDTH numbers in each of ROWS rows, each between LEAST and MOST. NAME is that of the
+// dataset in a checkpoint. In lanes, row r is lane r % 8 of group r / 8.
 struct column {
     const char *name;
     enum array_type type;

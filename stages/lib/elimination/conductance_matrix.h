@@ -6,6 +6,7 @@
 
 #include "basics/compensated.h"
 
+// A conductance above 0 between two sites, in any unit that all share.
 struct link {
     int site[2];
     double conductance;
@@ -34,7 +35,8 @@ void conductance_matrix_residual(const struct conductance_matrix *matrix,
                                  const double *given, const struct compensated *x,
                                  double *residual);
 
-// RESULT = MATRIX X; both (n), 0 at given places.
+// RESULT = MATRIX X, both (n), with X 0 at sites where it is given. Not for residuals:
+// the diagonal times X cancels where X is nearly constant.
 void conductance_matrix_multiply(const struct conductance_matrix *matrix,
                                  const double *x, double *result);
 

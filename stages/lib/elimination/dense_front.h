@@ -28,7 +28,8 @@ struct dense_front {
     void *pending;  // (n_block, MAX_PENDING, BLOCK_BYTES) parts of rows
 };
 
-// Index of the first entry of row I.
+// Index of the first entry of row I. With panel = I / PANEL, large ones have rows of
+// (panel + 1) PANEL numbers, small ones of I.
 static inline size_t dense_front_row(const struct dense_front *dense, int i)
 {
     const size_t row = (size_t)i, panel = row / PANEL;
@@ -36,7 +37,7 @@ static inline size_t dense_front_row(const struct dense_front *dense, int i)
     return (PANEL * panel / 2 + row % PANEL) * PANEL * (panel + 1);
 }
 
-// Entry (I, J), without pending updates.
+// Entry (I, J), J < I, without pending updates.
 static inline double dense_front_entry(const struct dense_front *dense, int i, int j)
 {
     const size_t at = dense_front_row(dense, i) + (size_t)j;
@@ -62,7 +63,8 @@ void dense_front_copy_row(const struct dense_front *dense, int n, int p, double 
 // Row and column P become those of the last of N rows, which goes. Pending rows too.
 void dense_front_remove(struct dense_front *dense, int n, int p);
 
-// Turns a small one of N rows into a large one.
+// Turns a small one of N rows into a large one, whose entries are floats if it IS
+// ROUNDED: half the memory and time for seven digits.
 void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded);
 
 // Adds FACTOR ROW[i] ROW[j] to each entry of N rows.
@@ -72,7 +74,7 @@ void dense_front_add_products(struct dense_front *dense, int n, double factor,
 // Adds all pending updates to the entries.
 void dense_front_flush(struct dense_front *dense, int n);
 
-// Keeps or restores N rows of doubles.
+// Keeps or restores N rows of doubles, entries and pending updates as they are.
 void dense_front_state(struct dense_front *dense, int n,
                        struct checkpoint_stream *stream);
 

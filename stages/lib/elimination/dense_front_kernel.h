@@ -6,6 +6,12 @@
 // tile of that many rows and vectors stays in registers), and the names PASS and
 // GATHER. Each entry sums its products with fused operations, in the order in which
 // they are pending, so the digits do not depend on the vectors.
+//
+// Layout: row i of the entries begins at dense_front_row(i). Pending rows lie by blocks
+// of BLOCK columns, and in a block one row after the other: pending[k][c] is number
+// k BLOCK + c % BLOCK of block c / BLOCK. `weight` has factor[k] pending[k][i] for
+// TILE_ROWS rows i, then for the next k; then the next tile. Entries are conductances
+// in the units of the network.
 #include "dense_front.h"
 
 #include "basics/memory.h"
@@ -20,16 +26,20 @@ enum {
     BLOCK = BLOCK_BYTES / sizeof(NUMBER) // columns; of all that wait they stay in cache
 };
 
+// The block of column FIRST, a multiple of BLOCK.
 static const NUMBER *pending_block(const struct dense_front *dense, int first)
 {
     return (const NUMBER *)dense->pending + (size_t)first * MAX_PENDING;
 }
 
+// TILE_ROWS rows of the entries, and their weights.
 struct tile {
     NUMBER *row[TILE_ROWS];
     const NUMBER *weight; // (n_pending, TILE_ROWS)
 };
 
+// row[r][c] += sum_k weight[k][r] pending[k][c] for VECTORS vectors from COLUMN on. The
+// sum starts from 0 and is added at once.
 static inline void add_to_tile(const struct tile *tile, int column, int n_pending,
                                const NUMBER *pending)
 {
@@ -106,6 +116,7 @@ void PASS(struct dense_front *dense, int n)
     free(weight);
 }
 
+// row[c] += sum_k weight[k] pending[k][c] for columns below N, three vectors at a time.
 void GATHER(const struct dense_front *dense, int n, const double *weight, double *row)
 {
     for (int first = 0; first < n; first += BLOCK) {

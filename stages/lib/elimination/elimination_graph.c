@@ -2,6 +2,7 @@
 // The graph of elimination_graph.h: each vertex has a row of edges with spare room. A
 // row that is full moves to the end of the array with twice the room. Compacting drops
 // eliminated vertices and gaps, so that neighbours lie near each other in memory again.
+// weight = sum of parallel conductances / max_weight, in single precision.
 #include "elimination_graph.h"
 
 #include "basics/memory.h"

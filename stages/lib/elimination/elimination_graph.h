@@ -16,12 +16,15 @@ struct half_edge {
     int to; // n of the graph: a place where the pressure is given
 };
 
+// A vertex: its edges are half[first] to half[first + count - 1], in no order, each
+// neighbour once.
 struct vertex {
     int first, count, capacity;
     bool eliminated, neighbour_eliminated; // beside: a neighbour went since the graph
                                            // was last packed
 };
 
+// Given places are one vertex, n, without a row: edges to it are ground.
 struct elimination_graph {
     int n;
     struct vertex *vertex; // (n)

@@ -5,11 +5,14 @@
 
 #include "dense_front.h"
 
+// One for each site on each front, in a list per site (kron_fronts.first).
 struct membership {
     int front, place;
     int next; // of the site, or of those unused; -1: the last
 };
 
+// Sites that are all linked with each other: entry (i, j) of `dense` is the conductance
+// between site[i] and site[j].
 struct front {
     int n, capacity;
     int *site;                // (n)
@@ -17,6 +20,7 @@ struct front {
     int next_unused;
 };
 
+// A front of two sites, as kron_fronts_list lists it.
 struct pair {
     int a, b;
     double conductance;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The remaining network, link by link, and the flow c_jk (level_k - level_j) through
-// it.
+// The remaining network, link by link, and the flow through it:
+//     flow_j += sum over links of c_jk (level_k - level_j),  flow_k gets the opposite.
+// Each link adds to both ends with one product, so the flows of all sites cancel to
+// rounding. Sites may be linked on several fronts; such links are summed.
 #include "kron_fronts.h"
 
 #include "basics/memory.h"

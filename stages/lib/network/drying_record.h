@@ -5,7 +5,7 @@
 
 #include "network/network.h"
 
-// Times rise. A throat that no step names keeps its saturation.
+// Times never fall. A throat that no step names keeps its saturation.
 struct drying_record {
     int n_step;
     double *time, *saturation; // (n_step) s; of the network

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Balances of a network by CHOLMOD's simplicial L D L^T: lower triangle, AMD ordering,
-// one right side at a time.
+// Balances of a network by CHOLMOD's simplicial factor: lower triangle, AMD ordering,
+// one right side at a time. The entries are A_ii = diagonal_i, A_ij = -value_k summed
+// over links from i to j; then P A P^T = L D L^T, and x = P^T L^-T D^-1 L^-1 P b.
 #include "cholesky.h"
 
 #include "basics/memory.h"

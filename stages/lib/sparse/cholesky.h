@@ -18,7 +18,8 @@ enum status cholesky_make(const struct conductance_matrix *matrix,
                           struct cholesky **made, struct reason *reason);
 void cholesky_free(struct cholesky *cholesky);
 
-// Solves for B (n) into X (n); false when out of memory.
+// Solves for B (n) into X (n); false when out of memory. X is taken to be 0 at sites
+// where it is given, as in conductance_matrix.h.
 bool cholesky_solve(struct cholesky *cholesky, const double *b, double *x);
 
 #endif

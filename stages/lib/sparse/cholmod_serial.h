@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CHOLMOD as every stage uses it: simplicial, one ordering, silent, without BLAS, so
-// the same bytes for any number of threads.
+// CHOLMOD as every stage uses it. Three steps make a matrix: new_entries, add_entry for
+// each, take_matrix.
 #ifndef CRAQUELURE_CHOLMOD_SERIAL_H
 #define CRAQUELURE_CHOLMOD_SERIAL_H
 
@@ -26,6 +26,8 @@ static inline cholmod_triplet *new_entries(cholmod_common *common, int n, size_t
                                     common);
 }
 
+// Adds VALUE at (ROW, COLUMN), or at its mirror below the diagonal; entries at one
+// place are summed by take_matrix. No more than MOST.
 static inline void add_entry(cholmod_triplet *entries, int row, int column,
                              double value)
 {
@@ -35,6 +37,8 @@ static inline void add_entry(cholmod_triplet *entries, int row, int column,
     entries->nnz++;
 }
 
+// The sparse matrix of ENTRIES, which it frees. The caller frees it with
+// cholmod_free_sparse.
 static inline cholmod_sparse *take_matrix(cholmod_common *common,
                                           cholmod_triplet *entries)
 {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small dense products. Columns lie STRIDE apart. Products are fused and summed in the
-// same order on every machine.
+// Small dense products. Columns lie STRIDE apart: entry (i, p) of A at a[p a_stride +
+// i]. Products are fused and summed in the same order on every machine.
 #ifndef CRAQUELURE_DENSE_KERNELS_H
 #define CRAQUELURE_DENSE_KERNELS_H
 
 #include "basics/simd.h"
 
+// sum a_i b_i over N numbers at any address: eight running sums, of i mod 8, added at
+// the end; then the rest one by one.
 static inline double dot_product(int n, const double *a, const double *b)
 {
     double4 sum[2] = {{0}};

@@ -5,6 +5,14 @@
 // (finish_pivots) and subtract L U from the rows below, tile by tile (subtract_rows).
 // The panels reduce memory traffic; every number is what elimination column by column
 // gives.
+//
+// Layout: entry (r, c) of the matrix at matrix[row[r] stride + c]; rows never move,
+// only their order in `row`. The panel in `work` is a copy column by column, entry (r,
+// k) at work[k height + r]. In code order, per panel
+//     pivot: the row with the largest |a_rk|, r >= k, the first of equals;
+//     L_rk = a_rk / a_kk,  a_rl -= L_rk a_kl for l in the panel,
+//     then right of it U_pc = a_pc - sum_{i<p} L_pi U_ic,  a_rc -= sum_p L_rp U_pc.
+// A column without a number above 0 makes the matrix singular: false.
 
 enum {
     SIDE = 2 * SIMD_WIDTH,

@@ -8,8 +8,12 @@
 #include "elimination/approximate_cholesky.h"
 #include "elimination/conductance_matrix.h"
 
+// AUTO takes the Cholesky factor up to 1500 unknowns, where it is faster, and iteration
+// beyond.
 enum solver { SOLVER_AUTO, SOLVER_CHOLESKY, SOLVER_ITERATION };
 
+// Made once for a matrix, then asked for corrections as often as its caller's tolerance
+// wants: the residual, the limit and the failure are the caller's.
 struct linear_solver {
     const struct conductance_matrix *matrix;
     struct cholesky *cholesky; // one of the two, the other NULL
@@ -19,7 +23,7 @@ struct linear_solver {
 };
 
 // The matrix must outlive it. The caller frees with linear_solver_free, also after an
-// error.
+// error: those of cholesky_make; iteration has none.
 enum status linear_solver_make(const struct conductance_matrix *matrix,
                                enum solver solver, struct linear_solver *linear,
                                struct reason *reason);

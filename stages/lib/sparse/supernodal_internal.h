@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 // Columns FIRST to FIRST + COLUMNS - 1 share ROWS rows: their own, then those below.
+// Entry (row[i], first + j) of the factor is panel[j rows + i].
 struct supernode {
     int first, columns, rows;
     const int *row;

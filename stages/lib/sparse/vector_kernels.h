@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The kernels in which factors spend their time, for the vectors of this processor.
-// Each number has the same digits with AVX2 and AVX-512.
+// Each number has the same digits with AVX2 and AVX-512. Panels of supernodes are as in
+// supernodal_internal.h; eight right-hand sides lie side by side, row i at x[i BATCH].
 #ifndef CRAQUELURE_VECTOR_KERNELS_H
 #define CRAQUELURE_VECTOR_KERNELS_H
 
@@ -30,12 +31,14 @@ struct vector_kernels {
 };
 extern const struct vector_kernels vector_kernels_avx2, vector_kernels_avx512;
 
+// Those of this processor.
 static inline const struct vector_kernels *vector_kernels(void)
 {
     return has_avx512() ? &vector_kernels_avx512 : &vector_kernels_avx2;
 }
 
-// The same for four lanes.
+// The same for four lanes, row i at x[4 i]; the products fill four columns of SUM. One
+// version serves all processors.
 void forward_four(const struct supernode *super, double *x);
 void add_product_of_four(int n, const double *a, int a_lanes, const double *b,
                          double sum[BATCH][BATCH]);

@@ -6,6 +6,14 @@
 // Forward solves take up to MOST columns of a supernode at once, so that each row is
 // read once for all of them. Products keep a tile of TILE_COLUMNS by TALL vectors in
 // registers, with B packed so that its numbers come in order.
+//
+// Layout: a panel is column by column, L_ij at panel[j rows + i]; right-hand sides lie
+// side by side, lane q of row i at x[row[i] lanes + q]. In code order
+//     forward   x_j = (x_j - sum_{l<j} L_jl x_l) / L_jj, then x_i -= L_ij x_j below;
+//     finish    L_ij = (A_ij - sum_{l<j} L_jl L_il) / L_jj;
+//     add_tile  sum_il += sum_p a_pi b_pl, p over rows, i and l over lanes;
+//     multiply  C_ij = sum_p A_ip B_jp, A_ip at a[p a_stride + i], C by columns too.
+// Numbers are in the units of the matrix.
 #include "basics/simd.h"
 #include "dense_lu.h"
 #include "supernodal_internal.h"
@@ -26,8 +34,9 @@ SIMD_INLINE doublew subtract_product(doublew c, double a, doublew b)
 // inlined. Parts innermost: a number is read once for all of a row.
 #define UNROLLED _Pragma("GCC unroll 8")
 
-// A / B with the INVERSE of B at hand: one Newton step makes it as exact as a division,
-// and it is much sooner done.
+// A / B with the INVERSE of B at hand: one Newton step,
+//     x = A inverse,  x + (A - x B) inverse,
+// makes it as exact as a division, and it is much sooner done.
 SIMD_INLINE doublew divided(doublew a, double b, double inverse)
 {
     const doublew nearly = a * splat(inverse);
@@ -78,6 +87,7 @@ SIMD_INLINE void forward_columns(const struct supernode *super, int first, int w
     }
 }
 
+// SUPER's part of the forward solve for PARTS vectors of lanes.
 SIMD_INLINE void forward(const struct supernode *super, int parts, double *x)
 {
     const int columns = super->columns;
@@ -103,6 +113,7 @@ static void forward_eight(const struct supernode *super, double *x)
 
 // ---- the factor ---------------------------------------------------------------------
 
+// SIMD_WIDTH rows from AT on of WIDE columns, whose own triangle begins at row OWN.
 SIMD_INLINE void finish_rows(double *panel, int rows, int own, int wide, int at)
 {
     doublew x[8];
@@ -209,6 +220,8 @@ SIMD_INLINE void pack_first(double *to, const double *from, int count)
 #endif
 }
 
+// C gets TALL vectors of rows (ROWS of them count) by TILE_COLUMNS (COLUMNS count):
+// sums over K, one fused operation each, in rising order.
 SIMD_INLINE void multiply_tile(int tall, int k, const double *a, int a_stride,
                                const double *packed, double *c, int c_stride, int rows,
                                int columns)
