@@ -66,8 +66,10 @@ run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
 run_page := $(run_folder)/report.html
+ifneq ($(filter report $(run_page),$(MAKECMDGOALS)),)
 $(call page,$(run_page),$(SCENE),$(notdir $(run_folder)),$(call network_artifacts,$(run_folder)) $(call \
 	history_artifacts,$(run_folder)))
+endif
 # A wrong key of the last stage is not to be found after the others have run.
 run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats $(filter report,$(MAKECMDGOALS))
 ifdef really
