@@ -115,7 +115,7 @@ static struct vector *points_of(const struct network *network, uint32_t *second,
     for (int t = 0; network->throat_image && t < network->n_throat; t++)
         crossing += !same_image(network->throat_image[t], (struct image){0});
     struct vector *point = NEW_ARRAY(struct vector, n + crossing);
-    memcpy(point, network->node_position, (size_t)n * sizeof *point);
+    if (n) memcpy(point, network->node_position, (size_t)n * sizeof *point);
     *count = n;
     for (int t = 0; t < network->n_throat; t++) {
         second[t] = (uint32_t)network->throat_nodes[t][1];
