@@ -58,8 +58,8 @@ static const struct stage stage = {
     .writes = "bridge",
     .most_inputs = 0,
     .parameters = table,
-    .notes = "G: Gladkyy and Schwarze (2014). Forces that pull are positive. Where a "
-             "model is used outside its validity, `flags` says so."};
+    .notes = "Forces that pull are positive. Where a model is used outside its "
+             "validity, `flags` says so."};
 
 static struct bridge bridge_of(const struct bridge_parameters *given)
 {

@@ -40,7 +40,7 @@ static const struct parameter table[] = {
     {"bond_modulus", PARAMETER_NUMBER, "Pa", "4e8", AT(material.bond_modulus), ABOVE(0),
      .text = "Young's modulus of the bonds"},
     {"radius_fraction", PARAMETER_NUMBER, "1", "0.5", AT(material.radius_fraction),
-     BETWEEN(1e-6, 1), .text = "bond radius, of the smaller grain's"},
+     BETWEEN(1e-6, 1), .text = "bond radius over the radius of the smaller grain"},
     FLUID_ROWS(AT(conditions)),
     SURFACE_TENSION_ROW(AT(conditions)),
     CONTACT_ANGLE_ROW(AT(conditions), 89),

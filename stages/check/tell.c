@@ -39,7 +39,7 @@ static void tell_facts(const struct checked *checked, FILE *out)
     fprintf(out, "bonds      %d, %.3g a grain; the largest piece has %d grains", n_bond,
             2.0 * n_bond / facts->n, bonds->largest);
     if (bonds->at_bottom)
-        fprintf(out, ", %d hang together with the %d at the bottom", bonds->supported,
+        fprintf(out, ", %d are connected with the %d at the bottom", bonds->supported,
                 bonds->at_bottom);
     fputc('\n', out);
 }

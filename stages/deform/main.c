@@ -33,11 +33,11 @@ static const struct parameter table[] = {
     {"on_change", PARAMETER_CHOICE, "1", "\"refuse\"",
      offsetof(struct deform_parameters, on_change), .choices = "refuse|keep",
      .text = "if moved grains have another diagram: refuse writes nothing (exit status "
-             "1), keep leaves the network connected as it is"},
+             "1), keep does not change the connections of the network"},
     {"radii", PARAMETER_CHOICE, "1", "\"anew\"",
      offsetof(struct deform_parameters, radii), .choices = "anew|carried",
-     .text = "of the third input: as they are there, or drawn ones: each that of the "
-             "nearest throat before, changed like its clearance"},
+     .text = "of a third input: anew, as they are in it; carried, drawn radii: each "
+             "that of the nearest old throat, changed like its clearance"},
     {"write", PARAMETER_CHOICE, "1", "\"network\"",
      offsetof(struct deform_parameters, write), .choices = "network|packing",
      .text = "packing: the moved grains in their box, for tessellate"},
@@ -52,9 +52,9 @@ static const struct stage stage = {
     .most_inputs = 3,
     .parameters = table,
     .notes = "Inputs: a drying, whose final liquid is kept, or a network; the response "
-             "of the same grains, whose last snapshot says where they are now; and, if "
-             "these have another diagram, their network tessellated again, which takes "
-             "the liquid over."};
+             "of the same grains, whose last snapshot has their new positions; and, if "
+             "these have another diagram, the network of these positions, to which the "
+             "liquid is transferred."};
 
 // ---- what is asked for --------------------------------------------------------------
 

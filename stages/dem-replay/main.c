@@ -23,9 +23,10 @@ static const struct stage stage = {
     .writes = "response",
     .most_inputs = 2,
     .parameters = replay_table,
-    .notes = "A second input is the response of an earlier replay with keep_state, "
-             "from which this one continues: its grains, where they lie, what has "
-             "broken. Displacements count from where its grains began.",
+    .notes =
+        "A second input is the response of an earlier replay with keep_state, from "
+        "which this one continues: with the positions of its grains and the bonds that "
+        "have broken. Displacements count from the first positions of its grains.",
     .checkpoints = true};
 
 // Without a bond nothing can break, whatever the forces.
@@ -229,15 +230,14 @@ static void warn_if_restless(const struct load *load,
                              const struct response *response)
 {
     if (response->n_unconverged > 0)
-        report("under %d of the loads not all came to rest within "
-               "quasi_static.tolerance, under the last of them grain %d",
+        report("under %d of the loads not all grains came to rest within "
+               "quasi_static.tolerance; under the last of these loads grain %d did not",
                response->n_unconverged, response->unconverged_grain);
     else if (response->n_unsettled > load->n_time / 2)
-        report(
-            "%d of %d steps of the load did not come to rest, to an unbalanced ratio "
-            "of %g: cycles, tolerance and most_cycles say how long a step lasts, "
-            "engine=quasi-static finds the rest itself",
-            response->n_unsettled, load->n_time, ratio_at_rest(settings));
+        report("%d of %d steps of the load did not come to rest, to an unbalanced "
+               "ratio of %g: let steps last longer by cycles, tolerance and "
+               "most_cycles, or use engine=quasi-static, which finds equilibria",
+               response->n_unsettled, load->n_time, ratio_at_rest(settings));
 }
 
 // Grains that have moved by more than the largest radius, at any snapshot, and the one
@@ -276,14 +276,14 @@ static void warn_if_loose(const struct packing *packing,
     const int n = packing->n_particle;
     const bool most_are_far = 2 * far.count >= n && far.count > 0;
     if (response->n_detached > 0)
-        report("%d of %d grains came off the aggregate, grain %d the first: nothing "
+        report("%d of %d grains detached from the aggregate, grain %d first: nothing "
                "held %s under %s load",
                response->n_detached, n, response->first_detached,
                response->n_detached > 1 ? "them" : "it",
                response->n_detached > 1 ? "their" : "its");
     if (response->n_instability > 0)
-        report("it snapped through or buckled %d time%s, and dashpots brought it to "
-               "rest; grain %d moved most at the last",
+        report("the aggregate snapped through or buckled %d time%s, and dashpots "
+               "brought it to rest; grain %d moved most the last time",
                response->n_instability, response->n_instability > 1 ? "s" : "",
                response->instability_grain);
     if (far.count > 0)
@@ -296,8 +296,9 @@ static void warn_if_loose(const struct packing *packing,
                packing->n_bond);
     const bool is_loose = most_are_far || response->n_detached == n;
     if (settings->support == SUPPORT_WALL && n > 0 && is_loose)
-        report("support=wall holds only what the forces press on it: pressed together "
-               "alone an aggregate turns over (support=free takes that off)");
+        report("support=wall holds only a body that the forces press against the wall; "
+               "one that they only press together turns over (support=free removes net "
+               "force and moment)");
 }
 
 int main(int argc, char **argv)

@@ -18,17 +18,19 @@ const struct parameter replay_table[] = {
     {"friction", PARAMETER_NUMBER, "1", "0.5", AT(settings.material.friction),
      AT_LEAST(0), .text = "coefficient between grains"},
     {"damping_ratio", PARAMETER_NUMBER, "1", "0", AT(settings.material.damping_ratio),
-     AT_LEAST(0), .text = "of the dashpots at contacts, of critical [K 4.28]"},
+     AT_LEAST(0),
+     .text = "damping of the dashpots at contacts, over critical damping [K 4.28]"},
     {"tensile_damping", PARAMETER_BOOLEAN, "1", "true", AT(settings.tensile_damping),
      .text = "dashpots may pull grains that separate; false: the normal force of a "
              "contact without a bond is never below 0 [G 3]"},
     {"local_damping", PARAMETER_NUMBER, "1", "0.7", AT(settings.material.local_damping),
      BETWEEN(0, 0.99),
-     .text = "share of the net force on a grain that is subtracted while the grain "
-             "moves along it, added while it moves against it; for statics"},
+     .text =
+         "share of the net force on a grain: subtracted while the grain moves along "
+         "the force, added while it moves against it, so that it comes to rest"},
     {"normal_stiffness", PARAMETER_NUMBER, "N m-1", "3e4",
      AT(settings.material.normal_stiffness), AT_LEAST(0),
-     .text = "of a grain; two in series make a contact [K 4.22]"},
+     .text = "of a grain; a contact is two of these in series [K 4.22]"},
     {"shear_stiffness", PARAMETER_NUMBER, "N m-1", "3e4",
      AT(settings.material.shear_stiffness), AT_LEAST(0), .text = "of a grain"},
     {"bond.normal_stiffness", PARAMETER_NUMBER, "N m-3", "8e14",
@@ -45,18 +47,18 @@ const struct parameter replay_table[] = {
      .text = "shear stress that breaks a bond [K 4.42]"},
     {"bond.radius_fraction", PARAMETER_NUMBER, "1", "0.5858",
      AT(settings.bond.radius_fraction), BETWEEN(1e-6, 1),
-     .text = "bond radius, of the smaller grain's"},
+     .text = "bond radius over the radius of the smaller grain"},
     {"bond.moment_contribution", PARAMETER_NUMBER, "1", "1", AT(moment_contribution),
      BETWEEN(0, 1),
-     .text = "parallel bonds: share of bending and twist that their stresses count "
-             "[K 4.41: 1]; beta of PFC"},
+     .text = "parallel bonds: share of bending and twist in the stress that breaks "
+             "them [K 4.41: 1]; beta of PFC"},
     {"bond.by", PARAMETER_CHOICE, "1", "\"packing\"", AT(bonds_by),
      .choices = "packing|touching|distance|none",
      .text = "which grains are bonded: those the packing lists, those that touch, "
              "those within bond.gap, or none: contacts and bridges alone"},
     {"bond.gap", PARAMETER_NUMBER, "1", "0.01", AT(bond_gap), BETWEEN(0, 10),
      .text =
-         "largest gap that a bond spans, of the sum of the two radii; for by=distance"},
+         "by=distance: largest gap that a bond spans, over the sum of the two radii"},
     {"bond.strength.distribution", PARAMETER_CHOICE, "1", "\"one\"", AT(strength_law),
      .choices = "one|normal|weibull",
      .text = "distribution of the strengths around those above, one number per bond "
@@ -70,45 +72,46 @@ const struct parameter replay_table[] = {
      .text = "of the strengths (mt19937), drawn in the order of the places of bonds"},
     {"bond.kind", PARAMETER_CHOICE, "1", "\"parallel\"", AT(bond),
      .choices = "parallel|contact",
-     .text = "parallel: cylinders of glue [K 4.31-4.44]; contact: the contact's own "
-             "springs also in tension, without slip [K 4.2]"},
+     .text = "parallel: elastic cylinders [K 4.31-4.44]; contact: the springs of the "
+             "contact, which also pull and do not slip [K 4.2]"},
     {"bond.contact_strength", PARAMETER_NUMBER, "N", "null", AT(contact_strength),
      AT_LEAST(0),
-     .text = "tension or shear force that breaks a contact bond; null: none does"},
+     .text = "tension or shear force that breaks a contact bond; null: no force does"},
     {"prestress", PARAMETER_BOOLEAN, "1", "false", AT(prestress),
-     .text = "overlaps of the packing push from the start; false: grains lie at rest, "
-             "and only further approach pushes"},
+     .text = "true: overlaps of the packing push from the start; false: they do not, "
+             "only further approach does"},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", AT(support),
      .choices = "free|fixed|wall",
      .text = "free: net force and moment are removed; fixed: the grains of held "
              "neither move nor turn; wall: a rigid wall at the lower z side"},
     {"held.walls", PARAMETER_CHOICES, "1", "[\"-z\"]", AT(held.walls),
      .choices = "-x|+x|-y|+y|-z|+z",
-     .text = "for support=fixed: the grains that touch these sides"},
+     .text = "support=fixed: holds the grains that touch these sides"},
     {"held.grains", PARAMETER_LIST, "1", "[]", AT(held.grains), AT_LEAST(0),
-     .text = "and these, by number"},
+     .text = "support=fixed: holds these grains as well, by number"},
     {"held.lower", PARAMETER_POINT, "m", "null", AT(held.lower),
-     .text = "and those with their centres between this corner"},
+     .text = "support=fixed: holds grains with their centres in a box as well; its "
+             "lower corner"},
     {"held.upper", PARAMETER_POINT, "m", "null", AT(held.upper),
-     .text = "and this one"},
+     .text = "upper corner of this box"},
     {"loose_grains", PARAMETER_CHOICE, "1", "\"unload\"", AT(loose),
      .choices = "keep|unload",
-     .text =
-         "explicit: grains that no intact bonds join to a held grain (to the largest "
-         "fragment, where none is held) keep their load and fly, or are rid of its net "
-         "force and moment"},
+     .text = "explicit: grains that no intact bonds join to a held grain or, if none "
+             "is held, to the largest fragment; keep: their load stays, and they may "
+             "fly away; unload: the net force and moment of their load are removed"},
     {"engine", PARAMETER_CHOICE, "1", "\"auto\"", AT(engine),
      .choices = "explicit|quasi-static|auto",
-     .text = "auto: quasi-static without friction, where it is far faster, else "
-             "explicit; explicit: cycles of discrete elements [K 4]; quasi-static: "
-             "equilibrium itself, bonds breaking one by one"},
+     .text = "explicit: time steps of discrete elements [K 4]; quasi-static: "
+             "equilibria, bonds break one by one; auto: quasi-static without friction, "
+             "where it is far faster, else explicit"},
     {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8",
      AT(settings.equilibrium_tolerance), ABOVE(0),
      .text = "largest residual force or moment on a grain, over the largest load"},
     {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "40",
      AT(settings.most_iterations), BETWEEN(1, 1e9),
-     .text = "steps in time, slowed by dashpots, where equilibrium is not found at "
-             "once; grains that still move then go on under the next load"},
+     .text = "most steps in time, slowed by dashpots, if equilibrium is not found at "
+             "once (with large displacements: most without progress); grains that "
+             "still move after these go on under the next load"},
     {"quasi_static.rolling_stiffness", PARAMETER_NUMBER, "1", "1e-3",
      AT(settings.rolling), BETWEEN(0, 1),
      .text = "contact bonds: resistance to rolling and torsion, over the shear "
@@ -116,8 +119,9 @@ const struct parameter replay_table[] = {
              "like gears are not held"},
     {"quasi_static.large_displacements", PARAMETER_BOOLEAN, "1", "false",
      AT(settings.large_displacements),
-     .text = "grains may move and turn far: equilibrium on the geometry as it is; "
-             "false: directions are those of the packing, displacements small"},
+     .text = "true: grains may move and turn far, equilibria are those of the present "
+             "geometry; false: displacements are small, directions are those of the "
+             "packing"},
     {"quasi_static.increment", PARAMETER_NUMBER, "1", "0.02", AT(settings.increment),
      BETWEEN(1e-6, 0.1),
      .text = "with large displacements: largest rotation of a grain or a contact in "
@@ -125,8 +129,8 @@ const struct parameter replay_table[] = {
              "error falls with its square"},
     {"bridges.volume", PARAMETER_NUMBER, "m3", "0", AT(settings.liquid.volume),
      AT_LEAST(0),
-     .text = "of a liquid bridge between each two grains that touch [G 2], or with "
-             "shared on each grain; 0: none"},
+     .text = "volume of the liquid bridge between two grains that touch [G 2]; with "
+             "shared, of the liquid of each grain; 0: no bridges"},
     {"bridges.shared", PARAMETER_BOOLEAN, "1", "false", AT(settings.liquid.shared),
      .text = "each grain divides its liquid evenly among its bridges"},
     {"bridges.surface_tension", PARAMETER_NUMBER, "N m-1", "null",
@@ -138,14 +142,15 @@ const struct parameter replay_table[] = {
      .text = "of their liquid; null: that of the forces or, if they have none, 0"},
     {"bridges.model", PARAMETER_CHOICE, "1", "\"table\"", AT(bridge_model),
      .choices = BRIDGE_MODEL_CHOICES,
-     .text = "of their force; table: the exact solution, interpolated; the others are "
-             "fits"},
+     .text = "model of their force; table: the exact solution, interpolated; the "
+             "others are fits"},
     {"bridges.pull_in_contact", PARAMETER_BOOLEAN, "1", "true",
      AT(settings.liquid.pulls_in_contact),
-     .text = "also where grains overlap; false: only apart [G 4]"},
+     .text = "true: bridges also pull where grains overlap; false: only across a gap "
+             "[G 4]"},
     {"time_step_safety", PARAMETER_NUMBER_OR_NULL, "1", "null",
      AT(settings.time_step_safety), ABOVE(0),
-     .text = "time step, of the critical one of two grains [K 4.47]; null: half the "
+     .text = "time step over the critical one of two grains [K 4.47]; null: half the "
              "stability limit of the aggregate"},
     {"density_scaling", PARAMETER_BOOLEAN, "1", "true", AT(settings.density_scaling),
      .text =
@@ -157,14 +162,15 @@ const struct parameter replay_table[] = {
      .text = "time steps at each step of the forces [K 5.2]"},
     {"ramp", PARAMETER_INTEGER, "1", "5000", AT(settings.ramp), BETWEEN(0, 1e12),
      .text = "explicit: time steps over which the first load grows, before its cycles; "
-             "0: it comes at once"},
+             "0: it acts at once"},
     {"tolerance", PARAMETER_NUMBER_OR_NULL, "1", "1e-3", AT(settings.tolerance),
      ABOVE(0),
-     .text = "then continue until the unbalanced ratio [K 4.20] is below this; null: "
-             "do not"},
+     .text = "after its cycles each step continues until the unbalanced ratio [K 4.20] "
+             "is below this; null: it does not"},
     {"most_cycles", PARAMETER_INTEGER, "1", "10000", AT(settings.most_cycles),
      BETWEEN(1, 1e12),
-     .text = "more time steps than this at one step of the forces: it is unsettled"},
+     .text = "most time steps at one step of the forces; a step that needs more is "
+             "unsettled"},
     {"unsettled", PARAMETER_CHOICE, "1", "\"count\"", AT(unsettled),
      .choices = "stop|count",
      .text = "with tolerance: a step that did not come to rest within most_cycles ends "

@@ -29,8 +29,8 @@ static enum status check(const struct replay_settings *settings, struct reason *
 {
     if (settings->liquid.volume > 0)
         return refuse(reason, STATUS_BAD_DATA,
-                      "dem-replay.bridges.volume: equilibria have no liquid bridges, "
-                      "engine=explicit has");
+                      "dem-replay.bridges.volume: equilibria have no liquid bridges: "
+                      "use engine=explicit");
     return STATUS_OK;
 }
 

@@ -183,7 +183,8 @@ bool saved_by_equilibria(const struct array_list *list)
 enum status refuse_other_engine(struct reason *reason, const char *name)
 {
     return refuse(reason, STATUS_BAD_DATA,
-                  "was kept by engine=%s, which alone can go on from it", name);
+                  "was kept by engine=%s, and only that engine can continue from it",
+                  name);
 }
 
 const struct vector *saved_loads(const struct array_list *list,

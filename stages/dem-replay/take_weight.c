@@ -28,8 +28,8 @@ static double choose_gravity(const struct replay_parameters *parameters,
     const double gravity = is_given ? parameters->gravity : of_forces;
     if (gravity > 0 && is_free && is_given)
         die(STATUS_BAD_DATA,
-            "dem-replay.gravity: must be 0 with support=free, is %g: what nothing "
-            "holds falls, and bears no weight (support=fixed and wall hold it)",
+            "dem-replay.gravity: must be 0 with support=free, is %g: a body without "
+            "support falls under its weight (use support=fixed or wall)",
             gravity);
     if (gravity > 0 && packing->periodic[2])
         die(STATUS_BAD_DATA,

@@ -198,7 +198,7 @@ enum status check_steps(const struct drying_conditions *conditions,
     const double bytes = 12 * pow(n, 1.7) / 2; // rows as measured on cubic lattices
     return refuse(reason, STATUS_BAD_DATA,
                   "step_interval: must be above 0 in networks of more than %d throats, "
-                  "is 0 with %d: what changes at each event would come to some %.2g GB",
+                  "is 0 with %d: the changes at all events would take about %.2g GB",
                   MAX_RECORDED_THROATS, n, bytes / 1e9);
 }
 

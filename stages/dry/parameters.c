@@ -37,8 +37,8 @@ const struct parameter dry_table[] = {
          "vapour also goes from wide throats to narrow ones, and may condense there"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
-     .text = "viscous: flow is solved anew when a throat's saturation has changed by "
-             "this; 1: when one has emptied or filled"},
+     .text = "viscous: the flow is computed again when the saturation of a throat has "
+             "changed by this; 1: when a throat has emptied or filled"},
     {"open", PARAMETER_CHOICES, "1", "[\"+z\"]", AT(open_walls), .choices = WALLS,
      .text = "walls open to the drying air, any set; the others let nothing through"},
     {"imposed_empty", PARAMETER_CHOICES, "1", "[]", AT(imposed_empty),
@@ -52,7 +52,7 @@ const struct parameter dry_table[] = {
     LIQUID_DENSITY_ROW(GIVEN),
     {"boundary_layer.from", PARAMETER_CHOICE, "1", "\"mass_transfer\"",
      AT(transfer_law), .choices = "mass_transfer|thickness|sherwood|plate|sphere",
-     .text = "what its thickness is found from: the parameters so named, or air that "
+     .text = "what its thickness follows from: the parameter of this name, or air that "
              "flows along a plate [K 3.6] or around a sphere (Ranz and Marshall)"},
     {"boundary_layer.mass_transfer", PARAMETER_NUMBER, "m s-1", "null",
      AT(air.coefficient), ABOVE(0),
@@ -60,7 +60,7 @@ const struct parameter dry_table[] = {
          "mass transfer coefficient: the layer is diffusivity / this thick [K 3.3.5]; "
          "null: it is as thick as boundary_layer.thickness says"},
     {"boundary_layer.thickness", PARAMETER_NUMBER, "m", "5e-6", AT(air.thickness),
-     ABOVE(0), .text = "thickness"},
+     ABOVE(0), .text = "thickness of the layer"},
     {"boundary_layer.sherwood", PARAMETER_NUMBER, "1", "2", AT(air.sherwood), ABOVE(0),
      .text = "Sherwood number: the layer is flow_length / this thick"},
     {"boundary_layer.flow_length", PARAMETER_NUMBER, "m", "0", AT(air.length),
@@ -80,8 +80,9 @@ const struct parameter dry_table[] = {
          "of the surface exchanges with the air by the mass transfer coefficient"},
     {"boundary_layer.columns", PARAMETER_CHOICE, "1", "\"surface\"", AT(feet),
      .choices = "surface|auxiliary",
-     .text = "nodes it stands on: all of the surface, or those where throats of an "
-             "auxiliary layer of grains begin (pack.extra_layer) [K 3.3.5]"},
+     .text = "nodes that carry the columns of the layer: all of the surface, or those "
+             "where throats of an auxiliary layer of grains begin (pack.extra_layer) "
+             "[K 3.3.5]"},
     {"boundary_layer.layers", PARAMETER_INTEGER, "1", "0", AT(layers),
      BETWEEN(0, 10000),
      .text = "layers of nodes in it; 0: as far apart as throats are long"},

@@ -60,8 +60,9 @@ static const struct parameter table[] = {
      BETWEEN(1e-100, 1e100), .text = "alpha of [C 8]"},
     {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", AT(facet_pieces),
      .choices = "signed|unsigned",
-     .text = "of throats whose pores lie on one side of the facet: signed, a partition "
-             "of the void; or counted twice, as in Yade"},
+     .text =
+         "of throats whose two pores lie on the same side of the facet: signed, their "
+         "pieces add up to the void; unsigned: a part counts twice, as in Yade"},
     {"viscosity", PARAMETER_NUMBER, "Pa s", "0.001", AT(viscosity), ABOVE(0),
      .text = "of the fluid"},
     {"density", PARAMETER_NUMBER, "kg m-3", "1000", AT(density), AT_LEAST(0),
@@ -103,7 +104,7 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table,
     .notes = "Pores are the cells of the regular triangulation of the grains, throats "
-             "its facets. With write=forces the output is a forces artifact.\n"};
+             "its facets. With write=forces the output is a forces artifact."};
 
 // Everything a packing makes, and the flow through it.
 struct computation {

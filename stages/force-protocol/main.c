@@ -47,9 +47,9 @@ static const struct parameter table[] = {
          "grains pull each other in pairs; by K's plain sums: towards the middles of "
          "the throats [K 5.1], or in a layer over the arcs of a circle [K 3.20]"},
     {"balanced", PARAMETER_BOOLEAN, "1", "true", AT(balanced),
-     .text = "change the pulls of the form as little as possible so that each throat "
-             "alone leaves the grains around it in balance, forces and moments; "
-             "nothing changes on cubic lattices"},
+     .text = "correct the pulls of the form as little as possible, so that the forces "
+             "and moments of each throat on the grains around it sum to zero; on cubic "
+             "lattices nothing changes"},
     {"pressure", PARAMETER_CHOICE, "1", "\"uniform\"", AT(suction),
      .choices = "uniform|clusters|field",
      .text = "suction of the liquid: uniform, that of a throat of mean radius; in each "
@@ -61,9 +61,9 @@ static const struct parameter table[] = {
              "grains and does not pull them outwards (K 5.4: a full network presses "
              "its open top as well), or it pulls like any other"},
     {"gravity", PARAMETER_NUMBER_OR_NULL, "m s-2", "null", AT(gravity), AT_LEAST(0),
-     .text = "towards -z: the grains around each throat carry its liquid, and with "
-             "pressure=clusters the suction grows with height; null: that of the "
-             "drying (dry.gravity); 0: the liquid weighs nothing"},
+     .text = "towards -z: the grains around each throat carry the weight of its "
+             "liquid, and with pressure=clusters the suction grows with height; null: "
+             "that of the drying (dry.gravity); 0: the liquid weighs nothing"},
     {"steps", PARAMETER_INTEGER, "1", "550", AT(steps), BETWEEN(2, 1e7),
      .text =
          "uniform times from the start to the end of drying, both included [K 5.2]"},

@@ -27,8 +27,8 @@ static const struct parameter table[] = {
              "any merging"},
     {"threshold", PARAMETER_NUMBER, "1", "1e-6",
      offsetof(struct merge_parameters, threshold), AT_LEAST(0),
-     .text = "throats shorter than this go, the shortest first; the default removes "
-             "only those of degenerate packings"},
+     .text = "throats shorter than this are removed, the shortest first; the default "
+             "removes only the throats of zero length in degenerate packings"},
     {"volumes", PARAMETER_CHOICE, "1", "\"as_given\"",
      offsetof(struct merge_parameters, volumes), .choices = "as_given|conserved",
      .text = "as_given: where throats have volumes (/throats/volume) their sum stays, "

@@ -149,9 +149,9 @@ static enum status take_cloud(const struct making *making, struct domain *tall,
     packing_free(making->packing);
     return refuse(
         reason, STATUS_BAD_DATA,
-        "INPUT: grains overlap each other or the walls, and would have to be %.3g "
-        "as large not to: they would fly apart instead of falling (part them by "
-        "pack.method=explosive_repulsion)",
+        "INPUT: grains overlap each other or the walls so much that they would fly "
+        "apart instead of falling: without overlaps they would be %.3g of their size "
+        "(separate them first by pack.method=explosive_repulsion)",
         fits);
 }
 

@@ -36,8 +36,7 @@ const struct parameter pack_table[] = {
      .text = "of the radii; a lattice has one"},
     {"sizes.by", PARAMETER_CHOICE, "1", "\"number\"", AT(sizes.by),
      .choices = "number|mass",
-     .text = "what the distribution gives shares of; by mass, grains are as many as "
-             "mass over r^3"},
+     .text = "whether the distribution is of the numbers of grains or of their mass"},
     {"sizes.smallest", PARAMETER_NUMBER, "m", "null", AT(sizes.smallest), ABOVE(0),
      .text = "smallest radius, for uniform and power; normal, lognormal: nothing "
              "below; null: a tenth of radius, or five standard deviations of ln r"},
@@ -45,7 +44,7 @@ const struct parameter pack_table[] = {
      .text = "largest radius, for uniform and power; normal, lognormal: nothing above; "
              "null: five standard deviations (of ln r)"},
     {"sizes.spread", PARAMETER_NUMBER, "1", "0.1", AT(sizes.spread), BETWEEN(1e-6, 10),
-     .text = "standard deviation of normal and lognormal sizes, of their mean"},
+     .text = "standard deviation of normal and lognormal sizes, over their mean"},
     {"sizes.exponent", PARAMETER_NUMBER, "1", "2", AT(sizes.exponent), BETWEEN(-20, 20),
      .text = "power: density falls as r to minus this"},
     {"sizes.second_radius", PARAMETER_NUMBER, "m", "null", AT(sizes.second_radius),
@@ -56,9 +55,10 @@ const struct parameter pack_table[] = {
      .text = "radii of a sieve curve (half the openings), rising"},
     {"sizes.sieve.passing", PARAMETER_LIST, "1", "[]", AT(sizes.sieve_passing),
      BETWEEN(0, 1),
-     .text = "share of what is finer than each, from 0 to 1; linear in r in between"},
+     .text =
+         "share finer than each radius, rising from 0 to 1; linear in r between them"},
     {"seed", PARAMETER_INTEGER, "1", "1", AT(seed), BETWEEN(1, 4294967295),
-     .text = "of the random numbers (mt19937): sizes and places"},
+     .text = "of the random numbers (mt19937): sizes and positions"},
     {"periodic", PARAMETER_FLAGS, "1", "[false,false,false]", AT(domain.periodic),
      .text = "whether the box repeats along x, y and z (imported packing.h5 or LAMMPS "
              "dump: as it says)"},
@@ -71,7 +71,7 @@ const struct parameter pack_table[] = {
          "move, a cube for the count at the porosity expected (import: as for lower)"},
     {"domain.shape", PARAMETER_CHOICE, "1", "\"box\"", AT(domain.shape),
      .choices = "box|cylinder|ring|sphere",
-     .text = "what the grains lie in, wholly; cylinder and ring stand along z; "
+     .text = "region in which the grains lie wholly; cylinder and ring stand along z; "
              "dimensions=2: box or sphere (a disc)"},
     {"domain.centre", PARAMETER_POINT, "m", "null", AT(domain.centre),
      .text =
@@ -90,16 +90,17 @@ const struct parameter pack_table[] = {
     {"domain.cut.radius", PARAMETER_NUMBER, "m", "null", AT(domain.cut_radius),
      ABOVE(0), .text = "of a cylinder or sphere cut out"},
     {"domain.cut.lower", PARAMETER_POINT, "m", "null", AT(domain.cut_lower),
-     .text =
-         "lower corner of a box cut out; of a cylinder, z counts; null: right through"},
+     .text = "lower corner of a box cut out; of a cylinder only z counts, its lower "
+             "end; null: through the whole domain"},
     {"domain.cut.upper", PARAMETER_POINT, "m", "null", AT(domain.cut_upper),
-     .text = "upper corner, likewise"},
+     .text = "upper corner of a box cut out; of a cylinder its upper end; null: as for "
+             "lower"},
     {"target", PARAMETER_CHOICE, "1", "\"settled\"", AT(dynamics.target),
      .choices = "settled|porosity|coordination|pressure",
-     .text = "where moving grains end, at rest: as they lie (compressed: jammed, at "
-             "dynamics.overlap), or at target_value of porosity, of contacts a grain "
+     .text = "when moving grains stop, at rest: settled (compressed: jammed, at "
+             "dynamics.overlap), or with target_value of porosity, of contacts a grain "
              "(rattlers left out) or of mean stress in Pa; deposition and "
-             "explosive_repulsion settle"},
+             "explosive_repulsion always settle"},
     {"target_value", PARAMETER_NUMBER, "1", "null", AT(dynamics.value), ABOVE(0),
      .text = "of the target; null: none, for settled"},
     {"dynamics.density", PARAMETER_NUMBER, "kg/m3", "2500", AT(dynamics.density),
@@ -111,10 +112,10 @@ const struct parameter pack_table[] = {
      .text = "at walls; null: as between grains"},
     {"dynamics.stiffness", PARAMETER_NUMBER, "N/m", "null", AT(dynamics.stiffness),
      ABOVE(0),
-     .text = "normal, of a grain [K 4.22]; null: such that dynamics.overlap comes out"},
+     .text = "normal, of a grain [K 4.22]; null: the one that gives dynamics.overlap"},
     {"dynamics.overlap", PARAMETER_NUMBER, "1", "1e-3", AT(dynamics.overlap),
      BETWEEN(1e-9, 0.05),
-     .text = "typical of contacts at the end: on the floor over the radius "
+     .text = "typical overlap of contacts at the end: on the floor, over the radius "
              "(deposition); stress over stiffness and diameter (compressed, jammed)"},
     {"dynamics.shear_ratio", PARAMETER_NUMBER, "1", "0.2857142857142857",
      AT(dynamics.shear_ratio), BETWEEN(0, 1), .text = "shear over normal stiffness"},
@@ -122,8 +123,9 @@ const struct parameter pack_table[] = {
      BETWEEN(0, 2), .text = "ratio of the contacts' dashpots [K 4.28]"},
     {"dynamics.local_damping", PARAMETER_NUMBER, "1", "0.3", AT(dynamics.local_damping),
      BETWEEN(0, 0.9),
-     .text = "share by which forces are reduced that push a grain along its motion, so "
-             "that all comes to rest"},
+     .text =
+         "share of the net force on a grain: subtracted while the grain moves along "
+         "the force, added while it moves against it, so that it comes to rest"},
     {"dynamics.gravity", PARAMETER_NUMBER, "m/s2", "9.81", AT(dynamics.gravity),
      ABOVE(0), .text = "downwards along z, in deposition"},
     {"dynamics.time_step_safety", PARAMETER_NUMBER, "1", "0.1", AT(dynamics.safety),

@@ -118,11 +118,11 @@ def without_a_place(title, command):
                 process.send_signal(getattr(signal, name))
             said = process.communicate(timeout=60)[1].decode()
             ok(process.returncode == status and "kept: No such file or directory\n" in said
-               and (name or said.count("no state is kept this time; the run goes on\n") == 1)
+               and (name or said.count("the state was not kept this time; the run continues\n") == 1)
                and (name or said.count("No such file") == 1)
                and (name or read(whole) == read(cut)),
                f"{title}: a checkpoint that cannot be written is said, "
-               + (f"with status {status} on {name}" if name else "and the run goes on"),
+               + (f"with status {status} on {name}" if name else "and the run continues"),
                f"status {process.returncode}: {said}")
 
 

@@ -54,8 +54,7 @@ enum status find_mass_transfer(enum transfer_law law, const struct air_flow *flo
     transfer->thickness = diffusivity / transfer->coefficient;
     if (isnormal(transfer->thickness) && isnormal(transfer->coefficient))
         return STATUS_OK;
-    return refuse(
-        reason, STATUS_BAD_DATA,
-        "boundary_layer: must come to a thickness that numbers hold, got %g m",
-        transfer->thickness);
+    return refuse(reason, STATUS_BAD_DATA,
+                  "boundary_layer: must have a finite thickness above 0, got %g m",
+                  transfer->thickness);
 }

@@ -241,13 +241,13 @@ static void keep(void *context, const struct kept_state *state)
     checkpoint->written = now();
     if (status && signal_now) exit(status);
     if (status && !silent)
-        report("%s: no state is kept this time; the run goes on",
+        report("%s: the state was not kept this time; the run continues",
                checkpoint->invocation->checkpoint);
     checkpoint->has_failed = status != 0;
     if (!signal_now) return;
     if (!checkpoint->invocation->quiet)
-        report("stopped: %s: the same call goes on from %s", strsignal(signal_now),
-               checkpoint->invocation->checkpoint);
+        report("stopped: %s: repeat the same command to continue from %s",
+               strsignal(signal_now), checkpoint->invocation->checkpoint);
     signal(signal_now, SIG_DFL);
     raise(signal_now);
 }

@@ -363,8 +363,7 @@ static enum status check_time_step(const struct dem *dem, const struct dem_setup
     const double step = dem_time_step(dem), limit = dem_time_step_limit(dem);
     if (!(step > 0 && limit > 0))
         return refuse(reason, STATUS_BAD_DATA,
-                      "density and stiffness must leave a time step that numbers hold, "
-                      "got %g s",
+                      "density and stiffness must give a time step above 0, got %g s",
                       step);
     if (step <= limit) return STATUS_OK;
     if (setup->time_step > 0)

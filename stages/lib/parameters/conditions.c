@@ -92,11 +92,11 @@ static enum status complete_air(struct conditions *conditions, struct reason *re
         return STATUS_OK;
     }
     if (conditions->fluid != FLUID_WATER && is_named(conditions))
-        return refuse(reason, STATUS_BAD_DATA,
-                      "relative_humidity: is that of water vapour, but the liquid is "
-                      "%s: air_vapour_pressure says how much of its vapour is in the "
-                      "air",
-                      fluid_name((enum fluid)conditions->fluid));
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "relative_humidity: is that of water vapour, but the liquid is %s: give "
+            "the pressure of its vapour in the air, air_vapour_pressure",
+            fluid_name((enum fluid)conditions->fluid));
     if (!isnan(conditions->air_vapour_pressure))
         return refuse(reason, STATUS_BAD_DATA,
                       "relative_humidity: must be null where air_vapour_pressure is "
@@ -164,8 +164,8 @@ void conditions_note(const struct conditions *conditions, unsigned needed)
         const double value = conditions->property[k], own = own_value(conditions, k);
         if (!(conditions->given >> k & 1) || !(needed >> k & 1)) continue;
         if (!(fabs(value - own) > 0.1 * own)) continue; // nor where none is known
-        report("%s = %.6g %s was given, but %s at %g K has %.6g: null takes that, "
-               "fluid=other says that another liquid is meant",
+        report("%s = %.6g %s was given, but %s at %g K has %.6g: null uses that value, "
+               "fluid=other is for another liquid",
                properties[k].key, value, properties[k].unit, name,
                conditions->temperature, own);
     }

@@ -41,7 +41,7 @@ static const struct argp_option options[] = {
     {"params", 'p', "FILE", 0, "Parameters: a scene, or just this stage's section", 0},
     {"set", 's', "KEY=VALUE", 0,
      "Override one parameter; VALUE is JSON, or a word; may be repeated", 0},
-    {"output", 'o', "FILE", 0, "Write there; '-', or nothing: standard output", 0},
+    {"output", 'o', "FILE", 0, "Write to FILE; '-', or no -o: standard output", 0},
     {"threads", KEY_THREADS, "N", 0, "Threads to use [1]; results do not depend on it",
      0},
     {"quiet", 'q', NULL, 0, "Print only errors", 0},
@@ -151,6 +151,33 @@ static bool shares(const struct parameter *table)
     return false;
 }
 
+static bool mentions(const char *text, const char *word)
+{
+    return text && strstr(text, word);
+}
+
+// MARK is "[K" of "[K 4.22]".
+static bool cites(const struct stage *stage, const char *mark)
+{
+    for (const struct parameter *p = stage->parameters; p->key; p++)
+        if (mentions(p->text, mark)) return true;
+    return mentions(stage->summary, mark) || mentions(stage->notes, mark);
+}
+
+static void print_cited(const struct stage *stage, FILE *stream)
+{
+    static const char *const papers[][2] = {
+        {"[K", "K: Kharaghani's thesis on drying and cracking of aggregates"},
+        {"[G", "G: Gladkyy and Schwarze (2014) on models of capillary bridges"},
+        {"[C", "C: Chareyre and others (2012) on flow through packings of spheres"}};
+    const char *before = "\n";
+    for (size_t k = 0; k < sizeof papers / sizeof *papers; k++) {
+        if (!cites(stage, papers[k][0])) continue;
+        fprintf(stream, "%s%s\n", before, papers[k][1]);
+        before = "";
+    }
+}
+
 // The text of --help behind the options: parameters with their defaults, what is read
 // and written.
 static char *help_filter(int key, const char *text, void *input)
@@ -171,11 +198,12 @@ static char *help_filter(int key, const char *text, void *input)
         fprintf(stream, "Writes: a page, HTML\n");
     else
         fprintf(stream, "Writes: %s (schemas/%s.json)\n", stage->writes, stage->writes);
-    fprintf(stream, "\nK: Kharaghani's thesis on drying and cracking of aggregates.\n"
-                    "\nExit status:\n"
-                    "  0 done; 1 the answer is no; 3 not converged, or unstable;\n"
-                    "  64 command line; 65 bad input or parameters; 66 no such input;\n"
-                    "  70 internal error; 73 cannot create; 74 failed I/O");
+    print_cited(stage, stream);
+    fprintf(stream,
+            "\nExit status:\n"
+            "  0 done; 1 ran, but the answer is no; 3 not converged, or unstable;\n"
+            "  64 command line; 65 bad input or parameters; 66 no such input;\n"
+            "  70 internal error; 73 cannot create; 74 failed I/O");
     fclose(stream);
     return help;
 }

@@ -95,10 +95,11 @@ void quasi_static_free(struct quasi_static *qs)
 
 static enum status refuse_numbers(int grain, struct reason *reason)
 {
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "no equilibrium of grain %d that numbers hold: stiffnesses lie too "
-                  "far apart (engine=explicit solves no equations)",
-                  grain);
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "the equilibrium of grain %d cannot be computed: stiffnesses differ by too "
+        "many orders of magnitude (engine=explicit solves no equations)",
+        grain);
 }
 
 static enum status check_displacements(const struct quasi_static *qs,
@@ -110,12 +111,11 @@ static enum status check_displacements(const struct quasi_static *qs,
         if (isnan(displacement_size(qs->displacement[i])))
             return refuse_numbers(i, reason);
         if (qs->large) continue;
-        return refuse(reason, STATUS_NOT_CONVERGED,
-                      "grain %d moves %.3g mean radii: displacements are not small, "
-                      "and equilibrium is a matter of dynamics "
-                      "(quasi_static.large_displacements=true, "
-                      "engine=explicit, or stiffer bonds)",
-                      i, displacement_size(qs->displacement[i]));
+        return refuse(
+            reason, STATUS_NOT_CONVERGED,
+            "grain %d moves %.3g mean radii: displacements are not small (use "
+            "quasi_static.large_displacements=true, engine=explicit or stiffer bonds)",
+            i, displacement_size(qs->displacement[i]));
     }
     for (int j = 0; j < qs->n_pair; j++) {
         const double *load = qs->response[j].load;

@@ -109,10 +109,10 @@ static bool detach_or_break(struct quasi_static *qs, double reached, int *softes
 static enum status refuse_end(double balanced, int softest, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "equilibrium ends with %.6f of what this load changes: the stiffness "
+                  "equilibrium ends at %.6f of the change of this load: the stiffness "
                   "is no longer positive (buckling, or a snap through), grain %d moves "
                   "most, and dashpots do not bring it to rest (engine=explicit follows "
-                  "what comes then)",
+                  "the motion after that)",
                   balanced, softest);
 }
 
@@ -123,12 +123,12 @@ static enum status refuse_long(struct quasi_static *qs, const struct load_path *
     qs->large->load_factor = 1;
     roll_back_state(qs);
     update_residual(qs);
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "equilibrium is not reached: %.6f of what this load changes is "
-                  "balanced after as many increments and steps in time as %.0f easy "
-                  "ones, grain %d is furthest from it (more steps of the load, a "
-                  "larger quasi_static.increment, or engine=explicit)",
-                  balanced(path), qs->large->work_limit, grain_of_largest_residual(qs));
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "equilibrium is not reached: %.6f of the change of this load is balanced after "
+        "the work of %.0f easy increments, grain %d is furthest from balance (more "
+        "steps of the load, a larger quasi_static.increment, or engine=explicit)",
+        balanced(path), qs->large->work_limit, grain_of_largest_residual(qs));
 }
 
 // What moves goes on under the next load. It counts once under a load, also where bonds
