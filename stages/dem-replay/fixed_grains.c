@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A grain is fixed if it touches one of the walls, lies in the region, or is listed.
+// The region includes its surface; where none is given its corners are NAN, which no
+// centre lies between. Parameters are checked before anything is allocated.
 #include "fixed_grains.h"
 
 #include "basics/memory.h"

@@ -7,15 +7,17 @@
 #include "geometry/packing.h"
 #include "parameters/parameters.h"
 
-// The union of these.
+// The union of these. Numbers count from 0; lengths in m. A grain on the surface of the
+// region is in it.
 struct fixed_grains {
     unsigned walls;            // bit k: the grains that touch wall k of the box
     struct number_list grains; // by number
     double lower[3], upper[3]; // grains with their centres in here; NAN: none
 };
 
-// IS_HELD (n_particle) becomes 1 for each fixed grain; the caller frees it.
-// STATUS_BAD_DATA: a grain that does not exist, or only one corner of a region.
+// *IS_HELD (n_particle) becomes 1 for each fixed grain and 0 elsewhere; the caller
+// frees it. STATUS_BAD_DATA, with the key in the reason, and nothing allocated: a grain
+// that does not exist, only one corner of a region, or an upper corner below the lower.
 enum status find_fixed_grains(const struct packing *packing,
                               const struct fixed_grains *held, uint8_t **is_held,
                               struct reason *reason);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of the load, and the forces of a step.
+// Rows of the load, and the forces of a step. A load is stored row by row: the force on
+// grain i at step k is force[k n_particle + i].
 #include "replay_engine.h"
 
 #include <string.h>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // dem-replay: what the capillary forces do to the bonded grains.
+//
+// It reads the forces of a drying and, as a second input, the response of an earlier
+// replay, whose packing then replaces that of the forces. Order matters: bonds first
+// (choose_grains), because the choice of the engine and the strengths depend on them;
+// the weight before the replay, because it is added to every row of the load. After the
+// replay come warnings, then the artifact.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters, and what follows from them: the kind of bonds, the liquid of bridges,
+// and the engine. With engine=auto equilibria are taken only where each load has one of
+// its own, found quickly (suits_equilibria); everything else runs by cycles.
 #include "parameters.h"
 
 #include "replay_engine.h"
@@ -185,6 +188,8 @@ const struct parameter replay_table[] = {
              "finds them again"},
     {0}};
 
+// The replay takes snapshots in this order, each at the first load at or below its
+// saturation.
 static void check_snapshots(const struct number_list *snapshots)
 {
     for (int k = 1; k < snapshots->count; k++)
@@ -195,7 +200,8 @@ static void check_snapshots(const struct number_list *snapshots)
                 snapshots->value[k], snapshots->value[k - 1]);
 }
 
-// Strengths of parallel bonds are stresses, those of contact bonds forces.
+// Strengths of parallel bonds are stresses, those of contact bonds forces. A contact
+// bond without a given strength never breaks.
 static void choose_bonds(const struct replay_parameters *parameters,
                          struct replay_settings *settings)
 {
@@ -207,6 +213,8 @@ static void choose_bonds(const struct replay_parameters *parameters,
     settings->bond.shear_strength = settings->bond.normal_strength;
 }
 
+// What the user leaves open comes from the forces, and what these leave open from water
+// at 20 degrees Celsius. The engine wants the contact angle in radians.
 const char *complete_bridges(struct replay_parameters *parameters,
                              const struct artifact *forces, char *difference,
                              size_t size)

@@ -9,31 +9,39 @@
 #include "parameters/parameters.h"
 #include "replay.h"
 
+// What the table reads into. Choices are the numbers of their enumerators in replay.h,
+// bonds.h and dem/; NAN: not given.
 struct replay_parameters {
-    struct replay_settings settings;
+    struct replay_settings settings;        // completed by the functions below
     struct liquid_properties bridge_liquid; // tension and angle
-    struct fixed_grains held;
-    struct strength_scatter scatter;
+    struct fixed_grains held;               // with support=fixed
+    struct strength_scatter scatter;        // its law is strength_law
     int support, engine, loose, unsettled, bond, bonds_by, strength_law, bridge_model;
-    bool prestress;
+    bool prestress; // overlaps of the packing push from the start
     double bond_gap, contact_strength, moment_contribution, gravity;
-    struct number_list snapshots;
+    struct number_list snapshots; // saturations, falling
 };
 
 extern const struct parameter replay_table[];
 
-// Completes the settings from the rest of PARAMETERS, which must outlive them. Ends the
-// program if they contradict each other.
+// Completes the settings from the rest of PARAMETERS, which must outlive them: the list
+// of snapshots is not copied. What depends on the input (bonds, engine, weight, held
+// grains) is left to the functions that know it. Ends the program with status 65 if
+// snapshots do not fall.
 void complete_settings(struct replay_parameters *parameters, int threads);
 
 // Gives bridges the liquid of FORCES unless the user gave one. Returns DIFFERENCE (SIZE
-// bytes): one line if the user's liquid differs, else empty.
+// bytes): one line if the user's liquid differs, else empty. A user's value comes
+// first, then that of the forces, then water at 20 degrees Celsius.
 const char *complete_bridges(struct replay_parameters *parameters,
                              const struct artifact *forces, char *difference,
                              size_t size);
 
-// Sets the engine that PARAMETERS name, or the one that suits the grains, with its
-// reason. Ends the program if it cannot do what is asked of it.
+// Sets .engine and .engine_reason of SETTINGS. With engine=auto that is the
+// quasi-static one if friction is 0, support is fixed, bonds are parallel, overlaps at
+// rest, there are bonds but no bridges, and at most 1500 grains (docs/equilibrium.md).
+// Bonds must be known. Ends the program with status 65 if the engine cannot do what is
+// asked of it.
 void choose_engine(const struct replay_parameters *parameters,
                    const struct packing *packing, struct replay_settings *settings);
 

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The replay itself, the same for both engines: step after step of the load, the
-// engine advances to rest or equilibrium (replay_engine.h), and what has happened is
-// recorded: cracks with the step they broke in, the unbalanced ratio, the reaction of
-// the supports, and snapshots at chosen saturations. Steps below 0 bring a body to
-// rest under its weight before drying; bonds that break then count as broken before.
+// The replay itself, the same for both engines: step after step of the load, the engine
+// advances to rest or equilibrium (replay_engine.h), and what has happened is recorded:
+// cracks with the step they broke in, the unbalanced ratio, the reaction of the
+// supports, and snapshots at chosen saturations. Steps below 0 bring a body to rest
+// under its weight before drying; bonds that break then count as broken before.
+//
+// For each step, in this order: the engine advances; cracks, cycles, ratio, settled and
+// reaction are noted; snapshots that are due are taken; the place moves on. Cracks that
+// an earlier replay or the weight has made are the first n_before of the engine's list
+// and are skipped. The reaction of a free body is the load that was taken off, the
+// other way.
 #include "replay.h"
 
 #include "basics/memory.h"

@@ -11,12 +11,14 @@
 #include <math.h>
 #include <stdbool.h>
 
+// What holds the body while forces act on it.
 enum support {
     SUPPORT_FREE,  // no support; net force and moment are removed from the load
     SUPPORT_FIXED, // some grains are fixed: they neither move nor rotate
     SUPPORT_WALL   // a rigid wall beneath, at the lower z wall
 };
 
+// How each state of rest is found; docs/equilibrium.md compares both.
 enum engine {
     ENGINE_EXPLICIT,    // cycles of discrete elements [K 4]
     ENGINE_QUASI_STATIC // equilibrium itself
@@ -32,13 +34,14 @@ enum unsettled {
     UNSETTLED_GOES_ON // it is counted
 };
 
-// Forces over time, as forces.h5 holds them.
+// Forces over time, as forces.h5 holds them: row k is step k of the replay.
 struct load {
     int n_time;
-    double *time, *saturation; // (n_time)
+    double *time, *saturation; // (n_time) s, rising; of the network, from 1 down
     struct vector *force;      // (n_time * n_particle) N
 };
 
+// How to replay. It owns nothing: arrays must outlive the replay.
 struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
@@ -57,10 +60,11 @@ struct replay_settings {
     double rolling;               // quasi-static, contact bonds: of shear stiffness
     bool large_displacements;     // quasi-static: on the geometry as it is
     double increment;             // then: of turns, rad, and of strains
-    bool density_scaling; // explicit: every grain has the inertia of the mean one
-    double time_step_safety;
-    bool force_time_step;
-    int64_t cycles;      // at every step of the load
+    bool density_scaling;    // explicit: every grain has the inertia of the mean one
+    double time_step_safety; // explicit: of the critical step [K 4.47]; NAN: half the
+                             // stability limit (dem/dem.h)
+    bool force_time_step;    // explicit: a step above the limit is taken, not refused
+    int64_t cycles;          // at every step of the load
     int64_t ramp;        // before them at the first, while the load grows from nothing
     double tolerance;    // on [K 4.20]: go on until below; NAN: the cycles are enough
     int64_t most_cycles; // beyond them at one step; then it is unsettled
@@ -75,16 +79,18 @@ struct replay_settings {
                                  // breaks under it is no crack of drying; NULL: none
 };
 
+// The state of the grains when a load has been carried. It owns its arrays.
 struct snapshot {
     int step; // row of the load
     double time, saturation;
-    struct vector *displacement; // (n_particle) m
+    struct vector *displacement; // (n_particle) m, from the places of the packing
     struct vector *force;        // (n_particle) N, external
     uint8_t *intact;             // (n_bond)
     struct dem_contact *contact; // (n_contact)
     int n_contact;
 };
 
+// What came out of a replay; freed with response_free.
 struct response {
     int n_crack; // of this replay; an earlier one's are not among them
     struct dem_crack *crack;
@@ -125,7 +131,10 @@ bool is_loaded(const struct load *load, int n, int step);
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the
 // run diverged, or a step did not settle within its cycles or iterations;
 // STATUS_BAD_DATA: KEEPER, which may be NULL, begins with a state that is not one of
-// such a replay, or SETTINGS do. The caller frees *RESPONSE with response_free.
+// such a replay, or SETTINGS do. The caller frees *RESPONSE with response_free. On
+// failure *RESPONSE is empty, and the reason names the step if one had begun. The same
+// inputs give the same bytes for any number of threads, and for a run in one piece or
+// continued from its checkpoints.
 enum status replay(const struct packing *packing, const struct load *load,
                    const struct replay_settings *settings,
                    const struct replay_progress *progress, const struct keeper *keeper,
@@ -137,6 +146,7 @@ static inline double ratio_at_rest(const struct replay_settings *settings)
     return isnan(settings->tolerance) ? 1e-4 : settings->tolerance;
 }
 
+// Frees what the response owns and empties it.
 void response_free(struct response *response);
 
 #endif

@@ -6,6 +6,11 @@
 // of a free body every TAKE_OFF_EVERY cycles, of loose fragments every STOP_EVERY, so
 // that a run continued from a checkpoint makes the same bytes. At the first step the
 // load grows linearly.
+//
+// A body with weight first comes to rest with unbreakable bonds and strong local
+// damping (STEP_WHOLE), then with its true bonds (STEP_WEIGHT); drying begins from
+// there. During the ramp of the first step, with share from 0 to 1,
+//     force = weight + share (load - weight).
 #include "replay_engine.h"
 
 #include "basics/memory.h"

@@ -2,7 +2,9 @@
 // The replay as one equilibrium after another (quasi_static/quasi_static.h). The state
 // of a replay is the sequence of its loads: a later one repeats them, each equilibrium
 // starting from the last. Checkpoints are taken where the solver drops its caches, in
-// runs with and without checkpoints alike, so that both make the same bytes.
+// runs with and without checkpoints alike, so that both make the same bytes. Cycles are
+// iterations here. A load is settled if the number of loads that did not converge has
+// not grown under it.
 #include "replay_engine.h"
 
 #include "basics/memory.h"

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The response so far as named arrays, and back, with checks of everything that the
-// run relies on: ranges, ascending steps, ordered pairs, counts that add up.
+// The response so far as named arrays, and back, with checks of everything that the run
+// relies on: ranges, ascending steps, ordered pairs, counts that add up.
+//
+// A list with "load_force" belongs to equilibria (saved_by_equilibria). Contacts of all
+// snapshots stand one after the other, with how many are of each. Bridges are left out
+// where there are none, and the ratio under the weight where it is NAN: NAN would be
+// out of every range. Nothing read is used before it is checked, as a file may have
+// been changed.
 #include "replay_checkpoint.h"
 
 #include "basics/memory.h"
@@ -9,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Numbers beyond `largest` are no state of a run; `most_cycles` is the last whole
+// number before doubles have gaps.
 static const double largest = 1e150, most_cycles = 0x1p53;
 static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge";
 

@@ -13,7 +13,7 @@ struct replay_place {
     int64_t began; // cycle of the engine when the step began
 };
 
-// A new list, freed by keep_state.
+// RESPONSE and PLACE as a new list, which keep_state frees. N_TIME: rows of the load.
 struct array_list save_response(const struct response *response,
                                 const struct packing *packing, int n_time,
                                 struct replay_place place);
@@ -34,19 +34,23 @@ struct array_list save_loads(const struct array_list *earlier,
                              const struct vector *weight, const struct load *load,
                              const struct packing *packing);
 
-// Whether LIST was kept by equilibria (save_loads), not by cycles; and the refusal of a
-// list that was kept by the other engine, NAME.
+// Whether LIST was kept by equilibria (save_loads), not by cycles. Neither can go on
+// from a state of the other.
 bool saved_by_equilibria(const struct array_list *list);
+
+// STATUS_BAD_DATA, with the NAME of the engine that kept the list in the reason.
 enum status refuse_other_engine(struct reason *reason, const char *name);
 
-// The loads (*n_load * n_particle, N) in such a LIST, which owns them; NULL with the
-// reason.
+// The loads in such a LIST, which owns them, as (*n_load, n_particle) N: what has to be
+// repeated to get the state back. NULL, with the reason, if they are not in it or are
+// not whole rows of this packing.
 const struct vector *saved_loads(const struct array_list *list,
                                  const struct packing *packing, int *n_load,
                                  struct reason *reason);
 
-// Restores the results under the weight to RESPONSE from such a LIST; the engine has
-// N_CRACK cracks.
+// Restores from such a LIST how many bonds broke under the weight, and the unbalanced
+// ratio when drying began, to RESPONSE. The engine has N_CRACK cracks, which there
+// cannot be more of. STATUS_BAD_DATA: they are not in it, or out of range.
 enum status restore_weight(struct response *response, int n_crack,
                            const struct array_list *list, struct reason *reason);
 
@@ -58,9 +62,10 @@ struct engine_past {
     int64_t cycle;
 };
 
-// Fills RESPONSE, as empty as replay begins with, from LIST and the PAST; no step is
-// before FIRST_STEP.
-// STATUS_BAD_DATA: not the list of such a replay.
+// Fills RESPONSE, as empty as replay begins with, from LIST and the PAST, and *PLACE
+// with the step that was on the way. No step is before FIRST_STEP, and there are at
+// most MOST_SNAPSHOTS. STATUS_BAD_DATA, with the array and the rule in the reason: not
+// the list of such a replay. What RESPONSE has by then is freed with response_free.
 enum status restore_response(struct response *response, const struct packing *packing,
                              const struct load *load, int first_step,
                              int most_snapshots, const struct engine_past *past,

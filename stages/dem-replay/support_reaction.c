@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The reaction of the supports on the grains, and its moment about the lower corner of
+// the box:
+//     force  = - sum over fixed grains of f_i - force on the wall,
+//     moment = - sum over fixed grains of (x_i x f_i + m_i) - moment on the wall,
+// with f_i, m_i everything that acts on a fixed grain: contacts, bonds and its own
+// load, and x_i from the lower corner. A wall's moment is about its point, which is the
+// lower corner. Fixed grains do not move, so x_i are places of the packing. From an
+// equilibrium the reaction comes without the loads on fixed grains, which are added
+// here.
 #include "support_reaction.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How gravity comes in. The grains get the gravity of the parameters, or where that is
+// left open the one that the forces were made with (force-protocol.gravity), and none
+// where nothing supports the body. Bond numbers are computed in any case, with the
+// gravity of the Earth where there is none, so that a user who leaves weight out is
+// told when it matters. They need the load without the weight of the grains:
+// find_bond_numbers comes before add_weight.
 #include "take_weight.h"
 
 #include "basics/memory.h"
@@ -69,6 +75,7 @@ struct taken_weight take_weight(const struct artifact *input,
 
 // ---- told ---------------------------------------------------------------------------
 
+// Weight matters from a twentieth of the suction on.
 void warn_of_weight(const struct taken_weight *weight, const struct response *response,
                     const struct packing *packing)
 {

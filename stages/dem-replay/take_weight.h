@@ -7,6 +7,7 @@
 #include "parameters.h"
 #include "weight.h"
 
+// The weight that a replay is done with.
 struct taken_weight {
     double gravity;              // m/s2; 0: left out
     double gravity_of_liquid;    // in the forces; 0: they have no weight of it
@@ -14,9 +15,11 @@ struct taken_weight {
     struct bond_numbers numbers; // with the gravity of the Earth where there is none
 };
 
-// Adds the weight of the grains to LOAD, the forces of INPUT, and gives SETTINGS the
-// weight before drying. The caller frees .standing. Ends the program if nothing could
-// support it.
+// Takes the weight of the grains into account: adds it to every row of LOAD, which
+// comes from INPUT, and gives SETTINGS the load before drying. That of the liquid is in
+// the forces already, if they were made with gravity. Ends the program with status 65
+// for a gravity with support=free, or in a box that repeats along z. The caller frees
+// .standing, which SETTINGS then point to.
 struct taken_weight take_weight(const struct artifact *input,
                                 const struct replay_parameters *parameters,
                                 const struct packing *packing, struct load *load,
@@ -27,8 +30,8 @@ struct taken_weight take_weight(const struct artifact *input,
 void warn_of_weight(const struct taken_weight *weight, const struct response *response,
                     const struct packing *packing);
 
-// Warns if parameters are the defaults, those of K's grains, and the grains are of
-// another size.
+// Warns if stiffnesses or strengths are the defaults, those of K's grains [K Table
+// 5.1], and the mean radius is more than ten times larger or smaller.
 void warn_of_defaults(const struct replay_parameters *parameters,
                       const struct packing *packing);
 
@@ -36,6 +39,8 @@ void warn_of_defaults(const struct replay_parameters *parameters,
 // weight.
 const char *describe_weight(const struct taken_weight *weight, char text[200]);
 
+// Writes the Bond numbers and, with weight, gravity and the bonds that it broke before
+// drying, to a response artifact.
 void put_weight(struct artifact *artifact, const struct taken_weight *weight,
                 const struct response *response);
 

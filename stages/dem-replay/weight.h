@@ -5,7 +5,7 @@
 
 #include "replay.h"
 
-// What the weight is computed from.
+// What the weight is computed from. It owns nothing.
 struct weighing {
     const struct packing *packing;
     double density;       // of the grains, kg/m3

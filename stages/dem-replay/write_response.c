@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The response artifact. Contacts of all snapshots share one list of pairs, sorted and
-// unique; a snapshot has 0 where it does not have a contact.
+// unique; a snapshot has 0 where it does not have a contact. A crack has time and
+// saturation of the load it opened under, not of the cycle. Contacts with a wall are
+// left out. The tables of snapshots are (n_snapshot, n_contact), so their size grows
+// with all contacts that there ever were.
 #include "write_response.h"
 
 #include "basics/memory.h"

@@ -6,12 +6,14 @@
 #include "artifacts/artifact.h"
 #include "replay.h"
 
-// Puts cracks, history, contacts and snapshots into a response artifact.
+// Puts cracks, history, contacts and snapshots into a response artifact. PACKING must
+// be that of the replay, with its bonds; the caller adds the weight (put_weight), the
+// engine's state and the provenance, and finishes the artifact.
 void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response);
 
-// The largest displacement of any grain at any snapshot, m.
+// The largest displacement of any grain at any snapshot, m. 0 without snapshots.
 double largest_displacement(const struct packing *packing,
                             const struct response *response);
 
