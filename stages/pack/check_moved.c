@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Refuses targets that moving grains cannot reach, before they are moved.
+//
+// Coordination: touching spheres of any sizes have fewer than 8 + 4 sqrt(3) contacts on
+// average, discs fewer than 6. Pressure: with overlaps of a tenth,
+//     pressure = 0.1 stiffness / (4 smallest radius).
+// Periodic boxes must be 2.4 largest diameters wide, as the engine knows one image of
+// each neighbour.
 #include "methods.h"
 #include "pack.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Porosity of the box, by ratios of lengths, so that no cube of a length underflows.
+//     porosity = 1 - sum of (4/3) pi (r / x) (r / y) (r / z),   x, y, z the edges.
 #include "pack.h"
 
 double packing_porosity(const struct packing *packing)

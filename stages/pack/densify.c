@@ -8,6 +8,12 @@
 // about the mean overlap over the diameter, and steered to its target: each step
 // strains by (target - stress) / 1.2, at most `most`, and whenever the stress is above
 // the target `most` halves, so that the end is approached quasi-statically.
+//
+// To a porosity the total strain is known,
+//     strain = (solid wanted / solid now)^(1/dimensions) - 1;
+// to a coordination the pressure is raised by a quarter at a time, at rest each time,
+// until it is reached. Given grains that overlap are shrunk, or spread, first.
+// Contraction needs a box that repeats along all axes; between walls grains grow.
 #include "dynamics.h"
 #include "pack.h"
 

@@ -5,7 +5,9 @@
 // weight above,
 //     F = rho g h (1 - porosity) (2 R)^2,   k = 2 F / (overlap R).
 // The cloud starts at the loose fraction and is made thinner until all grains find a
-// place; in the end the highest grain closes the box.
+// place; in the end the highest grain closes the box. Trap: at rest is the unbalanced
+// ratio of [K 4.20] below the tolerance, which is a mean; a single grain may still
+// fall. So no grain may be faster than a tenth of sqrt(2 g R).
 #include "dynamics.h"
 #include "pack.h"
 

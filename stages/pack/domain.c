@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Geometry of the domain: volume, containment, and uniform random points. A cut-out is
 // symmetric about its centre, so the distance to it is that to its nearest periodic
-// image. Uniform points in a disc have the radius sqrt(u) R, in a ball cbrt(u) R with
-// a uniform height (Archimedes); points in a cut-out are drawn again.
+// image. Uniform points in a disc have the radius sqrt(u) R, in a ball cbrt(u) R with a
+// uniform height (Archimedes); points in a cut-out are drawn again.
+//
+// Volumes are exact since a cut-out lies wholly inside (make_domain.c):
+//     box x y z,  cylinder and ring pi (R^2 - inner^2) z,  sphere (4/3) pi R^3,
+// less the same of what is cut out.
 #include "domain.h"
 
 #include <float.h>

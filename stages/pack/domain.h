@@ -10,10 +10,12 @@
 #include <gsl/gsl_rng.h>
 #include <stdbool.h>
 
+// What the walls enclose, and what is cut out of it.
 enum domain_shape { DOMAIN_BOX, DOMAIN_CYLINDER, DOMAIN_RING, DOMAIN_SPHERE };
 enum domain_cut { CUT_NONE, CUT_BOX, CUT_CYLINDER, CUT_SPHERE };
 
-// The user's parameters; lengths in m, NAN where not given.
+// The user's parameters; lengths in m, NAN where not given. make_domain.c says which of
+// them a shape needs.
 struct domain_parameters {
     int shape;                 // enum domain_shape
     double lower[3], upper[3]; // of a box
@@ -31,10 +33,11 @@ struct domain_parameters {
 
 // Cylinders and rings stand along z, from lower.z to upper.z. In two dimensions centres
 // lie in the plane y = middle, the domain is one largest diameter thick, and a sphere
-// is a disc of that thickness.
+// is a disc of that thickness. What the methods work with, complete: made by
+// domain_make or domain_around, and changed by methods whose box moves.
 struct domain {
-    int dimensions; // 2 or 3
-    enum domain_shape shape;
+    int dimensions;              // 2 or 3
+    enum domain_shape shape;     // of its outer walls
     struct vector lower, upper;  // the box around it, m
     bool periodic[3];            // of that box
     struct vector centre;        // of its box, so of the axis or the sphere too, m
@@ -47,19 +50,23 @@ struct domain {
 
 // LARGEST is the largest grain radius, m. STATUS_BAD_DATA, naming the key, when the
 // parameters make no domain, when such a grain fits nowhere in the shape, or when what
-// is cut out does not lie wholly inside it.
+// is cut out does not lie wholly inside it. Sides and centres that are not given begin
+// at the origin.
 enum status domain_make(const struct domain_parameters *parameters, int dimensions,
                         double largest, struct domain *domain, struct reason *reason);
 
-// The same for the box of a lattice that fills LOWER to UPPER, cut out included.
+// The same for the box of a lattice, LOWER to UPPER; of PARAMETERS only periodic sides
+// and the cut-out count. STATUS_BAD_DATA when that does not lie wholly inside.
 enum status domain_around(const struct domain_parameters *parameters, int dimensions,
                           struct vector lower, struct vector upper,
                           struct domain *domain, struct reason *reason);
 
-// How far rounding may put a grain beyond a wall that it touches, m.
+// How far rounding may put a grain beyond a wall that it touches, m. Eight roundings of
+// the largest coordinate.
 double domain_rounding(const struct domain *domain);
 
 // Distance from the z axis.
+// Distance of the point (X, Y) from the z axis, or of any two legs.
 static inline double across(double x, double y)
 {
     return sqrt(x * x + y * y);
@@ -70,18 +77,19 @@ static inline double across(double x, double y)
 double domain_volume(const struct domain *domain);
 
 // A box without a cut, FACTOR times as large along all its dimensions, from its lower
-// corner.
+// corner. In two dimensions y stays.
 void domain_stretch(struct domain *box, double factor);
 
-// Whether a grain lies wholly inside; touching the wall is inside, to rounding.
-// Where the box repeats there is no wall.
+// Whether a grain lies wholly inside; touching the wall is inside, to rounding. Where
+// the box repeats there is no wall.
 bool domain_holds(const struct domain *domain, struct vector centre, double radius);
 
 // The bodies whose surfaces are its walls, and how many; a box without a cut has none.
 int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES]);
 
 // A point evenly distributed where a grain of this radius fits wholly. False when the
-// cut leaves none that could be found.
+// cut leaves none that could be found. Draws from RANDOM only; where the box repeats,
+// over its whole edge.
 bool domain_random_point(const struct domain *domain, double radius, gsl_rng *random,
                          struct vector *point);
 

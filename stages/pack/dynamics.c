@@ -3,6 +3,11 @@
 // packing, and measures of its state. Speeds and stresses are compared with scales of
 // the method, never with absolute numbers. Note that the engine's stress is over the
 // box it began with: mean_stress corrects for the volume of the domain.
+//     mean stress  = (sxx + syy + szz) / dimensions  box / domain volume,
+//     coordination = sum of contacts / grains, over those with enough to be stable,
+//     solid        = sum of (4/3) pi r^3 / domain volume  (discs: pi r^2 thickness).
+// Without gravity every grain gets the inertia of the mean one (density_scaling), so
+// that small grains do not shorten the time step.
 #include "dynamics.h"
 
 #include "basics/memory.h"

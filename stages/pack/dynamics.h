@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+// The state at which a method ends.
 enum target {
     TARGET_SETTLED,      // at rest
     TARGET_POROSITY,     // of the domain
@@ -29,19 +30,19 @@ struct dynamics_parameters {
     double stiffness;     // N/m of a grain; null: so that `overlap` comes out
     double overlap;       // typical overlap at the end, over the radius
     double shear_ratio;   // shear over normal stiffness
-    double damping;       // ratio [K 4.28]
-    double local_damping;
-    double gravity; // m/s2, downwards
-    double safety;  // of the time step [K 4.47]
-    int target;     // enum target
-    double value;   // of it
-    double tolerance;
-    int64_t most_cycles;
+    double damping;       // of the dashpots: damping ratio [K 4.28]
+    double local_damping; // share of the net force and moment (dem/dem.h)
+    double gravity;       // m/s2, downwards
+    double safety;        // of the time step [K 4.47]
+    int target;           // enum target
+    double value;         // of it
+    double tolerance;     // on the unbalanced ratio [K 4.20] at rest
+    int64_t most_cycles;  // after which it has failed: STATUS_NOT_CONVERGED
     int threads;
     const struct keeper *keeper; // of deposition and densification; may be NULL
 };
 
-// The state at the end.
+// The state at the end. Written by note_end; zero where nothing moved.
 struct reached {
     bool dynamic;            // whether any dynamics was run
     double value;            // of the target
@@ -61,7 +62,7 @@ struct making {
     const struct sizes *sizes;
     gsl_rng *random;
     struct progress *progress;
-    struct domain *domain;
+    struct domain *domain; // becomes that of the grains at the end
     struct packing *packing;
     struct reached *reached;
 };
@@ -72,14 +73,22 @@ struct making {
 // STATUS_NOT_CONVERGED: the target was not reached in most_cycles; the reason has what
 // was. On success the caller frees *PACKING.
 
-// COUNT grains dropped into the domain from a loose cloud above it [K Fig. 3.1].
+// COUNT grains dropped into the domain from a loose cloud above it [K Fig. 3.1], until
+// they are at rest. The top of the box becomes that of the highest grain; a sphere
+// keeps its size, and grains fall from random points within it. STATUS_BAD_DATA if
+// given grains overlap by more than a twentieth of their size.
 enum status deposit(const struct making *making, int count, struct reason *reason);
 
-// From loose points, by growing radii (GROW) or a contracting box.
+// From loose points, by growing radii (GROW) or a contracting box, to the target;
+// without one until jammed at the overlap asked for. Contraction needs a box that
+// repeats along all axes (in two dimensions x and z). Given grains that have grown get
+// their sizes back at the end, by scaling all lengths.
 enum status densify(const struct making *making, int count, bool grow,
                     struct reason *reason);
 
-// Overlapping grains at random places that push each other away.
+// Overlapping grains at random places that push each other away, in about a hundred
+// batches, and then come to rest. STATUS_BAD_DATA if they have more volume than the
+// domain.
 enum status repel(const struct making *making, int count, struct reason *reason);
 
 // ---- shared by them -----------------------------------------------------------------
@@ -87,20 +96,26 @@ enum status repel(const struct making *making, int count, struct reason *reason)
 enum { MAX_WALLS = 16 };
 
 // The factor by which the grains of PACKING must shrink so that none overlaps another
-// or a wall; 1 if none does.
+// or a wall; 1 if none does. Walls of the box only; across the plane of a flat packing
+// there are none.
 double fitting_size(const struct packing *packing);
 
-// The walls of a domain; without those that close it at the top if OPEN.
+// The walls of a domain as the engine knows them, written to WALL; without those that
+// close it at the top if OPEN. Returns how many. Where the box repeats there are none,
+// nor across the plane of two dimensions. A wall has the friction of its own, if given,
+// else that of the grains.
 int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,
                  bool open, struct dem_wall wall[MAX_WALLS]);
 
 // Solid volume over the domain's (areas in two dimensions), overlaps counted twice.
 double solid_fraction(const struct domain *domain, const struct packing *packing);
 
-// The same of COUNT grains as they will be drawn next.
+// The same of COUNT grains as they will be drawn next. Draws from a copy of the random
+// stream, which stays where it is.
 double drawn_fraction(const struct making *making, int count);
 
-// An engine on the packing, between WALLS; STIFFNESS in N/m.
+// An engine on the packing, between WALLS; STIFFNESS in N/m. SAFETY: of the time step
+// [K 4.47]. The caller frees *DEM with dem_free, also after a failure.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
@@ -111,7 +126,7 @@ enum status start_dynamics(const struct making *making, double stiffness, double
 enum status restore_dynamics(const struct making *making, struct dem *dem,
                              double *protocol, int count, struct reason *reason);
 
-// Keeps a checkpoint if it is due.
+// Keeps a checkpoint if it is due: the state of DEM and the COUNT doubles PROTOCOL.
 void keep_dynamics_if_due(const struct making *making, const struct dem *dem,
                           const double *protocol, int count);
 
@@ -121,14 +136,17 @@ void take_grains(const struct making *making, const struct dem *dem);
 // The largest speed of a grain, m/s.
 double largest_speed(const struct making *making, const struct dem *dem);
 
-// Mean stress, Pa, over the volume of the domain.
+// Mean stress, Pa, over the volume of the domain. A third of the trace (in two
+// dimensions half): positive where grains push.
 double mean_stress(const struct making *making, const struct dem *dem);
 
 // Mean number of contacts of the grains with enough contacts to be stable: two with
-// friction, four without (three in two dimensions).
+// friction, four without (three in two dimensions). 0 if there are none. Contacts with
+// walls do not count.
 double backbone_coordination(const struct making *making, const struct dem *dem);
 
-// Fills making->reached from DEM.
+// Fills making->reached from DEM. Adds its cycles and its time to those of earlier
+// engines.
 void note_end(const struct making *making, const struct dem *dem);
 
 #endif

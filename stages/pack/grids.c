@@ -2,7 +2,10 @@
 // A hierarchy of uniform grids: level k has the grains with radii in (largest/2,
 // largest], in cells at least one diameter wide, as linked lists. A query visits, on
 // each level, the cells within reach of that level's largest radius: so its cost does
-// not depend on the ratio of radii.
+// not depend on the ratio of radii. A grain of radius r is near a place if |centre -
+// place| < to_surface + r, so the cells to look in reach to_surface + largest of the
+// level. Across periodic sides cells are counted modulo their number, each at most
+// once. Cells are at most about four for each grain expected.
 #include "grids.h"
 
 #include "basics/memory.h"

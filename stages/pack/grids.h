@@ -9,7 +9,8 @@
 struct grids;
 
 // For grains with radii from SMALLEST to LARGEST, m, about EXPECTED of them, in DOMAIN,
-// which must outlive it. Freed with grids_free.
+// which must outlive it. Freed with grids_free. Memory: at most about four cells a
+// grain expected, for each level that has grains.
 struct grids *grids_create(const struct domain *domain, double smallest, double largest,
                            double expected);
 void grids_free(struct grids *grids);
@@ -24,7 +25,8 @@ double grids_radius(const struct grids *grids, int grain);
 
 // The grains whose surface is less than GAP (m, may be negative) from the surface of a
 // sphere at CENTRE, by the nearest image; at most MOST of them go to FOUND. Returns how
-// many. In an order that depends only on what was added.
+// many. In an order that depends only on what was added. The cost does not depend on
+// the ratio of radii, but on how many grains are near.
 int grids_near(const struct grids *grids, struct vector centre, double radius,
                double gap, int *found, int most);
 

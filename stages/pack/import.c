@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Grains of INPUT as they are: read, scaled to metres, and given a box. The box of the
+// file holds unless pack.lower or pack.upper replace a side; only a file without a box
+// takes pack.periodic. The domain is that box, with nothing cut out.
 #include "import.h"
 
 #include "artifacts/read_grains.h"

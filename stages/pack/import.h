@@ -7,8 +7,11 @@
 #include "parameters.h"
 #include "parameters/stage.h"
 
-// Reads the grains of the input, scaled to m, and the box they lie in as DOMAIN; adds
-// its provenance to INPUTS. Exits 65 and 66. The caller frees the packing.
+// Reads the grains of INPUT (standard input where none is named), scaled to m by
+// import_scale, and the box they lie in as *DOMAIN; appends their provenance to INPUTS.
+// Grains keep their bonds if INPUT is a packing. Ends the program: 65 for a domain that
+// is no box, for sides that cross and for grains that cannot be read, 66 for no input.
+// The caller frees the packing.
 struct packing make_import(const struct invocation *invocation,
                            const struct pack_parameters *parameters, json_t *inputs,
                            struct domain *domain);

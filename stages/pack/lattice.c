@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lattices of touching grains from their unit cells. A grain's place along an axis is
+//     lower + radius edge (cell + place + lead),
+// with edge and lead of a cell of grains of radius 1. Along an axis that repeats the
+// box is whole cells with the grains in their middle; elsewhere it ends with the
+// outermost grains. Grains that do not lie wholly in the domain are left out.
 #include "basics/memory.h"
 #include "pack.h"
 

@@ -2,6 +2,8 @@
 // The extra layer [K 3.3.5]: a regular grid of auxiliary grains of the mean radius,
 // which touches the outermost grain on one side. The grid is spread evenly over the
 // box, so that it also fits a periodic one.
+//     count = floor(edge / (2 radius)) along each axis of the side,
+//     place = lower + edge (i + 1/2) / count.
 #include "basics/memory.h"
 #include "pack.h"
 

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // pack: grains in a box, and the bonds between them.
+//
+// In this order: grains of INPUT, if the method takes any; the checkpoint; the method;
+// contacts; the check of the packing; bonds; the extra layer, which comes after the
+// bonds because it has none; then the artifact and the report. Contacts are searched
+// again after the layer, so that the measures of contacts count it.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"

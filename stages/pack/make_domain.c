@@ -2,6 +2,10 @@
 // The domain from the user's parameters, with all checks: it must be complete, have
 // room for the largest grain, and contain its cut-out entirely (else its volume is not
 // known).
+//
+// Where cylinders, rings and spheres contain a cut-out is decided by its farthest and
+// nearest points from the axis, or from the centre: for a box those of its corners and
+// faces, which is exact as all domains are convex but for the hole of a ring.
 #include "domain.h"
 
 static struct vector vector_of(const double three[3])

@@ -3,6 +3,10 @@
 // gives only a count, the domain is a cube of the volume that the method is expected to
 // need (expected_porosity); if only a domain, the count follows alike. Radii are drawn
 // from a clone of the random stream first, so that both see the same grains.
+//     edge  = (sum of volumes / (1 - expected_porosity))^(1/dimensions),
+//     count = the first at which sum of volumes >= (1 - expected_porosity) volume.
+// expected_porosity is a guess, unless the target is a porosity. The edge is at least
+// the largest diameter. A given INPUT keeps its box and count.
 #include "methods.h"
 
 #include "pack.h"

@@ -7,16 +7,20 @@
 #include "geometry/packing.h"
 #include "parameters.h"
 
-// Makes grains by any method but import, the domain they lie in, and the end state of
-// the dynamics, if any. If GIVEN, PACKING and DOMAIN hold the grains that moving starts
-// from. On success the caller frees *PACKING; otherwise the reason names the key.
+// Makes grains by any method but import: *DOMAIN, in which they lie, *PACKING, and,
+// where grains moved, the end state *REACHED. If GIVEN, PACKING and DOMAIN hold the
+// grains that moving starts from. The seed of PARAMETERS decides all that is random. On
+// success the caller frees *PACKING. STATUS_BAD_DATA: parameters that contradict each
+// other, with the key in the reason; STATUS_NOT_CONVERGED: grains that did not fit, or
+// a target that was not reached.
 enum status make_grains(const struct pack_parameters *parameters, bool given,
                         struct progress *progress, struct domain *domain,
                         struct packing *packing, struct reached *reached,
                         struct reason *reason);
 
 // STATUS_BAD_DATA, naming the key, for targets that moving grains cannot reach
-// [check_moved.c].
+// [check_moved.c]. SIZES are those to be drawn or, if GIVEN, of the grains in INPUT;
+// DOMAIN is where they will move.
 enum status check_moved(const struct pack_parameters *parameters, bool given,
                         const struct domain *domain, const struct sizes *sizes,
                         struct reason *reason);

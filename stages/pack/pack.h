@@ -17,6 +17,7 @@ struct packing packing_in(const struct domain *domain, int n);
 
 // ---- lattices of touching grains ----------------------------------------------------
 
+// By the unit cells in lattice.c.
 enum lattice {
     LATTICE_CUBIC, // also the square lattice, one layer of it
     LATTICE_BODY_CENTRED,
@@ -32,7 +33,7 @@ struct vector lattice_extent(enum lattice lattice, const int64_t counts[3],
                              double radius, const bool periodic[3]);
 
 // The unit cells it takes to cover DOMAIN. STATUS_BAD_DATA when they do not fit a side
-// that repeats.
+// that repeats. Counts are at least 1 where it repeats.
 enum status lattice_counts(enum lattice lattice, const struct domain *domain,
                            double radius, int64_t counts[3], struct reason *reason);
 
@@ -45,8 +46,9 @@ struct packing lattice_packing(enum lattice lattice, const int64_t counts[3],
 
 // ---- random places ------------------------------------------------------------------
 
-// COUNT grains at independent random points: they may overlap. On success the caller
-// frees *PACKING.
+// COUNT grains at independent random points, uniformly distributed where a grain of
+// that size fits: they may overlap. STATUS_BAD_DATA if what is cut out leaves no room.
+// On success the caller frees *PACKING.
 enum status poisson_points(const struct domain *domain, const struct sizes *sizes,
                            int count, gsl_rng *random, struct packing *packing,
                            struct reason *reason);
@@ -78,11 +80,14 @@ enum status inward_spiral(const struct domain *domain, const struct sizes *sizes
 // round or periodic.
 enum status add_layer(const struct domain *domain, int wall, struct packing *packing,
                       struct reason *reason);
+
+// The check alone, for before the grains are moved.
 enum status check_layer(const struct domain *domain, int wall, struct reason *reason);
 
 // ---- contacts -----------------------------------------------------------------------
 
-// Porosity of the box; overlaps count twice as solid.
+// Porosity of the box; overlaps count twice as solid. Can be below 0 where grains
+// overlap much.
 double packing_porosity(const struct packing *packing);
 
 #endif

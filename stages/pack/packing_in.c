@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An empty packing in a domain.
+// An empty packing in a domain. Positions and radii are 0 until a method sets them.
 #include "basics/memory.h"
 #include "pack.h"
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters of pack as one table: names, units, defaults, ranges and texts. Rules
+// that relate parameters to each other are checked where they are used (make_domain.c,
+// methods.c, sizes.c, check_moved.c), with the key in the reason.
 #include "parameters.h"
 
 #define AT(member) offsetof(struct pack_parameters, member)

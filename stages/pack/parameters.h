@@ -11,25 +11,33 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+// In the order of the choices in the table.
 enum method {
-    METHOD_SQUARE,
+    METHOD_SQUARE, // and the next five: lattices of touching grains (lattice_packing)
     METHOD_CUBIC,
     METHOD_BODY_CENTRED,
     METHOD_FACE_CENTRED,
     METHOD_HEXAGONAL,
     METHOD_HONEYCOMB,
-    METHOD_POISSON,
-    METHOD_RANDOM_SEQUENTIAL,
-    METHOD_INWARD_SPIRAL,
-    METHOD_DEPOSITION,
-    METHOD_RADIUS_EXPANSION,
-    METHOD_DOMAIN_CONTRACTION,
-    METHOD_EXPLOSIVE_REPULSION,
-    METHOD_IMPORT
+    METHOD_POISSON,             // random points, which may overlap: poisson_points
+    METHOD_RANDOM_SEQUENTIAL,   // random_sequential
+    METHOD_INWARD_SPIRAL,       // inward_spiral [K 3.1.2]
+    METHOD_DEPOSITION,          // moving grains [K 3.1.1]: deposit
+    METHOD_RADIUS_EXPANSION,    // densify, grains grow
+    METHOD_DOMAIN_CONTRACTION,  // densify, the box contracts
+    METHOD_EXPLOSIVE_REPULSION, // repel
+    METHOD_IMPORT               // grains of INPUT as they are: make_import
 };
+
+// Which grains are bonded: none, those that touch within touching_gap, or as INPUT
+// says.
 enum bonds { BONDS_NONE, BONDS_TOUCHING, BONDS_KEEP };
+
+// What happens to a packing that is impossible: refused, reported, or not looked at.
+// One that is only unlikely is reported (geometry/packing_check.h).
 enum check { CHECK_REFUSE, CHECK_WARN, CHECK_NONE };
 
+// What the table reads into; NAN: not given.
 struct pack_parameters {
     int method, bonds, check; // enum method, enum bonds, enum check
     int64_t dimensions;
@@ -38,12 +46,12 @@ struct pack_parameters {
     struct size_parameters sizes;
     struct domain_parameters domain;
     int64_t seed, most_trials, frame;
-    bool densify, extra_layer;
-    int extra_side; // wall that the extra layer is at
+    bool densify, extra_layer; // fill voids of the spiral; add a layer [K 3.3.5]
+    int extra_side;            // wall that the extra layer is at
     struct dynamics_parameters dynamics;
-    double touching_gap; // of the sum of two radii
-    double import_scale; // m per unit of INPUT
-    bool import_diameters;
+    double touching_gap;   // of the sum of two radii
+    double import_scale;   // m per unit of INPUT
+    bool import_diameters; // INPUT has diameters in place of radii
 };
 
 extern const struct parameter pack_table[];

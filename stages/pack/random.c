@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random points, and random sequential addition (RSA; Widom 1966): a grain is placed
-// at the first of many uniform points where it overlaps no other. With a fixed count
-// the largest come first, since they have the fewest places; without, grains come in
-// the order drawn until a given number of trials in a row fail.
+// Random points, and random sequential addition (RSA; Widom 1966): a grain is placed at
+// the first of many uniform points where it overlaps no other. With a fixed count the
+// largest come first, since they have the fewest places; without, grains come in the
+// order drawn until a given number of trials in a row fail. Every placed grain is
+// uniformly distributed over the places that are free of overlap. With equal grains RSA
+// jams near a solid fraction of 0.38 in three dimensions and 0.55 in two.
 #include "basics/memory.h"
 #include "grids.h"
 #include "pack.h"

@@ -2,8 +2,13 @@
 // Measures a packing: sizes, overlaps, contacts, fabric, porosity in slices, and the
 // radial distribution. Porosities are exact (spheres cut by boxes, overlaps counted
 // once). Bulk values are taken in a window away from the walls; for a cylinder or
-// sphere in the largest inscribed cuboid, whose half edge is (R - margin) /
-// sqrt(number of round axes).
+// sphere in the largest inscribed cuboid, whose half edge is (R - margin) / sqrt(number
+// of round axes).
+//
+// Slices are a fifth of a mean diameter high, distances of g(r) a twentieth apart, to
+// five diameters. Measures without meaning are left out by not being finite:
+// report_number drops them. Each `say_` function adds the entries of one measure, in
+// the order in which they are reported.
 #include "report.h"
 
 #include "artifacts/document.h"

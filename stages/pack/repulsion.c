@@ -2,7 +2,9 @@
 // Explosive repulsion [K 3.1.1]: grains of their final size are added at random places,
 // overlapping others, and after each batch a few cycles push overlapping grains apart.
 // K adds one grain at a time; batches of a hundredth of all are as gentle and cost O(n)
-// each. In the end the packing is brought to rest.
+// each. In the end the packing is brought to rest. Batches use a tenth of the usual
+// time step. Where a stiffness is not given it is density radius^3 1e12, with which the
+// critical time step is of the order of a microsecond: only ratios matter.
 #include "dynamics.h"
 #include "pack.h"
 

@@ -9,14 +9,16 @@
 #include <gsl/gsl_rng.h>
 #include <stdbool.h>
 
+// By number, or with SHARE_OF_MASS by mass; continuous ones are cut off at smallest and
+// largest.
 enum size_distribution {
-    SIZES_ONE,
-    SIZES_UNIFORM,
-    SIZES_NORMAL,
-    SIZES_LOGNORMAL,
-    SIZES_POWER,
-    SIZES_TWO_MODE,
-    SIZES_SIEVE
+    SIZES_ONE,       // all equal
+    SIZES_UNIFORM,   // even from smallest to largest
+    SIZES_NORMAL,    // mean radius, deviation spread times radius
+    SIZES_LOGNORMAL, // the same mean and deviation before it is cut off
+    SIZES_POWER,     // density ~ r^-exponent
+    SIZES_TWO_MODE,  // radius, or second_radius with second_share
+    SIZES_SIEVE      // linear between the points of a sieve curve
 };
 
 enum size_share { SHARE_OF_NUMBER, SHARE_OF_MASS };
@@ -52,14 +54,17 @@ struct sizes {
     double cumulative[SIZE_PIECES]; // weight of this piece and those before
 };
 
-// STATUS_BAD_DATA, naming the key, when they make no distribution.
+// STATUS_BAD_DATA, naming the key, when they make no distribution. Where smallest and
+// largest are not given, a lognormal is cut off at five deviations of ln r, a normal
+// one at a tenth of the mean and five deviations above it.
 enum status sizes_prepare(const struct size_parameters *parameters, struct sizes *sizes,
                           struct reason *reason);
 
-// The same distribution, FACTOR times as large.
+// The same distribution, FACTOR times as large. Smallest and largest with it.
 void sizes_scale(struct sizes *sizes, double factor);
 
-// One radius, m.
+// One radius, m. A normal distribution by mass takes a varying number of random numbers
+// (rejection).
 double sizes_draw(const struct sizes *sizes, gsl_rng *random);
 
 // N radii, m, in the order drawn; the caller frees them.

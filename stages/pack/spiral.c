@@ -6,6 +6,9 @@
 //     from = (far + (r_a - r_b) (r_a + r_b) / far) / 2,
 // and the points are sqrt((r_a - from) (r_a + from)) to either side: products instead
 // of differences of squares, so that grains touch to the last digit.
+//
+// Densification: the largest grain that touches both of a pair and overlaps no other is
+// found by bisection between half their gap and the largest radius, to the last digit.
 #include "basics/memory.h"
 #include "basics/sorted.h"
 #include "grids.h"
