@@ -17,6 +17,7 @@ struct pore_cell {
     int32_t pore;         // cells whose centres coincide are one pore
 };
 
+// It owns .cell.
 struct cells {
     int n, n_pore;
     struct pore_cell *cell;
@@ -25,11 +26,13 @@ struct cells {
 };
 
 // Corners of the facet opposite corner k, anticlockwise seen from outside the cell.
+// Rows are k; the same order is that of throat.corner.
 extern const int facet_corner[4][3];
 
 // Places the grains of PACKING in GRAINS, with as many copies as needed, and
 // triangulates. STATUS_BAD_DATA: a periodic box is too narrow, or as place_grains. The
-// caller frees CELLS with cells_free and GRAINS with grains_free.
+// caller frees CELLS with cells_free and GRAINS with grains_free. Copies reach further,
+// from 2 units on by doubling, until no copy left out could change a cell.
 enum status find_cells(const struct packing *packing, struct grains *grains,
                        struct cells *cells, struct reason *reason);
 void cells_free(struct cells *cells);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Boundary conditions in the units of the computation: a flux Q becomes Q mu / unit^3.
+//     axis that repeats:  gradient = -drop / edge;   between walls:  p = drop, then 0.
 #include "conditions.h"
 
 static const char *const wall_names[WALL_COUNT] = {"x_lower", "x_upper", "y_lower",

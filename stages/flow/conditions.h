@@ -7,6 +7,7 @@
 
 enum { ALONG_NONE = 3 };
 
+// A wall with neither pressure nor flux is closed to the flow.
 struct imposed {
     int along;   // axis in which the pressure falls, or ALONG_NONE
     double drop; // Pa over the box
@@ -14,7 +15,8 @@ struct imposed {
 };
 
 // CONDITIONS in the units of the computation, for a fluid of VISCOSITY (Pa s).
-// STATUS_BAD_DATA: two conditions on one wall, or one on a periodic side.
+// STATUS_BAD_DATA: two conditions on one wall, or one on a periodic side. The reason
+// names the key.
 enum status find_conditions(const struct grains *grains, const struct imposed *imposed,
                             double viscosity, struct conditions *conditions,
                             struct reason *reason);

@@ -5,7 +5,7 @@
 
 #include "pressures.h"
 
-// In Pa unit^2.
+// In Pa unit^2. Forces per unit^2; times the square of grains.unit they are in N.
 struct forces {
     struct vector *viscous, *pressure; // (n_base) [C 18, 14]
     struct vector wall_viscous[WALL_COUNT], wall_pressure[WALL_COUNT];
@@ -15,7 +15,8 @@ struct forces {
 
 // The force on a wall is that of the fluid inside. Over all grains and walls the forces
 // sum to 0, or in a periodic box to minus the mean gradient times the volume of the
-// box. The caller frees with forces_free.
+// box. The caller frees with forces_free. The mean pressure is over the volumes of the
+// throats.
 struct forces find_forces(const struct grains *grains, const struct cells *cells,
                           const struct throats *throats,
                           const struct pressures *pressures);

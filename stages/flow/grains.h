@@ -28,6 +28,7 @@ struct grains {
 // walls, or there are walls besides those of the box.
 enum status place_grains(const struct packing *packing, double reach,
                          struct grains *grains, struct reason *reason);
+// Frees what the grains own, and empties them.
 void grains_free(struct grains *grains);
 
 // POSITION moved by whole boxes.

@@ -5,7 +5,7 @@
 
 #include "pressures.h"
 
-// Tension is positive. xx, yy, zz, yz, zx, xy.
+// Tension is positive. xx, yy, zz, yz, zx, xy. The pressure is not in it.
 struct pore_stress {
     double *volume;         // (n_pore) unit^3 of fluid: half of each throat of the pore
     double (*viscous)[6];   // (n_pore) Pa; 0 in a pore without volume

@@ -3,11 +3,16 @@
 //     sum_j conductance_ij (p_i - p_j) = injected_i + what the mean gradient drives,
 //     p = value + gradient . x,
 // where pores at a wall of imposed pressure are known and all pores behind a wall of
-// imposed flux are one node. The values are corrected until the residual, summed in
-// two parts, is small relative to the throughput; the first correction is nearly the
+// imposed flux are one node. The values are corrected until the residual, summed in two
+// parts, is small relative to the throughput; the first correction is nearly the
 // solution. A set of pores without a path to an imposed pressure (a pocket) is
 // singular: one of its pores is pinned, and afterwards the pocket is shifted to the
 // mean pressure around it.
+//
+// A fall of pressure over a throat of pores that are nearly equal would cancel:
+// pressures are sums of two doubles (compensated.h), and pressure_drop subtracts these.
+// The imbalance is the largest residual of a pore, or the size of their sum, over
+//     throughput = sum over throats of |flux| length / largest edge of the box.
 #include "pressures.h"
 
 #include "basics/disjoint_sets.h"

@@ -8,7 +8,8 @@
 #include "sparse/linear_solver.h"
 #include "throats.h"
 
-// In units of length, for a viscosity of 1: a flux is then in unit^3 Pa.
+// In units of length, for a viscosity of 1: a flux is then in unit^3 Pa. On one wall at
+// most one of pressure and flux is imposed; without both it is closed.
 struct conditions {
     double pressure[WALL_COUNT]; // piezometric, Pa; NAN: not imposed
     double flux[WALL_COUNT];     // into the box through the wall, at one pressure all
@@ -16,6 +17,7 @@ struct conditions {
     struct vector gradient;      // mean gradient where the box repeats, Pa/unit
 };
 
+// How to solve: SOLVER_AUTO takes the faster one (sparse/linear_solver.h).
 struct solving {
     enum solver solver;
     double tolerance; // on the imbalance
@@ -28,7 +30,7 @@ struct pressures {
     int32_t *node_of_cell;     // (n_cell) the same, for loops over throats
     struct compensated *value; // (n_node) Pa, without the mean gradient
     struct vector gradient;
-    double inflow[WALL_COUNT]; // through each wall
+    double inflow[WALL_COUNT]; // through each wall into the box, unit^3 Pa
     double throughput; // sum over throats of |flux| length / largest edge of the box
     double imbalance;  // largest residual of a pore, or their sum, over the throughput
     int n_pocket;      // sets of pores with no way out
@@ -54,11 +56,12 @@ uint8_t *walls_of_pores(const struct cells *cells);
 // The one of a pore's WALLS (bits) through which fluid enters or leaves it; -1: none.
 int feeding_wall(const struct conditions *conditions, unsigned walls);
 
-// p_i - p_j over a throat, Pa, to full precision however small.
+// p_i - p_j over a throat, Pa, to full precision however small. From the first cell of
+// THROAT to the second, the mean gradient included.
 double pressure_drop(const struct pressures *pressures, const struct grains *grains,
                      const struct cells *cells, const struct throat *throat);
 
-// p_i, Pa.
+// p_i, Pa. With the mean gradient at the centre of CELL.
 double pore_pressure(const struct pressures *pressures, const struct cells *cells,
                      int cell);
 

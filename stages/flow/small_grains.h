@@ -10,7 +10,8 @@
 // of the sum of squares of both, with u twice the mean velocity of the fluid around it,
 // as in the middle of a pipe. The difference is taken from the grains and walls around
 // it, by their surfaces, so that the sum of all forces stays. In dense packings Stokes'
-// part is negligible.
+// part is negligible. FORCES must be those of find_forces for the same PRESSURES;
+// viscous parts change.
 void add_stokes_drag(const struct grains *grains, const struct cells *cells,
                      const struct throats *throats, const struct pressures *pressures,
                      struct forces *forces);

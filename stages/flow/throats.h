@@ -21,6 +21,7 @@ enum facet_pieces {
 
 enum conductance { CONDUCTANCE_HYDRAULIC, CONDUCTANCE_EFFECTIVE };
 
+// How the resistance of throats is computed [C 2.2.2].
 struct throat_rule {
     enum sides sides;
     enum conductance conductance;
@@ -40,6 +41,7 @@ struct throat {
     double conductance; // K_ij = g_ij / L_ij [C 20]; 0: closed
 };
 
+// It owns .throat.
 struct throats {
     int n, n_closed;
     struct throat *throat;

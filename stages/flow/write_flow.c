@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The results in SI units. Lengths are times unit; forces (Pa unit^2) times unit^2;
+// fluxes and conductances, computed for a viscosity of 1, times unit^3 / viscosity.
+// Buoyancy [C 12] is minus the weight of the fluid that a grain displaces. Trap:
+// several cells can be one pore; what belongs to the pore (source, volume) stands at
+// its first cell and is 0 at the others, so that sums over rows are right.
 #include "write_flow.h"
 
 #include "basics/memory.h"

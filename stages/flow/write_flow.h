@@ -6,7 +6,7 @@
 #include "forces.h"
 #include "pore_stress.h"
 
-// All results, in the units of the computation.
+// All results, in the units of the computation. It owns nothing.
 struct flow {
     const struct packing *packing;
     const struct grains *grains;
@@ -25,10 +25,12 @@ struct flow {
 };
 
 // Writes FLOW, in SI units, to an artifact of schema flow; the caller finishes it.
+// docs/flow.md and schemas/flow.json say what the datasets are.
 void put_flow(struct artifact *artifact, const struct flow *flow);
 
 // Writes the total force on each grain, growing from 0 over STEPS times one second
-// apart, to an artifact of schema forces.
+// apart, to an artifact of schema forces. The saturation is 1 throughout: dem-replay
+// takes these forces as it takes those of a drying. STEPS is at least 2.
 void put_forces(struct artifact *artifact, const struct flow *flow, int steps);
 
 #endif
