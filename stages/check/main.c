@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // check: are these grains what one thinks?
+//
+// In this order: grains are read as pack reads them; contacts; bonds, for text those
+// that pack would make; measures; judgements, the packing first
+// (geometry/packing_check.h), then bonds, grains that touch nothing, defaults of
+// another size, weight. The status is 1 if any finding is worse than a note.
 #include "artifacts/artifact.h"
 #include "artifacts/read_grains.h"
 #include "basics/memory.h"

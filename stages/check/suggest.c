@@ -10,6 +10,9 @@
 // c_p and c_F were measured on grains that settled under gravity: 300 and 1000 equal
 // ones, 400 lognormal (spread 0.3) and 400 uniform (1:4), from which they differ by a
 // tenth (c_p), and from 0.7 (the largest of very unequal grains) to 1.5 (c_F).
+//
+// Numbers are rounded to two digits: c_p and c_F are not known better. The Bond numbers
+// are those of dem-replay/weight.c with these estimates in place of forces and suction.
 #include "suggest.h"
 
 #include <math.h>

@@ -8,6 +8,7 @@
 
 #include <jansson.h>
 
+// What the user says of grains, bonds and liquid.
 struct material {
     double density;         // kg/m3
     double grain_modulus;   // Young's modulus, Pa
@@ -18,10 +19,11 @@ struct material {
 };
 
 // The height (m) below which the centres of the lowest grains lie, which should be
-// held.
+// held. 1.2 of the ninth decile of radii above the lowest grain.
 double bottom_of(const struct packing_facts *facts);
 
-// The stress in a neck under the largest capillary force to expect, Pa.
+// The stress in a neck under the largest capillary force to expect, Pa. RADIUS: of a
+// grain, m. Proportional to surface tension over radius; main.c takes the median.
 double expected_stress(const struct material *material, double radius);
 
 // Weight on earth over the largest capillary force to expect on a grain, and over what
@@ -33,12 +35,14 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
                                           const struct packing *packing,
                                           const struct packing_facts *facts);
 
-// {"dem-replay": {...}}; the caller owns it.
+// {"dem-replay": {...}}: density, stiffnesses and strengths for grains of the median
+// radius, rounded to two digits, and the region of grains to hold (not in a box that
+// repeats along z). A section that dem-replay reads as it is. The caller owns it.
 json_t *suggest(const struct material *material, const struct packing *packing,
                 const struct packing_facts *facts);
 
-// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains; the caller owns
-// it.
+// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains: powers of N
+// through measured runs, on one core. The caller owns it.
 json_t *expected_cost(int n);
 
 #endif

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both outputs are made from the same struct checked, so that they cannot differ.
+//
+// Text goes to memory first and out in one piece. Suggestions and cost are left out
+// where something is wrong, since they would be of the wrong grains.
 #include "tell.h"
 
 #include "basics/file.h"

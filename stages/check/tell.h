@@ -6,6 +6,7 @@
 #include "bonds.h"
 #include "suggest.h"
 
+// All that was found out; it owns nothing.
 struct checked {
     const struct packing *packing;
     const struct contacts *contacts;
@@ -16,14 +17,15 @@ struct checked {
     const struct material *material;
 };
 
-// Number of findings worse than a note.
+// Number of findings worse than a note. The exit status of check depends on it.
 int count_wrong(const struct findings *findings);
 
 // Prints a line for each finding to standard output, then the measurements, and if no
-// finding is WRONG the suggestions.
+// finding is WRONG the suggestions. WRONG: from count_wrong.
 void tell(const struct checked *checked, int wrong);
 
-// The same as a document of schemas/check.json; the caller owns it.
+// The same as a document of schemas/check.json; the caller owns it. Suggestions and
+// cost are null if WRONG is not 0.
 json_t *checked_json(const struct checked *checked, int wrong);
 
 #endif
