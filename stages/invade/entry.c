@@ -2,7 +2,10 @@
 // Entry pressures of throats or nodes, as wide as their widest throat:
 //     pressure = 2 sigma cos(theta) / r - rho g z,
 // z above the lower side of the box, relative to the liquid there. Without gravity the
-// order of invasion uses radii themselves, so that equal throats tie exactly.
+// order of invasion uses radii themselves, so that equal throats tie exactly. The
+// height of a throat is the mean of those of its two nodes. With gravity the priority
+// is minus the pressure: the largest priority comes first, as the widest throat does
+// without. A node without a throat has the radius 0 and so an infinite pressure.
 #include "entry.h"
 
 #include "basics/memory.h"

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // invade: which throat or node gas enters when, pressed in slowly through some walls.
+//
+// In this order: the walls of inlet and outlet are checked before anything is read;
+// radii are drawn, if asked for; throats without clearance and those imposed empty are
+// shut; entry pressures, invasion (network/invasion.h), its outcome, transport; then
+// the artifact. Of the summary:
+//     trapped_saturation  = residual saturation (volume of trapped clusters / of all),
+//     breakthrough_share  = throats (or nodes) with an entry pressure up to the highest
+//                           before breakthrough, over all that take part.
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "basics/status.h"

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the order of invasion to results. An event empties its throat, or with node
-// invasion all throats at the node that are still liquid. Saturation is a difference
-// of compensated sums, and exactly 0 once nothing is left. The capillary pressure
-// curve is the running maximum of the entry pressures. Liquid that stays is clustered
-// by a disjoint-set forest over nodes without gas; a cluster without a node at the
-// outlet is trapped.
+// invasion all throats at the node that are still liquid. Saturation is a difference of
+// compensated sums, and exactly 0 once nothing is left. The capillary pressure curve is
+// the running maximum of the entry pressures. Liquid that stays is clustered by a
+// disjoint-set forest over nodes without gas; a cluster without a node at the outlet is
+// trapped.
+//
+//     saturation_k = (sum of all volumes - sum of those emptied by event k) / all.
+// Trap: throats that gas has passed at both ends without entering are clusters of their
+// own, without a node.
 #include "outcome.h"
 
 #include "basics/compensated.h"

@@ -6,9 +6,14 @@
 // are solved by iterative refinement, and the conductance is the dissipation
 //     sum over links of conductance (x_a - x_b)^2,
 // which is of second order in the error of x. A residual at a node is flow that ends,
-// as a random walk would, at inlet or outlet, so the sum of residuals bounds the
-// error. If that does not fall to TOLERANCE, the network is eliminated, which loses no
-// digits.
+// as a random walk would, at inlet or outlet, so the sum of residuals bounds the error.
+// If that does not fall to TOLERANCE, the network is eliminated, which loses no digits.
+//
+// Numbers are scaled: lengths by the longest throat, radii by the widest, so that r^4
+// does not underflow; unit_of gives the scale back. States are recorded at the first
+// event at or below each tenth of saturation. For inlet and outlet on opposite sides of
+// one axis, with the box's length L and section A,
+//     material = conductance L / A.
 #include "transport.h"
 
 #include "basics/memory.h"
