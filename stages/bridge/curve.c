@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lists of the report are appended point by point; a model that has no suction or
-// shape gives null for them, so that every report has the same keys. A table is made
-// once for the bridge's radii and angles and evaluated in units of the effective
-// radius [G 1].
+// Lists of the report are appended point by point; a model that has no suction or shape
+// gives null for them, so that every report has the same keys. A table is made once for
+// the bridge's radii and angles and evaluated in units of the effective radius [G 1].
+//
+//     table:  gap = separation / scale,  force = surface tension scale force(volume,
+//     gap),
+// with scale the effective radius and volume over its cube. `flags` says where a model
+// is used outside its validity; the force is given nevertheless. Beyond rupture the
+// exact model and the table give 0; the approximations go on with their formula.
+// Negative separations are overlaps.
 #include "curve.h"
 
 #include "basics/memory.h"

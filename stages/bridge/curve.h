@@ -18,8 +18,8 @@ struct curve_request {
 
 // Adds "separation", "force" and "flags", lists of COUNT, to REPORT, and for the exact
 // solution also "suction", "neck_radius", "half_filling_angle", "contact_radius",
-// "// wetted_area", "free_area", "energy" and, with request->profile, "profile" (null
-// for the other models); where there is no bridge these hold null and the force is 0.
+// "wetted_area", "free_area", "energy" and, with request->profile, "profile" (null for
+// the other models); where there is no bridge these hold null and the force is 0.
 // Returns STATUS_NOT_CONVERGED if one equilibrium was not found, STATUS_BAD_DATA if the
 // bridge is none.
 enum status put_curve(json_t *report, const struct bridge *bridge,

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // bridge: the capillary force of a liquid bridge against separation.
+//
+// Separations are spread evenly between from and to, in parts of the rupture distance
+// of the chosen model:
+//     separation_k = rupture ((1 - k / (points - 1)) from + k / (points - 1) to).
+// The exact model and the table take the rupture distance of the exact solution, the
+// approximations their common one [G].
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "curve.h"
