@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 
+// The caller opens LINES and frees what is in it.
 struct comparison {
     double tolerance; // of the largest value of a dataset, or of a lone number; of 1
                       // where that has no unit and is less, as residuals are
@@ -17,11 +18,13 @@ struct comparison {
 };
 
 // Numbers that are whole by their schema must be equal whatever the tolerance. Exits 65
-// when a dataset cannot be read.
+// when a dataset cannot be read. Both must be open; one pair of datasets is in memory
+// at a time.
 void compare_artifacts(struct comparison *comparison, const struct artifact *one,
                        const struct artifact *other);
 
-// The same for JSON: lists in order, members by their names.
+// The same for JSON: lists in order, members by their names. Takes provenance out of
+// both documents, which stay the caller's.
 void compare_documents(struct comparison *comparison, json_t *one, json_t *other);
 
 // Notes a difference: a line on LINES.

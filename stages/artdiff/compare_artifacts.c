@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares all datasets and attributes that the schema lists. The tolerance is
-// relative to the largest value of a dataset, not to each value, so that rounding
-// noise in small values does not count.
+// Compares all datasets and attributes that the schema lists. The tolerance is relative
+// to the largest value of a dataset, not to each value, so that rounding noise in small
+// values does not count.
+//
+//     dataset:   differs if max |a - b| > tolerance max(|a|, |b|), over all values,
+//     attribute: differs if |a - b| > tolerance max(|a|, |b|), and 1 if it has no unit.
+// What only one of the two has is a difference. Artifacts of different schemas are not
+// compared further.
 #include "compare.h"
 
 #include <math.h>

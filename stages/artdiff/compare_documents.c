@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Compares two documents member by member, with the path of each as its name
+// ("/mean/cracks/total"). If one of two numbers is real they are compared with the
+// tolerance, relative to the larger; whole numbers, texts and null must be equal. Lists
+// of different length are one difference. Provenance is taken out of both first.
 #include "compare.h"
 
 #include "basics/status.h"

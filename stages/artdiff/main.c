@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // artdiff: in what two artifacts differ, with a tolerance.
+//
+// It reads both files whole, decides by their first bytes whether they are JSON or HDF5
+// (they must be the same), and collects a line for each difference before anything is
+// printed. The exit status is 1 if there are any.
 #include "artifacts/document.h"
 #include "basics/status.h"
 #include "compare.h"
