@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An artifact as JSON. The schema says which datasets and attributes there can be,
-// with units and text; shape, extremes and digest are computed from the file.
+// An artifact as JSON. The schema says which datasets and attributes there can be, with
+// units and text; shape, extremes and digest are computed from the file.
+//
+// Whole numbers by their schema are printed without a point. The digest is of the
+// values in the type of the file, so it does not depend on compression or on where
+// datasets lie.
 #include "describe.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A network for other programs: as a JSON graph on one line, ASCII only, with 17
+// digits, so that reading it gives the same doubles; or as the four text files of
+// statoil.
 #include "export.h"
 
 #include "basics/status.h"

@@ -6,7 +6,7 @@
 
 // Writes the network of ARTIFACT (a network, or a drying that carries one) as the file
 // OPENPNM and as the four files of the prefix STATOIL, where they are not NULL. Exits
-// 65 for an artifact without a network.
+// 65 for an artifact without a network. Grains and faces go into the JSON graph only.
 void export_network(const struct artifact *artifact, const char *openpnm,
                     const char *statoil);
 

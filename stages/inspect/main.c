@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// inspect: any artifact as JSON, or as a series for ParaView.
+// inspect: any artifact as JSON, or as a series for ParaView. It reads one file, from
+// standard input if none is named. A JSON document describes itself and is printed as
+// it is. Of an artifact it writes the network, the series, one dataset or the
+// description, by the options, in this order of precedence.
 #include "artifacts/artifact.h"
 #include "artifacts/document.h"
 #include "basics/status.h"

@@ -2,6 +2,12 @@
 // Frames over time, one function for each kind of artifact: throats and their
 // saturation (drying), forces on the grains (forces), moved grains and their contacts
 // (response).
+//
+// A drying is replayed from step to step; a frame is written at the first step at or
+// below each of n evenly spaced saturations, so fast changes take fewer frames than n.
+// Of forces, rows frame (n_time - 1) / (n_frame - 1) are taken. In a response positions
+// are those before drying plus displacements, and a contact is whole until the time of
+// its crack has come.
 #include "series.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Text written into memory first and then to the file in one piece (write_whole), so
+// that a frame is never half there. Numbers have nine digits, enough to draw; read
+// artifacts for more. The .pvd names frames relative to itself: files can be moved
+// together.
 #include "vtu.h"
 
 #include "basics/file.h"

@@ -28,11 +28,13 @@ struct vtu_grid {
 // Writes PATH whole or not at all; exits as write_whole does.
 void write_vtu(const char *path, const struct vtu_grid *grid);
 
-// A series: frame files with times, as a .pvd that ParaView opens.
+// A series: frame files with times, as a .pvd that ParaView opens. TIME: s.
 struct vtu_frame {
     char file[4096];
     double time;
 };
+// Writes PATH, the list of N_FRAME frames that ParaView opens, whole or not at all.
+// Frames must lie in its folder: only their last names are written.
 void write_pvd(const char *path, const struct vtu_frame *frames, int n_frame);
 
 #endif
