@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // import-network: a pore network that others made, or that inspect exported.
+//
+// It reads the JSON graph, or the node1, link1 and link2 files of statoil (node2 says
+// nothing that a network keeps), notes a digest of each for the provenance, and writes
+// a network. Files of other programs have no grains and faces.
 #include "artifacts/artifact.h"
 #include "artifacts/write_network.h"
 #include "basics/memory.h"
