@@ -4,7 +4,8 @@
 // values does not count.
 //
 //     dataset:   differs if max |a - b| > tolerance max(|a|, |b|), over all values,
-//     attribute: differs if |a - b| > tolerance max(|a|, |b|), and 1 if it has no unit.
+//     attribute: differs if |a - b| > tolerance max(least, |a|, |b|),
+// with least = 1 for a number without unit, else 0; whole numbers must be equal.
 // What only one of the two has is a difference. Artifacts of different schemas are not
 // compared further.
 #include "compare.h"

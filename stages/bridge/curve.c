@@ -3,8 +3,7 @@
 // gives null for them, so that every report has the same keys. A table is made once for
 // the bridge's radii and angles and evaluated in units of the effective radius [G 1].
 //
-//     table:  gap = separation / scale,  force = surface tension scale force(volume,
-//     gap),
+//     gap = separation / scale,  force = surface tension scale table(volume, gap),
 // with scale the effective radius and volume over its cube. `flags` says where a model
 // is used outside its validity; the force is given nevertheless. Beyond rupture the
 // exact model and the table give 0; the approximations go on with their formula.

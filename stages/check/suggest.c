@@ -12,7 +12,8 @@
 // tenth (c_p), and from 0.7 (the largest of very unequal grains) to 1.5 (c_F).
 //
 // Numbers are rounded to two digits: c_p and c_F are not known better. The Bond numbers
-// are those of dem-replay/weight.c with these estimates in place of forces and suction.
+// are those of dem-replay/weight.c with these estimates in place of forces and suction,
+// and without the weight of the liquid.
 #include "suggest.h"
 
 #include <math.h>

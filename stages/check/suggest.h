@@ -23,7 +23,7 @@ struct material {
 double bottom_of(const struct packing_facts *facts);
 
 // The stress in a neck under the largest capillary force to expect, Pa. RADIUS: of a
-// grain, m. Proportional to surface tension over radius; main.c takes the median.
+// grain, m. Proportional to surface tension over radius; suggest takes the median.
 double expected_stress(const struct material *material, double radius);
 
 // Weight on earth over the largest capillary force to expect on a grain, and over what

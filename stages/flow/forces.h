@@ -5,7 +5,7 @@
 
 #include "pressures.h"
 
-// In Pa unit^2. Forces per unit^2; times the square of grains.unit they are in N.
+// In Pa unit^2: times the square of grains.unit in N.
 struct forces {
     struct vector *viscous, *pressure; // (n_base) [C 18, 14]
     struct vector wall_viscous[WALL_COUNT], wall_pressure[WALL_COUNT];

@@ -4,9 +4,9 @@
 // degenerate cells are exactly degenerate. The unit is the cube root of the box volume
 // per grain.
 //
-//     unit = (box volume / grains)^(1/3),  grid = 2^-40 or 2^(exponent of the largest
-//     edge - 50)
-// the coarser of both, so that 50 bits hold any place in the box. Copies are made along
+//     unit = (box volume / grains)^(1/3),
+//     grid = the coarser of 2^-40 and 2^(exponent of the largest edge - 50),
+// so that 50 bits hold any place in the box. Copies are made along
 // one axis after the other, of all grains and copies there are by then.
 #include "grains.h"
 
