@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening an artifact: kind, schema and links are checked before anything is read.
+// Opening an artifact: the bytes are taken as an HDF5 file in memory; links, kind,
+// schema and every value are checked before anything is used. A child process does all
+// of that first, since a damaged file may crash the HDF5 library; what it survived the
+// program repeats. The getters come after; what they read has been checked.
 #include "artifacts/artifact.h"
 #include "artifacts/check.h"
 #include "basics/memory.h"

@@ -30,7 +30,7 @@ void *reallocate(void *old, size_t count, size_t size)
 // for functions without effect, and drops the calls, unless they are inlined at once.
 #define PREFETCHING static inline __attribute__((always_inline)) void
 
-// COUNT elements of SIZE bytes copied from SOURCE.
+// COUNT elements of SIZE bytes copied from SOURCE, which may be NULL for none.
 void *duplicate(const void *source, size_t count, size_t size)
     __attribute__((malloc, returns_nonnull, warn_unused_result));
 

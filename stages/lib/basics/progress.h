@@ -26,7 +26,7 @@ void progress_update(struct progress *progress, double fraction);
 // said follows what the whole would take at the mean speed so far, but slowly.
 double progress_time_left(double elapsed, double fraction, double left, double since);
 
-// Clears the line.
+// Clears the line if there is one; the caller may print then.
 void progress_end(struct progress *progress);
 
 #endif

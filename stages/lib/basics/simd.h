@@ -33,6 +33,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #define SIMD_INLINE static inline __attribute__((always_inline))
 
+// Fixed widths, for code that is the same on all processors.
 typedef double double4 __attribute__((vector_size(32)));
 typedef int64_t mask4 __attribute__((vector_size(32))); // lanes of 0 or -1
 typedef float float4 __attribute__((vector_size(16)));
@@ -116,6 +117,7 @@ SIMD_INLINE doublew fnmadd(doublew a, doublew b, doublew c)
 #endif
 }
 
+// The same for floats, twice as many.
 SIMD_INLINE floatw fmadd_float(floatw a, floatw b, floatw c)
 {
 #if defined SIMD_AVX512
@@ -142,6 +144,7 @@ SIMD_INLINE doublew square_root(doublew a) // sqrt may set errno, which no vecto
 #endif
 }
 
+// |A|, also of -0 and NAN.
 SIMD_INLINE doublew magnitude(doublew a)
 {
 #if defined SIMD_AVX512
@@ -157,6 +160,8 @@ SIMD_INLINE doublew magnitude(doublew a)
 
 // ---- masks: the lanes in which something holds --------------------------------------
 
+// A maskw is a bit a lane (AVX-512), else -1 or 0 in each lane: only the functions here
+// look into it. Comparisons with NAN are false, but for differs and not_at_most.
 #if defined SIMD_AVX512
 typedef __mmask8 maskw;
 #define SIMD_COMPARE(a, b, intel, operation)                                           \

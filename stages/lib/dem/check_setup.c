@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Refuses an impossible setup: one line that names what is wrong, the row, the rule and
-// the value. Everything is checked as given, in SI, before it is scaled.
+// the value. Everything is checked as given, in SI, before it is scaled. Comparisons
+// are written so that NAN fails them.
 #include "dem/engine.h"
 
 #include <math.h>

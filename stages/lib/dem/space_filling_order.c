@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains numbered along Hilbert's curve, so that neighbours in space are neighbours in
-// memory. Small scenes fit in the cache in any order and keep the one they came in.
+// memory. Small scenes fit in the cache in any order and keep the one they came in. In
+// order: keys of all grains on a cubic grid of 2^BITS cells a side; sorted; arrays of
+// grains moved; pairs, walls and bonds relabelled, with their histories. A pair whose
+// grains change places has its history turned round (carry_over).
 #include "dem/engine.h"
 
 #include "basics/memory.h"

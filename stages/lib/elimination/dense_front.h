@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// Updates that may be pending; rows in a panel; bytes of a row in a block of pending
+// rows (72 doubles or 144 floats).
 enum { MAX_PENDING = 64, PANEL = 48, BLOCK_BYTES = 576 };
 
 // Entries i > j, row by row. Small: packed, doubles. Large: rows lie in panels, all as
@@ -45,6 +47,7 @@ static inline double dense_front_entry(const struct dense_front *dense, int i, i
                              : ((double *)dense->entry)[at];
 }
 
+// Entry (I, J), J < I, becomes X, rounded where entries are floats.
 static inline void dense_front_set(struct dense_front *dense, int i, int j, double x)
 {
     const size_t at = dense_front_row(dense, i) + (size_t)j;

@@ -44,7 +44,7 @@ void elimination_graph_free(struct elimination_graph *graph);
 void elimination_graph_replace_edge(struct elimination_graph *graph, int at,
                                     int eliminated, int other, float weight);
 
-// Removes the edge from AT to ELIMINATED.
+// Removes the edge from AT to ELIMINATED, which must be there; not the one back.
 void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
                                    int eliminated);
 

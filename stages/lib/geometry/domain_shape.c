@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Convex domains (box, cylinder, disc, sphere): inside or not, the span of a line, the
-// nearest surface point and the outward normal. The roots of |from + t along| = radius
-// come from the root without cancellation and the product of both.
+// nearest surface point and the outward normal. With from and along the parts across
+// the axis, |from + t along| = radius is
+//     a t^2 + 2 b t + c = 0,  a = along.along,  b = from.along,
+//     c = (|from| - radius)(|from| + radius),
+//     far = -(b + sign(b) sqrt(b^2 - a c)),  t = far / a and c / far.
+// The usual formula would lose the smaller root.
 #include "geometry/domain_shape.h"
 
 bool body_is_round(const struct body *body, int axis)

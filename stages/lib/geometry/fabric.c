@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contacts, coordination, rattlers and the fabric tensor
 //     F_kl = mean over contacts of n_k n_l,
-// with n the unit vector between the centres of two grains. Rattlers are found by
-// removing grains with fewer contacts than `least` until none is left, as each removal
-// may make another one loose.
+// with n the unit vector between the centres of two grains; with D dimensions (2 for a
+// layer, in x and z)
+//     deviator = sqrt(D / (D - 1) sum_kl (F_kl - delta_kl / D)^2),
+//     density_b = share of contacts in class b over that of an isotropic packing,
+//     cos(b w) - cos((b + 1) w), w = pi / (2 count); in a layer 1 / count.
+// Rattlers are found by removing grains with fewer contacts than `least` until none is
+// left, as each removal may make another one loose.
 #include "geometry/fabric.h"
 
 #include "basics/memory.h"

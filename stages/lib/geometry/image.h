@@ -15,6 +15,7 @@ struct image {
     int8_t along[3];
 };
 
+// A + B, and A - B.
 static inline struct image image_sum(struct image a, struct image b)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -29,6 +30,7 @@ static inline struct image image_difference(struct image a, struct image b)
     return a;
 }
 
+// The same pair seen from its other end.
 static inline struct image image_opposite(struct image a)
 {
     return image_difference((struct image){0}, a);

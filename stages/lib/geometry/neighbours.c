@@ -3,6 +3,10 @@
 // a grid for each, with cells at least as wide as two of its largest reaches; every
 // sphere looks in the grids of its own and larger levels, in neighbouring cells only.
 // O(n) for each level. Pairs come sorted.
+//     level = floor(log2(largest / reach)), 15 at most; width = 2 largest / 2^level;
+//     near: |x_j - x_i|, by the nearest image, <= reach_i + reach_j.
+// Threads take spheres by shares of fixed size, and each share keeps its own list, so
+// the order of pairs does not depend on their number.
 #include "geometry/neighbours.h"
 
 #include "basics/memory.h"

@@ -12,7 +12,8 @@
 #include <stdint.h>
 
 // The six walls of the box, as bits (a node may lie on up to three) and in this order
-// wherever walls are numbered.
+// wherever walls are numbered: wall k, 0 to 5, is bit 1 << k, across axis k / 2, upper
+// where k is odd.
 enum wall {
     WALL_X_LOWER = 1,
     WALL_X_UPPER = 2,

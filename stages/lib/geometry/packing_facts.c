@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a packing looks like, for the warnings of packing_check.c: quantiles of radii,
 // extent, grains beyond walls, empty space (share of places further than `far` from any
-// grain), coincident and overlapping pairs, free grains.
+// grain), coincident and overlapping pairs, free grains. In code order
+//     beyond_walls = 1 - (distance of the centre from the wall, inwards) / radius,
+//     porosity = 1 - sum of 4/3 pi r^3 / volume of the box,
+//     far = max(2 median, cbrt(volume of the box / n)),
+//     overlap = (r_i + r_j - distance) / min(r_i, r_j).
+// Empty space is looked for at about 2 edge / far places along each edge; not where
+// bodies bound the grains.
 #include "geometry/packing_check.h"
 
 #include "basics/memory.h"

@@ -12,10 +12,11 @@ struct half_angle {
     double real, imaginary;
 };
 
-// Solid angle W of the triangle U V W, positive where they turn anticlockwise seen from
-// outside:
-//     tan(W/2) = u . (v x w) / (u v w + (u.v) w + (v.w) u + (w.u) v),
-// u, v, w the lengths; numerator and denominator are the imaginary and real part.
+// Solid angle Omega of the triangle U V W, positive where they turn anticlockwise seen
+// from outside: with a, b, c the lengths of U, V, W
+//     tan(Omega / 2) = (U x V).W / (a b c + (U.V) c + (V.W) a + (W.U) b),
+// numerator and denominator being the imaginary and the real part. No length may be 0
+// for the angle to mean something.
 static inline struct half_angle half_solid_angle(struct vector u, struct vector v,
                                                  struct vector w)
 {

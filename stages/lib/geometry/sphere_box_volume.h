@@ -24,7 +24,8 @@ struct lens {
     struct vector middle;       // of that one
 };
 
-// The lens of radii FIRST and SECOND, m; its volume is 0 where they do not meet.
+// The lens of radii FIRST and SECOND, m; its volume is 0 where they do not meet. All is
+// relative to the first centre.
 struct lens lens_between(double first, double second, struct vector apart);
 
 // The part of it between LOWER and UPPER, m^3. Exact, to 1e-14 of the spheres, where

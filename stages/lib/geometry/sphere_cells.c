@@ -2,7 +2,8 @@
 // Cells of a box, each with all spheres whose surface comes within `reach` of it, the
 // largest first. Where the box repeats, spheres are copied across its sides. Cells
 // widen until the lists are short on average, so memory stays O(n) for any range of
-// radii.
+// radii: from 1.6 cbrt(volume / n) on the width doubles until there are at most 2 n +
+// 64 cells and 64 n members; reach = 0.2 times the narrowest width.
 #include "geometry/sphere_cells.h"
 
 #include "basics/memory.h"

@@ -35,7 +35,7 @@ static inline double clearance_of(struct vector centre, double radius,
     return norm(subtract(to, scale(t, along))) - radius;
 }
 
-// What is known of the clearance of a throat.
+// What is known of the clearance of a throat, m.
 struct clear_way {
     double least;   // to the grains seen so far
     double largest; // radius of the grains beside it

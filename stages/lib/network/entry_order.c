@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Order of entry, with ties decided by geometry. Lengths, volumes and places become
 // whole ticks of 2^-30 of the network's extent (or largest volume), so that rounding,
-// another unit of length or another numbering does not change who is first.
+// another unit of length or another numbering does not change who is first. First all
+// are ranked by priority; then each run of equals, and only those, is sorted by
+//     length, volume, -z, x, y (ticks; lowest first), index.
+// Places wrap where the box repeats, so a throat across a side has one place.
 #include "network/entry_order.h"
 
 #include "basics/memory.h"

@@ -4,8 +4,11 @@
 // field
 //     h(x) = sum over 1000 waves of cos(k.x + phase),  k normal with deviation 1/l,
 // whose covariance is exp(-d^2 / (2 l^2)). So the distribution is exactly the drawn
-// one. Trap: a normal law is cut at 0, which shifts its mean and deviation
-// (cut_normal).
+// one. Where the box repeats k is rounded to a wave that repeats with it. Trap: a
+// normal law is cut at 0, which shifts its mean and deviation (cut_normal): with
+// end = -mean / deviation and hazard = phi(end) / Q(end) of the standard normal,
+//     mean += deviation hazard,
+//     deviation *= sqrt(1 - hazard (hazard - end)).
 #include "network/throat_radius.h"
 
 #include "basics/memory.h"

@@ -2,7 +2,10 @@
 // The void of each throat: over the faces around it, the pyramids from the grain
 // centres on both sides over the triangle (face middle, node a, node b), less the balls
 // of the grains (geometry/tetra_ball_volume.h). The sum over all throats is the void of
-// the domain.
+// the domain. The face middle is the mean over its rim,
+//     middle = sum of length (a + b) / 2 over sides / sum of length,
+// so that nodes in one place do not count twice. Volumes down to -1e-12 of the largest
+// radius cubed are rounding and become 0.
 #include "network/void_volume.h"
 
 #include "basics/memory.h"

@@ -11,7 +11,8 @@
         "version", 'V', NULL, 0, "Print program version", -1                           \
     }
 
-// What its parser returns for a KEY it does not know. Exits on --version.
+// What a program's parser returns for a KEY it does not know: ARGP_ERR_UNKNOWN unless
+// it is one that all share. Exits on --version, which prints PROGRAM and VERSION.
 error_t parse_common_option(int key, struct argp_state *state, const char *program,
                             int version);
 
