@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrays with an element for each contact pair, made anew when pairs are added.
+// Arrays with an element for each contact pair, made anew, and empty, when pairs are
+// added; with them the pattern of the stiffness and the contact solver, which know the
+// pairs by number.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

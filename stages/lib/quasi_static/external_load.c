@@ -2,6 +2,8 @@
 // The load: forces from outside on grains that are neither fixed nor detached. Where
 // nothing holds the body, net force and moment are taken off: of small displacements
 // here, once; of large ones where the grains are [rigid_motion.c].
+//     load = (force - what is taken off) / (stiffness length),
+// and the largest so far is the scale of the residual.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

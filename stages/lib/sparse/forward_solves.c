@@ -5,8 +5,11 @@
 // 2006, 3.2].
 //
 // One column is stored as such. Two to eight are stored side by side in four or eight
-// lanes, the unused ones 0, and one sweep through the supernodes serves all of them. A
-// product of two solutions sums over the supernodes that both reaches have.
+// lanes, the unused ones 0, and one sweep through the supernodes serves all of them.
+// With y_c the columns of a group and p the rows of its reach
+//     product:  product_kl = sum_p a_pk b_pl, over supernodes that both reaches have;
+//     apply:    product_c = sum_p y_pc half_p;
+//     subtract: half_p -= sum_c share_c y_pc.
 #include "supernodal_internal.h"
 
 #include "basics/memory.h"

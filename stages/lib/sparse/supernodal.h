@@ -36,8 +36,8 @@ void supernodal_backward(struct supernodal *factor, const double *half, double *
 // from them to the root of the elimination tree. Products of such forward solves are
 // entries of B^T A^-1 B.
 enum { BATCH = 8 };
-// Solutions of one group. Row i of column c is value[i lanes + c]; lanes beyond COLUMNS
-// hold 0.
+// Solutions of one group. Row i of column c, rows counted along the reach, is value[i
+// lanes + c]; lanes beyond COLUMNS hold 0.
 struct forward_solves {
     int columns;         // BATCH at most
     int lanes;           // that they take

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs are sought again when a grain has moved further since the last search than the
 // range that was searched allows. New ones get the deformation that they would have had
-// if they had been pairs from the start.
+// if they had been pairs from the start: with n the normal at the start and u the
+// displacements at the last equilibrium, in mean radii,
+//     from = arm_i + arm_j,  now = from n + u_j - u_i,
+//     deformation[NORMAL] = |now| - from; at the wall -u_i.n.
+// All other components are 0.
 #include "contact_detection.h"
 
 #include "basics/memory.h"
