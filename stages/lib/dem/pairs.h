@@ -47,6 +47,7 @@ struct moment_group {
 struct shear_group {
     _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
 };
+
 // Coefficients of each pair, as in struct contact_law, where pairs differ.
 struct law_group {
     _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
@@ -55,6 +56,7 @@ struct law_group {
     double shear_damping[PAIRS_IN_GROUP];
     double friction[PAIRS_IN_GROUP];
 };
+
 // Bonds, and what parallel ones carry on the second grain.
 struct bond_group {
     _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without an intact bond
@@ -65,6 +67,7 @@ struct bond_group {
     double twist[PAIRS_IN_GROUP];          // M^n along n
     int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
 };
+
 // Energy that each pair has lost since close_pair_ledger, by the way it went.
 struct loss_group {
     _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
@@ -72,6 +75,7 @@ struct loss_group {
     double broken[PAIRS_IN_GROUP];
     double bridges[PAIRS_IN_GROUP];
 };
+
 // Liquid bridges.
 struct liquid_group {
     _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle

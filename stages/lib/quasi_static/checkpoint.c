@@ -38,7 +38,7 @@ struct part {
     int count;
 };
 
-// Of COUNT rows STRIDE bytes apart the numbers of N_PART parts, of doubles.
+// The numbers of N_PART parts, of doubles, in each of COUNT rows STRIDE bytes apart.
 struct table {
     const char *name;
     void *row;

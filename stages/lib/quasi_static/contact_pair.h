@@ -14,7 +14,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// Of shear and bending there are two, one after the other.
+// Shear and bending have two components each, one after the other: SHEAR + 1 and
+// BENDING + 1.
 enum component { NORMAL, SHEAR, TORSION = 3, BENDING, COMPONENTS = 6 };
 
 enum contact_state {

@@ -23,7 +23,7 @@ static void solve_moments(const struct active_pair *active,
     if (solve_three(m, right)) memcpy(x, right, sizeof right);
 }
 
-// Of components FIRST to END - 1.
+// The local problem of components FIRST to END - 1.
 static struct local_problem local_problem_of(const struct contact_solver *c,
                                              const struct active_pair *active,
                                              int first, int end,

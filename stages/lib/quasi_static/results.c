@@ -41,7 +41,7 @@ int quasi_static_instabilities(const struct quasi_static *qs, int *last)
     return qs->n_instability;
 }
 
-// Of a body that nothing holds, rigid motion is rounding: taken off small displacements
+// Rigid motion of a body that nothing holds is rounding: taken off small displacements
 // here, off large ones as they are found [rigid_motion.c].
 void quasi_static_displacements(const struct quasi_static *qs,
                                 struct vector *displacement)
@@ -152,7 +152,7 @@ double quasi_static_unbalanced_ratio(const struct quasi_static *qs)
         carrying += force > 0 || (qs->pair[j].is_bonded && !qs->pair[j].is_detached);
     }
     if (!(left > 0)) return 0;
-    // Of loads that are gone there may be rounding left on grains and in pairs alike.
+    // Loads that are gone may leave rounding on grains and in pairs alike.
     const double nothing = qs->setup.tolerance * qs->largest_load;
     if (largest_residual(qs) <= nothing && carried <= carrying * nothing) return 0;
     return carried > 0 ? left / moving / (carried / carrying) : 1; // all is unbalanced

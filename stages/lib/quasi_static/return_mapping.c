@@ -108,7 +108,7 @@ static double stretch_of(const struct contact_pair *pair, const struct local_pro
     return s->from[1 + k] + x[1 + k] - pair->contact.anchor[k];
 }
 
-// Of a closed contact: x without friction, and what a unit shear force takes off it.
+// A closed contact: x without friction, and what a unit shear force takes off it.
 struct sliding {
     double smooth[3], give[2][3];
     double overlap, limit; // without friction; force over overlap

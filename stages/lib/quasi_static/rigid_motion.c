@@ -46,8 +46,8 @@ void project_rigid_load(struct quasi_static *qs)
     free(moved);
 }
 
-// Of a grain of MASS about its own centre, a sphere: with it, a straight row has an
-// orientation about its own axis.
+// The inertia of a grain, a sphere of MASS, about its own centre: with it, a straight
+// row has an orientation about its own axis.
 static double own_inertia(const struct whole *whole, int i, double mass)
 {
     const double radius = whole->packing->radius[i] / whole->length;
