@@ -17,7 +17,8 @@
 
 // One that is read lives from artifact_open to artifact_close, one that is written from
 // artifact_create to artifact_finish. Names of datasets and attributes are paths,
-// "/particles/position"; one that its schema does not have is an internal error (70).
+// "/particles/position". artifact_get and all that writes end the program (70) at one
+// that the schema does not have.
 struct artifact {
     const char *path;      // for messages; not owned
     struct schema *schema; // what it is
@@ -51,8 +52,8 @@ _Noreturn void refuse_kind(const char *path, const char *wanted, const char *got
 bool is_hdf5(const struct bytes *bytes);
 
 // A whole dataset in the memory type of its schema entry (float64: double, int32:
-// int32_t, int64: int64_t, uint8: uint8_t). ROWS, if not NULL, gets the first extent.
-// The caller frees it.
+// int32_t, int64: int64_t, uint8: uint8_t, int8: int8_t). ROWS, if not NULL, gets the
+// first extent. The caller frees it.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
 
 // A whole dataset as doubles, whatever its type: whole numbers up to 2^53 are exact.

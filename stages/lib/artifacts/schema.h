@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The schemas of the artifacts: names, shapes, units, ranges (schemas/*.json). Those of
 // HDF5 artifacts list datasets and attributes; an entry is a JSON object with "name",
-// "type", "unit", and, for a dataset, "shape", whose symbols ("n_particle") stand for
+// "type", "units", and, for a dataset, "shape", whose symbols ("n_particle") stand for
 // equal extents. The texts are compiled in: no file is read at run time.
 #ifndef CRAQUELURE_SCHEMA_H
 #define CRAQUELURE_SCHEMA_H

@@ -6,8 +6,8 @@
 // of a motion or of forces and moments. In the kernel a doublew is one component of
 // SIMD_WIDTH pairs, lane k being pair AT + k. `rows` lie between: for SIMD_WIDTH = 4
 // row k is the record of lane k; for 8 the rows are the records of lanes 0 and 2, 1 and
-// 3, 4 and 6, 5 and 7, which takes the fewest shuffles. transpose leads from rows to
-// components, rows_of back.
+// 3, 4 and 6, 5 and 7, as EVEN, ODD, LOWER and UPPER then put lanes in order. transpose
+// leads from rows to components, rows_of back.
 #include "dem/engine.h"
 
 #include "basics/simd.h"

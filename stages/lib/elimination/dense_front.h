@@ -67,7 +67,7 @@ void dense_front_copy_row(const struct dense_front *dense, int n, int p, double 
 void dense_front_remove(struct dense_front *dense, int n, int p);
 
 // Turns a small one of N rows into a large one, whose entries are floats if it IS
-// ROUNDED: half the memory and time for seven digits.
+// ROUNDED: half the memory, seven digits.
 void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded);
 
 // Adds FACTOR ROW[i] ROW[j] to each entry of N rows.

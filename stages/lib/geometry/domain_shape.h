@@ -29,8 +29,8 @@ static inline bool body_is_one(const struct body *body)
 
 // Whether it is round in the plane that AXIS, 0 to 2, lies in.
 bool body_is_round(const struct body *body, int axis);
-// What of X, a vector, counts for the round side: 0 along the axis of a cylinder or
-// disc, and all of it for a box.
+// What of X, a vector, counts for the round side: all for a sphere, without the
+// component along the axis for a cylinder or disc, nothing for a box.
 struct vector body_round_part(const struct body *body, struct vector x);
 
 // Whether X lies in it or on its surface.

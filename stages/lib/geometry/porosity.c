@@ -3,8 +3,8 @@
 // pairs, each cut by the slice (sphere_box_volume.h); porosity = 1 - solid / volume.
 // The height of a centre over the lower end of the window is `height`; slice k lies
 // from k w - height to (k + 1) w - height as seen from it. Where the box repeats along
-// z slices are counted on beyond its ends and wrapped; across x and y the window is
-// then taken as endless, as images fill in what sticks out.
+// z slices are counted on beyond its ends and wrapped; where it repeats along x or y
+// nothing is cut there, as an image fills in what sticks out.
 #include "geometry/porosity.h"
 
 #include "geometry/neighbours.h"

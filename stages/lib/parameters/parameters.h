@@ -56,8 +56,7 @@ struct parameter {
 #define ABOVE(limit) .bound = BOUND_ABOVE, .low = (limit)
 #define BETWEEN(least, most) .bound = BOUND_BETWEEN, .low = (least), .high = (most)
 
-// A table ends with a row whose key is NULL. All tables are static: keys, texts and
-// choices are kept as pointers.
+// A table ends with a row whose key is NULL.
 
 // Reads SECTION (an object; may be NULL: all defaults) by TABLE, checks every entry and
 // fills the stage's struct PARAMETERS. WHERE names the file and section in messages.

@@ -6,8 +6,9 @@
 
 #include "large_state.h"
 
-// A stiffness on the diagonal, in the units of K, for the geometric stiffness at the
-// iterate: twice a bound on what that resists rigid rotation with, and a little more.
+// A stiffness on the diagonal, in the units of K, for the geometric stiffness as last
+// found [large_linearise]: twice a bound on what that resists rigid rotation with, and
+// a little more.
 double find_stabilisation(const struct quasi_static *qs);
 
 // Subtracts from RESIDUAL (n) the geometric stiffness of all pairs times MOVED (n).
