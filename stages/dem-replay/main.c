@@ -113,6 +113,7 @@ static void check_sizes(const struct packing *packing, const char *path)
     }
 }
 
+// The caller frees it with free_load.
 static struct load read_load(const struct artifact *input)
 {
     struct load load;

@@ -158,6 +158,7 @@ static void take_snapshot(struct run *run)
     run->engine->observe(run, snapshot);
 }
 
+// Several can be due at one load, if the saturation falls past more than one of them.
 static bool is_snapshot_due(const struct run *run)
 {
     const int next = run->response->n_snapshot;

@@ -199,6 +199,8 @@ static int64_t ramp(const struct run *run)
     return is_first ? run->settings->ramp : 0;
 }
 
+// Below the end of the ramp the load is a part of its row; without weight it grows from
+// 0.
 static void grow(struct run *run)
 {
     const struct vector *weight = run->settings->weight; // is on already
@@ -283,6 +285,8 @@ static enum status settle(struct run *run, int64_t first, double tolerance,
     }
 }
 
+// After the fixed cycles of a step: more until the body is at rest, if a tolerance is
+// given.
 static enum status run_on(struct run *run, struct reason *reason)
 {
     const struct replay_settings *settings = run->settings;

@@ -250,6 +250,7 @@ enum status restore_weight(struct response *response, int n_crack,
     return STATUS_OK;
 }
 
+// Whether N steps never fall.
 static bool rises(const int32_t *step, int64_t n)
 {
     for (int64_t k = 1; k < n; k++)

@@ -212,6 +212,7 @@ double largest_displacement(const struct packing *packing,
     return most;
 }
 
+// Over loads that have a force only: without any, the ratio says nothing (is_loaded).
 static double largest_unbalanced_ratio(const struct load *load, int n,
                                        const struct response *response)
 {

@@ -420,7 +420,8 @@ static enum status loosen(const struct making *making, bool grow, double *shrunk
 }
 
 // Mean radius by volume: of the grains that carry the stress. By number it would be
-// that of the fines, and the same stress would press large grains into each other.
+// that of the fines, and the same stress would press large grains into each other. The
+// sum is in units of the first radius, so that no fourth power underflows.
 static double typical_radius(const struct packing *packing)
 {
     const double first = packing->n_particle > 0 ? packing->radius[0] : 1;

@@ -29,6 +29,8 @@ static struct domain cloud_domain(const struct domain *domain, double volume,
     return tall;
 }
 
+// Every attempt starts from the same random numbers, so that the radii are those that
+// drawn_fraction saw.
 static enum status make_cloud(const struct making *making, int count,
                               struct domain *tall, struct reason *reason)
 {

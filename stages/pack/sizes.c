@@ -14,8 +14,7 @@
 //     power law   r = low exp(log1p(u expm1(a ln(high / low))) / a),
 //                 a = 0:  r = low (high / low)^u,
 //     normal      r = mean + deviation Phi^-1(P_low + (P_high - P_low) u),
-//     two_mode    second radius with share s m_1 / (s m_1 + (1 - s) m_2), masses m ~
-//     r^3.
+//     two_mode    second radius with share s m_1 / (s m_1 + (1 - s) m_2), m ~ r^3.
 #include "sizes.h"
 
 #include "basics/memory.h"

@@ -184,6 +184,7 @@ static bool complete(const struct spiral *spiral)
     return spiral->count && grids_count(spiral->grids) >= spiral->count;
 }
 
+// It lies on the floor: in the lower corner of a box, at the lowest point of a disc.
 static void place_first(struct spiral *spiral, double radius)
 {
     const struct domain *domain = spiral->domain;
