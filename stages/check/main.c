@@ -61,8 +61,8 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table,
     .notes = "Without -o it prints its findings as text, the worst first; with -o FILE "
-             "(or -) it writes JSON. Status 1: something is wrong, which pack refuses "
-             "or which is hardly intended.",
+             "(or -) it writes JSON. Status 1: something is wrong: pack refuses it, or "
+             "it is hardly intended.",
     .tells = true};
 
 // The defaults of dem-replay are those of grains of 500 nm.

@@ -50,9 +50,10 @@ static const struct stage stage = {
     .writes = "crackstats",
     .most_inputs = 1000000,
     .parameters = table,
-    .notes = "A drying among the inputs belongs to the response before it: then cracks "
-             "are compared with the liquid of their slices. Intervals are of the mean "
-             "over the given runs; one run has none: repeat it over seeds."};
+    .notes =
+        "A drying among the inputs belongs to the response before it: then cracks are "
+        "compared with the liquid of their slices. Confidence intervals are those of "
+        "the mean over the runs; one run has none: repeat it with other seeds."};
 
 // The inputs, and which is next.
 struct reading {

@@ -15,9 +15,10 @@ const struct parameter replay_table[] = {
     {"density", PARAMETER_NUMBER, "kg m-3", "3230", AT(settings.material.density),
      ABOVE(0), .text = "of the grains [K Table 5.1]"},
     {"gravity", PARAMETER_NUMBER_OR_NULL, "m s-2", "null", AT(gravity), AT_LEAST(0),
-     .text = "towards -z: the grains, and the liquid in the forces, weigh on the body, "
-             "at rest before drying begins; null: as the forces have it (drying's and "
-             "force-protocol's gravity), 0 with support=free; 0: no weight of grains"},
+     .text = "towards -z: the weight of the grains, and of the liquid in the forces, "
+             "loads the body, which comes to rest under it before drying begins; null: "
+             "that of the forces (dry.gravity, force-protocol.gravity), 0 with "
+             "support=free; 0: grains have no weight"},
     {"friction", PARAMETER_NUMBER, "1", "0.5", AT(settings.material.friction),
      AT_LEAST(0), .text = "coefficient between grains"},
     {"damping_ratio", PARAMETER_NUMBER, "1", "0", AT(settings.material.damping_ratio),
@@ -122,7 +123,7 @@ const struct parameter replay_table[] = {
              "like gears are not held"},
     {"quasi_static.large_displacements", PARAMETER_BOOLEAN, "1", "false",
      AT(settings.large_displacements),
-     .text = "true: grains may move and turn far, equilibria are those of the present "
+     .text = "true: grains may move and turn far, equilibria are those of the current "
              "geometry; false: displacements are small, directions are those of the "
              "packing"},
     {"quasi_static.increment", PARAMETER_NUMBER, "1", "0.02", AT(settings.increment),

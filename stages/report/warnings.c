@@ -48,7 +48,7 @@ static void warn_of_rest(FILE *page, const struct run *run)
     const double gone = summary_of(run, RESPONSE, "gone"),
                  snaps = summary_of(run, RESPONSE, "snaps");
     if (gone > 0)
-        warn(page, "%.0f grains came off the body, for nothing held them.", gone);
+        warn(page, "%.0f grains detached from the body: nothing held them.", gone);
     if (snaps > 0) warn(page, "The body snapped through or buckled %.0f times.", snaps);
 }
 
