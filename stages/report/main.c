@@ -31,7 +31,7 @@ static const struct stage stage = {
     .most_inputs = 16,
     .parameters = table,
     .notes = "The page is one HTML file that needs no network and no other file. It "
-             "opens in any\nbrowser of the last years, with or without WebGL.",
+             "opens in any\nrecent browser, with or without WebGL.",
     .writes_page = true};
 
 // So many forces make a megabyte and a half.
