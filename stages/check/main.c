@@ -87,8 +87,8 @@ static void judge_free(const struct packing_facts *facts, struct findings *findi
 // Below this share of the capillary forces weight changes little.
 static void judge_weight(const struct bond_numbers *weight, struct findings *findings)
 {
-    const double matters = 0.05, most = fmax(weight->grain, weight->body);
-    if (!(most >= matters)) return;
+    const double most = fmax(weight->grain, weight->body);
+    if (!(most >= weight_matters)) return;
     add_finding(findings, FINDING_NOTE, "weight",
                 "%s weighs about %.2g of its suction: gravity=9.81 in force-protocol "
                 "and dem-replay adds weight",

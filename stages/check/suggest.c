@@ -44,13 +44,13 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
                                           const struct packing *packing,
                                           const struct packing_facts *facts)
 {
-    const double r = facts->median, gravity = 9.80665;
+    const double r = facts->median;
     const double suction = expected_suction(material, r);
     const struct vector side = subtract(packing->upper, packing->lower);
     double volume = 0;
     for (int i = 0; i < packing->n_particle; i++)
         volume += 4 * M_PI / 3 * pow(packing->radius[i], 3);
-    const double weight = material->density * gravity * volume;
+    const double weight = material->density * gravity_of_the_earth * volume;
     const double force = force_over_suction * suction * M_PI * r * r;
     return (struct bond_numbers){.grain = weight / packing->n_particle / force,
                                  .body = weight / (side.x * side.y * suction)};

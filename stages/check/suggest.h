@@ -4,6 +4,7 @@
 #ifndef CRAQUELURE_CHECK_SUGGEST_H
 #define CRAQUELURE_CHECK_SUGGEST_H
 
+#include "geometry/bond_numbers.h"
 #include "geometry/packing_check.h"
 
 #include <jansson.h>
@@ -26,11 +27,7 @@ double bottom_of(const struct packing_facts *facts);
 // grain, m. Proportional to surface tension over radius; suggest takes the median.
 double expected_stress(const struct material *material, double radius);
 
-// Weight on earth over the largest capillary force to expect on a grain, and over what
-// the suction bears of the body: dem-replay/weight.h.
-struct bond_numbers {
-    double grain, body;
-};
+// With the gravity of the Earth and the largest capillary force to expect on a grain.
 struct bond_numbers expected_bond_numbers(const struct material *material,
                                           const struct packing *packing,
                                           const struct packing_facts *facts);

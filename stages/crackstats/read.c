@@ -6,7 +6,6 @@
 
 #include "basics/memory.h"
 #include "basics/status.h"
-#include "unsettled.h"
 
 #include <stdlib.h>
 
@@ -26,8 +25,11 @@ static void read_unsettled(struct run *run, const struct artifact *response,
     uint8_t *settled = artifact_get(response, "/history/settled", NULL);
     for (int k = 0; k < n_time; k++)
         run->n_unsettled += !settled[k];
-    run->n_unsettled_crack =
-        unsettled_cracks(run, &(struct loads){n_time, time, settled});
+    for (int k = 0, step = 0; k < run->n_crack; k++) {
+        while (time[step] < run->time[k])
+            step++; // never past the last: no crack is later
+        run->n_unsettled_crack += !settled[step];
+    }
     free(settled);
 }
 

@@ -32,7 +32,7 @@ enum statistic {
     FRONT_CORRELATION, // of cracks with lost liquid; NAN without a drying
     FRONT_SATURATION,  // mean, over the cracks, of the saturation of their slice
     UNSETTLED_LOADS,   // loads that did not come to rest
-    UNSETTLED_CRACKS,  // cracks under them (unsettled.h)
+    UNSETTLED_CRACKS,  // cracks that opened under them
     STATISTIC_COUNT
 };
 

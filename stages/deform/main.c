@@ -36,8 +36,8 @@ static const struct parameter table[] = {
              "1), keep does not change the connections of the network"},
     {"radii", PARAMETER_CHOICE, "1", "\"anew\"",
      offsetof(struct deform_parameters, radii), .choices = "anew|carried",
-     .text = "of a third input: anew, as they are in it; carried, drawn radii: each "
-             "that of the nearest old throat, changed like its clearance"},
+     .text = "throat radii of a third input; anew: as it has them; carried, for drawn "
+             "radii: each that of the nearest old throat, changed like its clearance"},
     {"write", PARAMETER_CHOICE, "1", "\"network\"",
      offsetof(struct deform_parameters, write), .choices = "network|packing",
      .text = "packing: the moved grains in their box, for tessellate"},
@@ -276,14 +276,14 @@ static void move(struct scene *scene)
     free(liquid.saturation);
 }
 
-static void check_same_grains(const struct scene *scene, const struct network *anew,
+static void check_same_grains(const struct scene *scene, const struct network *renewed,
                               const char *path)
 {
     static const double same = 1e-9; // of a radius: tessellate rounds no more
     const struct packing *packing = &scene->after.packing;
-    bool fits = anew->packing.n_particle == packing->n_particle;
+    bool fits = renewed->packing.n_particle == packing->n_particle;
     for (int i = 0; i < packing->n_particle && fits; i++)
-        fits = distance(anew->packing.position[i], packing->position[i]) <=
+        fits = distance(renewed->packing.position[i], packing->position[i]) <=
                same * packing->radius[i];
     if (!fits)
         die(STATUS_BAD_DATA,
@@ -295,29 +295,29 @@ static void check_same_grains(const struct scene *scene, const struct network *a
 static void replace(struct scene *scene)
 {
     struct artifact *third = open_network(scene->invocation->inputs[2]);
-    struct network anew = artifact_get_periodic_network(third);
-    check_same_grains(scene, &anew, third->path);
+    struct network renewed = artifact_get_periodic_network(third);
+    check_same_grains(scene, &renewed, third->path);
     struct neighbour_grains around = find_neighbour_grains(&scene->before);
     struct liquid liquid = {0};
     double *saturation = find_saturations(scene);
     struct reason reason;
     if (scene->parameters->radii == RADII_CARRIED &&
         map_radii(&scene->before, &around, &scene->after.packing,
-                  (enum clearance)scene->parameters->clearance, &anew, &reason))
+                  (enum clearance)scene->parameters->clearance, &renewed, &reason))
         die(STATUS_BAD_DATA, "%s: %s", input_name(third->path), reason.text);
     if (saturation) {
         struct mapped_liquid carried =
             map_liquid(&scene->before, &around, &scene->after.packing, saturation,
-                       open_walls(scene->input), &anew);
-        liquid = settle(scene->input, &anew, &carried);
+                       open_walls(scene->input), &renewed);
+        liquid = settle(scene->input, &renewed, &carried);
     }
     neighbour_grains_free(&around);
     json_t *inputs = digests(scene);
     json_array_append_new(inputs, input_digest(third));
-    write_moved(&anew, &liquid, 0, 0, scene, inputs);
+    write_moved(&renewed, &liquid, 0, 0, scene, inputs);
     free(saturation);
     free(liquid.saturation);
-    network_free(&anew);
+    network_free(&renewed);
     artifact_close(third);
 }
 

@@ -87,28 +87,28 @@ static void empty_enclosed(struct network *network, unsigned open_walls)
     free(open);
 }
 
-static void map_saturations(const struct middles *old, const struct network *anew,
+static void map_saturations(const struct middles *old, const struct network *renewed,
                             const double *saturation, double *to)
 {
-    struct places places = places_make(&anew->packing, old->n, old->at);
-    for (int t = 0; t < anew->n_throat; t++) {
-        if (anew->throat_kind[t] != THROAT_NETWORK) continue;
-        const int k = nearest_place(&places, throat_middle(anew, t));
+    struct places places = places_make(&renewed->packing, old->n, old->at);
+    for (int t = 0; t < renewed->n_throat; t++) {
+        if (renewed->throat_kind[t] != THROAT_NETWORK) continue;
+        const int k = nearest_place(&places, throat_middle(renewed, t));
         if (k >= 0) to[t] = saturation[old->throat[k]];
     }
     places_free(&places);
 }
 
 static void map_volumes(const struct middles *old, const struct network *before,
-                        const double *saturation, const struct network *anew,
+                        const double *saturation, const struct network *renewed,
                         struct mapped_liquid *mapped)
 {
-    struct middles wet = find_middles(anew, mapped->saturation);
+    struct middles wet = find_middles(renewed, mapped->saturation);
     if (!wet.n) { // too little was left for any throat to be near
         free_middles(&wet);
-        wet = find_middles(anew, NULL);
+        wet = find_middles(renewed, NULL);
     }
-    struct places places = places_make(&anew->packing, wet.n, wet.at);
+    struct places places = places_make(&renewed->packing, wet.n, wet.at);
     for (int k = 0; k < old->n; k++) {
         const int t = old->throat[k];
         const int near = saturation[t] > 0 ? nearest_place(&places, old->at[k]) : -1;
@@ -117,7 +117,7 @@ static void map_volumes(const struct middles *old, const struct network *before,
         mapped->liquid[to] += saturation[t] * throat_volume(before, t);
         if (mapped->saturation[to] == 0)
             mapped->saturation[to] =
-                fmin(1, mapped->liquid[to] / throat_volume(anew, to));
+                fmin(1, mapped->liquid[to] / throat_volume(renewed, to));
     }
     places_free(&places);
     free_middles(&wet);
@@ -126,19 +126,19 @@ static void map_volumes(const struct middles *old, const struct network *before,
 struct mapped_liquid map_liquid(const struct network *before,
                                 const struct neighbour_grains *around,
                                 const struct packing *moved, const double *saturation,
-                                unsigned open_walls, struct network *anew)
+                                unsigned open_walls, struct network *renewed)
 {
-    struct mapped_liquid mapped = {NEW_ARRAY(double, anew->n_throat),
-                                   NEW_ARRAY(double, anew->n_throat)};
+    struct mapped_liquid mapped = {NEW_ARRAY(double, renewed->n_throat),
+                                   NEW_ARRAY(double, renewed->n_throat)};
     const unsigned empty = empty_walls(before);
     if (empty) {
-        impose_empty_throats(anew, empty);
-        empty_enclosed(anew, open_walls);
+        impose_empty_throats(renewed, empty);
+        empty_enclosed(renewed, open_walls);
     }
     struct middles old = find_middles(before, NULL);
     follow_grains(before, around, moved, &old);
-    map_saturations(&old, anew, saturation, mapped.saturation);
-    map_volumes(&old, before, saturation, anew, &mapped);
+    map_saturations(&old, renewed, saturation, mapped.saturation);
+    map_volumes(&old, before, saturation, renewed, &mapped);
     free_middles(&old);
     return mapped;
 }
@@ -146,28 +146,28 @@ struct mapped_liquid map_liquid(const struct network *before,
 enum status map_radii(const struct network *before,
                       const struct neighbour_grains *around,
                       const struct packing *moved, enum clearance how,
-                      struct network *anew, struct reason *reason)
+                      struct network *renewed, struct reason *reason)
 {
     double *was = find_clearances(before, how, reason);
-    double *is = was ? find_clearances(anew, how, reason) : NULL;
+    double *is = was ? find_clearances(renewed, how, reason) : NULL;
     if (!is) {
         free(was);
         return STATUS_BAD_DATA;
     }
     struct middles old = find_middles(before, NULL);
     follow_grains(before, around, moved, &old);
-    struct places places = places_make(&anew->packing, old.n, old.at);
-    for (int t = 0; t < anew->n_throat; t++) {
-        if (anew->throat_kind[t] != THROAT_NETWORK) continue;
-        const int k = nearest_place(&places, throat_middle(anew, t));
+    struct places places = places_make(&renewed->packing, old.n, old.at);
+    for (int t = 0; t < renewed->n_throat; t++) {
+        if (renewed->throat_kind[t] != THROAT_NETWORK) continue;
+        const int k = nearest_place(&places, throat_middle(renewed, t));
         if (k < 0) continue;
         const int from = old.throat[k];
-        anew->throat_radius[t] =
+        renewed->throat_radius[t] =
             moved_radius(before->throat_radius[from], was[from], is[t]);
     }
     if (!before->throat_volume) {
-        free(anew->throat_volume);
-        anew->throat_volume = NULL;
+        free(renewed->throat_volume);
+        renewed->throat_volume = NULL;
     }
     places_free(&places);
     free_middles(&old);

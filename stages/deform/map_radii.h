@@ -21,7 +21,7 @@ struct mapped_liquid {
 struct mapped_liquid map_liquid(const struct network *before,
                                 const struct neighbour_grains *around,
                                 const struct packing *moved, const double *saturation,
-                                unsigned open_walls, struct network *anew);
+                                unsigned open_walls, struct network *renewed);
 
 // Each throat of ANEW that holds liquid gets the radius of the old one that is nearest,
 // as above, changed as their clearances differ (moved_radius): drawn radii keep their
@@ -30,6 +30,6 @@ struct mapped_liquid map_liquid(const struct network *before,
 enum status map_radii(const struct network *before,
                       const struct neighbour_grains *around,
                       const struct packing *moved, enum clearance how,
-                      struct network *anew, struct reason *reason);
+                      struct network *renewed, struct reason *reason);
 
 #endif

@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double gravity_of_the_earth = 9.80665; // m/s2
-
 // ---- taken --------------------------------------------------------------------------
 
 // The gravity in the forces; 0: none.
@@ -79,9 +77,9 @@ struct taken_weight take_weight(const struct artifact *input,
 void warn_of_weight(const struct taken_weight *weight, const struct response *response,
                     const struct packing *packing)
 {
-    static const double matters = 0.05, settled = 1e-4;
+    static const double settled = 1e-4;
     const double most = fmax(weight->numbers.grain, weight->numbers.body);
-    if (weight->gravity == 0 && most >= matters)
+    if (weight->gravity == 0 && most >= weight_matters)
         report("gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 "
                "in dry, or in force-protocol and here, adds it",
                weight->numbers.grain < most ? "the body" : "a grain", most);

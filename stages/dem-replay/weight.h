@@ -3,6 +3,7 @@
 #ifndef CRAQUELURE_DEM_REPLAY_WEIGHT_H
 #define CRAQUELURE_DEM_REPLAY_WEIGHT_H
 
+#include "geometry/bond_numbers.h"
 #include "replay.h"
 
 // What the weight is computed from. It owns nothing.
@@ -17,12 +18,6 @@ struct weighing {
 // already. Returns what stands on the grains before drying begins (n_particle) N: their
 // weight and that of their liquid; the caller frees it.
 struct vector *add_weight(struct load *load, const struct weighing *of);
-
-// Bond numbers: how much weight matters beside the suction. NAN where nothing pulls.
-struct bond_numbers {
-    double grain; // weight of the mean grain over the largest force on any grain
-    double body;  // pressure of grains and liquid on their base, over the suction
-};
 
 // With the forces of LOAD before any weight of grains was added, and the suction that
 // they come from, Pa; 0: unknown.

@@ -166,9 +166,8 @@ static double *sources_of(const struct computation *flow, double viscosity)
     return source;
 }
 
-static enum status find_columns(struct computation *flow,
-                                const struct flow_parameters *parameters,
-                                const struct solving *solving, struct reason *reason)
+static enum status find_columns(struct computation *flow, const struct solving *solving,
+                                struct reason *reason)
 {
     const double unit = flow->grains.unit;
     for (int axis = 0; axis < 3; axis++) {
@@ -187,7 +186,6 @@ static enum status find_columns(struct computation *flow,
         pressures_free(&pressures);
         if (status) return status;
     }
-    (void)parameters;
     return STATUS_OK;
 }
 
@@ -227,8 +225,7 @@ static enum status compute(const struct artifact *input,
     if (parameters->stress)
         flow->stress = find_pore_stress(&flow->grains, &flow->cells, &flow->throats,
                                         &flow->conditions, &flow->pressures);
-    return parameters->tensor ? find_columns(flow, parameters, &solving, reason)
-                              : STATUS_OK;
+    return parameters->tensor ? find_columns(flow, &solving, reason) : STATUS_OK;
 }
 
 // mu U / (drop over the length) along the drop, m2.

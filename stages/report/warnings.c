@@ -2,6 +2,7 @@
 // What artifacts say of their own limits. Stages tell these as they run; what they
 // leave in the summaries is told here again.
 #include "facts.h"
+#include "geometry/bond_numbers.h"
 #include "html.h"
 
 #include <math.h>
@@ -54,10 +55,9 @@ static void warn_of_rest(FILE *page, const struct run *run)
 
 static void warn_of_weight(FILE *page, const struct run *run)
 {
-    static const double matters = 0.05; // as dem-replay has it
     const double bond = fmax(summary_of(run, RESPONSE, "bond_number_body"),
                              summary_of(run, RESPONSE, "bond_number_grain"));
-    if (!(summary_of(run, RESPONSE, "gravity") > 0) && bond >= matters)
+    if (!(summary_of(run, RESPONSE, "gravity") > 0) && bond >= weight_matters)
         warn(page, "Gravity is left out, but the weight is %.2g of the suction.", bond);
     const double broke = summary_of(run, RESPONSE, "weight_cracks"),
                  rest = summary_of(run, RESPONSE, "weight_unbalanced_ratio");
