@@ -11,7 +11,7 @@
 
 extern const char schema_packing[], schema_network[], schema_drying[], schema_forces[],
     schema_response[], schema_crackstats[], schema_engine[], schema_restart[],
-    schema_bridge[], schema_flow[], schema_invasion[], schema_check[];
+    schema_bridge[], schema_flow[], schema_invasion[], schema_check[], schema_motion[];
 
 static const struct {
     const char *name, *text;
@@ -20,7 +20,8 @@ static const struct {
                {"response", schema_response}, {"crackstats", schema_crackstats},
                {"engine", schema_engine},     {"restart", schema_restart},
                {"bridge", schema_bridge},     {"flow", schema_flow},
-               {"invasion", schema_invasion}, {"check", schema_check}};
+               {"invasion", schema_invasion}, {"check", schema_check},
+               {"motion", schema_motion}};
 
 static json_t *load(const char *text)
 {

@@ -20,5 +20,6 @@
     schema schema_flow, "schemas/flow.json"
     schema schema_invasion, "schemas/invasion.json"
     schema schema_check, "schemas/check.json"
+    schema schema_motion, "schemas/motion.json"
 
     .section .note.GNU-stack, "", @progbits
