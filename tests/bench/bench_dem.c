@@ -8,7 +8,9 @@
 //     bench_dem --packing FILE KIND THREADS
 //                                       of grains at rest, read from FILE: lines x y z
 //                                       r and a comment "# box LX LY LZ periodic"; KIND
-//                                       is smooth, grip, hertz or bonded
+//                                       is smooth, grip, hertz, bonded, wet,
+//                                       wet-exact, or driven: grip with a layer of
+//                                       a sixth of the grains in a group that turns
 #include "basics/memory.h"
 #include "dem/engine.h"
 #include "geometry/neighbours.h"
@@ -257,10 +259,21 @@ static int one_packing(const char *path, const char *kind, int threads)
                                       .volume = 1e-12, // 1e-3 of the radius cubed
                                       .pulls_in_contact = true};
     if (exact || strcmp(kind, "wet") == 0) setup.liquid = &liquid;
+    uint8_t *group_of = NEW_ARRAY(uint8_t, packing.n_particle);
+    for (int i = 0; i < packing.n_particle; i++)
+        group_of[i] = packing.position[i].z < packing.upper.z / 6;
+    const struct dem_group group = {
+        .point = scale(0.5, packing.upper), .axis = {0, 0, 1}, .spin = 1e-6};
+    if (strcmp(kind, "driven") == 0) {
+        setup.n_group = 1;
+        setup.group = &group;
+        setup.group_of = group_of;
+    }
     struct dem *dem;
     struct reason reason;
     if (dem_create(&dem, &setup, &reason) != STATUS_OK)
         die(STATUS_INTERNAL, "%s", reason.text);
+    free(group_of);
     const double rough = 12e6 * threads;
     const int64_t cycles = 1 + (int64_t)(3 * rough / dem->n_particle);
     if (dem_run(dem, 1 + cycles / 10, &reason) != STATUS_OK)

@@ -2,6 +2,7 @@
 // An engine made anew from the saved state of another goes on to the same bytes, and
 // what is not such a state is refused.
 #include "dem_scene.h"
+#include "geometry/neighbours.h"
 
 #include <stdbool.h>
 
@@ -72,6 +73,11 @@ static void assert_same_sums(const struct dem *a, const struct dem *b)
         const struct dem_wall_state wa = dem_wall_state(a, w),
                                     wb = dem_wall_state(b, w);
         assert_same("wall", &wa, &wb, sizeof wa);
+    }
+    for (int g = 0; g < a->n_driven; g++) {
+        const struct dem_group_state ga = dem_group_state(a, g),
+                                     gb = dem_group_state(b, g);
+        assert_same("group", &ga, &gb, sizeof ga);
     }
 }
 
@@ -344,6 +350,65 @@ static void squeezed_crowd(void **state)
     }
 }
 
+// All that an engine can have at once: driven groups, of which one turns back, bonds,
+// liquid, walls, a ledger, applied forces and a step that was shortened.
+static void stir(struct dem *dem, int half)
+{
+    const double step = dem_time_step(dem);
+    const struct vector on = {0.005 * RADIUS / step, 0, 0};
+    if (half == 0) {
+        throw(dem, 0.01);
+        push(dem, 7, (struct vector){1e-9, 0, 0});
+    }
+    dem_set_group_motion(dem, 0, on, 0.001 / step);
+    dem_set_group_motion(dem, 1, scale(half ? -1 : 1, on), half ? 0 : -0.001 / step);
+    run(dem, 60);
+    if (half == 0) { // as when grains gather neighbours
+        dem->step_was_shortened = true;
+        dem->time_step_limit = 0.98 * dem->time_step / AUTOMATIC_SHARE;
+        dem->time_step *= 0.98;
+    }
+    int n_crack;
+    dem_cracks(dem, &n_crack);
+    assert_true(n_crack > 0 && dem->search_cycle > 0);
+    for (int g = 0; g < 2; g++)
+        assert_true(norm(dem_group_state(dem, g).moment) > 0);
+}
+
+static void stirred_crowd(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(17, 0.3, true);
+    packing.bond = neighbour_pairs(&packing, 0.12, &packing.n_bond);
+    const struct vector middle = scale(0.5, packing.upper);
+    const struct dem_wall wall = {
+        .normal = {0, 0, 1}, .velocity = {0, 0, 100}, .spin = {0, 0, 1e7}};
+    packing.periodic[2] = false;
+    const struct dem_group group[2] = {{.point = middle, .axis = {1, 0, 1}},
+                                       {.point = middle, .axis = {0, 1, 0}}};
+    const struct dem_liquid liquid = {.model = BRIDGE_WILLETT_FULL,
+                                      .surface_tension = 0.07,
+                                      .contact_angle = 0.2,
+                                      .volume = 1e-3 * RADIUS * RADIUS * RADIUS,
+                                      .shared = true};
+    struct dem_setup setup = stiff_setup(&packing);
+    uint8_t *of = NEW_ARRAY(uint8_t, packing.n_particle);
+    for (int i = 0; i < packing.n_particle; i++)
+        of[i] = i % 12 < 2 ? (uint8_t)(1 + i % 12) : 0;
+    setup.bond.normal_strength = setup.bond.shear_strength = 1e4;
+    setup.n_wall = 1;
+    setup.wall = &wall;
+    setup.n_group = 2;
+    setup.group = group;
+    setup.group_of = of;
+    setup.liquid = &liquid;
+    setup.balance_energy = true;
+    setup.time_step_safety = NAN;
+    check(&setup, stir);
+    free(of);
+    packing_free(&packing);
+}
+
 static void no_grains(void **state)
 {
     (void)state;
@@ -472,8 +537,8 @@ int main(void)
         cmocka_unit_test(bonded_lattice),      cmocka_unit_test(contact_bonds),
         cmocka_unit_test(walled_cloud),        cmocka_unit_test(hertz_cloud),
         cmocka_unit_test(two_timed_materials), cmocka_unit_test(renumbered_crowd),
-        cmocka_unit_test(squeezed_crowd),      cmocka_unit_test(no_grains),
-        cmocka_unit_test(damaged_arrays),      cmocka_unit_test(flipped_bits),
-        cmocka_unit_test(another_scene)};
+        cmocka_unit_test(squeezed_crowd),      cmocka_unit_test(stirred_crowd),
+        cmocka_unit_test(no_grains),           cmocka_unit_test(damaged_arrays),
+        cmocka_unit_test(flipped_bits),        cmocka_unit_test(another_scene)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -194,6 +194,36 @@ static enum status check_wall(const struct dem_setup *setup, int w,
     return STATUS_OK;
 }
 
+static enum status check_groups(const struct dem_setup *setup, struct reason *reason)
+{
+    if (!(setup->n_group >= 0 && setup->n_group <= UINT8_MAX))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "number of driven groups must be in [0,%d], got %d", UINT8_MAX,
+                      setup->n_group);
+    for (int g = 0; g < setup->n_group; g++) {
+        const struct dem_group *group = &setup->group[g];
+        if (!is_finite_vector(group->point) || !is_finite_vector(group->axis) ||
+            !is_finite_vector(group->velocity) || !isfinite(group->spin))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "driven group %d: its point, axis or motion is not finite",
+                          g);
+        if (group->spin != 0 && !(norm(group->axis) > 0))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "driven group %d: needs an axis to turn about", g);
+    }
+    for (int i = 0; setup->group_of && i < setup->packing->n_particle; i++) {
+        if (setup->group_of[i] > setup->n_group)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "grain %d: no driven group %d among %d", i,
+                          setup->group_of[i] - 1, setup->n_group);
+        if (setup->group_of[i] && setup->fixed && setup->fixed[i])
+            return refuse(reason, STATUS_BAD_DATA,
+                          "grain %d: is fixed and in driven group %d", i,
+                          setup->group_of[i] - 1);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_scene(const struct dem_setup *setup, struct reason *reason)
 {
     const struct packing *packing = setup->packing;
@@ -220,7 +250,7 @@ static enum status check_scene(const struct dem_setup *setup, struct reason *rea
         const enum status status = check_wall(setup, w, reason);
         if (status != STATUS_OK) return status;
     }
-    return STATUS_OK;
+    return check_groups(setup, reason);
 }
 
 enum status check_setup(const struct dem_setup *setup, struct reason *reason)

@@ -205,10 +205,14 @@ static void take_grains(struct dem *dem, const struct dem_setup *setup)
     static const uint8_t none[1];
     uint8_t *fixed = NEW_ARRAY(uint8_t, dem->n_particle);
     if (setup->fixed) memcpy(fixed, setup->fixed, (size_t)dem->n_particle);
+    take_groups(dem, setup);
+    for (int i = 0; i < dem->n_particle; i++)
+        fixed[i] = fixed[i] || is_driven(dem, i);
     set_masses(dem, dem->n_particle > 0 ? fixed : none);
     free(fixed);
     set_external(dem);
     take_box(dem, packing);
+    start_groups(dem);
 }
 
 static void take_bonds(struct dem *dem, const struct dem_setup *setup)

@@ -39,6 +39,9 @@ void dem_free(struct dem *dem)
                            dem->mass,
                            dem->weight,
                            dem->material_of,
+                           dem->group,
+                           dem->group_of,
+                           dem->lever,
                            dem->bond_particle,
                            dem->bond_radius,
                            dem->bond_strength[0],
@@ -102,7 +105,7 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
 void dem_stop(struct dem *dem, const bool *which)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        for (int axis = 0; axis < 3 && which[dem->id[i]]; axis++)
+        for (int axis = 0; axis < 3 && which[dem->id[i]] && !is_driven(dem, i); axis++)
             dem->motion[i].linear[axis] = dem->motion[i].angular[axis] = 0;
 }
 
@@ -259,6 +262,7 @@ static void begin_cycle(struct dem *dem, const struct run_control *control)
 {
     dem->keeps_loads = control->done == control->cycles - 1; // for who looks after it
     sweep_walls(dem);
+    advance_groups(dem);
 }
 
 static void end_cycle(struct dem *dem, struct outcome outcome,

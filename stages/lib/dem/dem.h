@@ -111,6 +111,17 @@ struct dem_wall {
     double servo_largest_speed; // m/s, > 0 with a servo
 };
 
+// A group of grains that moves as a rigid body, whatever pushes it: at a velocity, and
+// turning about an axis through a point that moves along. Its grains feel contacts,
+// walls and bridges, but not each other, unless bonded; gravity and external forces on
+// them do not count.
+struct dem_group {
+    struct vector point;    // m
+    struct vector axis;     // any length; 0: it does not turn
+    struct vector velocity; // m/s
+    double spin;            // rad/s, counter-clockwise seen against the axis
+};
+
 // Setup of dem_create. It is copied: the caller may free it afterwards.
 struct dem_setup {
     const struct packing *packing; // with the bonds listed in it
@@ -126,6 +137,9 @@ struct dem_setup {
     const double *normal_strength, *shear_strength;
     const struct dem_liquid *liquid; // NULL: dry
     const uint8_t *fixed; // (n_particle) 1: neither moves nor turns; NULL: none
+    int n_group;          // at most 255
+    const struct dem_group *group; // (n_group)
+    const uint8_t *group_of;       // (n_particle) 1 + its group, 0: of none; NULL: none
     int n_wall;
     const struct dem_wall *wall; // (n_wall)
     struct vector gravity;       // m/s2
@@ -176,15 +190,17 @@ struct dem_contact {
 
 // Energies, J. Balance: kinetic + elastic + lost = initial + gained.
 struct dem_energy {
-    double kinetic; // J, translation and rotation
+    double kinetic; // J, translation and rotation; without driven groups
     double elastic; // J, contacts and bonds
     // Since the start, J; 0 unless balance_energy.
-    double gained; // work of gravity, of external forces and of walls that move
+    double gained; // work of gravity, of external forces, and of walls and groups that
+                   // move
     double dashpots, slip, local_damping; // lost
     double broken;                        // elastic energy of bonds when they broke
     double bridges; // that liquid bridges took up, and lost when they ruptured
 };
 
+// Of the grains that are not driven.
 struct dem_momentum {
     struct vector linear;  // kg m/s
     struct vector angular; // kg m2/s about the origin of the first positions;
@@ -221,14 +237,18 @@ void dem_set_gravity(struct dem *dem, struct vector gravity);
 void dem_set_wall_motion(struct dem *dem, int wall, struct vector velocity,
                          struct vector spin);
 void dem_set_servo(struct dem *dem, int wall, double force); // N; 0 stops it
+// SPIN counts only where the group has an axis.
+void dem_set_group_motion(struct dem *dem, int group, struct vector velocity,
+                          double spin);
 // Friction of material 0, and so of all grains when pairs share their coefficients.
 void dem_set_friction(struct dem *dem, double friction);
 void dem_set_local_damping(struct dem *dem, double share);
 
 // Stretches the box with all centres along x, y and z about its lower corner, and
 // scales all radii by GROWTH; densities stay. Velocities and shear forces stay as they
-// are. Only without bonds and liquid. O(pairs).
-void dem_rescale(struct dem *dem, const double stretch[3], double growth);
+// are. Returns STATUS_OK, or STATUS_BAD_DATA with bonds, liquid or driven groups, which
+// it leaves as they are. O(pairs).
+enum status dem_rescale(struct dem *dem, const double stretch[3], double growth);
 
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
 // move a tenth of the mean radius in one step, or a number is not finite); what is
@@ -283,6 +303,15 @@ struct dem_wall_state {
 };
 struct dem_wall_state dem_wall_state(const struct dem *dem, int wall);
 
+// Load of all that is not of the group (grains, walls, bridges) on a group in the last
+// cycle: force and moment about its point; and how far it has moved, m, and turned,
+// rad. O(n_particle).
+struct dem_group_state {
+    struct vector force, moment, displacement;
+    double angle;
+};
+struct dem_group_state dem_group_state(const struct dem *dem, int group);
+
 // The state, written into arrays of n_particle vectors: m, m, m/s, rad/s. Positions are
 // not brought back into a box that repeats. Displacements are from the last rescaling.
 void dem_positions(const struct dem *dem, struct vector *position);
@@ -293,7 +322,7 @@ void dem_radii(const struct dem *dem, double *radius);                          
 void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper); // m
 
 // Net force, N, and moment about the centre, N m, on every grain (n_particle) in the
-// last cycle, from outside too.
+// last cycle, from outside too but for driven grains.
 void dem_loads(const struct dem *dem, struct vector *force, struct vector *moment);
 
 // The contacts by first, then second grain, then those with walls; a new array of

@@ -8,9 +8,10 @@
 //     linear 1/2 k_n U^2, Hertz 2/5 k_n U^(5/2), and F^s.F^s / (2 k_s);
 //     bond   1/2 k^n A stretch^2 + F^s.F^s / (2 k^s A) + M^s.M^s / (2 k^n I)
 //            + (M^n)^2 / (2 k^s J).
-// Ledger: pairs book their losses by pair (pair_contact.h), grains theirs in
-// grain_ledger; what belongs to pairs that are gone is in energy_ledger. Momentum is of
-// the half step before, like velocities.
+// Kinetic energy and momentum leave driven groups out: what their drive does to their
+// own masses is nobody's loss. Ledger: pairs book their losses by pair
+// (pair_contact.h), grains theirs in grain_ledger; what belongs to pairs that are gone
+// is in energy_ledger. Momentum is of the half step before, like velocities.
 #include "dem/engine.h"
 
 #include <math.h>
@@ -77,6 +78,19 @@ static double pair_energy(const struct dem *dem, int pair)
     return energy;
 }
 
+// What grain I has booked as gained of the step after the other energies:
+// displacements are one step ahead.
+static double booked_ahead(const struct dem *dem, int i)
+{
+    const double step = places_ahead(dem) * dem->time_step;
+    if (is_driven(dem, i)) {
+        const struct motion load = load_on_grain(dem, i);
+        return 0.5 * step * group_power(dem, i, &load);
+    }
+    if (!(dem->mobility[i][0] > 0)) return 0;
+    return step * dot(as_vector(dem->external[i]), as_vector(dem->motion[i].linear));
+}
+
 static struct dem_energy ledger_totals(const struct dem *dem)
 {
     struct dem_energy ledger = dem->energy_ledger;
@@ -88,13 +102,7 @@ static struct dem_energy ledger_totals(const struct dem *dem)
         ledger.bridges += loss->bridges[p % PAIRS_IN_GROUP];
     }
     for (int i = 0; dem->grain_ledger && i < dem->n_particle; i++) {
-        // Displacements are one step ahead of the other energies.
-        const double ahead =
-            dem->mobility[i][0] > 0
-                ? places_ahead(dem) * dem->time_step *
-                      dot(as_vector(dem->external[i]), as_vector(dem->motion[i].linear))
-                : 0;
-        ledger.gained += dem->grain_ledger[i][0] - ahead;
+        ledger.gained += dem->grain_ledger[i][0] - booked_ahead(dem, i);
         ledger.local_damping += dem->grain_ledger[i][1];
     }
     return ledger;
@@ -104,6 +112,7 @@ struct dem_energy dem_energy(const struct dem *dem)
 {
     struct dem_energy energy = ledger_totals(dem);
     for (int i = 0; i < dem->n_particle; i++) {
+        if (is_driven(dem, i)) continue;
         const struct motion now = motion_with_forces(dem, i);
         const struct vector v = as_vector(now.linear), w = as_vector(now.angular);
         energy.kinetic +=
@@ -126,6 +135,7 @@ struct dem_momentum dem_momentum(const struct dem *dem)
 {
     struct vector linear = {0, 0, 0}, angular = {0, 0, 0};
     for (int i = 0; i < dem->n_particle; i++) {
+        if (is_driven(dem, i)) continue;
         const struct vector p = scale(dem->mass[i], as_vector(dem->motion[i].linear));
         const struct vector x =
             add(dem->start[i], as_vector(dem->place[i].displacement));

@@ -20,6 +20,7 @@
 #ifndef CRAQUELURE_DEM_ENGINE_H
 #define CRAQUELURE_DEM_ENGINE_H
 
+#include "basics/compensated.h"
 #include "bridges/table.h"
 #include "dem/dem.h"
 #include "dem/pairs.h"
@@ -97,6 +98,15 @@ struct rigid_wall {
     double resistance; // of its contacts now: stiffness times dt plus damping, in sum
 };
 
+struct driven_group {
+    struct dem_group is; // scaled, unit axis or 0; velocity and spin as asked for
+    struct compensated translation[3], angle; // of all steps so far
+    struct vector moved;                      // the translation, rounded
+    double sine, versine;                     // of the angle; 1 - its cosine
+    struct vector velocity;                   // half a step behind, as the next
+    double spin;
+};
+
 // What 1 is in scaled units: m, kg, N/m and s.
 struct units {
     double length, mass, stiffness, time;
@@ -156,6 +166,10 @@ struct dem {
     double *mass;          // (n_particle) inertia
     double *weight;        // (n_particle) mass that gravity pulls
     uint8_t *material_of;  // (n_particle)
+    int n_driven;
+    struct driven_group *group; // (n_driven)
+    uint8_t *group_of;          // (n_particle) 1 + its group, or 0; NULL: no groups
+    struct vector *lever; // (n_particle) from the point of its group, at the start
     bool density_scaling;
     double largest_radius, smallest_radius;
     double coordinate_error; // rounding of the positions as given
@@ -315,6 +329,17 @@ struct max_speed {
     bool valid;
 };
 
+// Driven groups [driven_groups.c]. Scales those of SETUP; before pairs are sought.
+void take_groups(struct dem *dem, const struct dem_setup *setup);
+// Sets levers and velocities of their grains, when the box is known.
+void start_groups(struct dem *dem);
+// Moves groups by a step, their grains not yet; before the pair sweep.
+void advance_groups(struct dem *dem);
+// Moves driven grain I to where its group is, and books the work on it.
+struct max_speed move_driven_grain(struct dem *dem, int i, const struct motion *load);
+// Power of a group by its grain I against LOAD.
+double group_power(const struct dem *dem, int i, const struct motion *load);
+
 // Moves the grains BEGIN..END-1 that are not shared, or entries BEGIN..END-1 of the
 // list of shared ones [grains.c].
 struct max_speed move_grains(struct dem *dem, int begin, int end);
@@ -347,6 +372,17 @@ static inline struct vector as_vector(const double a[3])
 static inline struct vector position_now(const struct dem *dem, int particle)
 {
     return add(dem->start[particle], as_vector(dem->place[particle].displacement));
+}
+
+static inline bool is_driven(const struct dem *dem, int i)
+{
+    return dem->group_of && dem->group_of[i];
+}
+
+// Whether grains I and J never move relative to each other.
+static inline bool in_one_group(const struct dem *dem, int i, int j)
+{
+    return is_driven(dem, i) && dem->group_of[i] == dem->group_of[j];
 }
 
 // How many time steps the places are ahead of the forces.

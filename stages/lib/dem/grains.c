@@ -129,6 +129,14 @@ static void update_grain_ledger(const struct dem *dem, int i, const struct load 
     dem->grain_ledger[i][1] += dem->time_step * sum_of(taken);
 }
 
+static struct max_speed drive(struct dem *dem, int i, const struct load *sum)
+{
+    struct motion load;
+    *(double4 *)load.linear = sum->force;
+    *(double4 *)load.angular = sum->moment;
+    return move_driven_grain(dem, i, &load);
+}
+
 // Values that all grains need are held in locals: the compiler cannot know that stores
 // to grains leave them alone.
 SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shared,
@@ -143,7 +151,7 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
     const size_t next_mobility = dem->equal_mobility ? 0 : 1;
     struct motion *const motion = dem->motion;
     struct place *const place = dem->place;
-    const bool balance = dem->balance_energy;
+    const bool balance = dem->balance_energy, any_driven = dem->group_of;
     const double4 zero = {0};
     double largest = 0;
     bool valid = true;
@@ -152,6 +160,12 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
         if (!shared && is_shared[i]) continue;
         const struct load sum =
             shared ? take_shared_sum(dem, k, turns) : take_sum(dem, i, turns);
+        if (any_driven && dem->group_of[i]) {
+            const struct max_speed speed = drive(dem, i, &sum);
+            largest = speed.square > largest ? speed.square : largest;
+            valid = valid && speed.valid;
+            continue;
+        }
         const double *mobile = mobility[next_mobility * (size_t)i];
         double4 *velocity = (double4 *)motion[i].linear,
                 *spin = (double4 *)motion[i].angular;

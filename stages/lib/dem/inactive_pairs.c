@@ -43,7 +43,11 @@ static const double margin = 1e-9;
 
 static bool are_fixed(const struct dem *dem, const int32_t particle[2])
 {
-    return dem->mobility[particle[0]][0] <= 0 && dem->mobility[particle[1]][0] <= 0;
+    const int i = particle[0], j = particle[1];
+    const bool relative_to_each_other =
+        (!is_driven(dem, i) && !is_driven(dem, j)) || in_one_group(dem, i, j);
+    return relative_to_each_other && dem->mobility[i][0] <= 0 &&
+           dem->mobility[j][0] <= 0;
 }
 
 static double touching_distance(const struct pair_list *pairs, int pair)

@@ -180,9 +180,10 @@ void set_external(struct dem *dem)
     dem->has_external = false;
     for (int i = 0; i < dem->n_particle; i++)
         for (int axis = 0; axis < 3; axis++) {
-            dem->external[i][axis] =
+            const double external =
                 (dem->applied ? component(dem->applied[i], axis) : 0) +
                 dem->weight[i] * component(dem->gravity, axis);
+            dem->external[i][axis] = is_driven(dem, i) ? 0 : external;
             if (dem->external[i][axis] != 0) dem->has_external = true;
         }
 }

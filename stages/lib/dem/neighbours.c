@@ -22,6 +22,16 @@ struct candidates {
     int32_t *bond;          // or -1
 };
 
+// Drops the pairs of grains of one driven group; returns how many are left.
+static int drop_rigid_pairs(const struct dem *dem, int32_t (*pair)[2], int count)
+{
+    int left = 0;
+    for (int p = 0; p < count; p++)
+        if (!in_one_group(dem, pair[p][0], pair[p][1]))
+            memmove(pair[left++], pair[p], sizeof *pair);
+    return left;
+}
+
 static int32_t (*find_near_pairs(const struct dem *dem, int *count))[2]
 {
     struct vector *position = NEW_ARRAY(struct vector, dem->n_particle);
@@ -37,6 +47,7 @@ static int32_t (*find_near_pairs(const struct dem *dem, int *count))[2]
     memcpy(spheres.lower, dem->box_lower, sizeof spheres.lower);
     memcpy(spheres.period, dem->period, sizeof spheres.period);
     int32_t(*pair)[2] = near_pairs(&spheres, count);
+    if (dem->group_of) *count = drop_rigid_pairs(dem, pair, *count);
     free(position);
     free(reach);
     return pair;

@@ -41,8 +41,9 @@ static void stretch_box(struct dem *dem, const double stretch[3])
     }
 }
 
-void dem_rescale(struct dem *dem, const double stretch[3], double growth)
+enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
 {
+    if (dem->n_bond > 0 || dem->liquid || dem->n_driven > 0) return STATUS_BAD_DATA;
     move_starts(dem, stretch, growth);
     stretch_box(dem, stretch);
     if (growth != 1) {
@@ -62,6 +63,7 @@ void dem_rescale(struct dem *dem, const double stretch[3], double growth)
         fmax(0, 1 - least) * reach + fmax(0, 1 - 1 / growth) * 2 * dem->largest_radius;
     dem->closed_in += 0.5 * nearer;
     dem->travelled += 0.5 * nearer;
+    return STATUS_OK;
 }
 
 void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper)

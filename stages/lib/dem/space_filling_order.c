@@ -104,6 +104,8 @@ static void reorder_grains(struct dem *dem, const struct keyed *order)
     REORDER(dem->mass);
     REORDER(dem->weight);
     REORDER(dem->material_of);
+    REORDER(dem->group_of);
+    REORDER(dem->lever);
     REORDER(dem->place_at_search);
     REORDER(dem->grain_ledger);
     for (int k = 0; k < dem->n_particle; k++)

@@ -151,6 +151,21 @@ static void add_walls(struct column_list *list, struct dem *dem)
 #undef PAIR
 }
 
+static void add_groups(struct column_list *list, struct dem *dem)
+{
+    if (dem->n_driven == 0) return;
+#define GROUP(name, member, width)                                                     \
+    add_numbers(list, name, OF(dem->group, struct driven_group, member), width,        \
+                dem->n_driven)
+    GROUP("group_asked_velocity", is.velocity, 3);
+    GROUP("group_asked_spin", is.spin, 1);
+    GROUP("group_translation", translation, 6);
+    GROUP("group_angle", angle, 2);
+    GROUP("group_velocity", velocity, 3);
+    GROUP("group_spin", spin, 1);
+#undef GROUP
+}
+
 static void add_cracks(struct column_list *list, struct dem *dem)
 {
     const int n = dem->n_crack;
@@ -212,6 +227,7 @@ struct column_list list_columns(struct dem *dem)
     add_time_step(&list, dem);
     add_grains(&list, dem);
     add_walls(&list, dem);
+    add_groups(&list, dem);
     add_cracks(&list, dem);
     add_pairs(&list, dem);
     return list;

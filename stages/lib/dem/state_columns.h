@@ -19,7 +19,7 @@ struct column {
 };
 
 struct column_list {
-    struct column column[64];
+    struct column column[128]; // more than any scene has
     int count;
 };
 
