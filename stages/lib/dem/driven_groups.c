@@ -28,8 +28,9 @@ static struct driven_group *group_of_grain(const struct dem *dem, int i)
     return &dem->group[dem->group_of[i] - 1];
 }
 
-static struct vector rounded(const struct compensated t[3])
+struct vector group_translation(const struct driven_group *group)
 {
+    const struct compensated *t = group->translation;
     return (struct vector){compensated_value(t[0]), compensated_value(t[1]),
                            compensated_value(t[2])};
 }
@@ -59,6 +60,12 @@ static double versine(double angle)
 {
     const double half = sin(0.5 * angle);
     return 2 * half * half;
+}
+
+struct vector driven_lever(const struct dem *dem, int i, double angle)
+{
+    const struct vector axis = group_of_grain(dem, i)->is.axis, start = dem->lever[i];
+    return add(start, turned_by(axis, sin(angle), versine(angle), start));
 }
 
 // ---- setting up ---------------------------------------------------------------------
@@ -119,7 +126,7 @@ void advance_groups(struct dem *dem)
         for (int axis = 0; axis < 3; axis++)
             compensated_add(&group->translation[axis],
                             dt * component(group->velocity, axis));
-        group->moved = rounded(group->translation);
+        group->moved = group_translation(group);
         compensated_add(&group->angle, dt * group->spin);
         const double angle = compensated_value(group->angle);
         group->sine = sin(angle);
@@ -169,30 +176,4 @@ void dem_set_group_motion(struct dem *dem, int group, struct vector velocity,
     is->velocity = scale(dem->unit.time / dem->unit.length, velocity);
     is->spin = norm(is->axis) > 0 ? dem->unit.time * spin : 0;
     if (dem->cycle == 0) start_group(dem, group);
-}
-
-// Levers are those of the last forces, a step before the places.
-struct dem_group_state dem_group_state(const struct dem *dem, int group)
-{
-    const struct driven_group *of = &dem->group[group];
-    const double angle = compensated_value(of->angle);
-    const double then = angle - places_ahead(dem) * dem->time_step * of->spin;
-    const double sine = sin(then), rest = versine(then);
-    struct vector force = {0, 0, 0}, moment = {0, 0, 0};
-    for (int i = 0; i < dem->n_particle; i++) {
-        if (dem->group_of[i] != group + 1) continue;
-        const struct motion load = load_on_grain(dem, i);
-        const struct vector start = dem->lever[i];
-        const struct vector lever =
-            add(start, turned_by(of->is.axis, sine, rest, start));
-        const struct vector push = as_vector(load.linear);
-        force = add(force, push);
-        moment = add(moment, add(cross(lever, push), as_vector(load.angular)));
-    }
-    const double length = dem->unit.length, unit = dem->unit.stiffness * length;
-    return (struct dem_group_state){.force = scale(unit, force),
-                                    .moment = scale(unit * length, moment),
-                                    .displacement =
-                                        scale(length, rounded(of->translation)),
-                                    .angle = angle};
 }

@@ -337,6 +337,9 @@ void start_groups(struct dem *dem);
 void advance_groups(struct dem *dem);
 // Moves driven grain I to where its group is, and books the work on it.
 struct max_speed move_driven_grain(struct dem *dem, int i, const struct motion *load);
+struct vector group_translation(const struct driven_group *group); // rounded
+// From the point of its group to grain I when the group has turned by ANGLE.
+struct vector driven_lever(const struct dem *dem, int i, double angle);
 // Power of a group by its grain I against LOAD.
 double group_power(const struct dem *dem, int i, const struct motion *load);
 

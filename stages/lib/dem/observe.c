@@ -62,6 +62,29 @@ void dem_loads(const struct dem *dem, struct vector *force, struct vector *momen
     }
 }
 
+// Levers are those of the last forces, a step before the places.
+struct dem_group_state dem_group_state(const struct dem *dem, int group)
+{
+    const struct driven_group *of = &dem->group[group];
+    const double angle = compensated_value(of->angle);
+    const double then = angle - places_ahead(dem) * dem->time_step * of->spin;
+    struct vector force = {0, 0, 0}, moment = {0, 0, 0};
+    for (int i = 0; i < dem->n_particle; i++) {
+        if (dem->group_of[i] != group + 1) continue;
+        const struct motion load = load_on_grain(dem, i);
+        const struct vector push = as_vector(load.linear);
+        force = add(force, push);
+        moment = add(moment, add(cross(driven_lever(dem, i, then), push),
+                                 as_vector(load.angular)));
+    }
+    const double length = dem->unit.length, unit = dem->unit.stiffness * length;
+    return (struct dem_group_state){.force = scale(unit, force),
+                                    .moment = scale(unit * length, moment),
+                                    .displacement =
+                                        scale(length, group_translation(of)),
+                                    .angle = angle};
+}
+
 void dem_radii(const struct dem *dem, double *radius)
 {
     for (int i = 0; i < dem->n_particle; i++)
