@@ -71,11 +71,11 @@ static void print_choices(FILE *stream, const char *choices, int column)
     }
 }
 
-void parameters_print(const struct parameter *table, FILE *stream)
+static void print_rows(const struct parameter *table, const char *prefix, FILE *stream)
 {
     for (const struct parameter *p = table; p->key; p++) {
-        char rule[80];
-        int column = fprintf(stream, "  %s=%s", p->key,
+        char rule[80], inner[128];
+        int column = fprintf(stream, "  %s%s=%s", prefix, p->key,
                              p->fallback ? p->fallback : "(required)");
         if (strcmp(p->unit, "1")) column += fprintf(stream, " %s", p->unit);
         if (p->choices) print_choices(stream, p->choices, column);
@@ -83,7 +83,14 @@ void parameters_print(const struct parameter *table, FILE *stream)
         if (p->shared) fprintf(stream, " *");
         fprintf(stream, "\n");
         print_wrapped(stream, p->text, 8);
+        snprintf(inner, sizeof inner, "%s.NAME.", p->key);
+        if (p->of) print_rows(p->of, inner, stream);
     }
+}
+
+void parameters_print(const struct parameter *table, FILE *stream)
+{
+    print_rows(table, "", stream);
 }
 
 static json_t *split_choices(const char *choices)
@@ -114,6 +121,8 @@ static json_t *three_of(json_t *items)
                      3, "maxItems", 3);
 }
 
+static json_t *table_schema(const struct parameter *table);
+
 static json_t *value_schema(const struct parameter *parameter)
 {
     switch (parameter->type) {
@@ -140,6 +149,10 @@ static json_t *value_schema(const struct parameter *parameter)
         return three_of(json_pack("{s:s}", "type", "boolean"));
     case PARAMETER_POINT:
         return three_of(bounded(parameter, "number"));
+    case PARAMETER_NAMED:
+        return json_pack("{s:s,s:{s:{}},s:o}", "type", "object", "properties",
+                         "comment", "additionalProperties",
+                         table_schema(parameter->of));
     }
     return NULL;
 }
@@ -163,12 +176,9 @@ static json_t *nested_properties(json_t *schema, const char **key)
     return json_object_get(schema, "properties");
 }
 
-json_t *parameters_schema(const struct parameter *table, const char *stage)
+static json_t *table_schema(const struct parameter *table)
 {
     json_t *schema = open_object();
-    json_object_set_new(schema, "$schema",
-                        json_string("https://json-schema.org/draft/2020-12/schema"));
-    json_object_set_new(schema, "title", json_string(stage));
     for (const struct parameter *p = table; p->key; p++) {
         json_t *value = value_schema(p);
         if (parameter_may_be_null(p))
@@ -183,5 +193,14 @@ json_t *parameters_schema(const struct parameter *table, const char *stage)
         json_t *properties = nested_properties(schema, &key);
         json_object_set_new(properties, key, value);
     }
+    return schema;
+}
+
+json_t *parameters_schema(const struct parameter *table, const char *stage)
+{
+    json_t *schema = table_schema(table);
+    json_object_set_new(schema, "$schema",
+                        json_string("https://json-schema.org/draft/2020-12/schema"));
+    json_object_set_new(schema, "title", json_string(stage));
     return schema;
 }

@@ -36,7 +36,8 @@ static const char *const type_names[] = {"a number",
                                          "three integers",
                                          "three of true or false",
                                          "three numbers",
-                                         "a list of at most 1024 numbers"};
+                                         "a list of at most 1024 numbers",
+                                         "an object of named objects"};
 
 char *json_canonical(const json_t *json)
 {
@@ -124,6 +125,8 @@ static bool has_type(const struct parameter *parameter, const json_t *value)
         return json_is_array(value);
     case PARAMETER_LIST:
         return is_number_list(value);
+    case PARAMETER_NAMED:
+        return json_is_object(value);
     case PARAMETER_COUNTS:
     case PARAMETER_FLAGS:
     case PARAMETER_POINT:
@@ -218,6 +221,8 @@ static void store(struct filling *filling, const struct parameter *parameter,
         list->count = (int)json_array_size(value);
         for (size_t k = 0; k < json_array_size(value); k++)
             list->value[k] = json_number_value(json_array_get(value, k));
+        break;
+    case PARAMETER_NAMED: // take_rows
         break;
     }
 }
@@ -359,6 +364,74 @@ static json_t *as_typed(const struct parameter *parameter, json_t *value)
     return json_incref(value);
 }
 
+static json_t *fill(struct filling *filling, json_t *section, void *parameters);
+
+static int by_text(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+// The names in OBJECT, sorted.
+static struct named_rows sorted_names(json_t *object)
+{
+    struct named_rows rows = {.name =
+                                  NEW_ARRAY(const char *, json_object_size(object))};
+    const char *key;
+    json_t *value;
+    json_object_foreach(object, key, value) if (strcmp(key, "comment"))
+        rows.name[rows.count++] = key;
+    if (rows.count > 0)
+        qsort(rows.name, (size_t)rows.count, sizeof *rows.name, by_text);
+    return rows;
+}
+
+// Fills a struct for each name in OBJECT, and returns what they are in effect.
+static json_t *take_rows(struct filling *filling, const struct parameter *parameter,
+                         json_t *object, struct named_rows *target)
+{
+    json_t *effective = json_object();
+    struct named_rows rows = sorted_names(object);
+    rows.row = allocate((size_t)rows.count, parameter->row_size);
+    for (int k = 0; k < rows.count; k++) {
+        json_t *entry = json_object_get(object, rows.name[k]);
+        char where[512], path[256];
+        snprintf(path, sizeof path, "%s.%s", parameter->key, rows.name[k]);
+        snprintf(where, sizeof where, "%s.%s", filling->where, path);
+        if (strchr(rows.name[k], '.')) {
+            complain(filling, path, "a name without dots: those are for --set", NULL);
+            continue;
+        }
+        if (!json_is_object(entry)) {
+            complain(filling, path, "an object", entry);
+            continue;
+        }
+        struct filling inner = {.table = parameter->of, .where = where};
+        json_object_set_new(
+            effective, rows.name[k],
+            fill(&inner, entry, (char *)rows.row + (size_t)k * parameter->row_size));
+        filling->problems += inner.problems;
+    }
+    *target = rows;
+    for (int k = 0; k < rows.count; k++) // the names of EFFECTIVE outlive the input
+        rows.name[k] =
+            json_object_iter_key(json_object_iter_at(effective, rows.name[k]));
+    return effective;
+}
+
+void named_rows_free(struct named_rows *rows)
+{
+    free(rows->name);
+    free(rows->row);
+    *rows = (struct named_rows){0};
+}
+
+int named_row(const struct named_rows *rows, const char *name)
+{
+    for (int k = 0; k < rows->count; k++)
+        if (!strcmp(rows->name[k], name)) return k;
+    return -1;
+}
+
 static void take(struct filling *filling, const struct parameter *parameter,
                  const json_t *section, json_t *effective, void *parameters)
 {
@@ -372,6 +445,14 @@ static void take(struct filling *filling, const struct parameter *parameter,
     if (!value)
         die(STATUS_INTERNAL, "%s: the default is not JSON: %s", parameter->key,
             parameter->fallback);
+    if (parameter->type == PARAMETER_NAMED && json_is_object(value)) {
+        json_t *rows = take_rows(filling, parameter, value,
+                                 (void *)((char *)parameters + parameter->offset));
+        put(effective, parameter->key, rows);
+        json_decref(rows);
+        json_decref(value);
+        return;
+    }
     json_t *typed = as_typed(parameter, value);
     const bool left_out = json_is_null(value) && parameter_may_be_null(parameter);
     if (left_out || has_type(parameter, typed)) {
@@ -389,15 +470,22 @@ static void take(struct filling *filling, const struct parameter *parameter,
     json_decref(value);
 }
 
+// By the table of FILLING.
+static json_t *fill(struct filling *filling, json_t *section, void *parameters)
+{
+    json_t *effective = json_object();
+    check_keys(filling, section, "");
+    for (const struct parameter *p = filling->table; p->key; p++)
+        take(filling, p, section, effective, parameters);
+    return effective;
+}
+
 json_t *parameters_fill(const struct parameter *table, const json_t *section,
                         const char *where, void *parameters)
 {
     struct filling filling = {.table = table, .where = where};
-    json_t *effective = json_object();
     json_t *own = section ? json_incref((json_t *)(uintptr_t)section) : json_object();
-    check_keys(&filling, own, "");
-    for (const struct parameter *p = table; p->key; p++)
-        take(&filling, p, own, effective, parameters);
+    json_t *effective = fill(&filling, own, parameters);
     json_decref(own);
     if (filling.problems) exit(STATUS_BAD_DATA);
     return effective;

@@ -22,7 +22,9 @@ enum parameter_type {
     PARAMETER_COUNTS, // int64_t[3]
     PARAMETER_FLAGS,  // bool[3]
     PARAMETER_POINT,  // double[3]; NAN where the default is null and nothing is given
-    PARAMETER_LIST    // struct number_list
+    PARAMETER_LIST,   // struct number_list
+    PARAMETER_NAMED   // struct named_rows: {"NAME": {...}, ...}, each by a table of its
+                      // own
 };
 
 // A list of numbers, in the order given; a longer one is refused.
@@ -31,6 +33,18 @@ struct number_list {
     int count;
     double value[LIST_MOST];
 };
+
+// What {"floor": {...}, "lid": {...}} becomes: a struct a name, filled by the table
+// `of`, in the order of the names, so that the order in which they are written does not
+// count. Owner of both arrays; the names live as long as the effective parameters.
+struct named_rows {
+    int count;
+    const char **name; // (count)
+    void *row;         // (count) structs of ROW_SIZE bytes
+};
+void named_rows_free(struct named_rows *rows);
+// The number of NAME among them, or -1.
+int named_row(const struct named_rows *rows, const char *name);
 
 // How the bounds are read.
 enum parameter_bound { BOUND_NONE, BOUND_MINIMUM, BOUND_ABOVE, BOUND_BETWEEN };
@@ -45,6 +59,8 @@ struct parameter {
     double low, high;           // in the unit
     const char *choices;        // "inviscid|immobile"
     const char *text;           // one line for the user
+    const struct parameter *of; // of each row of PARAMETER_NAMED
+    size_t row_size;            // bytes of its struct
     bool shared; // the scene's section "conditions" may say it for all stages, under
                  // the last part of KEY
 };
@@ -55,6 +71,8 @@ struct parameter {
 #define AT_LEAST(least) .bound = BOUND_MINIMUM, .low = (least)
 #define ABOVE(limit) .bound = BOUND_ABOVE, .low = (limit)
 #define BETWEEN(least, most) .bound = BOUND_BETWEEN, .low = (least), .high = (most)
+
+#define ROWS_OF(table, type) .of = (table), .row_size = sizeof(type)
 
 // A table ends with a row whose key is NULL.
 
@@ -68,6 +86,7 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
                         const char *where, void *parameters);
 
 // Puts "key.path=value" into SECTION; the value is read as JSON, or else as text.
+// Parts of the key between dots may be names: walls.lid.velocity.
 // Exits 64 when there is no "=" or no key, or what is not UTF-8. Whether the key is
 // known and the value fits is for parameters_fill to say.
 void parameters_set(json_t *section, const char *assignment);

@@ -21,10 +21,23 @@
 
 // Sections a scene may hold: the stages, whether this one or another, and what several
 // of them share.
-static const char *const sections[] = {
-    "pack",   "tessellate", "merge-nodes",    "dry",    "force-protocol", "dem-replay",
-    "deform", "crackstats", "import-network", "invade", "bridge",         "flow",
-    "check",  "report",     "conditions",     NULL};
+static const char *const sections[] = {"pack",
+                                       "tessellate",
+                                       "merge-nodes",
+                                       "dry",
+                                       "force-protocol",
+                                       "dem-replay",
+                                       "deform",
+                                       "crackstats",
+                                       "import-network",
+                                       "invade",
+                                       "bridge",
+                                       "flow",
+                                       "check",
+                                       "report",
+                                       "simulate",
+                                       "conditions",
+                                       NULL};
 
 enum {
     KEY_THREADS = 256,
@@ -229,11 +242,19 @@ static bool is_section(const char *key)
     return false;
 }
 
-static bool is_scene(json_t *json)
+// Whether JSON has a section of a stage; pack.check is a text, the section of check an
+// object.
+static bool is_scene(json_t *json, const struct parameter *table)
 {
     const char *key;
     json_t *value;
-    json_object_foreach(json, key, value) if (is_section(key)) return true;
+    json_object_foreach(json, key, value)
+    {
+        bool is_parameter = false;
+        for (const struct parameter *p = table; p->key; p++)
+            is_parameter = is_parameter || !strcmp(p->key, key);
+        if (is_section(key) && !(is_parameter && !json_is_object(value))) return true;
+    }
     return false;
 }
 
@@ -282,7 +303,7 @@ static json_t *load_section(const struct command_line *line)
 {
     if (!line->params) return json_object();
     json_t *json = load_json(line->params);
-    if (!is_scene(json)) return json;
+    if (!is_scene(json, line->stage->parameters)) return json;
     json_t *section = section_of_scene(json, line->params, line->stage);
     json_decref(json);
     return section;
