@@ -58,8 +58,10 @@ static inline struct dem *start_impact(const struct impact *is, double gap)
     const bool differ = is->other.density > 0;
     const struct dem_material other = differ ? is->other : is->material;
     const uint8_t material_of[2] = {0, differ};
-    const struct dem_wall plane = {
-        .normal = {0, 0, 1}, .shape = DEM_PLANE, .material = is->elastic_plane};
+    const struct dem_wall plane = {.normal = {0, 0, 1},
+                                   .shape = DEM_PLANE,
+                                   .elastic = is->elastic_plane > 0,
+                                   .material = is->elastic_plane};
     const struct dem_setup setup = {.packing = &packing,
                                     .law = is->law,
                                     .material = is->material,

@@ -102,7 +102,8 @@ static void test_hertz_blow(void **state)
     (void)state;
     for (int material = 0; material < 2; material++) {
         const struct vector position = {0, 0, GRAIN}, velocity = {0, 0, -0.1};
-        const struct dem_wall floor = {.normal = {0, 0, 1}, .material = material};
+        const struct dem_wall floor = {
+            .normal = {0, 0, 1}, .elastic = material > 0, .material = material};
         struct scene scene;
         set_scene(&scene, 1, &position, 1, &floor);
         scene.setup.law = DEM_HERTZ;

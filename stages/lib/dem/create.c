@@ -305,6 +305,8 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
         lightest = fmin(lightest, dem->mass[i]);
     if (dem->n_particle == 0) lightest = 1;
     // [K 4.47]; the stiffness is 1.
+    dem->automatic_share =
+        setup->automatic_share > 0 ? setup->automatic_share : AUTOMATIC_SHARE;
     dem->step_is_automatic = !(setup->time_step > 0) && isnan(setup->time_step_safety);
     dem->time_step = dem->step_is_automatic ? automatic_time_step(dem)
                      : setup->time_step > 0

@@ -238,7 +238,7 @@ static enum status report_divergence(const struct dem *dem, struct reason *reaso
                   (long long)dem->cycle, MAX_STEP, step, is_stable ? "within" : "past",
                   limit,
                   is_stable ? ": too long for such a speed, try a smaller "
-                              "time_step_safety"
+                              "time step"
                             : "");
 }
 

@@ -98,11 +98,12 @@ struct dem_wall {
     enum dem_wall_shape shape;
     bool outside; // cylinder, sphere: grains are outside of it, otherwise inside
     double radius;
-    double inner_radius;        // ring
-    struct vector half_edge;    // block
-    double friction;            // used if has_friction
-    bool has_friction;          // of its own
-    int material;               // > 0: elastic, of that material, for Hertz; 0: rigid
+    double inner_radius;     // ring
+    struct vector half_edge; // block
+    double friction;         // used if has_friction
+    bool has_friction;       // of its own
+    bool elastic;            // of MATERIAL; otherwise rigid
+    int material;
     struct vector velocity;     // m/s
     struct vector spin;         // rad/s about POINT; what would not leave the shape
                                 // where it is does not count
@@ -150,6 +151,7 @@ struct dem_setup {
     // (stability.c), of the pairs at the start and of all found later. The stiffness of
     // Hertz contacts is taken at an overlap of LARGEST_OVERLAP mean radii.
     double time_step_safety;
+    double automatic_share; // with NAN: this share, in (0,1), in place of half; 0: half
     double time_step;       // s; > 0: this and not the safety decides
     double largest_overlap; // Hertz: expected, over the mean radius; 0: 0.01
     bool force_time_step;   // run even past the stability limit
@@ -261,6 +263,7 @@ enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,
                           struct reason *reason);
 
 int64_t dem_cycle(const struct dem *dem);    // cycles completed
+double dem_time(const struct dem *dem);      // s, in those cycles
 double dem_time_step(const struct dem *dem); // s
 // Stability limit of the step, s, for the pairs near each other at the start
 // (stability.c). Grains that gather more neighbours later may need less:
@@ -311,6 +314,10 @@ struct dem_group_state {
     double angle;
 };
 struct dem_group_state dem_group_state(const struct dem *dem, int group);
+
+// The grain that overlaps WALL most, as all lie now, or -1 without grains; and by how
+// much, over its radius, < 0 apart. O(n_particle).
+int dem_deepest_in_wall(const struct dem *dem, int wall, double *overlap);
 
 // The state, written into arrays of n_particle vectors: m, m, m/s, rad/s. Positions are
 // not brought back into a box that repeats. Displacements are from the last rescaling.

@@ -32,7 +32,8 @@
 #define FIRST_SKIN 0.2
 // No grain may move further than this (in mean radii) in one time step.
 #define MAX_STEP 0.1
-// Share of the stability limit that an automatic time step is.
+// Share of the stability limit that an automatic time step is, unless the setup says
+// otherwise.
 #define AUTOMATIC_SHARE 0.5
 // Fewer pairs are left to one thread: starting others would cost more.
 enum { MIN_PARALLEL_PAIRS = 5000 };
@@ -146,6 +147,9 @@ struct dem {
     double time_step;
     double time_step_limit;
     bool step_is_automatic, step_was_shortened;
+    double automatic_share;  // of the limit
+    double time_before;      // simulated until the time step last changed
+    int64_t step_since;      // the cycle at which it did
     double expected_overlap; // of Hertz contacts
     int64_t cycle;
     int threads;

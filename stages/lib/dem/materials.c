@@ -120,7 +120,7 @@ struct contact_law pair_law(const struct dem *dem, int i, int j)
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall)
 {
     const struct contact_partners e = {dem->material_of[i],
-                                       wall->material > 0 ? wall->material : -1,
+                                       wall->elastic ? wall->material : -1,
                                        dem->mass[i], dem->place[i].radius};
     struct contact_law law = contact_law_between(dem, &e);
     if (wall->has_friction) law.friction = wall->friction;

@@ -19,9 +19,29 @@ int64_t dem_cycle(const struct dem *dem)
     return dem->cycle;
 }
 
+double dem_time(const struct dem *dem)
+{
+    const double since = (double)(dem->cycle - dem->step_since) * dem->time_step;
+    return (dem->time_before + since) * dem->unit.time;
+}
+
 double dem_time_step(const struct dem *dem)
 {
     return dem->time_step * dem->unit.time;
+}
+
+int dem_deepest_in_wall(const struct dem *dem, int wall, double *overlap)
+{
+    int deepest = -1;
+    *overlap = -INFINITY;
+    for (int i = 0; i < dem->n_particle; i++) {
+        const double now =
+            wall_geometry(dem, i, wall, 0).overlap / dem->place[i].radius;
+        if (!(now > *overlap)) continue;
+        *overlap = now;
+        deepest = dem->id[i];
+    }
+    return deepest;
 }
 
 void dem_positions(const struct dem *dem, struct vector *position)

@@ -221,7 +221,7 @@ static void take_time_step(struct dem *dem, double chosen)
     const bool stays = dem->step_is_automatic && dem->time_step < chosen;
     dem->step_was_shortened = stays;
     if (stays)
-        dem->time_step_limit = dem->time_step / AUTOMATIC_SHARE;
+        dem->time_step_limit = dem->time_step / dem->automatic_share;
     else
         dem->time_step = chosen;
 }

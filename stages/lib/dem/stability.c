@@ -228,15 +228,17 @@ double automatic_time_step(const struct dem *dem)
     double limit = dem->time_step_limit;
     for (int i = 0; i < dem->n_particle; i++)
         limit = fmin(limit, two_grain_limit(dem, i) / (1 + dem->local_damping));
-    return AUTOMATIC_SHARE * (isinf(limit) ? 1 : limit);
+    return dem->automatic_share * (isinf(limit) ? 1 : limit);
 }
 
 void shorten_time_step(struct dem *dem)
 {
     const double limit = stability_limit(dem, false);
-    if (AUTOMATIC_SHARE * limit >= dem->time_step) return;
+    if (dem->automatic_share * limit >= dem->time_step) return;
+    dem->time_before += (double)(dem->cycle - dem->step_since) * dem->time_step;
+    dem->step_since = dem->cycle;
     dem->time_step_limit = limit;
-    dem->time_step = AUTOMATIC_SHARE * limit;
+    dem->time_step = dem->automatic_share * limit;
     dem->step_was_shortened = true;
 }
 

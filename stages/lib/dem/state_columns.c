@@ -34,6 +34,18 @@ static void add_time_step(struct column_list *list, struct dem *dem)
                                      .base = &dem->time_step,
                                      .least = smallest,
                                      .most = largest});
+    add_column(list, (struct column){.name = "time_before",
+                                     .type = ARRAY_FLOAT64,
+                                     .width = 1,
+                                     .rows = 1,
+                                     .base = &dem->time_before,
+                                     .most = largest});
+    add_column(list, (struct column){.name = "step_since",
+                                     .type = ARRAY_INT64,
+                                     .width = 1,
+                                     .rows = 1,
+                                     .base = &dem->step_since,
+                                     .most = largest_count});
 }
 
 static void add_scalars(struct column_list *list, struct dem *dem)
