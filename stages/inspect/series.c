@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames over time, one function for each kind of artifact: throats and their
 // saturation (drying), forces on the grains (forces), moved grains and their contacts
-// (response).
+// (response, motion).
 //
 // A drying is replayed from step to step; a frame is written at the first step at or
 // below each of n evenly spaced saturations, so fast changes take fewer frames than n.
@@ -15,6 +15,7 @@
 #include "geometry/neighbours.h"
 #include "vtu.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -220,6 +221,96 @@ static void response_series(const struct artifact *artifact, struct series *seri
     packing_free(&packing);
 }
 
+// The image of X in the box from LOWER to UPPER, where that repeats.
+static struct vector in_box(const struct packing *packing, struct vector lower,
+                            struct vector upper, struct vector x)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        if (!packing->periodic[axis]) continue;
+        const double from = component(lower, axis), at = component(x, axis);
+        const double edge = component(upper, axis) - from;
+        set_component(&x, axis, at - edge * floor((at - from) / edge));
+    }
+    return x;
+}
+
+// The contacts between grains of a snapshot, without those with walls and around the
+// box; FORCE is moved along. Returns how many are left.
+static int drawn_contacts(const struct packing *packing, const struct vector *at,
+                          int64_t count, int32_t (*pair)[2], struct vector *force)
+{
+    int kept = 0;
+    for (int64_t c = 0; c < count; c++) {
+        const int32_t i = pair[c][0], j = pair[c][1];
+        if (i < 0 || j < 0 ||
+            distance(at[i], at[j]) > 2 * (packing->radius[i] + packing->radius[j]))
+            continue;
+        memmove(pair[kept], pair[c], sizeof *pair);
+        force[kept++] = force[c];
+    }
+    return kept;
+}
+
+// Another program may have written the counts of contacts.
+static void check_counts(const struct artifact *artifact, const int64_t *contacts,
+                         int n_snapshot, int n_contact)
+{
+    int64_t left = n_contact;
+    for (int s = 0; s < n_snapshot && left >= 0; s++)
+        left -= contacts[s];
+    if (left != 0)
+        die(STATUS_BAD_DATA,
+            "%s: /snapshots/contacts: must add up to the %d rows of /contacts",
+            input_name(artifact->path), n_contact);
+}
+
+// Grains as they move, and the forces at their contacts.
+static void motion_series(const struct artifact *artifact, struct series *series)
+{
+    struct packing packing = artifact_get_packing(artifact);
+    const int n = packing.n_particle;
+    int n_snapshot;
+    double *time = artifact_get(artifact, "/snapshots/time", &n_snapshot);
+    struct vector *lower = artifact_get(artifact, "/snapshots/box_lower", NULL);
+    struct vector *upper = artifact_get(artifact, "/snapshots/box_upper", NULL);
+    struct vector *position = artifact_get(artifact, "/snapshots/position", NULL);
+    struct vector *velocity = artifact_get(artifact, "/snapshots/velocity", NULL);
+    struct vector *spin = artifact_get(artifact, "/snapshots/spin", NULL);
+    int64_t *contacts = artifact_get(artifact, "/snapshots/contacts", NULL);
+    int n_contact;
+    uint8_t *group_number = artifact_get(artifact, "/particles/group", NULL);
+    double *group = as_doubles(group_number, n);
+    int32_t(*pair)[2] = artifact_get(artifact, "/contacts/particles", &n_contact);
+    check_counts(artifact, contacts, n_snapshot, n_contact);
+    struct vector *force = artifact_get(artifact, "/contacts/force", NULL);
+    int64_t first = 0;
+    for (int64_t s = 0; s < n_snapshot; first += contacts[s], s++) {
+        struct vector *at = position + s * n;
+        for (int i = 0; i < n; i++)
+            at[i] = in_box(&packing, lower[s], upper[s], at[i]);
+        const int drawn =
+            drawn_contacts(&packing, at, contacts[s], pair + first, force + first);
+        const struct vtu_array points[] = {{"velocity", &velocity[s * n].x, 3, NULL},
+                                           {"spin", &spin[s * n].x, 3, NULL},
+                                           {"radius", packing.radius, 1, NULL},
+                                           {"group", group, 1, "0: of none"},
+                                           {0}};
+        const struct vtu_array cells[] = {{"force", &force[first].x, 3, NULL}, {0}};
+        add_frame(series, time[s],
+                  &(struct vtu_grid){.n_point = n,
+                                     .point = at,
+                                     .n_line = drawn,
+                                     .line = (const int32_t(*)[2])(pair + first),
+                                     .points = points,
+                                     .cells = cells});
+    }
+    void *const owned[] = {time,     lower,        upper, position, velocity, spin,
+                           contacts, group_number, group, pair,     force};
+    for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
+        free(owned[k]);
+    packing_free(&packing);
+}
+
 void write_series(const struct artifact *artifact, const char *prefix, int n_frame)
 {
     struct series series = {.prefix = prefix};
@@ -230,6 +321,8 @@ void write_series(const struct artifact *artifact, const char *prefix, int n_fra
         forces_series(artifact, &series, n_frame);
     else if (!strcmp(schema, "response"))
         response_series(artifact, &series);
+    else if (!strcmp(schema, "motion"))
+        motion_series(artifact, &series);
     else
         die(STATUS_BAD_DATA,
             "%s: nothing changes over time in a %s; ParaView opens it as it is",

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A grain is of a group when its centre lies in the group's box and ring, or when the
+// group lists it. A group that only lists grains has no others.
+#include "groups.h"
+
+#include "basics/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool in_box(const struct group_parameters *group, struct vector x)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const double at = component(x, axis);
+        // NAN, not given, bounds nothing.
+        if (at < group->lower[axis] || at > group->upper[axis]) return false;
+    }
+    return true;
+}
+
+static bool in_ring(const struct group_parameters *group, struct vector x)
+{
+    const struct vector axis = to_vector(group->ring_axis);
+    const struct vector from = subtract(x, to_vector(group->ring_centre));
+    const double along = dot(from, axis) / norm(axis);
+    const double distance = sqrt(fmax(dot(from, from) - along * along, 0));
+    return distance >= group->ring_inner && !(distance >= group->ring_outer);
+}
+
+static bool is_by_place(const struct group_parameters *group)
+{
+    return !isnan(group->lower[0]) || !isnan(group->upper[0]) ||
+           group->ring_inner > 0 || !isnan(group->ring_outer);
+}
+
+static enum status claim(const struct simulate_parameters *parameters, int group,
+                         int grain, struct scene *scene, struct reason *reason)
+{
+    const int before = scene->group_of[grain] - 1;
+    if (before >= 0 && before != group)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "simulate.groups.%s: grain %d is in group %s already",
+                      parameters->groups.name[group], grain,
+                      parameters->groups.name[before]);
+    scene->group_of[grain] = (uint8_t)(group + 1);
+    return STATUS_OK;
+}
+
+static enum status claim_listed(const struct simulate_parameters *parameters, int group,
+                                const struct packing *packing, struct scene *scene,
+                                struct reason *reason)
+{
+    const struct number_list *list = &group_row(parameters, group)->grains;
+    enum status status = STATUS_OK;
+    for (int k = 0; k < list->count && !status; k++) {
+        const double grain = list->value[k];
+        if (grain != rint(grain) || grain >= packing->n_particle)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "simulate.groups.%s.grains: there is no grain %g among %d",
+                          parameters->groups.name[group], grain, packing->n_particle);
+        status = claim(parameters, group, (int)grain, scene, reason);
+    }
+    return status;
+}
+
+static enum status find_members(const struct simulate_parameters *parameters, int group,
+                                const struct packing *packing, struct scene *scene,
+                                struct reason *reason)
+{
+    const struct group_parameters *row = group_row(parameters, group);
+    const char *name = parameters->groups.name[group];
+    const struct vector axis = to_vector(row->ring_axis);
+    if (!(norm(axis) > 0))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "simulate.groups.%s.ring.axis: must not be 0", name);
+    enum status status = claim_listed(parameters, group, packing, scene, reason);
+    const bool by_place = row->grains.count == 0 || is_by_place(row);
+    for (int i = 0; i < packing->n_particle && by_place && !status; i++)
+        if (in_box(row, packing->position[i]) && in_ring(row, packing->position[i]))
+            status = claim(parameters, group, i, scene, reason);
+    if (status) return status;
+    if (packing->n_particle > 0 &&
+        !memchr(scene->group_of, group + 1, (size_t)packing->n_particle))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "simulate.groups.%s: no grain has its centre there", name);
+    return STATUS_OK;
+}
+
+static void add_driven(const struct group_parameters *row, int group,
+                       struct scene *scene)
+{
+    scene->driven_group[group] = row->driven ? scene->n_driven : -1;
+    if (!row->driven) return;
+    const struct vector spin = to_vector(row->spin);
+    scene->driven[scene->n_driven++] =
+        (struct dem_group){.point = to_vector(row->point),
+                           .axis = spin,
+                           .velocity = to_vector(row->velocity),
+                           .spin = norm(spin)};
+}
+
+static void set_start(const struct simulate_parameters *parameters,
+                      const struct packing *packing, const struct vector *velocity,
+                      struct scene *scene)
+{
+    const int n = packing->n_particle;
+    scene->velocity = NEW_ARRAY(struct vector, n);
+    scene->spin = NEW_ARRAY(struct vector, n);
+    scene->driven_of = NEW_ARRAY(uint8_t, n);
+    for (int i = 0; i < n; i++) {
+        if (velocity) scene->velocity[i] = velocity[i];
+        const int group = scene->group_of[i] - 1;
+        if (group < 0) continue;
+        const struct group_parameters *row = group_row(parameters, group);
+        if (!isnan(row->initial_velocity[0]))
+            scene->velocity[i] = to_vector(row->initial_velocity);
+        scene->spin[i] = to_vector(row->initial_spin);
+        scene->driven_of[i] = (uint8_t)(scene->driven_group[group] + 1);
+    }
+}
+
+enum status read_groups(const struct simulate_parameters *parameters,
+                        const struct packing *packing, const struct vector *velocity,
+                        struct scene *scene, struct reason *reason)
+{
+    const int n = scene->n_group = parameters->groups.count;
+    if (n > 254)
+        return refuse(reason, STATUS_BAD_DATA, "simulate.groups: at most 254, got %d",
+                      n);
+    scene->group_of = NEW_ARRAY(uint8_t, packing->n_particle);
+    scene->driven_group = NEW_ARRAY(int, n);
+    scene->driven = NEW_ARRAY(struct dem_group, n);
+    enum status status = STATUS_OK;
+    for (int k = 0; k < n && !status; k++) {
+        status = find_members(parameters, k, packing, scene, reason);
+        add_driven(group_row(parameters, k), k, scene);
+    }
+    if (!status) set_start(parameters, packing, velocity, scene);
+    return status;
+}

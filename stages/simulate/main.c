@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// simulate: discrete elements for any scene of grains, walls, liquid bridges and bonds.
+//
+// In this order: the packing and, as a second input, forces on its grains; names become
+// numbers (scene.h); grains that stand in walls are refused; the run (run.h); what the
+// user should know; the artifact.
+#include "artifacts/artifact.h"
+#include "artifacts/checkpoint.h"
+#include "basics/memory.h"
+#include "basics/status.h"
+#include "control.h"
+#include "run.h"
+#include "write_motion.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct stage stage = {
+    .name = "simulate",
+    .version = STAGE_VERSION,
+    .summary = "simulate -- discrete elements for any scene of grains, walls and "
+               "liquid [K 4, G]",
+    .reads = "packing",
+    .writes = "motion",
+    .most_inputs = 2,
+    .parameters = simulate_table,
+    .notes =
+        "A second input is a forces artifact of the same grains (forces.row). With "
+        "write=packing the output is a packing.",
+    .checkpoints = true};
+
+static struct packing read_packing(const struct artifact *input)
+{
+    struct packing packing = artifact_get_packing(input);
+    for (int i = 0; i < packing.n_particle; i++)
+        if (is_auxiliary(&packing, i))
+            die(STATUS_BAD_DATA,
+                "%s: /particles/kind: grain %d is auxiliary: simulate takes packings "
+                "without an extra layer (pack.extra_layer)",
+                input_name(input->path), i);
+    return packing;
+}
+
+// Forces on the grains, N, by forces.row and forces.factor; NULL without a second
+// input.
+static struct vector *read_forces(const struct invocation *invocation,
+                                  const struct simulate_parameters *parameters,
+                                  const struct packing *packing, json_t *inputs)
+{
+    if (invocation->n_input < 2) return NULL;
+    struct artifact *input = artifact_open(invocation->inputs[1], "forces");
+    int n_time;
+    struct vector *all = artifact_get(input, "/force", &n_time);
+    const int64_t row =
+        parameters->forces_row + (parameters->forces_row < 0 ? n_time : 0);
+    if (row < 0 || row >= n_time)
+        die(STATUS_BAD_DATA, "simulate.forces.row: there is no row %lld among %d",
+            (long long)parameters->forces_row, n_time);
+    struct packing theirs = artifact_get_packing(input);
+    const size_t n = (size_t)packing->n_particle;
+    if (theirs.n_particle != packing->n_particle)
+        die(STATUS_BAD_DATA, "%s: /particles: has %d grains, but the packing has %d",
+            input_name(input->path), theirs.n_particle, packing->n_particle);
+    struct vector *force = NEW_ARRAY(struct vector, n);
+    for (size_t i = 0; i < n; i++)
+        force[i] = scale(parameters->forces_factor, all[(size_t)row * n + i]);
+    json_array_append_new(inputs, input_digest(input));
+    packing_free(&theirs);
+    free(all);
+    artifact_close(input);
+    return force;
+}
+
+static struct scene read_scene(const struct simulate_parameters *parameters,
+                               const struct packing *packing,
+                               const struct artifact *input)
+{
+    struct vector *velocity = artifact_has_dataset(input, "/particles/velocity")
+                                  ? artifact_get(input, "/particles/velocity", NULL)
+                                  : NULL;
+    struct scene scene;
+    struct reason reason;
+    const enum status status =
+        make_scene(parameters, packing, velocity, &scene, &reason);
+    if (status) die(status, "%s", reason.text);
+    free(velocity);
+    return scene;
+}
+
+// A servo whose force is further than this share from what it should be was too slow,
+// or nothing pushed back.
+static void warn_of_servos(const struct scene *scene, const struct outcome *outcome)
+{
+    static const double near = 0.05;
+    const struct dem *dem = outcome->dem;
+    for (int w = 0; w < scene->setup.n_wall; w++) {
+        const struct dem_wall *wall = &scene->wall[w];
+        const struct scene_wall *more = &scene->wall_more[w];
+        const bool pressure = !isnan(more->servo_pressure);
+        if (more->motion && more->motion->times.count > 0) continue;
+        const double wanted = pressure
+                                  ? more->servo_pressure * servo_area(scene, dem, w)
+                                  : wall->servo_force;
+        if (!(wanted > 0)) continue;
+        const struct dem_wall_state now = dem_wall_state(dem, w);
+        const double has = -dot(now.force, wall->normal) / norm(wall->normal);
+        if (fabs(has - wanted) <= near * wanted) continue;
+        report("walls.%s: ends with a force of %.4g N, its servo is to reach %.4g N: "
+               "grains give way, or servo.largest_speed or the duration is too small",
+               more->name, has, wanted);
+    }
+}
+
+static void describe(const struct simulate_parameters *parameters,
+                     const struct scene *scene, const char *model, char *text,
+                     size_t size)
+{
+    static const char *const laws[] = {"Hertz-Mindlin contacts [K 4.23]",
+                                       "linear contacts [K 4.22]",
+                                       "linear contacts of one duration [G 2]"};
+    char liquid[200] = "";
+    if (scene->setup.liquid)
+        snprintf(liquid, sizeof liquid,
+                 "liquid bridges between grains that have touched, %s: surface tension "
+                 "%.6g N/m, contact angle %.6g degrees\n",
+                 model, scene->liquid.surface_tension, parameters->contact_angle);
+    const bool bonds = scene->setup.packing->n_bond > 0;
+    snprintf(text, size,
+             "discrete elements: leapfrog, %s, Coulomb friction [K 4.25]\n"
+             "%d materials, %d walls, %d groups of grains, %d of them driven\n"
+             "%s%s"
+             "left out: %srolling resistance, %sflow of air or liquid around the "
+             "grains\n",
+             laws[parameters->law], scene->n_material, scene->setup.n_wall,
+             scene->n_group, scene->n_driven,
+             !bonds                                  ? ""
+             : parameters->bond_kind == BOND_CONTACT ? "contact bonds\n"
+                                                     : "parallel bonds\n",
+             liquid, bonds ? "" : "bonds, ", *liquid ? "" : "liquid bridges, ");
+}
+
+static void write(const struct simulate_parameters *parameters,
+                  const struct scene *scene, const struct outcome *outcome,
+                  const struct invocation *invocation, json_t *inputs)
+{
+    char model[1000];
+    const json_t *bridges = json_object_get(invocation->parameters, "bridges");
+    describe(parameters, scene, json_string_value(json_object_get(bridges, "model")),
+             model, sizeof model);
+    const bool all = parameters->write == WRITE_MOTION;
+    struct artifact *artifact =
+        artifact_create(all ? "motion" : "packing", invocation->output);
+    if (all)
+        put_motion(artifact, scene, outcome);
+    else
+        put_final_packing(artifact, scene, outcome);
+    artifact_finish(artifact, invocation, json_incref(inputs), model);
+}
+
+static void show(void *bar, double fraction)
+{
+    progress_update(bar, fraction);
+}
+
+static void run(const struct simulate_parameters *parameters, struct scene *scene,
+                const struct vector *force, const struct invocation *invocation,
+                const struct keeper *keeper, struct outcome *outcome)
+{
+    struct progress bar = progress_begin(invocation->progress, invocation->quiet);
+    struct reason reason;
+    const enum status status = run_scene(parameters, scene, force, invocation->threads,
+                                         show, &bar, keeper, outcome, &reason);
+    progress_end(&bar);
+    const bool kept = status == STATUS_BAD_DATA && keeper->begin;
+    if (status)
+        die(status, "%s: %s",
+            input_name(kept ? invocation->checkpoint : invocation->inputs[0]),
+            reason.text);
+}
+
+int main(int argc, char **argv)
+{
+    struct simulate_parameters parameters;
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    check_parameters(&parameters);
+    struct artifact *input = artifact_open(invocation.inputs[0], "packing");
+    struct packing packing = read_packing(input);
+    json_t *inputs = one_input(input);
+    struct vector *force = read_forces(&invocation, &parameters, &packing, inputs);
+    if (parameters.bond_kind == BOND_NONE) packing.n_bond = 0;
+    struct scene scene = read_scene(&parameters, &packing, input);
+
+    struct checkpoint checkpoint;
+    checkpoint_begin(&checkpoint, &invocation, inputs);
+    struct outcome outcome;
+    run(&parameters, &scene, force, &invocation, &checkpoint.keeper, &outcome);
+    if (!invocation.quiet) warn_of_servos(&scene, &outcome);
+    write(&parameters, &scene, &outcome, &invocation, inputs);
+
+    checkpoint_end(&checkpoint);
+    outcome_free(&outcome);
+    scene_free(&scene);
+    free(force);
+    json_decref(inputs);
+    packing_free(&packing);
+    artifact_close(input);
+    named_rows_free(&parameters.materials);
+    named_rows_free(&parameters.pairs);
+    named_rows_free(&parameters.walls);
+    named_rows_free(&parameters.groups);
+    invocation_free(&invocation);
+    return STATUS_OK;
+}

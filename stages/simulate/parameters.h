@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters of simulate: what the grains are made of, what bounds and drives them,
+// for how long, and what is recorded.
+#ifndef CRAQUELURE_SIMULATE_PARAMETERS_H
+#define CRAQUELURE_SIMULATE_PARAMETERS_H
+
+#include "dem/dem.h"
+#include "parameters/conditions.h"
+#include "parameters/parameters.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+// A row of "materials". NAN: not given.
+struct material_parameters {
+    double density, friction, restitution;
+    double young_modulus, poisson_ratio;
+    double normal_stiffness, shear_stiffness, damping_ratio;
+};
+
+// A row of "pairs": what two materials do to each other. NAN: the smaller of the two.
+struct pair_parameters {
+    const char *first, *second;
+    double friction, restitution;
+};
+
+// Factor on a motion at these times (s), linear between them; none: always 1.
+struct time_table {
+    struct number_list times, factors;
+};
+
+// A row of "walls". NAN: not given.
+struct wall_parameters {
+    int shape; // enum dem_wall_shape
+    double point[3], normal[3], half_edge[3];
+    double radius, inner_radius;
+    bool outside;
+    const char *material; // NULL: rigid
+    double friction;
+    double velocity[3], spin[3];
+    double servo_force, servo_pressure, servo_area, servo_largest_speed;
+    struct time_table motion;
+};
+
+// A row of "groups". NAN: not given.
+struct group_parameters {
+    double lower[3], upper[3];
+    double ring_inner, ring_outer, ring_centre[3], ring_axis[3];
+    struct number_list grains;
+    const char *material; // NULL: that of the scene
+    bool driven;
+    double velocity[3], spin[3], point[3];
+    double initial_velocity[3], initial_spin[3];
+    struct time_table motion;
+};
+
+enum contact_law { LAW_HERTZ, LAW_LINEAR, LAW_TIMED };
+enum bond_choice { BOND_NONE, BOND_PARALLEL, BOND_CONTACT };
+enum written { WRITE_MOTION, WRITE_PACKING };
+
+struct simulate_parameters {
+    double duration; // s
+    int law;         // enum contact_law
+    double contact_time;
+    const char *material; // of grains that no group gives another
+    struct named_rows materials, pairs, walls, groups;
+    unsigned box_walls; // bits: -x, +x, -y, +y, -z, +z
+    const char *box_material;
+    double box_friction;
+    double strain_rate[3];
+    double gravity[3];
+    bool prestress, tensile_damping, density_scaling;
+    int friction_limit; // 0: by the spring, 1: by spring and dashpot
+    double local_damping;
+    int bond_kind; // enum bond_choice
+    struct dem_bond_material bond;
+    double bond_contact_strength; // N
+    struct dem_liquid liquid;     // of no volume: dry
+    int bridge_model;
+    double surface_tension, contact_angle; // N/m, degrees; NAN: water, 0
+    int64_t forces_row; // of a forces artifact; below 0: from its end
+    double forces_factor;
+    double time_step, time_step_share, expected_overlap, largest_overlap;
+    bool allow_unstable;
+    double record_every, snapshots_every, snapshots_from; // s
+    bool record_contacts, record_energy;
+    double stop_ratio; // unbalanced ratio at which the run ends; NAN: never
+    double stop_after; // s
+    int write;         // enum written
+};
+
+extern const struct parameter simulate_table[];
+
+// Checks what no single row can say. Exits 65.
+void check_parameters(const struct simulate_parameters *parameters);
+
+#endif

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every column is declared once, in make_record, and filled by name. Sums are those of
+// the last cycle; positions are those behind it, and velocities belong to half a step
+// before the positions, as leapfrog has them (dem/dem.c).
+#include "record.h"
+
+#include "basics/memory.h"
+#include "control.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- columns ------------------------------------------------------------------------
+
+static void declare(struct record *record, const char *dataset, enum array_type type,
+                    int64_t width)
+{
+    record->column[record->n_column++] =
+        (struct recorded_column){.dataset = dataset, .type = type, .width = width};
+}
+
+static void declare_sums(struct record *record,
+                         const struct simulate_parameters *parameters,
+                         const struct scene *scene)
+{
+    const int64_t walls = scene->setup.n_wall, groups = scene->n_group;
+    const struct {
+        const char *dataset;
+        int64_t width;
+    } sums[] = {{"/history/time", 1},
+                {"/history/unbalanced_ratio", 1},
+                {"/history/coordination", 1},
+                {"/history/largest_overlap", 1},
+                {"/history/stress", 9},
+                {"/history/kinetic_energy", 1},
+                {"/history/elastic_energy", 1},
+                {"/history/momentum", 3},
+                {"/history/box_lower", 3},
+                {"/history/box_upper", 3},
+                {"/history/wall_force", 3 * walls},
+                {"/history/wall_moment", 3 * walls},
+                {"/history/wall_displacement", 3 * walls},
+                {"/history/group_force", 3 * groups},
+                {"/history/group_moment", 3 * groups},
+                {"/history/group_displacement", 3 * groups},
+                {"/history/group_angle", groups}};
+    for (size_t k = 0; k < sizeof sums / sizeof *sums; k++)
+        declare(record, sums[k].dataset, ARRAY_FLOAT64, sums[k].width);
+    declare(record, "/history/contacts", ARRAY_INT64, 1);
+    if (scene->setup.liquid) declare(record, "/history/bridges", ARRAY_INT64, 1);
+    if (!parameters->record_energy) return;
+    declare(record, "/history/work", ARRAY_FLOAT64, 1);
+    declare(record, "/history/dissipation", ARRAY_FLOAT64, 5);
+}
+
+struct record make_record(const struct simulate_parameters *parameters,
+                          const struct scene *scene)
+{
+    struct record record = {0};
+    const int64_t n = scene->setup.packing->n_particle;
+    declare_sums(&record, parameters, scene);
+    declare(&record, "/snapshots/time", ARRAY_FLOAT64, 1);
+    declare(&record, "/snapshots/box_lower", ARRAY_FLOAT64, 3);
+    declare(&record, "/snapshots/box_upper", ARRAY_FLOAT64, 3);
+    declare(&record, "/snapshots/position", ARRAY_FLOAT64, 3 * n);
+    declare(&record, "/snapshots/velocity", ARRAY_FLOAT64, 3 * n);
+    declare(&record, "/snapshots/spin", ARRAY_FLOAT64, 3 * n);
+    declare(&record, "/snapshots/contacts", ARRAY_INT64, 1);
+    declare(&record, "/contacts/particles", ARRAY_INT32, 2);
+    declare(&record, "/contacts/force", ARRAY_FLOAT64, 3);
+    declare(&record, "/contacts/position", ARRAY_FLOAT64, 3);
+    declare(&record, "/contacts/overlap", ARRAY_FLOAT64, 1);
+    declare(&record, "/contacts/bond", ARRAY_INT32, 1);
+    if (!scene->setup.liquid) return record;
+    declare(&record, "/contacts/bridge_volume", ARRAY_FLOAT64, 1);
+    declare(&record, "/contacts/bridge_force", ARRAY_FLOAT64, 1);
+    return record;
+}
+
+void record_free(struct record *record)
+{
+    for (int k = 0; k < record->n_column; k++)
+        free(record->column[k].data);
+    *record = (struct record){0};
+}
+
+static struct recorded_column *column(struct record *record, const char *dataset)
+{
+    for (int k = 0; k < record->n_column; k++)
+        if (!strcmp(record->column[k].dataset, dataset)) return &record->column[k];
+    return NULL;
+}
+
+const struct recorded_column *recorded(const struct record *record, const char *dataset)
+{
+    return column((struct record *)(uintptr_t)record, dataset); // only read
+}
+
+static void make_room(struct recorded_column *c, int64_t rows)
+{
+    if (c->rows + rows <= c->capacity) return;
+    const int64_t doubled = 2 * c->capacity;
+    c->capacity = c->rows + rows > doubled ? c->rows + rows : doubled;
+    c->data =
+        reallocate(c->data, (size_t)(c->capacity * c->width), number_size(c->type));
+}
+
+// Adds N rows; does nothing where DATASET is not recorded.
+static void add_rows(struct record *record, const char *dataset, const void *rows,
+                     int64_t n)
+{
+    struct recorded_column *c = column(record, dataset);
+    if (!c) return;
+    make_room(c, n);
+    const size_t row = (size_t)c->width * number_size(c->type);
+    if (n > 0 && row > 0)
+        memcpy((char *)c->data + (size_t)c->rows * row, rows, (size_t)n * row);
+    c->rows += n;
+}
+
+static void add_number(struct record *record, const char *dataset, double value)
+{
+    add_rows(record, dataset, &value, 1);
+}
+
+static void add_count(struct record *record, const char *dataset, int64_t value)
+{
+    add_rows(record, dataset, &value, 1);
+}
+
+// ---- sums ---------------------------------------------------------------------------
+
+static void record_walls(struct record *record, const struct scene *scene,
+                         const struct dem *dem)
+{
+    const int n = scene->setup.n_wall;
+    struct vector *of = NEW_ARRAY(struct vector, 3 * n);
+    for (int w = 0; w < n; w++) {
+        const struct dem_wall_state state = dem_wall_state(dem, w);
+        of[w] = state.force;
+        of[n + w] = state.moment;
+        of[2 * n + w] = state.displacement;
+    }
+    add_rows(record, "/history/wall_force", of, 1);
+    add_rows(record, "/history/wall_moment", of + n, 1);
+    add_rows(record, "/history/wall_displacement", of + 2 * n, 1);
+    free(of);
+}
+
+static void record_groups(struct record *record, const struct scene *scene,
+                          const struct dem *dem)
+{
+    const int n = scene->n_group;
+    struct vector *of = NEW_ARRAY(struct vector, 3 * n);
+    double *angle = NEW_ARRAY(double, n);
+    for (int k = 0; k < n; k++) {
+        if (scene->driven_group[k] < 0) continue;
+        const struct dem_group_state state =
+            dem_group_state(dem, scene->driven_group[k]);
+        of[k] = state.force;
+        of[n + k] = state.moment;
+        of[2 * n + k] = state.displacement;
+        angle[k] = state.angle;
+    }
+    add_rows(record, "/history/group_force", of, 1);
+    add_rows(record, "/history/group_moment", of + n, 1);
+    add_rows(record, "/history/group_displacement", of + 2 * n, 1);
+    add_rows(record, "/history/group_angle", angle, 1);
+    free(angle);
+    free(of);
+}
+
+static void record_energy(struct record *record, const struct dem *dem)
+{
+    const struct dem_energy energy = dem_energy(dem);
+    const double lost[] = {energy.dashpots, energy.slip, energy.local_damping,
+                           energy.broken, energy.bridges};
+    add_number(record, "/history/kinetic_energy", energy.kinetic);
+    add_number(record, "/history/elastic_energy", energy.elastic);
+    add_number(record, "/history/work", energy.gained);
+    add_rows(record, "/history/dissipation", lost, 1);
+}
+
+// The unbalanced ratio is infinite where forces act and no contact carries any.
+static double finite_ratio(double ratio)
+{
+    static const double most = 1e150;
+    return ratio < most ? ratio : most;
+}
+
+// Over the room between planes, which follows walls as they close in.
+static void record_stress(struct record *record, const struct scene *scene,
+                          const struct dem *dem, const struct dem_census *census)
+{
+    struct vector lower, upper;
+    dem_box(dem, &lower, &upper);
+    const struct vector edge = subtract(upper, lower);
+    const double between = room(scene, dem), box = edge.x * edge.y * edge.z;
+    double stress[3][3];
+    for (int k = 0; k < 3; k++)
+        for (int l = 0; l < 3; l++)
+            stress[k][l] = between > 0 ? census->stress[k][l] * (box / between) : 0;
+    add_rows(record, "/history/stress", stress, 1);
+}
+
+void record_sums(struct record *record, const struct scene *scene,
+                 const struct dem *dem, double time)
+{
+    const int n = scene->setup.packing->n_particle;
+    const struct dem_census census = dem_census(dem);
+    const struct dem_momentum momentum = dem_momentum(dem);
+    struct vector lower, upper;
+    dem_box(dem, &lower, &upper);
+    add_number(record, "/history/time", time);
+    add_number(record, "/history/unbalanced_ratio",
+               finite_ratio(dem_unbalanced_ratio(dem)));
+    add_count(record, "/history/contacts", census.contacts);
+    add_number(record, "/history/coordination", n > 0 ? 2.0 * census.contacts / n : 0);
+    add_number(record, "/history/largest_overlap", fmax(census.largest_overlap, 0));
+    record_stress(record, scene, dem, &census);
+    add_rows(record, "/history/momentum", &momentum.linear, 1);
+    add_rows(record, "/history/box_lower", &lower, 1);
+    add_rows(record, "/history/box_upper", &upper, 1);
+    record_energy(record, dem);
+    record_walls(record, scene, dem);
+    record_groups(record, scene, dem);
+    record->largest_overlap = fmax(record->largest_overlap, census.largest_overlap);
+    if (!scene->setup.liquid) return;
+    int bridges;
+    free(dem_bridges(dem, &bridges));
+    add_count(record, "/history/bridges", bridges);
+}
+
+// ---- snapshots ----------------------------------------------------------------------
+
+static void record_contacts(struct record *record, const struct dem *dem)
+{
+    int n;
+    struct dem_contact *contact = dem_contacts(dem, &n);
+    add_count(record, "/snapshots/contacts", n);
+    for (int k = 0; k < n; k++) {
+        add_rows(record, "/contacts/particles", contact[k].particle, 1);
+        add_rows(record, "/contacts/force", &contact[k].force, 1);
+        add_rows(record, "/contacts/position", &contact[k].position, 1);
+        add_rows(record, "/contacts/overlap", &contact[k].overlap, 1);
+        add_rows(record, "/contacts/bond", &contact[k].bond, 1);
+        add_rows(record, "/contacts/bridge_volume", &contact[k].bridge_volume, 1);
+        add_rows(record, "/contacts/bridge_force", &contact[k].bridge_force, 1);
+    }
+    free(contact);
+}
+
+void record_snapshot(struct record *record,
+                     const struct simulate_parameters *parameters,
+                     const struct scene *scene, const struct dem *dem, double time)
+{
+    const int n = scene->setup.packing->n_particle;
+    struct vector *of = NEW_ARRAY(struct vector, n), lower, upper;
+    dem_box(dem, &lower, &upper);
+    add_number(record, "/snapshots/time", time);
+    add_rows(record, "/snapshots/box_lower", &lower, 1);
+    add_rows(record, "/snapshots/box_upper", &upper, 1);
+    dem_positions(dem, of);
+    add_rows(record, "/snapshots/position", of, 1);
+    dem_velocities(dem, of);
+    add_rows(record, "/snapshots/velocity", of, 1);
+    dem_spins(dem, of);
+    add_rows(record, "/snapshots/spin", of, 1);
+    free(of);
+    if (parameters->record_contacts)
+        record_contacts(record, dem);
+    else
+        add_count(record, "/snapshots/contacts", 0);
+}
+
+// ---- checkpoint ---------------------------------------------------------------------
+
+static void stream_column(struct recorded_column *c, struct checkpoint_stream *stream)
+{
+    if (c->width == 0) { // nothing but how many
+        stream_long(stream, &c->rows);
+        return;
+    }
+    c->data =
+        stream_room(stream, c->data, &c->rows, (size_t)c->width * number_size(c->type));
+    c->capacity = stream->restoring ? c->rows : c->capacity;
+    const int64_t count = c->rows * c->width;
+    if (c->type == ARRAY_FLOAT64) stream_numbers(stream, c->data, count);
+    if (c->type == ARRAY_INT32)
+        stream_integers(stream, c->data, count, INT32_MIN, INT32_MAX);
+    for (int64_t k = 0; k < count && c->type == ARRAY_INT64; k++)
+        stream_long(stream, (int64_t *)c->data + k);
+}
+
+void record_state(struct record *record, struct checkpoint_stream *stream)
+{
+    stream_numbers(stream, &record->largest_overlap, 1);
+    for (int k = 0; k < record->n_column; k++)
+        stream_column(&record->column[k], stream);
+}

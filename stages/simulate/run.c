@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums are recorded at the times 0, T, 2 T, ... and at the end, snapshots likewise with
+// an interval of their own. A moment has come when the next cycle would end further
+// behind it than this one. So moments are met to half a time step, and the times that
+// are written are those of the cycles.
+//
+// In this order: control (walls, servos, strain) every CONTROL_EVERY cycles, cycles up
+// to the next of these moments, then what is due there. Cycles between looks at the
+// checkpoint's clock change no result.
+#include "run.h"
+
+#include "basics/memory.h"
+#include "control.h"
+#include "dem/keep.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Cycles between two looks at the largest overlap.
+enum { LOOK_EVERY = 1024 };
+static const char streams[] = "motion";
+
+// A run on its way.
+struct run {
+    const struct simulate_parameters *parameters;
+    struct scene *scene;
+    struct outcome *outcome;
+    bool controlled;
+    double record_every, snapshots_every; // s
+    int64_t asked;                        // cycles between questions to the keeper
+};
+
+void outcome_free(struct outcome *outcome)
+{
+    dem_free(outcome->dem);
+    record_free(&outcome->record);
+    *outcome = (struct outcome){0};
+}
+
+static struct dem *dem_of(const struct run *run)
+{
+    return run->outcome->dem;
+}
+
+// ---- what is due --------------------------------------------------------------------
+
+static int64_t rows(const struct run *run, const char *dataset)
+{
+    return recorded(&run->outcome->record, dataset)->rows;
+}
+
+static double next_sums(const struct run *run)
+{
+    return fmin((double)rows(run, "/history/time") * run->record_every,
+                run->parameters->duration);
+}
+
+static double next_snapshot(const struct run *run)
+{
+    const double from = run->parameters->snapshots_from;
+    return fmin(from + (double)rows(run, "/snapshots/time") * run->snapshots_every,
+                fmax(run->parameters->duration, from));
+}
+
+static bool has_come(const struct run *run, double moment)
+{
+    return dem_time(dem_of(run)) >= moment - 0.5 * dem_time_step(dem_of(run));
+}
+
+// The time of the last row of DATASET, or before all.
+static double last_time(const struct run *run, const char *dataset)
+{
+    const struct recorded_column *c = recorded(&run->outcome->record, dataset);
+    return c->rows > 0 ? ((const double *)c->data)[c->rows - 1] : -INFINITY;
+}
+
+static bool is_new(const struct run *run, const char *dataset)
+{
+    return dem_time(dem_of(run)) > last_time(run, dataset);
+}
+
+static void take_sums(struct run *run)
+{
+    record_sums(&run->outcome->record, run->scene, dem_of(run), dem_time(dem_of(run)));
+}
+
+static void take_snapshot(struct run *run)
+{
+    record_snapshot(&run->outcome->record, run->parameters, run->scene, dem_of(run),
+                    dem_time(dem_of(run)));
+}
+
+static void record_what_is_due(struct run *run)
+{
+    if (has_come(run, next_sums(run)) && is_new(run, "/history/time")) take_sums(run);
+    if (has_come(run, next_snapshot(run)) && is_new(run, "/snapshots/time") &&
+        has_come(run, run->parameters->snapshots_from))
+        take_snapshot(run);
+}
+
+// Whatever the intervals, the end is recorded.
+static void record_end(struct run *run)
+{
+    if (is_new(run, "/history/time")) take_sums(run);
+    if (is_new(run, "/snapshots/time")) take_snapshot(run);
+}
+
+static bool is_at_rest(const struct run *run)
+{
+    const struct dem *dem = dem_of(run);
+    return !isnan(run->parameters->stop_ratio) && dem_cycle(dem) > 0 &&
+           dem_cycle(dem) % CONTROL_EVERY == 0 &&
+           has_come(run, run->parameters->stop_after) &&
+           dem_unbalanced_ratio(dem) < run->parameters->stop_ratio;
+}
+
+// ---- cycles -------------------------------------------------------------------------
+
+static int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+static int64_t cycles_to(const struct run *run, double moment)
+{
+    const struct dem *dem = dem_of(run);
+    const double left = (moment - dem_time(dem)) / dem_time_step(dem);
+    return left > 0x1p53 ? (int64_t)1 << 53 : left > 1 ? (int64_t)rint(left) : 1;
+}
+
+static int64_t cycles_to_multiple(const struct run *run, int64_t of)
+{
+    return of - dem_cycle(dem_of(run)) % of;
+}
+
+static int64_t next_cycles(const struct run *run)
+{
+    int64_t cycles = least(run->asked, cycles_to(run, run->parameters->duration));
+    cycles = least(cycles, cycles_to(run, next_sums(run)));
+    cycles = least(cycles, cycles_to(run, next_snapshot(run)));
+    cycles = least(cycles, cycles_to_multiple(run, LOOK_EVERY));
+    const bool looks = run->controlled || !isnan(run->parameters->stop_ratio);
+    return looks ? least(cycles, cycles_to_multiple(run, CONTROL_EVERY)) : cycles;
+}
+
+static enum status check_overlap(const struct run *run, struct reason *reason)
+{
+    const struct dem_census census = dem_census(dem_of(run));
+    if (!(census.largest_overlap > run->parameters->largest_overlap)) return STATUS_OK;
+    const double pressure =
+        (census.stress[0][0] + census.stress[1][1] + census.stress[2][2]) / 3;
+    return refuse(
+        reason, STATUS_NOT_CONVERGED,
+        "at %.4g s two grains overlap by %.3g mean radii, above "
+        "largest_overlap=%g, under a mean pressure of %.4g Pa: stiffer grains, "
+        "or walls that close in less",
+        dem_time(dem_of(run)), census.largest_overlap, run->parameters->largest_overlap,
+        pressure);
+}
+
+static enum status advance(struct run *run, struct reason *reason)
+{
+    struct dem *dem = dem_of(run);
+    if (run->controlled && dem_cycle(dem) % CONTROL_EVERY == 0)
+        control(run->parameters, run->scene, dem_time(dem), dem);
+    struct reason cause;
+    enum status status = dem_run(dem, next_cycles(run), &cause);
+    if (status)
+        return refuse(reason, status, "at %.4g s: %.400s", dem_time(dem), cause.text);
+    if (dem_cycle(dem) % LOOK_EVERY == 0) status = check_overlap(run, reason);
+    return status;
+}
+
+// ---- checkpoint ---------------------------------------------------------------------
+
+static void keep(const struct run *run, const struct keeper *keeper)
+{
+    struct checkpoint_stream stream = stream_to_keep();
+    record_state(&run->outcome->record, &stream);
+    keep_state(keeper, dem_of(run), stream_list(&stream, streams));
+    stream_free(&stream);
+}
+
+static enum status go_on(struct run *run, const struct kept_state *kept,
+                         struct reason *reason)
+{
+    const struct array_list *engine = &kept->engine;
+    const enum status status =
+        dem_restore(dem_of(run), engine->array, engine->count, reason);
+    if (status) return status;
+    struct checkpoint_stream stream = stream_to_restore(&kept->stage, streams);
+    record_state(&run->outcome->record, &stream);
+    if (stream_is_whole(&stream)) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA, "/stage: is not the state of this scene");
+}
+
+// ---- the whole ----------------------------------------------------------------------
+
+static double interval(double given, double duration, double count)
+{
+    if (!isnan(given)) return given;
+    return duration > 0 ? duration / count : 1;
+}
+
+// A grain that begins deep in a wall would be shot out of it.
+static enum status check_walls(const struct run *run, struct reason *reason)
+{
+    for (int w = 0; w < run->scene->setup.n_wall; w++) {
+        double overlap;
+        const int grain = dem_deepest_in_wall(dem_of(run), w, &overlap);
+        if (overlap > run->parameters->largest_overlap)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "simulate.walls.%s: grain %d begins in it, by %.3g of its "
+                          "radius, at (%.4g, %.4g, %.4g) m",
+                          run->scene->wall_more[w].name, grain, overlap,
+                          run->scene->setup.packing->position[grain].x,
+                          run->scene->setup.packing->position[grain].y,
+                          run->scene->setup.packing->position[grain].z);
+    }
+    return STATUS_OK;
+}
+
+// Leapfrog begins with velocities of half a step before: v - g dt / 2, so that grains
+// that nothing touches fall exactly.
+static void set_velocities(const struct run *run)
+{
+    const struct scene *scene = run->scene;
+    const double half = 0.5 * dem_time_step(dem_of(run));
+    const int n = scene->setup.packing->n_particle;
+    struct vector *velocity = NEW_ARRAY(struct vector, n);
+    for (int i = 0; i < n; i++)
+        velocity[i] = subtract(scene->velocity[i], scale(half, scene->setup.gravity));
+    dem_set_velocity(dem_of(run), velocity, scene->spin);
+    free(velocity);
+}
+
+static enum status begin(struct run *run, const struct vector *force, int threads,
+                         const struct keeper *keeper, struct reason *reason)
+{
+    struct scene *scene = run->scene;
+    scene->setup.threads = threads;
+    enum status status = dem_create(&run->outcome->dem, &scene->setup, reason);
+    if (status) return status;
+    set_velocities(run);
+    if (force) dem_set_force(dem_of(run), force);
+    if (keeper && keeper->begin) return go_on(run, keeper->begin, reason);
+    return check_walls(run, reason);
+}
+
+enum status run_scene(const struct simulate_parameters *parameters, struct scene *scene,
+                      const struct vector *force, int threads,
+                      void (*tell)(void *context, double fraction), void *context,
+                      const struct keeper *keeper, struct outcome *outcome,
+                      struct reason *reason)
+{
+    const double duration = parameters->duration;
+    *outcome = (struct outcome){.record = make_record(parameters, scene)};
+    struct run run = {
+        .parameters = parameters,
+        .scene = scene,
+        .outcome = outcome,
+        .controlled = is_controlled(parameters, scene),
+        .record_every = interval(parameters->record_every, duration, 200),
+        .snapshots_every = interval(parameters->snapshots_every, duration, 20),
+        .asked = cycles_between_questions(scene->setup.packing->n_particle)};
+    enum status status = begin(&run, force, threads, keeper, reason);
+    if (status) return status;
+    record_what_is_due(&run);
+    while (!has_come(&run, duration) && !is_at_rest(&run)) {
+        status = advance(&run, reason);
+        if (status) return status;
+        record_what_is_due(&run);
+        tell(context, fmin(dem_time(outcome->dem) / duration, 1));
+        if (is_due(keeper)) keep(&run, keeper);
+    }
+    outcome->ending = has_come(&run, duration) ? ENDED_IN_TIME : ENDED_AT_REST;
+    record_end(&run);
+    return check_overlap(&run, reason);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The run: cycles of the engine between the moments at which something is recorded or
+// changed.
+#ifndef CRAQUELURE_SIMULATE_RUN_H
+#define CRAQUELURE_SIMULATE_RUN_H
+
+#include "checkpoint/keeper.h"
+#include "record.h"
+
+enum ending { ENDED_IN_TIME, ENDED_AT_REST };
+
+// What came out of a run; freed with outcome_free.
+struct outcome {
+    struct dem *dem; // as it is at the end
+    struct record record;
+    enum ending ending;
+};
+void outcome_free(struct outcome *outcome);
+
+// Runs SCENE. FORCE (n_particle) N acts besides; may be NULL. TELL gets the
+// fraction of the duration that is done. KEEPER may be NULL. The caller frees *OUTCOME
+// with outcome_free, also on failure. STATUS_NOT_CONVERGED: past the stability limit,
+// diverged, or grains crushed into each other; STATUS_BAD_DATA: an impossible scene or
+// a checkpoint of another.
+enum status run_scene(const struct simulate_parameters *parameters, struct scene *scene,
+                      const struct vector *force, int threads,
+                      void (*tell)(void *context, double fraction), void *context,
+                      const struct keeper *keeper, struct outcome *outcome,
+                      struct reason *reason);
+
+#endif

@@ -1,0 +1,152 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""simulate against closed forms: fall, rebound, rolling, servo, strain, energy, a silo's flow."""
+import json
+import math
+import os
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, read, run, scratch
+
+folder = scratch()
+at = lambda name: os.path.join(folder.name, name)
+SOFT = {"glass": {"density": 2500, "young_modulus": 1e7, "poisson_ratio": 0.25, "friction": 0.5,
+                  "restitution": 0.7}}
+
+
+def packing(grains, lower=(-1, -1, -1), upper=(1, 1, 1), periodic=(False, False, False), bonds="none"):
+    """Grains of rows x, y, z, r as a packing."""
+    np.savetxt(at("grains"), np.atleast_2d(np.array(grains, float)), fmt="%.17g")
+    scene = {"method": "import", "check": "none", "lower": list(lower), "upper": list(upper),
+             "periodic": list(periodic), "bonds": bonds}
+    with open(at("pack.json"), "w") as file:
+        json.dump(scene, file)
+    run("pack", "-q", "-p", at("pack.json"), at("grains"), "-o", at("packing"))
+    return at("packing")
+
+
+def simulate(source, scene, *options, forces=()):
+    with open(at("scene.json"), "w") as file:
+        json.dump({"materials": SOFT, **scene}, file)
+    run("simulate", "-q", "-p", at("scene.json"), source, *forces, "-o", at("motion"), *options)
+    return h5py.File(at("motion"))
+
+
+def near(got, wanted, tolerance, title):
+    ok(abs(got - wanted) <= tolerance * abs(wanted), title, f"{got} for {wanted}")
+
+
+# --- one grain ---------------------------------------------------------------------------------------
+motion = simulate(packing([0, 0, 0.9, 1e-3]), {"duration": 0.1})
+time, z = motion["snapshots/time"][()], motion["snapshots/position"][:, 0, 2]
+ok(np.abs(z - 0.9 + 0.5 * 9.81 * time**2).max() < 1e-12 and len(time) == 21,
+   "a grain falls by g t^2 / 2 to rounding, at 21 snapshots", z)
+near(motion["summary"].attrs["time"], 0.1, 1e-3, "for as long as was asked")
+
+motion = simulate(packing([0, 0, 0.05 + 1e-3, 1e-3]),
+                  {"duration": 0.2, "walls": {"floor": {"point": [0, 0, 0]}}, "time_step_share": 0.02,
+                   "record": {"snapshots_every": 1e-4}})
+z = motion["snapshots/position"][:, 0, 2] - 1e-3
+low = np.argmax(z < 0)
+near(z[low + 5:].max(), 0.7**2 * 0.05, 5e-3, "it rebounds to e^2 of its height")
+
+# A sphere on an incline rolls with 5/7 g sin(a) while friction > 2/7 tan(a), else it slides.
+for angle, friction in [(0.3, 0.5), (1.0, 0.2)]:
+    glass = {"glass": dict(SOFT["glass"], friction=friction)}
+    g = [9.81 * math.sin(angle), 0, -9.81 * math.cos(angle)]
+    motion = simulate(packing([0, 0, 1e-3, 1e-3]),
+                      {"duration": 0.2, "gravity": g, "materials": glass,
+                       "walls": {"floor": {"point": [0, 0, 0]}}})
+    speed = motion["snapshots/velocity"][:, 0, 0]
+    time = motion["snapshots/time"][()]
+    rolls = friction > 2 / 7 * math.tan(angle)
+    wanted = 5 / 7 * g[0] if rolls else g[0] + friction * g[2]
+    slope = (speed[-1] - speed[10]) / (time[-1] - time[10])
+    near(slope, wanted, 2e-3, f"on an incline of {angle} rad it {'rolls' if rolls else 'slides'}")
+
+# --- walls -------------------------------------------------------------------------------------------
+lattice = [[(i + .5) * 2e-3, (j + .5) * 2e-3, (k + .5) * 2e-3, 1e-3]
+           for i in range(4) for j in range(4) for k in range(4)]
+box = packing(lattice, (0, 0, 0), (8e-3, 8e-3, 8e-3))
+sides = {"walls": ["-x", "+x", "-y", "+y", "-z"], "friction": 0}
+servo = {"lid": {"point": [0, 0, 8e-3], "normal": [0, 0, -1], "friction": 0,
+                 "servo": {"pressure": 500, "largest_speed": 0.01}}}
+motion = simulate(box, {"duration": 0.1, "gravity": [0, 0, 0], "box": sides, "walls": servo,
+                        "local_damping": 0.5, "law": "linear",
+                        "materials": {"glass": {"normal_stiffness": 1e4, "density": 2500}}})
+force = motion["history/wall_force"][-1]
+near(force[5, 2], 500 * 64e-6, 1e-3, "a servo reaches its pressure times the area between the walls")
+near(motion["history/stress"][-1, 2, 2], 500, 2e-3, "the stress of the grains is that pressure")
+# Columns of 4 grains: three contacts of two springs in series, and one spring at either wall.
+column = 500 * 4e-6 * (3 / (1e4 / 2) + 2 / 1e4)
+near(-motion["history/wall_displacement"][-1, 5, 2], column, 2e-3, "the lid sinks as springs in series do")
+ok(np.abs(force[4] + force[5]).max() < 1e-3 * force[5, 2], "lid and floor carry the same", force)
+
+# An oedometer of elastic spheres: Hertz, F = 4/3 E* sqrt(R) U^1.5 at a wall of the same material.
+press = {"lid": {"point": [0, 0, 2e-3], "normal": [0, 0, -1], "velocity": [0, 0, -1e-3], "material": "glass",
+                 "motion": {"times": [0, 0.01, 0.01001], "factors": [1, 1, 0]}},
+         "floor": {"point": [0, 0, 0], "material": "glass"}}
+motion = simulate(packing([0, 0, 1e-3, 1e-3]), {"duration": 0.03, "gravity": [0, 0, 0], "walls": press})
+sunk = -motion["history/wall_displacement"][-1, 1, 2]
+modulus = 1e7 / (1 - 0.25**2) / 2
+near(motion["history/wall_force"][-1, 1, 2], 4 / 3 * modulus * math.sqrt(1e-3) * (sunk / 2)**1.5, 1e-3,
+     "an elastic grain between elastic plates pushes as Hertz says")
+near(sunk, 1.0005e-5, 1e-3, "a wall that follows a table of time stops where the table says")
+
+# --- a box that repeats ------------------------------------------------------------------------------
+sc = packing(lattice, (0, 0, 0), (8e-3, 8e-3, 8e-3), (True, True, True))
+motion = simulate(sc, {"duration": 0.01, "gravity": [0, 0, 0], "box": {"strain_rate": [0, 0, -0.1]},
+                       "law": "linear", "record": {"energy": False},
+                       "materials": {"glass": {"normal_stiffness": 1e4, "density": 2500, "friction": 0}}})
+height = motion["history/box_upper"][-1, 2] - motion["history/box_lower"][-1, 2]
+near(height, 8e-3 * math.exp(-1e-3), 1e-5, "a strained box shrinks by exp(rate time)")
+near(motion["history/stress"][-1, 2, 2], 1e4 / 2 * (8e-3 - height) / 4 / 4e-6, 1e-2,
+     "and stresses the lattice by its stiffness")
+ok("work" not in motion["history"], "record.energy=false keeps no balance")
+
+# --- balance -----------------------------------------------------------------------------------------
+def imbalance(step):
+    rng = np.random.default_rng(7)
+    grains = np.column_stack([rng.uniform(2e-3, 18e-3, (60, 2)), np.arange(60) * 2.5e-3 + 2e-3,
+                              rng.uniform(0.8e-3, 1.2e-3, 60)])
+    turning = {"floor": {"shape": "ring", "point": [10e-3, 10e-3, 0], "radius": 15e-3, "spin": [0, 0, 20]}}
+    motion = simulate(packing(grains, (0, 0, 0), (20e-3, 20e-3, 160e-3)),
+                      {"duration": 0.15, "time_step": step, "walls": turning,
+                       "box": {"walls": ["-x", "+x", "-y", "+y"]}})
+    h = motion["history"]
+    return max(abs(h["kinetic_energy"] + h["elastic_energy"][()] + h["dissipation"][()].sum(axis=1) - h["work"]
+                   - h["kinetic_energy"][0] - h["elastic_energy"][0])) / h["work"][-1]
+
+
+errors = [imbalance(step) for step in (8e-6, 2e-6)]
+ok(errors[0] < 1e-2 and errors[1] < errors[0] / 3, "work = energy + dissipation, the better the shorter the step",
+   errors)
+
+# --- the same however it is run ------------------------------------------------------------------------
+sample = "samples/slump.json"
+run("pack", "-q", "-p", sample, "-o", at("slump"))
+short = ["-q", "-p", sample, "--set", "duration=0.02", at("slump")]
+bytes_of = lambda *more: run("simulate", *short, *more)
+one = bytes_of()
+ok(one == bytes_of("--threads", "2"), "two threads write the same bytes")
+scene = json.load(open(sample))
+scene["simulate"]["walls"] = dict(reversed(scene["simulate"]["walls"].items()))
+json.dump(scene, open(at("turned.json"), "w"))
+ok(one == run("simulate", "-q", "-p", at("turned.json"), "--set", "duration=0.02", at("slump")),
+   "the order in which walls are written does not count")
+
+# --- what others make of it ----------------------------------------------------------------------------
+run("simulate", *short, "--set", "write=packing", "-o", at("end"))
+with h5py.File(at("end")) as end:
+    run("simulate", *short, "-o", at("motion"))
+    with h5py.File(at("motion")) as motion:
+        ok((end["particles/position"][()] == motion["snapshots/position"][-1]).all(),
+           "write=packing has the grains as they are at the end")
+ok(len(run("tessellate", at("end"))) > 1000, "which tessellate takes")
+
+# --- a checkpoint of a step that was shortened ---------------------------------------------------------
+done()
