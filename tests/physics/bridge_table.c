@@ -78,14 +78,15 @@ static void test_error(void **state)
 }
 
 // Of grains from 1 to LARGEST, at random radii, volumes and gaps, every other of nearly
-// equal ones; LEAST the smallest volume over the cube of the smallest radius. Errors up
-// to 0.9 of rupture, to 0.999, and of rupture itself, at most LIMIT.
-static void check_ratios(double largest, double degrees, double least, double most,
-                         const double limit[3])
+// equal ones, or all of them on a PLANE; LEAST the smallest volume over the cube of the
+// smallest radius. Errors up to 0.9 of rupture, to 0.999, and of rupture itself, at
+// most LIMIT.
+static void check_ratios(double largest, bool plane, double degrees, double least,
+                         double most, const double limit[3])
 {
     enum { CASES = 400 };
     const double angle = degrees * M_PI / 180;
-    const struct bridge_sizes sizes = {{1, largest}, {least, most}};
+    const struct bridge_sizes sizes = {{1, largest}, {least, most}, plane};
     struct bridge_ratios *ratios;
     struct reason reason = {""};
     if (bridge_ratios_create(&sizes, angle, &ratios, &reason))
@@ -94,8 +95,9 @@ static void check_ratios(double largest, double degrees, double least, double mo
     for (int k = 0; k < CASES; k++) {
         const double a = pow(largest, place(k, 0.754877666));
         const double b =
-            k % 2 ? pow(largest, place(k, 0.819172513))
-                  : fmin(a * (1 + 0.1 * pow(place(k, 0.819172513), 4)), largest);
+            plane   ? INFINITY
+            : k % 2 ? pow(largest, place(k, 0.819172513))
+                    : fmin(a * (1 + 0.1 * pow(place(k, 0.819172513), 4)), largest);
         const double radius = 2 / (1 / a + 1 / b), s = bridge_asymmetry(a, b);
         const double size = least * pow(most / least, place(k, 0.671043607));
         const double volume = size / (radius * radius * radius);
@@ -116,9 +118,10 @@ static void check_ratios(double largest, double degrees, double least, double mo
         worst[2] = fmax(worst[2], fabs(rupture / last.gap - 1));
         assert_true(rupture <= bridge_ratios_rupture(ratios, 0, volume) * (1 + 1e-5));
     }
-    print_message("# radii 1 to %g, %g degrees: errors at most %.1e %.1e, of rupture "
+    print_message("# radii 1 to %g%s, %g degrees: errors at most %.1e %.1e, of rupture "
                   "%.1e\n",
-                  largest, degrees, worst[0], worst[1], worst[2]);
+                  largest, plane ? " on a plane" : "", degrees, worst[0], worst[1],
+                  worst[2]);
     for (int k = 0; k < 3; k++)
         assert_true(worst[k] < limit[k]);
     bridge_ratios_free(ratios);
@@ -127,17 +130,19 @@ static void check_ratios(double largest, double degrees, double least, double mo
 static void test_unequal_radii(void **state)
 {
     (void)state;
-    check_ratios(20, 0, 0.05, 0.05, (double[]){1e-5, 1e-4, 1e-5});
-    check_ratios(3, 20, 1e-4, 1e-2, (double[]){1e-5, 1e-4, 1e-5});
-    check_ratios(2, 45, 0.01, 0.01, (double[]){1e-5, 1e-3, 1e-4});
+    check_ratios(20, false, 0, 0.05, 0.05, (double[]){1e-5, 1e-4, 1e-5});
+    check_ratios(3, false, 20, 1e-4, 1e-2, (double[]){1e-5, 1e-4, 1e-5});
+    check_ratios(2, false, 45, 0.01, 0.01, (double[]){1e-5, 1e-3, 1e-4});
+    check_ratios(4, true, 20, 1e-2, 1e-1, (double[]){1e-5, 1e-4, 1e-5});
+    check_ratios(2, true, 45, 0.01, 1, (double[]){1e-5, 1e-3, 1e-4});
 }
 
 // Equal grains have the numbers of their own table, whatever others there are.
 static void test_equal_among_unequal(void **state)
 {
     (void)state;
-    const struct bridge_sizes one = {{1, 1}, {1e-4, 1e-2}},
-                              many = {{1, 1.01}, {1e-4, 1e-2}};
+    const struct bridge_sizes one = {{1, 1}, {1e-4, 1e-2}, false},
+                              many = {{1, 1.01}, {1e-4, 1e-2}, false};
     struct bridge_ratios *ratios[2];
     struct bridge_table *table;
     struct reason reason;
@@ -166,7 +171,7 @@ static void test_equal_among_unequal(void **state)
 static void test_volumes_beyond(void **state)
 {
     (void)state;
-    const struct bridge_sizes sizes = {{1, 2}, {1e-10, 2}};
+    const struct bridge_sizes sizes = {{1, 2}, {1e-10, 2}, false};
     const double volume[] = {5e-10, 1e-10, 1.3, 2}, within[] = {0.03, 0.08, 0.15, 0.25};
     struct bridge_ratios *ratios;
     struct reason reason;

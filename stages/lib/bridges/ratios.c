@@ -15,6 +15,7 @@
 
 double bridge_asymmetry(double first_radius, double second_radius)
 {
+    if (isinf(first_radius) || isinf(second_radius)) return 1;
     const double rounding = 1e-12;
     const double apart = fabs(first_radius - second_radius);
     const double sum = first_radius + second_radius;

@@ -14,10 +14,13 @@
 
 #include "basics/status.h"
 
+#include <stdbool.h>
+
 // The range of bridges that will occur: only what they need is tabulated.
 struct bridge_sizes {
     double radius[2]; // of the smallest and largest grain; any unit
     double volume[2]; // of the smallest and largest bridge; its cube
+    bool plane;       // bridges between a grain and a plane too (asymmetry 1)
 };
 
 struct bridge_ratios;
@@ -30,7 +33,8 @@ enum status bridge_ratios_create(const struct bridge_sizes *sizes, double contac
                                  struct bridge_ratios **ratios, struct reason *reason);
 void bridge_ratios_free(struct bridge_ratios *ratios);
 
-// s of two grains; 0 where they differ by rounding only.
+// s of two grains, of which one may be a plane (INFINITY); 0 where they differ by
+// rounding only.
 double bridge_asymmetry(double first_radius, double second_radius);
 
 // Forces over surface tension and effective radius, positive when they pull, of COUNT

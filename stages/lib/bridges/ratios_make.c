@@ -3,7 +3,7 @@
 //
 // Only those patches are made that a pair of the given grains can need: of a smallest
 // grain a and a largest one b, effective radii at the asymmetry e = s^3 are from a (1 +
-// e) to b (1 - e).
+// e) to b (1 - e), and on a plane (e = 1) from 2 a to 2 b.
 #include "basics/memory.h"
 #include "bridges/ratios_layout.h"
 #include "bridges/table_make.h"
@@ -28,6 +28,19 @@ static double difference_at(double node)
     return s * s * s;
 }
 
+static struct range joined(struct range a, struct range b)
+{
+    if (a.last < a.first) return b;
+    return (struct range){a.first < b.first ? a.first : b.first,
+                          a.last > b.last ? a.last : b.last};
+}
+
+// Whether any two bodies have different radii.
+static bool are_unequal(const struct bridge_sizes *sizes)
+{
+    return sizes->plane || bridge_asymmetry(sizes->radius[0], sizes->radius[1]) > 0;
+}
+
 static void find_ranges(const struct bridge_sizes *sizes, struct bridge_ratios *ratios)
 {
     const double *radius = sizes->radius;
@@ -36,7 +49,7 @@ static void find_ranges(const struct bridge_sizes *sizes, struct bridge_ratios *
     const double largest = bridge_asymmetry(radius[0], radius[1]);
     ratios->equal_range = patches_of(sizes, radius[0], radius[1]);
     ratios->as_it_is =
-        !(largest > 0) && least >= BRIDGE_TABLE_LEAST && most <= BRIDGE_TABLE_MOST;
+        !are_unequal(sizes) && least >= BRIDGE_TABLE_LEAST && most <= BRIDGE_TABLE_MOST;
     for (int k = 0; k < INTERVALS; k++) {
         const double e = difference_at(k);
         ratios->range[k] = (struct range){0, -1};
@@ -45,6 +58,9 @@ static void find_ranges(const struct bridge_sizes *sizes, struct bridge_ratios *
                 patches_of(sizes, radius[0] * (1 + e),
                            fmax(radius[1] * (1 - e), radius[0] * (1 + e)));
     }
+    struct range *last = &ratios->range[INTERVALS - 1];
+    if (sizes->plane)
+        *last = joined(*last, patches_of(sizes, 2 * radius[0], 2 * radius[1]));
 }
 
 // Whether a bridge of volumes in half octave HALF may need table K.
@@ -199,7 +215,7 @@ enum status bridge_ratios_create(const struct bridge_sizes *sizes, double contac
     struct bridge_ratios *ratios = NEW_ARRAY(struct bridge_ratios, 1);
     find_ranges(sizes, ratios);
     ratios->equal = allocate_aligned(1, sizeof *ratios->equal);
-    if (bridge_asymmetry(sizes->radius[0], sizes->radius[1]) > 0)
+    if (are_unequal(sizes))
         ratios->patch = allocate_aligned(HALVES, sizeof *ratios->patch);
     status = fill_all(ratios, contact_angle, reason);
     if (status)
