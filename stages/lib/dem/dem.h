@@ -114,8 +114,8 @@ struct dem_wall {
 
 // A group of grains that moves as a rigid body, whatever pushes it: at a velocity, and
 // turning about an axis through a point that moves along. Its grains feel contacts,
-// walls and bridges, but not each other, unless bonded; gravity and external forces on
-// them do not count.
+// walls and bridges, but not those of driven groups, unless bonded; gravity and
+// external forces on them do not count.
 struct dem_group {
     struct vector point;    // m
     struct vector axis;     // any length; 0: it does not turn

@@ -386,12 +386,6 @@ static inline bool is_driven(const struct dem *dem, int i)
     return dem->group_of && dem->group_of[i];
 }
 
-// Whether grains I and J never move relative to each other.
-static inline bool in_one_group(const struct dem *dem, int i, int j)
-{
-    return is_driven(dem, i) && dem->group_of[i] == dem->group_of[j];
-}
-
 // How many time steps the places are ahead of the forces.
 static inline double places_ahead(const struct dem *dem)
 {

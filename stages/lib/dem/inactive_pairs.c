@@ -43,11 +43,11 @@ static const double margin = 1e-9;
 
 static bool are_fixed(const struct dem *dem, const int32_t particle[2])
 {
-    const int i = particle[0], j = particle[1];
-    const bool relative_to_each_other =
-        (!is_driven(dem, i) && !is_driven(dem, j)) || in_one_group(dem, i, j);
-    return relative_to_each_other && dem->mobility[i][0] <= 0 &&
-           dem->mobility[j][0] <= 0;
+    bool fixed = true;
+    for (int k = 0; k < 2; k++)
+        fixed =
+            fixed && dem->mobility[particle[k]][0] <= 0 && !is_driven(dem, particle[k]);
+    return fixed;
 }
 
 static double touching_distance(const struct pair_list *pairs, int pair)

@@ -22,12 +22,13 @@ struct candidates {
     int32_t *bond;          // or -1
 };
 
-// Drops the pairs of grains of one driven group; returns how many are left.
+// Drops the pairs of driven grains: what is prescribed does not respond, as walls do
+// not to each other. Returns how many are left.
 static int drop_rigid_pairs(const struct dem *dem, int32_t (*pair)[2], int count)
 {
     int left = 0;
     for (int p = 0; p < count; p++)
-        if (!in_one_group(dem, pair[p][0], pair[p][1]))
+        if (!is_driven(dem, pair[p][0]) || !is_driven(dem, pair[p][1]))
             memmove(pair[left++], pair[p], sizeof *pair);
     return left;
 }

@@ -35,7 +35,7 @@ void find_wall_pairs(struct dem *dem)
     dem->wall_pair = NULL;
     dem->n_wall_pair = 0;
     for (int i = 0; i < dem->n_particle; i++)
-        for (int w = 0; w < dem->n_wall; w++) {
+        for (int w = 0; w < dem->n_wall && !is_driven(dem, i); w++) {
             const struct wall_geometry contact = wall_geometry(dem, i, w, 0);
             if (!(contact.overlap >= -dem->skin)) continue;
             struct wall_pair pair = {.particle = i,
