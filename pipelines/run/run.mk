@@ -3,6 +3,7 @@
 #
 #     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
 #     make report SCENE=samples/x.json ->  build/runs/x/report.html, a page that shows the run
+#     make simulate SCENE=samples/drum.json  ->  build/runs/drum/motion.h5
 #     make demo                        ->  the sample in both drying limits, for several draws of
 #                                          the throat radii, and pages and pictures of the first
 #     make demo SCENE=samples/x.json   ->  the same for another scene
@@ -20,6 +21,7 @@ FORCE_PROTOCOL ?= $(BUILD)/bin/force-protocol
 DEM_REPLAY ?= $(BUILD)/bin/dem-replay
 CRACKSTATS ?= $(BUILD)/bin/crackstats
 REPORT ?= $(BUILD)/bin/report
+SIMULATE ?= $(BUILD)/bin/simulate
 
 # $1 is made by the stage of that name from scene $2, with the overrides $3, and the files $4.
 pack = $(call step,$1,pack,$(PACK),$2,$3,$4)
@@ -28,12 +30,13 @@ merge-nodes = $(call step,$1,merge-nodes,$(MERGE_NODES),$2,$3,$4)
 dry = $(call step,$1,dry,$(DRY),$2,$3,$4)
 force-protocol = $(call step,$1,force-protocol,$(FORCE_PROTOCOL),$2,$3,$4)
 dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
+simulate = $(call step,$1,simulate,$(SIMULATE),$2,$3,$4)
 crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
 
 # A page, with title $3.
 page = $(call step,$1,report,$(REPORT),$2,title="$3",$4)
 
-pipeline_goals += demo run report
+pipeline_goals += demo run report simulate
 
 # packing, tessellation and network of scene $2 in folder $1, with the overrides $3 of the packing
 # and $4 of the tessellation.
@@ -60,7 +63,7 @@ headline = printf '%s' '$2' && jq -rf pipelines/run/headline.jq --arg draws 'dra
 
 # --- one scene ------------------------------------------------------------------------
 
-.PHONY: run report
+.PHONY: run report simulate
 ifneq ($(SCENE),)
 run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
@@ -70,8 +73,12 @@ ifneq ($(filter report $(run_page),$(MAKECMDGOALS)),)
 $(call page,$(run_page),$(SCENE),$(notdir $(run_folder)),$(call network_artifacts,$(run_folder)) $(call \
 	history_artifacts,$(run_folder)))
 endif
+ifneq ($(filter simulate $(run_folder)/motion.h5,$(MAKECMDGOALS)),)
+$(call simulate,$(run_folder)/motion.h5,$(SCENE),,$(run_folder)/packing.h5)
+endif
 # A wrong key of the last stage is not to be found after the others have run.
-run_stages := pack tessellate merge-nodes dry force-protocol dem-replay crackstats $(filter report,$(MAKECMDGOALS))
+run_stages := $(if $(filter simulate,$(MAKECMDGOALS)),pack simulate,pack tessellate merge-nodes dry force-protocol \
+	dem-replay crackstats $(filter report,$(MAKECMDGOALS)))
 ifdef really
 .PHONY: sections
 $(run_folder)/packing.h5: | sections
@@ -84,12 +91,16 @@ ifdef really
 	@$(call headline,$(run_folder)/crackstats.json,) 2>/dev/null || true
 	@echo 'artifacts: $(run_folder)'
 endif
+simulate: $(run_folder)/motion.h5 ## discrete elements for a scene: make simulate SCENE=samples/drum.json
+ifdef really
+	@echo 'motion: $<'
+endif
 report: $(run_page) ## a page that shows a run: make report SCENE=samples/x.json
 ifdef really
 	@echo 'page: $(run_page)'
 endif
 else
-run report:
+run report simulate:
 	@echo 'Which scene? make $@ SCENE=samples/x.json' >&2; exit 64
 endif
 

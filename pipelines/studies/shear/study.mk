@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Dry and wet beads in a split-bottom ring shear cell [G 4]: each packing dry, and with each bridge
+# volume by each model:
+#
+#     make shear                      ->  build/runs/shear/shear.md and pictures (an hour of one core)
+#     make shear SHEAR_SEEDS="1 2 3"  ->  the same for three packings, with intervals
+#     make shear SHEAR_MODELS=table   ->  with the exact bridge alone
+#     make shear SHEAR_SCENE=samples/split-bottom-full.json   ->  the cell of [G], 193,000 beads (days)
+
+SHEAR_SCENE ?= samples/split-bottom.json
+SHEAR_SEEDS ?= 1# packings
+SHEAR_MODELS ?= table weigert willett-full willett-reduced rabinovich-lambert
+SHEAR_VOLUMES ?= 13.6e-12 74.2e-12# m3, of each bridge
+
+shear_folder := $(RUNS)/shear
+
+# Packing $1, settled: beads fall between the smooth walls before any are glued.
+define shear_packing
+$(call pack,$(shear_folder)/$1/loose.h5,$(SHEAR_SCENE),seed=$1)
+$(call simulate,$(shear_folder)/$1/packing.h5,$(SHEAR_SCENE),duration=0.4 local_damping=0.2 groups={} write=packing,$(shear_folder)/$1/loose.h5)
+$(call simulate,$(shear_folder)/$1/dry.h5,$(SHEAR_SCENE),bridges.volume=0,$(shear_folder)/$1/packing.h5)
+$(foreach v,$(SHEAR_VOLUMES),$(foreach m,$(SHEAR_MODELS),$(call shear_wet,$1,$v,$m)))
+endef
+# Packing $1 with bridges of volume $2 by model $3.
+shear_wet = $(call simulate,$(shear_folder)/$1/$3-$2.h5,$(SHEAR_SCENE),bridges.volume=$2 bridges.model=$3,$(shear_folder)/$1/packing.h5)
+# The runs, by name, of all packings.
+shear_arms = dry $(foreach v,$(SHEAR_VOLUMES),$(foreach m,$(SHEAR_MODELS),$m-$v))
+
+shear: ## wet shear flow in a split-bottom cell, by five models of bridges (an hour of one core)
+
+ifneq ($(call asked,shear,$(shear_folder)),)
+$(foreach seed,$(SHEAR_SEEDS),$(call shear_packing,$(seed)))
+shear_runs := $(foreach arm,$(shear_arms),$(foreach seed,$(SHEAR_SEEDS),$(shear_folder)/$(seed)/$(arm).h5))
+$(call study,shear,$(shear_runs))
+endif
