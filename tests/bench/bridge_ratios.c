@@ -107,7 +107,7 @@ int main(void)
     static const double degrees[] = {0, 10, 20, 28, 32, 40, 50, 60, 90, 110};
     static const double volume[] = {1e-8, 1e-5, 1e-3, 1e-2, 0.1, 1};
     // So that all of these volumes are tabulated at every ratio.
-    const struct bridge_sizes sizes = {{1, 20}, {6e-8, 7}, false};
+    const struct bridge_sizes sizes = {{1, 20}, {6e-8, 7}, {0, 0}};
     for (size_t a = 0; a < sizeof degrees / sizeof *degrees; a++) {
         const double angle = degrees[a] * M_PI / 180;
         struct tables tables = {.contact_angle = angle};

@@ -86,7 +86,8 @@ static void check_ratios(double largest, bool plane, double degrees, double leas
 {
     enum { CASES = 400 };
     const double angle = degrees * M_PI / 180;
-    const struct bridge_sizes sizes = {{1, largest}, {least, most}, plane};
+    const struct bridge_sizes sizes = {
+        {1, largest}, {least, most}, {2 * plane, 2 * largest * plane}};
     struct bridge_ratios *ratios;
     struct reason reason = {""};
     if (bridge_ratios_create(&sizes, angle, &ratios, &reason))
@@ -141,8 +142,8 @@ static void test_unequal_radii(void **state)
 static void test_equal_among_unequal(void **state)
 {
     (void)state;
-    const struct bridge_sizes one = {{1, 1}, {1e-4, 1e-2}, false},
-                              many = {{1, 1.01}, {1e-4, 1e-2}, false};
+    const struct bridge_sizes one = {{1, 1}, {1e-4, 1e-2}, {0, 0}},
+                              many = {{1, 1.01}, {1e-4, 1e-2}, {0, 0}};
     struct bridge_ratios *ratios[2];
     struct bridge_table *table;
     struct reason reason;
@@ -171,7 +172,7 @@ static void test_equal_among_unequal(void **state)
 static void test_volumes_beyond(void **state)
 {
     (void)state;
-    const struct bridge_sizes sizes = {{1, 2}, {1e-10, 2}, false};
+    const struct bridge_sizes sizes = {{1, 2}, {1e-10, 2}, {0, 0}};
     const double volume[] = {5e-10, 1e-10, 1.3, 2}, within[] = {0.03, 0.08, 0.15, 0.25};
     struct bridge_ratios *ratios;
     struct reason reason;

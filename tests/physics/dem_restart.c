@@ -390,7 +390,8 @@ static void stirred_crowd(void **state)
                                       .surface_tension = 0.07,
                                       .contact_angle = 0.2,
                                       .volume = 1e-3 * RADIUS * RADIUS * RADIUS,
-                                      .shared = true};
+                                      .shared = true,
+                                      .wets_walls = true};
     struct dem_setup setup = stiff_setup(&packing);
     uint8_t *of = NEW_ARRAY(uint8_t, packing.n_particle);
     for (int i = 0; i < packing.n_particle; i++)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One contact solved among others (return_mapping.h): each solution is an equilibrium
 // by the contact law of Newton's method, whatever the local problem.
+#include "quasi_static/return_mapping.h"
 #include "../random.h"
 #include "../test.h"
-#include "quasi_static/return_mapping.h"
 
 #include <math.h>
 

@@ -14,13 +14,12 @@
 
 #include "basics/status.h"
 
-#include <stdbool.h>
-
 // The range of bridges that will occur: only what they need is tabulated.
 struct bridge_sizes {
     double radius[2]; // of the smallest and largest grain; any unit
     double volume[2]; // of the smallest and largest bridge; its cube
-    bool plane;       // bridges between a grain and a plane too (asymmetry 1)
+    double plane[2];  // smallest and largest effective radius of bridges to planes
+                      // (asymmetry 1): twice the radius of the grain; 0: none
 };
 
 struct bridge_ratios;

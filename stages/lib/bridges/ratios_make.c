@@ -3,7 +3,7 @@
 //
 // Only those patches are made that a pair of the given grains can need: of a smallest
 // grain a and a largest one b, effective radii at the asymmetry e = s^3 are from a (1 +
-// e) to b (1 - e), and on a plane (e = 1) from 2 a to 2 b.
+// e) to b (1 - e).
 #include "basics/memory.h"
 #include "bridges/ratios_layout.h"
 #include "bridges/table_make.h"
@@ -38,7 +38,8 @@ static struct range joined(struct range a, struct range b)
 // Whether any two bodies have different radii.
 static bool are_unequal(const struct bridge_sizes *sizes)
 {
-    return sizes->plane || bridge_asymmetry(sizes->radius[0], sizes->radius[1]) > 0;
+    return sizes->plane[0] > 0 ||
+           bridge_asymmetry(sizes->radius[0], sizes->radius[1]) > 0;
 }
 
 static void find_ranges(const struct bridge_sizes *sizes, struct bridge_ratios *ratios)
@@ -59,8 +60,8 @@ static void find_ranges(const struct bridge_sizes *sizes, struct bridge_ratios *
                            fmax(radius[1] * (1 - e), radius[0] * (1 + e)));
     }
     struct range *last = &ratios->range[INTERVALS - 1];
-    if (sizes->plane)
-        *last = joined(*last, patches_of(sizes, 2 * radius[0], 2 * radius[1]));
+    if (sizes->plane[0] > 0)
+        *last = joined(*last, patches_of(sizes, sizes->plane[0], sizes->plane[1]));
 }
 
 // Whether a bridge of volumes in half octave HALF may need table K.
@@ -199,7 +200,9 @@ static enum status check_sizes(const struct bridge_sizes *sizes, struct reason *
 {
     const double *radius = sizes->radius, *volume = sizes->volume;
     if (radius[0] > 0 && radius[1] >= radius[0] && isfinite(radius[1]) &&
-        volume[0] > 0 && volume[1] >= volume[0] && isfinite(volume[1]))
+        volume[0] > 0 && volume[1] >= volume[0] && isfinite(volume[1]) &&
+        sizes->plane[0] >= 0 && sizes->plane[1] >= sizes->plane[0] &&
+        isfinite(sizes->plane[1]))
         return STATUS_OK;
     return refuse(reason, STATUS_BAD_DATA,
                   "no bridges of volumes from %g to %g between radii from %g to %g",

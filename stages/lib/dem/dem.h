@@ -70,7 +70,8 @@ struct dem_bond_material {
 };
 
 // Liquid bridges between grains [G 2]: one forms where two grains touch and lasts until
-// it ruptures, with any model at the distance of [G 2]. Walls hold none.
+// it ruptures, with any model at the distance of [G 2]. So do those to walls, if the
+// liquid wets them, at the same contact angle [liquid.c has how round walls count].
 struct dem_liquid {
     enum bridge_model model; // not BRIDGE_EXACT; BRIDGE_TABLE is as good and takes
                              // seconds to make [bridges/ratios.h]
@@ -79,6 +80,7 @@ struct dem_liquid {
     double volume;           // m3, > 0: of each bridge [G 4.1], or on each grain
     bool shared;           // each grain divides its own volume evenly among its bridges
     bool pulls_in_contact; // false: only apart [G 4]; true: also in overlap, as at 0
+    bool wets_walls;       // bridges to walls too; round ones must be wider than grains
 };
 
 enum dem_wall_shape {
@@ -279,13 +281,13 @@ struct dem_energy dem_energy(const struct dem *dem);
 
 // A liquid bridge as it was in the last cycle.
 struct dem_bridge {
-    int32_t particle[2]; // lower first
+    int32_t particle[2]; // lower first; the second is -1-w for wall w
     double volume;       // m3
     double separation;   // m, < 0 in overlap
     double force;        // N, > 0 when it pulls
 };
-// All bridges, by first, then second grain; a new array of *COUNT that the caller
-// frees.
+// All bridges, by first, then second grain, walls before grains; a new array of *COUNT
+// that the caller frees.
 struct dem_bridge *dem_bridges(const struct dem *dem, int *count);
 struct dem_momentum dem_momentum(const struct dem *dem);
 

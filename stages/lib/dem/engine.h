@@ -74,6 +74,7 @@ struct liquid {
     struct dem_liquid is;        // scaled
     struct bridge_ratios *table; // of BRIDGE_TABLE
     double cutoff;               // the longest gap that any bridge can have
+    double wall_cutoff;          // to a wall
     // (n_particle) number of bridges of each grain, at the end of the last cycle and as
     // they come and go in this one; whether the two differ.
     int32_t *bridges, *next;
@@ -88,6 +89,8 @@ struct wall_pair {
     struct vector normal;       // towards the wall, at the last force
     double depth;               // overlap at the last force
     struct vector load, moment; // on the grain, at the last force
+    // Of the liquid bridge, where walls are wet; as those of a liquid_group.
+    double bridge_radius, bridge_volume, bridge_rupture, bridge_pull;
 };
 
 struct rigid_wall {
@@ -300,6 +303,12 @@ void count_bridges(struct dem *dem); // of each grain, from the pairs
 void update_bridges(const struct dem *dem, int begin, int end);
 void publish_bridge_counts(struct dem *dem); // at the end of a cycle
 struct dem_bridge bridge_of_pair(const struct dem *dem, int pair); // no volume: none
+double wall_bridge_cutoff(const struct dem *dem);                  // 0 where none form
+void set_wall_bridge_radius(const struct dem *dem, struct wall_pair *pair);
+// Forms, keeps or ruptures the bridge of PAIR at OVERLAP and finds its pull.
+void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double overlap);
+struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
+                                      const struct wall_pair *pair);
 
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);
@@ -420,6 +429,16 @@ static inline bool is_bridged(const struct dem *dem, int pair)
 {
     return dem->pairs.liquid &&
            dem->pairs.liquid[pair / PAIRS_IN_GROUP].volume[pair % PAIRS_IN_GROUP] > 0;
+}
+
+static inline bool walls_are_wet(const struct dem *dem)
+{
+    return dem->liquid && dem->liquid->is.wets_walls;
+}
+
+static inline bool is_wall_bridged(const struct dem *dem, const struct wall_pair *pair)
+{
+    return walls_are_wet(dem) && pair->bridge_volume > 0;
 }
 
 // Geometry of pair P when its grains are at BACK time steps before now.

@@ -157,6 +157,7 @@ static struct dem_contact wall_contact(const struct dem *dem,
                                        const struct wall_geometry *geometry)
 {
     const int i = pair->particle;
+    const struct dem_bridge bridge = bridge_of_wall_pair(dem, pair);
     const struct vector centre =
         subtract(position_now(dem, i), scale(places_ahead(dem) * dem->time_step,
                                              as_vector(dem->motion[i].linear)));
@@ -166,7 +167,9 @@ static struct dem_contact wall_contact(const struct dem *dem,
         .overlap = geometry->overlap * dem->unit.length,
         .force = scale(-dem->unit.stiffness * dem->unit.length, pair->load),
         .position = scale(dem->unit.length,
-                          add(centre, scale(geometry->arm, geometry->normal)))};
+                          add(centre, scale(geometry->arm, geometry->normal))),
+        .bridge_volume = bridge.volume,
+        .bridge_force = bridge.force};
 }
 
 // Pairs first, then walls, each by its two numbers.
@@ -196,7 +199,8 @@ struct dem_contact *dem_contacts(const struct dem *dem, int *count)
         const struct wall_pair *pair = &dem->wall_pair[k];
         const struct wall_geometry geometry =
             wall_geometry(dem, pair->particle, pair->wall, places_ahead(dem));
-        if (geometry.overlap >= 0) contact[n++] = wall_contact(dem, pair, &geometry);
+        if (geometry.overlap >= 0 || is_wall_bridged(dem, pair))
+            contact[n++] = wall_contact(dem, pair, &geometry);
     }
     qsort(contact, (size_t)n, sizeof *contact, by_particles);
     *count = n;

@@ -160,6 +160,10 @@ static void add_walls(struct column_list *list, struct dem *dem)
     PAIR("wall_pair_depth", depth, 1);
     PAIR("wall_pair_force", load, 3);
     PAIR("wall_pair_moment", moment, 3);
+    if (!walls_are_wet(dem)) return;
+    PAIR("wall_pair_bridge_pull", bridge_pull, 1);
+    PAIR("wall_pair_bridge_volume", bridge_volume, 1);
+    PAIR("wall_pair_bridge_rupture", bridge_rupture, 1);
 #undef PAIR
 }
 

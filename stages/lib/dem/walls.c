@@ -31,13 +31,14 @@ void find_wall_pairs(struct dem *dem)
 {
     struct wall_pair *old = dem->wall_pair;
     const struct wall_pair *last = old, *end = old + dem->n_wall_pair;
+    const double reach = dem->skin + wall_bridge_cutoff(dem);
     int capacity = 0;
     dem->wall_pair = NULL;
     dem->n_wall_pair = 0;
     for (int i = 0; i < dem->n_particle; i++)
         for (int w = 0; w < dem->n_wall && !is_driven(dem, i); w++) {
             const struct wall_geometry contact = wall_geometry(dem, i, w, 0);
-            if (!(contact.overlap >= -dem->skin)) continue;
+            if (!(contact.overlap >= -reach)) continue;
             struct wall_pair pair = {.particle = i,
                                      .wall = w,
                                      .law = wall_law(dem, i, &dem->wall[w].is),
@@ -50,7 +51,11 @@ void find_wall_pairs(struct dem *dem)
                 pair.shear_force = last->shear_force;
                 pair.normal = last->normal;
                 pair.depth = last->depth;
+                pair.bridge_volume = last->bridge_volume;
+                pair.bridge_rupture = last->bridge_rupture;
+                pair.bridge_pull = last->bridge_pull;
             }
+            if (walls_are_wet(dem)) set_wall_bridge_radius(dem, &pair);
             GROW_ARRAY(dem->wall_pair, dem->n_wall_pair, capacity);
             dem->wall_pair[dem->n_wall_pair++] = pair;
         }
@@ -75,6 +80,7 @@ void set_wall_laws(struct dem *dem)
     for (int k = 0; k < dem->n_wall_pair; k++) {
         struct wall_pair *pair = &dem->wall_pair[k];
         pair->law = wall_law(dem, pair->particle, &dem->wall[pair->wall].is);
+        if (walls_are_wet(dem)) set_wall_bridge_radius(dem, pair);
     }
 }
 
@@ -170,19 +176,26 @@ struct push {
     double dashpots, slip;
 };
 
-static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
-                             const struct wall_geometry *contact)
+// Velocity of the wall's surface relative to the grain's [K 4.17].
+static struct vector sliding_velocity(const struct dem *dem,
+                                      const struct wall_pair *pair,
+                                      const struct wall_geometry *contact)
 {
     const struct rigid_wall *wall = &dem->wall[pair->wall];
     const struct motion *grain = &dem->motion[pair->particle];
+    const struct vector rolling =
+        scale(contact->arm, cross(as_vector(grain->angular), contact->normal));
+    return subtract(add(wall->velocity, cross(wall->spin, contact->lever)),
+                    add(as_vector(grain->linear), rolling));
+}
+
+static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
+                             const struct wall_geometry *contact, struct vector v)
+{
     const bool turns = dem->features & FEATURE_ROTATION;
     const double dt = dem->cycle > 0 ? dem->time_step : 0; // see dem.c
     const struct contact_law law = law_at(dem, &pair->law, contact->overlap);
-    const struct vector n = contact->normal, spin = as_vector(grain->angular);
-
-    const struct vector v = subtract(
-        add(wall->velocity, cross(wall->spin, contact->lever)),
-        add(as_vector(grain->linear), scale(contact->arm, cross(spin, n)))); // [K 4.17]
+    const struct vector n = contact->normal;
     const double normal_velocity = dot(v, n);
     const struct vector sideways = subtract(v, scale(normal_velocity, n));
     const double spring = law.normal_stiffness * contact->overlap;
@@ -195,7 +208,9 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
         pair->depth = contact->overlap;
         return push;
     }
-    const double angle = 0.5 * dt * dot(add(spin, wall->spin), n);
+    const struct vector spins =
+        add(as_vector(dem->motion[pair->particle].angular), dem->wall[pair->wall].spin);
+    const double angle = 0.5 * dt * dot(spins, n);
     const double friction_normal_force =
         dem->friction_feels_dashpot ? fmax(spring + dashpot, 0) : spring;
     const bool slips = advance_shear(dem, pair, contact, scale(dt, sideways), angle,
@@ -217,30 +232,43 @@ static double resistance(const struct dem *dem, const struct wall_pair *pair)
     return tangent * law.normal_stiffness * dem->time_step + law.normal_damping;
 }
 
-static void touch_wall(struct dem *dem, struct wall_pair *pair)
+// A grain that does not touch the wall forgets its shear force.
+static void leave_wall(struct dem *dem, struct wall_pair *pair, double overlap)
 {
     const struct vector none = {0, 0, 0};
+    dem->energy_ledger.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
+    pair->shear_force = none;
+    pair->depth = overlap;
+    pair->load = pair->moment = none;
+}
+
+static void touch_wall(struct dem *dem, struct wall_pair *pair)
+{
     const struct wall_geometry contact =
         wall_geometry(dem, pair->particle, pair->wall, 0);
-    if (!(contact.overlap >= 0)) {
-        dem->energy_ledger.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
-        pair->shear_force = none;
-        pair->depth = contact.overlap;
-        pair->load = pair->moment = none;
-        return;
-    }
+    const bool touches = contact.overlap >= 0, wet = walls_are_wet(dem);
+    if (wet) update_wall_bridge(dem, pair, contact.overlap);
+    if (!touches) leave_wall(dem, pair, contact.overlap);
+    if (!touches && !is_wall_bridged(dem, pair)) return;
 
-    const struct push push = push_wall(dem, pair, &contact);
+    const struct vector v = sliding_velocity(dem, pair, &contact);
+    struct push push = {.dashpots = 0};
+    if (touches) push = push_wall(dem, pair, &contact, v);
+    if (wet)
+        push.force = subtract(push.force, scale(pair->bridge_pull, contact.normal));
     // The grain feels the opposite.
     pair->load = scale(-1, push.force);
     pair->moment = scale(-contact.arm, cross(contact.normal, push.shear));
     struct rigid_wall *wall = &dem->wall[pair->wall];
     wall->force = add(wall->force, push.force);
     wall->moment = add(wall->moment, cross(contact.lever, push.force));
-    wall->resistance += resistance(dem, pair);
+    if (touches) wall->resistance += resistance(dem, pair);
     if (!dem->balance_energy) return;
     dem->energy_ledger.dashpots += push.dashpots;
     dem->energy_ledger.slip += push.slip;
+    if (wet && dem->cycle > 0)
+        dem->energy_ledger.bridges +=
+            pair->bridge_pull * dot(v, contact.normal) * dem->time_step;
 }
 
 // ---- how walls move -----------------------------------------------------------------
