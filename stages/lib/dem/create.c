@@ -405,6 +405,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     take_walls(dem, setup);
     dem->features = choose_features(dem, setup);
     dem->sweep = choose_sweep(dem->features);
+    dem->gaps = has_avx512() ? pair_gaps_avx512 : pair_gaps_avx2;
     enum status status =
         setup->liquid ? take_liquid(dem, setup->liquid, reason) : STATUS_OK;
     if (status == STATUS_OK) status = check_periods(dem, reason);

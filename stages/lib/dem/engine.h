@@ -125,6 +125,10 @@ typedef int pair_sweep(const struct dem *dem, int begin, int end);
 EACH_SET(DECLARE)
 EACH_PARALLEL_BOND_SET(DECLARE)
 #undef DECLARE
+// Gaps of the pairs of group K, in effective radii of their liquid bridges; GAP aligned
+// to a cache line. Returns a bit for each lane that touches or has a bridge.
+typedef unsigned pair_gaps(const struct dem *dem, int k, double gap[PAIRS_IN_GROUP]);
+pair_gaps pair_gaps_avx2, pair_gaps_avx512;
 extern pair_sweep *const pair_sweeps_avx2[FEATURE_SETS];
 extern pair_sweep *const pair_sweeps_avx512[FEATURE_SETS];
 
@@ -157,6 +161,7 @@ struct dem {
     int64_t cycle;
     int threads;
     pair_sweep *sweep;
+    pair_gaps *gaps;
 
     int n_particle;
     int32_t *id;            // (n_particle) index in the packing

@@ -104,28 +104,6 @@ static void count_bridge(struct liquid *liquid, int i, int j, int by)
     liquid->changed = 1;
 }
 
-// Gaps in effective radii. Without branches, so that the compiler vectorises it.
-static void gaps_of(const struct dem *dem, const struct pair_group *group,
-                    const struct liquid_group *liquid, double gap[PAIRS_IN_GROUP])
-{
-    double square[PAIRS_IN_GROUP] = {0}, square_change[PAIRS_IN_GROUP] = {0};
-    for (int axis = 0; axis < 3; axis++)
-        for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
-            const double start = group->separation[axis][lane];
-            const double apart =
-                dem->place[second_grain(group, lane)].displacement[axis] -
-                dem->place[first_grain(group, lane)].displacement[axis];
-            const double now = start + apart;
-            square[lane] += now * now;
-            square_change[lane] += apart * (start + now);
-        }
-    for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
-        const double sum = sqrt(square[lane]) + group->distance[lane];
-        gap[lane] = (square_change[lane] - group->overlap[lane] * sum) /
-                    (sum * liquid->radius[lane]);
-    }
-}
-
 // Forms, keeps or ruptures the bridge in lane LANE of group K, at GAP; adds it to
 // PULLING if it pulls.
 static void update_bridge(const struct dem *dem, int k, int lane, double gap,
@@ -164,11 +142,13 @@ static void update_bridge_batch(const struct dem *dem, int begin, int end)
     struct pulling pulling;
     pulling.count = 0;
     for (int k = begin; k < end; k++) {
-        double gap[PAIRS_IN_GROUP];
-        gaps_of(dem, &dem->pairs.group[k], &dem->pairs.liquid[k], gap);
+        _Alignas(CACHE_LINE) double gap[PAIRS_IN_GROUP];
+        unsigned wet = dem->gaps(dem, k, gap);
         memset(dem->pairs.liquid[k].pull, 0, sizeof dem->pairs.liquid[k].pull);
-        for (int lane = 0; lane < PAIRS_IN_GROUP; lane++)
+        for (; wet; wet &= wet - 1) {
+            const int lane = __builtin_ctz(wet);
             update_bridge(dem, k, lane, gap[lane], &pulling);
+        }
     }
     find_forces(dem->liquid, pulling.count, pulling.asymmetry, pulling.volume,
                 pulling.gap, pulling.force);

@@ -3,4 +3,5 @@
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw")
 #define SIMD_WIDTH 8
 #define SWEEP_NAME(features) sweep_avx512_##features
+#define GAPS_NAME pair_gaps_avx512
 #include "dem/pair_kernel.h"

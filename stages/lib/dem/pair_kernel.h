@@ -201,6 +201,37 @@ SIMD_INLINE int sweep_groups(const struct dem *dem, int begin, int end,
     return n_broken;
 }
 
+// Gaps of the pairs of group K in effective radii, for liquid bridges; from
+// displacements, as the overlap (pair_kinematics.h). Not fused, so that rounding is
+// that of one pair. Returns a bit for each lane that touches or has a bridge.
+unsigned GAPS_NAME(const struct dem *dem, int k, double gap[PAIRS_IN_GROUP])
+{
+    const struct pair_group *g = &dem->pairs.group[k];
+    const double *place = (const double *)dem->place;
+    unsigned wet = 0;
+    for (int at = 0; at < PAIRS_IN_GROUP; at += SIMD_WIDTH) {
+        const struct vectorw start = load3(g->separation, at);
+        const struct vectorw apart =
+            transpose(subtract_rows(fetch(place, 4, g->second + at),
+                                    fetch(place, 4, g->first + at)))
+                .xyz;
+        const struct vectorw now = add3(start, apart), both = add3(start, now);
+        const doublew square = now.x * now.x + now.y * now.y + now.z * now.z;
+        const doublew change = apart.x * both.x + apart.y * both.y + apart.z * both.z;
+        const doublew sum = square_root(square) + load(g->distance + at);
+        const doublew radius = load(dem->pairs.liquid[k].radius + at);
+        const doublew now_apart =
+            (change - load(g->overlap + at) * sum) / (sum * radius);
+        store(gap + at, now_apart);
+        const maskw acts =
+            either(at_least(splat(0), now_apart),
+                   above(load(dem->pairs.liquid[k].volume + at), splat(0)));
+        for (int lane = 0; lane < SIMD_WIDTH; lane++)
+            wet |= (unsigned)holds_in(acts, lane) << (at + lane);
+    }
+    return wet;
+}
+
 #define SWEEP(features)                                                                \
     int SWEEP_NAME(features)(const struct dem *dem, int begin, int end)                \
     {                                                                                  \
