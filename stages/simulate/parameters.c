@@ -219,6 +219,8 @@ const struct parameter simulate_table[] = {
          "the liquid of each grain; 0: dry"},
     {"bridges.shared", PARAMETER_BOOLEAN, "1", "false", AT(liquid.shared),
      .text = "each grain divides its liquid evenly among its bridges"},
+    {"bridges.walls", PARAMETER_BOOLEAN, "1", "false", AT(liquid.wets_walls),
+     .text = "true: bridges form between grains and walls too"},
     {"bridges.surface_tension", PARAMETER_NUMBER, "N m-1", "null", AT(surface_tension),
      ABOVE(0), .shared = true, .text = "of the liquid; null: water at 293.15 K"},
     {"bridges.contact_angle", PARAMETER_NUMBER, "degree", "0", AT(contact_angle),

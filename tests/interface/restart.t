@@ -204,7 +204,8 @@ with scratch() as folder:
     run("pack", *scene, "count=800", "-o", beads)
     # From loose to dense: the time step is shortened on the way, which the state must say.
     in_pieces("simulate: moist beads that fall between walls that move",
-              ["simulate", *scene, "duration=0.2", "--set", "expected_overlap=1e-6", beads])
+              ["simulate", *scene, "duration=0.2", "--set", "expected_overlap=1e-6", "--set",
+               "bridges.volume=2e-12", beads])
 
     dry = ["dry", "-p", SCENE, "--set", "step_interval=0.01"]
     large, small = make_network(folder, "large", 18), make_network(folder, "small", 10)
