@@ -9,7 +9,8 @@
 //                                       of grains at rest, read from FILE: lines x y z
 //                                       r and a comment "# box LX LY LZ periodic"; KIND
 //                                       is smooth, grip, hertz, bonded, wet,
-//                                       wet-exact, or driven: grip with a layer of
+//                                       wet-exact, rolling (grip that resists
+//                                       it), or driven: grip with a layer of
 //                                       a sixth of the grains in a group that turns
 #include "basics/memory.h"
 #include "dem/engine.h"
@@ -264,6 +265,7 @@ static int one_packing(const char *path, const char *kind, int threads)
         group_of[i] = packing.position[i].z < packing.upper.z / 6;
     const struct dem_group group = {
         .point = scale(0.5, packing.upper), .axis = {0, 0, 1}, .spin = 1e-6};
+    if (strcmp(kind, "rolling") == 0) setup.material.rolling_friction = 0.1;
     if (strcmp(kind, "driven") == 0) {
         setup.n_group = 1;
         setup.group = &group;

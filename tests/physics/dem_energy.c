@@ -136,6 +136,25 @@ static void test_books_of_local_damping(void **state)
     assert_true(end.local_damping > 0.02 * end.kinetic);
 }
 
+// Springs and dashpots against rolling, between grains and at walls.
+static void test_books_of_rolling(void **state)
+{
+    (void)state;
+    for (int law = DEM_LINEAR; law <= DEM_HERTZ; law++) {
+        struct dem_setup setup = rubbing_setup((enum dem_law)law);
+        setup.material.rolling_friction = 0.2;
+        assert_books_close(setup, 2e-3);
+        setup.material.rolling_damping = 0.5;
+        setup.friction_feels_dashpot = true;
+        assert_books_close(setup, 2e-3);
+        struct dem_energy rolling, sliding;
+        shaken_box(setup, 0.005, &rolling);
+        setup.material.rolling_friction = 0;
+        shaken_box(setup, 0.005, &sliding);
+        assert_true(fabs(rolling.slip - sliding.slip) > 0.01 * sliding.slip);
+    }
+}
+
 // A lattice torn apart by forces on its two ends: what the bonds held when they broke
 // is in the books.
 static double torn_apart(enum dem_bond_kind kind, double safety)
@@ -185,6 +204,7 @@ int main(void)
         cmocka_unit_test(test_books_of_each_law),
         cmocka_unit_test(test_books_without_tensile_damping),
         cmocka_unit_test(test_books_of_local_damping),
+        cmocka_unit_test(test_books_of_rolling),
         cmocka_unit_test(test_books_of_broken_bonds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

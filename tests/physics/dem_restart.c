@@ -284,6 +284,34 @@ static void hertz_cloud(void **state)
     packing_free(&packing);
 }
 
+// Grains of three sizes that resist rolling, in a belt.
+static void rolling_cloud(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(8, 0.4, false);
+    const struct vector up = packing.upper, middle = scale(0.5, up);
+    const struct dem_wall belt = {.point = middle,
+                                  .shape = DEM_SPHERE,
+                                  .radius = 0.87 * up.x,
+                                  .spin = {0, 1e7, 1e7}};
+    for (int law = DEM_LINEAR; law <= DEM_HERTZ; law++) {
+        struct dem_setup setup = stiff_setup(&packing);
+        setup.law = (enum dem_law)law;
+        setup.material.contact_time = 1e-7;
+        setup.material.young_modulus = 1e9;
+        setup.material.poisson_ratio = 0.25;
+        setup.material.restitution = 0.8;
+        setup.material.rolling_friction = 0.3;
+        setup.material.rolling_damping = 0.2;
+        setup.largest_overlap = 0.1;
+        setup.balance_energy = true;
+        setup.n_wall = 1;
+        setup.wall = &belt;
+        check(&setup, fly);
+    }
+    packing_free(&packing);
+}
+
 static void two_timed_materials(void **state)
 {
     (void)state;
@@ -535,11 +563,12 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bonded_lattice),      cmocka_unit_test(contact_bonds),
-        cmocka_unit_test(walled_cloud),        cmocka_unit_test(hertz_cloud),
-        cmocka_unit_test(two_timed_materials), cmocka_unit_test(renumbered_crowd),
-        cmocka_unit_test(squeezed_crowd),      cmocka_unit_test(stirred_crowd),
-        cmocka_unit_test(no_grains),           cmocka_unit_test(damaged_arrays),
-        cmocka_unit_test(flipped_bits),        cmocka_unit_test(another_scene)};
+        cmocka_unit_test(bonded_lattice),   cmocka_unit_test(contact_bonds),
+        cmocka_unit_test(walled_cloud),     cmocka_unit_test(hertz_cloud),
+        cmocka_unit_test(rolling_cloud),    cmocka_unit_test(two_timed_materials),
+        cmocka_unit_test(renumbered_crowd), cmocka_unit_test(squeezed_crowd),
+        cmocka_unit_test(stirred_crowd),    cmocka_unit_test(no_grains),
+        cmocka_unit_test(damaged_arrays),   cmocka_unit_test(flipped_bits),
+        cmocka_unit_test(another_scene)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,9 @@ static enum status check_material(const struct dem_material *m, enum dem_law law
     const struct quantity common[] = {
         {"density", m->density, 0, no_limit, true, false},
         {"friction", m->friction, 0, no_limit, false, false},
-        {"local damping", m->local_damping, 0, 0x1.fffffffffffffp-1, false, false}};
+        {"local damping", m->local_damping, 0, 0x1.fffffffffffffp-1, false, false},
+        {"rolling friction", m->rolling_friction, 0, no_limit, false, false},
+        {"rolling damping", m->rolling_damping, 0, no_limit, false, false}};
     const struct quantity linear[] = {
         {"normal stiffness", m->normal_stiffness, 0, no_limit, false, false},
         {"shear stiffness", m->shear_stiffness, 0, no_limit, false, false},
@@ -84,12 +86,31 @@ static enum status check_materials(const struct dem_setup *setup, struct reason 
                           "materials %d and %d: friction must be >= 0 and restitution "
                           "in (0,1], got %g and %g",
                           k / n, k % n, friction, rebound);
+        const double rolling =
+            setup->pair_rolling_friction ? setup->pair_rolling_friction[k] : 0;
+        if (!(rolling >= 0) || isinf(rolling))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "materials %d and %d: rolling friction must be >= 0, got %g",
+                          k / n, k % n, rolling);
     }
     for (int i = 0; setup->material_of && i < setup->packing->n_particle; i++)
         if (setup->material_of[i] >= n)
             return refuse(reason, STATUS_BAD_DATA, "grain %d: no material %d among %d",
                           i, setup->material_of[i], n);
     return STATUS_OK;
+}
+
+static enum status check_rolling(const struct dem_setup *setup, struct reason *reason)
+{
+    const int n = 1 + setup->n_other;
+    bool rolls = false;
+    for (int k = 0; k < n; k++)
+        rolls = rolls || material(setup, k)->rolling_friction > 0;
+    for (int k = 0; setup->pair_rolling_friction && k < n * n; k++)
+        rolls = rolls || setup->pair_rolling_friction[k] > 0;
+    if (!rolls || setup->packing->n_bond == 0) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "rolling friction does not go with bonds: leave out one of them");
 }
 
 static enum status check_bonds(const struct dem_setup *setup, struct reason *reason)
@@ -138,6 +159,7 @@ static enum status check_numbers(const struct dem_setup *setup, struct reason *r
 {
     enum status status = check_materials(setup, reason);
     if (status == STATUS_OK) status = check_bonds(setup, reason);
+    if (status == STATUS_OK) status = check_rolling(setup, reason);
     if (status == STATUS_OK && setup->liquid)
         status = check_liquid(setup->liquid, reason);
     if (status != STATUS_OK) return status;

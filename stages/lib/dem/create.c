@@ -115,6 +115,7 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
     dem->material = NEW_ARRAY(struct material, n);
     dem->pair_friction = NEW_ARRAY(double, n *n);
     dem->pair_restitution = NEW_ARRAY(double, n *n);
+    dem->pair_rolling_friction = NEW_ARRAY(double, n *n);
     for (int k = 0; k < n; k++) {
         const struct dem_material *m = material(setup, k);
         dem->material[k] = (struct material){
@@ -123,7 +124,8 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
             .shear_stiffness = m->shear_stiffness / stiffness,
             .damping_ratio = m->damping_ratio,
             .young_modulus = m->young_modulus / stiffness * length,
-            .poisson_ratio = m->poisson_ratio};
+            .poisson_ratio = m->poisson_ratio,
+            .rolling_damping = m->rolling_damping};
         for (int l = 0; l < n; l++) {
             const struct dem_material *other = material(setup, l);
             dem->pair_friction[n * k + l] = setup->pair_friction
@@ -132,6 +134,10 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
             dem->pair_restitution[n * k + l] =
                 setup->pair_restitution ? setup->pair_restitution[n * k + l]
                                         : fmin(m->restitution, other->restitution);
+            dem->pair_rolling_friction[n * k + l] =
+                setup->pair_rolling_friction
+                    ? setup->pair_rolling_friction[n * k + l]
+                    : fmin(m->rolling_friction, other->rolling_friction);
         }
     }
     dem->contact_time = setup->material.contact_time / dem->unit.time;
@@ -285,10 +291,13 @@ static bool pairs_are_alike(const struct dem *dem)
 
 static unsigned choose_features(const struct dem *dem, const struct dem_setup *setup)
 {
-    bool grip = dem->n_bond > 0 || walls_grip(setup);
-    for (int k = 0; k < dem->n_material * dem->n_material; k++)
+    bool grip = dem->n_bond > 0 || walls_grip(setup), rolls = false;
+    for (int k = 0; k < dem->n_material * dem->n_material; k++) {
         grip = grip || dem->pair_friction[k] > 0;
+        rolls = rolls || dem->pair_rolling_friction[k] > 0;
+    }
     unsigned features = 0;
+    if (rolls) features |= FEATURE_ROTATION | FEATURE_ROLLING;
     if (grip) features |= FEATURE_ROTATION;
     if (dem->kind == DEM_HERTZ) features |= FEATURE_HERTZ;
     if (!pairs_are_alike(dem)) features |= FEATURE_PAIR_LAWS;

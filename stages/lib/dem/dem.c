@@ -28,6 +28,7 @@ void dem_free(struct dem *dem)
     void *const owned[] = {dem->material,
                            dem->pair_friction,
                            dem->pair_restitution,
+                           dem->pair_rolling_friction,
                            dem->id,
                            dem->index,
                            dem->start,

@@ -49,6 +49,11 @@ struct dem_material {
     double restitution;   // timed, Hertz: in (0,1]; the smaller of two counts
     double young_modulus; // Hertz: Pa, > 0
     double poisson_ratio; // Hertz: in [0,0.5]
+    // Rolling resistance of type C (Ai et al. 2011) [rolling.c], not with bonds.
+    // Rolling friction: >= 0, the largest moment over effective radius and normal
+    // force; the smaller of two counts. Damping: share of the critical one, >= 0; the
+    // mean of two.
+    double rolling_friction, rolling_damping;
 };
 
 enum dem_bond_kind {
@@ -134,7 +139,7 @@ struct dem_setup {
     const struct dem_material *other;
     const uint8_t *material_of; // (n_particle) NULL: 0
     // (n_other+1)^2, symmetric, for pairs of materials; NULL: the smaller of the two
-    const double *pair_friction, *pair_restitution;
+    const double *pair_friction, *pair_restitution, *pair_rolling_friction;
     struct dem_bond_material bond;
     // (n_bond) NULL: those of `bond`
     const double *normal_strength, *shear_strength;

@@ -5,7 +5,8 @@
 // time of the forces (half a step back), as leapfrog has them half a step ahead.
 // Elastic, of a contact with overlap U, shear force F^s and the bond's F^n, F^s, M^n,
 // M^s:
-//     linear 1/2 k_n U^2, Hertz 2/5 k_n U^(5/2), and F^s.F^s / (2 k_s);
+//     linear 1/2 k_n U^2, Hertz 2/5 k_n U^(5/2), and F^s.F^s / (2 k_s), and of its
+//     rolling spring M^r.M^r / (2 k_r);
 //     bond   1/2 k^n A stretch^2 + F^s.F^s / (2 k^s A) + M^s.M^s / (2 k^n I)
 //            + (M^n)^2 / (2 k^s J).
 // Kinetic energy and momentum leave driven groups out: what their drive does to their
@@ -74,6 +75,7 @@ static double pair_energy(const struct dem *dem, int pair)
             dem->pairs.shear[pair / PAIRS_IN_GROUP].force, pair % PAIRS_IN_GROUP);
         energy += spring_energy(dot(shear, shear), law.shear_stiffness * root);
     }
+    energy += pair_rolling_energy(dem, pair, law.normal_stiffness * root);
     if (bonded && !pulls) energy += bond_energy(dem, pair, geometry.stretch);
     return energy;
 }

@@ -45,9 +45,11 @@ enum feature {
     FEATURE_PAIR_LAWS = 4, // pairs differ in stiffness, damping or friction
     FEATURE_CONTACT_BOND = 8,
     FEATURE_PARALLEL_BOND = 16,
-    FEATURE_BOND = FEATURE_CONTACT_BOND | FEATURE_PARALLEL_BOND
+    FEATURE_BOND = FEATURE_CONTACT_BOND | FEATURE_PARALLEL_BOND,
+    FEATURE_ROLLING = 32, // contacts resist rolling, and have a history of that
+    FEATURE_MOMENT = FEATURE_PARALLEL_BOND | FEATURE_ROLLING // pairs carry couples
 };
-enum { FEATURE_SETS = 32 };
+enum { FEATURE_SETS = 64 };
 
 // Place of a grain: its displacement from where it began; the radius fills the record,
 // so that the kernel loads four doubles at once.
@@ -67,6 +69,7 @@ struct material {
     double density;
     double normal_stiffness, shear_stiffness, damping_ratio; // linear
     double young_modulus, poisson_ratio;                     // Hertz
+    double rolling_damping;
 };
 
 // The liquid of a wet scene, and what holds for all bridges.
@@ -89,6 +92,8 @@ struct wall_pair {
     struct vector normal;       // towards the wall, at the last force
     double depth;               // overlap at the last force
     struct vector load, moment; // on the grain, at the last force
+    struct rolling_law rolling;
+    struct vector rolling_moment; // of the rolling spring on the wall
     // Of the liquid bridge, where walls are wet; as those of a liquid_group.
     double bridge_radius, bridge_volume, bridge_rupture, bridge_pull;
 };
@@ -118,12 +123,15 @@ struct units {
 
 // The pair sweep over groups BEGIN..END-1; returns how many bonds broke.
 typedef int pair_sweep(const struct dem *dem, int begin, int end);
-// The sets of features that can occur: bonds always turn, contact bonds are linear.
+// The sets of features that can occur: bonds always turn, contact bonds are linear, and
+// bonded grains do not resist rolling but by their bonds.
 #define EACH_SET(DO) DO(0) DO(1) DO(2) DO(3) DO(4) DO(5) DO(6) DO(7) DO(9) DO(13)
 #define EACH_PARALLEL_BOND_SET(DO) DO(17) DO(19) DO(21) DO(23)
+#define EACH_ROLLING_SET(DO) DO(33) DO(35) DO(37) DO(39)
 #define DECLARE(features) pair_sweep sweep_avx2_##features, sweep_avx512_##features;
 EACH_SET(DECLARE)
 EACH_PARALLEL_BOND_SET(DECLARE)
+EACH_ROLLING_SET(DECLARE)
 #undef DECLARE
 // Gaps of the pairs of group K, in effective radii of their liquid bridges; GAP aligned
 // to a cache line. Returns a bit for each lane that touches or has a bridge.
@@ -142,6 +150,7 @@ struct dem {
     struct material *material; // (n_material)
     double *pair_friction;     // (n_material^2)
     double *pair_restitution;
+    double *pair_rolling_friction;
     double contact_time;
     struct contact_law law;       // of every pair, unless FEATURE_PAIR_LAWS
     double bond_normal_stiffness; // per area
@@ -287,6 +296,33 @@ void set_grain_order(struct dem *dem, const int32_t *id);
 // Coefficients of the contact of two grains, or of a grain and a wall [materials.c].
 struct contact_law pair_law(const struct dem *dem, int i, int j);
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall);
+// Rolling resistance [rolling.c]; nothing without FEATURE_ROLLING. Of a pair with the
+// normal STIFFNESS of its law, of two grains like I; stiffness and damping of rolling
+// at a secant STIFFNESS and OVERLAP of the contact.
+void set_pair_rolling(struct dem *dem, int pair, double stiffness);
+struct rolling_law pair_rolling(const struct dem *dem, int pair);
+struct rolling_law rolling_of_two(const struct dem *dem, int i);
+double rolling_stiffness(const struct rolling_law *law, double stiffness);
+double rolling_damping(const struct dem *dem, const struct rolling_law *law,
+                       double overlap);
+void set_wall_rolling(const struct dem *dem, struct wall_pair *pair);
+// Elastic energy of a rolling spring with MOMENT, at a secant STIFFNESS of the contact.
+double rolling_energy(const struct rolling_law *law, double stiffness,
+                      struct vector moment);
+double pair_rolling_energy(const struct dem *dem, int pair, double stiffness);
+// One step of the rolling spring of PAIR: where the shear force goes [walls.c], how
+// fast the wall turns against the grain, the contact's secant stiffness before and now,
+// and what counts as the normal force. Returns the moment on the wall, dashpot
+// included; adds what is lost.
+struct wall_rolling {
+    struct vector turned;  // the moment of the step before, in the plane of now
+    struct vector rolling; // relative angular velocity, in that plane
+    double stiffness_before, stiffness, retained, normal_force, damping, time_step;
+};
+struct vector advance_wall_rolling(struct wall_pair *pair,
+                                   const struct wall_rolling *step, double *slip,
+                                   double *dashpots);
+
 // Sets masses, mobilities and the common law from radii and materials. FIXED is as in
 // the setup, by index in the packing; NULL keeps those that are fixed.
 void set_masses(struct dem *dem, const uint8_t *fixed);

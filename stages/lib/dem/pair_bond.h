@@ -11,7 +11,7 @@
 // One pair a lane, as in pair_contact.h. The state of a bond lies in bond_group: R,
 // F^s, M^s, M^n along n, and both strengths, for parallel bonds times A R. A broken one
 // has R = 0 and strengths of -1. beta is dem->moment_contribution.
-#include "dem/pair_contact.h"
+#include "dem/pair_rolling.h"
 
 #include <math.h>
 

@@ -32,6 +32,7 @@
 struct lane_law {
     doublew spring; // normal force
     doublew shear_stiffness, normal_damping, shear_damping, friction;
+    doublew normal_stiffness, normal_stiffness_before; // secant
     // Hertz: factor that the shear force of the step before keeps, and the shear
     // stiffness that it had.
     doublew shear_retained, shear_stiffness_before;
@@ -57,6 +58,7 @@ SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
                                                    : splat(all->shear_damping),
                            .friction = differ ? load(laws->friction + at)
                                               : splat(all->friction)};
+    law.normal_stiffness = law.normal_stiffness_before = stiffness;
     if (!(features & FEATURE_HERTZ)) {
         law.spring = only_where(touch, stiffness * m->overlap);
         law.shear_stiffness_before = law.shear_stiffness;
@@ -67,9 +69,11 @@ SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
     const doublew before = m->overlap + time_step * m->normal_velocity;
     const maskw was = above(before, splat(0));
     law.spring = stiffness * overlap * root;
-    law.shear_stiffness_before =
-        law.shear_stiffness * square_root(only_where(was, before));
+    const doublew root_before = square_root(only_where(was, before));
+    law.shear_stiffness_before = law.shear_stiffness * root_before;
+    law.normal_stiffness_before *= root_before;
     law.shear_stiffness *= root;
+    law.normal_stiffness *= root;
     law.normal_damping *= fourth;
     law.shear_damping *= fourth;
     const maskw unloads = both(was, above(before, overlap));
@@ -116,44 +120,48 @@ SIMD_INLINE doublew friction_normal_force(const struct dem *dem,
     return only_where(above(push, splat(0)), push);
 }
 
-// The shear spring of the contact, slip at LIMIT included [K 4.12-4.16, 4.25-4.26];
-// SLIPS says where.
-SIMD_INLINE struct vectorw shear_spring(const struct dem *dem, int k, int at,
-                                        const struct pair_motion *m,
-                                        const struct lane_law *law, doublew limit,
-                                        maskw touch, maskw bonded, doublew time_step,
-                                        unsigned features, maskw *slips)
+// A spring in the contact plane that slips: its stiffness now and at the overlap of the
+// step before, and the factor that its force keeps when a Hertz contact opens.
+struct slipping_spring {
+    doublew stiffness, before, retained;
+};
+
+// One step of such a spring with its HISTORY, stretched at VELOCITY, which slips at
+// LIMIT [K 4.12-4.16, 4.25-4.26]; SLIPS says where.
+SIMD_INLINE struct vectorw
+advance_spring(const struct dem *dem, int k, int at, double (*history)[PAIRS_IN_GROUP],
+               const struct pair_motion *m, const struct slipping_spring *spring,
+               struct vectorw velocity, doublew limit, maskw touch, maskw bonded,
+               doublew time_step, unsigned features, maskw *slips)
 {
-    double(*history)[PAIRS_IN_GROUP] = dem->pairs.shear[k].force;
     const maskw acts = features & FEATURE_CONTACT_BOND ? either(touch, bonded) : touch;
     const struct vectorw turned =
         rotate_history(m->rotation, load3(history, at), features);
     struct vectorw kept = dem->pairs.loss ? only_where3(acts, turned) : turned;
-    if (features & FEATURE_HERTZ) kept = scale3(law->shear_retained, kept);
-    const struct vectorw trial =
-        only_where3(acts, subtract_scaled3(kept, law->shear_stiffness * time_step,
-                                           m->shear_velocity));
+    if (features & FEATURE_HERTZ) kept = scale3(spring->retained, kept);
+    const struct vectorw trial = only_where3(
+        acts, subtract_scaled3(kept, spring->stiffness * time_step, velocity));
 
     const doublew square = dot3(trial, trial);
     *slips = above(square, limit * limit);
     if (features & FEATURE_CONTACT_BOND) *slips = without(*slips, bonded);
-    struct vectorw shear = trial;
+    struct vectorw force = trial;
     if (any(*slips)) {
         const doublew factor = limit / square_root(choose(*slips, square, splat(1)));
-        shear = scale3(choose(*slips, factor, splat(1)), trial);
+        force = scale3(choose(*slips, factor, splat(1)), trial);
     }
-    store3(history, at, shear);
+    store3(history, at, force);
     if (dem->pairs.loss) { // what a contact forgot, and what slip took: the mean force
                            // times the slip
-        const doublew now = law->shear_stiffness, before = law->shear_stiffness_before;
-        const doublew slip = dot3(add3(kept, shear), subtract3(trial, shear));
+        const doublew now = spring->stiffness, before = spring->before;
+        const doublew slip = dot3(add3(kept, force), subtract3(trial, force));
         const doublew taken =
             only_where(above(now, splat(0)),
                        0.5 * slip / choose(above(now, splat(0)), now, splat(1)));
         add_to_ledger(dem->pairs.loss[k].slip + at, at_least(splat(0), splat(0)),
                       spring_loss(turned, before, kept, now) + taken);
     }
-    return shear;
+    return force;
 }
 
 // Contact and dashpots [K 4.11-4.16, 4.25-4.30]; TOUCH and BONDED (by a bond) are
@@ -176,8 +184,11 @@ SIMD_INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
 
     maskw slips;
     const doublew limit = law->friction * friction_normal_force(dem, law, load.normal);
-    const struct vectorw shear = shear_spring(dem, k, at, m, law, limit, touch, bonded,
-                                              time_step, features, &slips);
+    const struct slipping_spring spring = {
+        law->shear_stiffness, law->shear_stiffness_before, law->shear_retained};
+    const struct vectorw shear = advance_spring(
+        dem, k, at, dem->pairs.shear[k].force, m, &spring, m->shear_velocity, limit,
+        touch, bonded, time_step, features, &slips);
     const maskw sticks = either(bonded, without(touch, slips));
     const doublew damping = only_where(sticks, law->shear_damping);
     load.shear = subtract_scaled3(shear, damping, m->shear_velocity);

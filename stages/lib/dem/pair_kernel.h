@@ -6,9 +6,10 @@
 //
 // For pairs k of a group, in this order: find_pair_motion (distance, overlap,
 // velocities, [K 4.7-4.17]); lane_law (coefficients at this overlap); contact and
-// dashpots (pair_contact.h), bonds (pair_bond.h), liquid; then scatter_loads adds
+// dashpots (pair_contact.h), rolling (pair_rolling.h), bonds (pair_bond.h), liquid;
+// then scatter_loads adds
 //     F_ij = F^n n + F^s to the second grain, -F_ij to the first,
-//     M = arm n x F^s (+ bond moments) [K 4.18, 4.21, 4.43, 4.44].
+//     M = arm n x F^s (+ moments of rolling and bonds) [K 4.18, 4.21, 4.43, 4.44].
 // The arithmetic is that of each pair alone, in one order, fused where it says so, so
 // both widths give the same bytes. tests/bench/bench_dem.c counts operations and bytes.
 #include "dem/pair_bond.h"
@@ -93,14 +94,14 @@ SIMD_INLINE void scatter_loads(const struct dem *dem, int k, int at,
 
     const struct vectorw torque = cross3(n, pair->shear);
     struct vectorw on_first, on_second;
-    if (features & FEATURE_PARALLEL_BOND) {
+    if (features & FEATURE_MOMENT) {
         on_first = add_scaled3(pair->moment, m->first_arm, torque);
         on_second = subtract_scaled3(pair->moment, m->second_arm, torque);
     } else {
         on_first = scale3(m->first_arm, torque);
         on_second = scale3(-m->second_arm, torque);
     }
-    if (has_equal_arms(features) && !(features & FEATURE_PARALLEL_BOND))
+    if (has_equal_arms(features) && !(features & FEATURE_MOMENT))
         add_opposite(dem->sum, first, second, rows_of(force), rows_of(on_first));
     else
         add_eight(dem->sum, first, second, rows_of(force), rows_of(on_first),
@@ -137,6 +138,9 @@ SIMD_INLINE int sweep_lanes(const struct dem *dem, int k, int at,
                                        features);
     struct pair_load total =
         contact_load(dem, k, at, &m, touch, bonded, &law, time_step, features);
+    if (features & FEATURE_ROLLING)
+        total.moment = rolling_moment(dem, k, at, &m, touch, &law, total.normal,
+                                      time_step, features);
     if (features & FEATURE_PARALLEL_BOND) {
         total.moment = (struct vectorw){zero, zero, zero};
         if (any(bonded))
@@ -240,3 +244,4 @@ unsigned GAPS_NAME(const struct dem *dem, int k, double gap[PAIRS_IN_GROUP])
 
 EACH_SET(SWEEP)
 EACH_PARALLEL_BOND_SET(SWEEP)
+EACH_ROLLING_SET(SWEEP)

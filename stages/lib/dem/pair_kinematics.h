@@ -71,6 +71,8 @@ SIMD_INLINE struct spin_terms find_spin_terms(const struct pair_motion *m,
 {
     const struct rows rows_i = fetch(spins, 8, i), rows_j = fetch(spins, 8, j);
     struct spin_terms s;
+    if (features & FEATURE_ROLLING)
+        s.relative = transpose(subtract_rows(rows_j, rows_i)).xyz;
     if (has_equal_arms(features)) {
         s.sum = transpose(add_rows(rows_i, rows_j)).xyz;
         s.rolling = scale3(m->first_arm, s.sum);

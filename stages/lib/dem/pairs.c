@@ -118,6 +118,9 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
         if (new->shear)
             new->shear[to.group].force[axis][to.at] =
                 sign * old->shear[from.group].force[axis][from.at];
+        if (new->rolling)
+            new->rolling[to.group].moment[axis][to.at] =
+                sign * old->rolling[from.group].moment[axis][from.at];
         if (!new->bonds) continue;
         struct bond_group *bonds = &new->bonds[to.group];
         const struct bond_group *were = &old->bonds[from.group];
@@ -143,6 +146,8 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
         struct pair_group *group = &pairs->group[to.group];
         set_grains(group, to.at, pairs->particle[p][0], pairs->particle[p][1]);
         if (pairs->laws) set_pair_law(dem, p);
+        if (pairs->rolling)
+            set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
         if (pairs->liquid) set_bridge_radius(dem, p);
         if (pairs->bonds) set_bond(dem, to, pairs->bond[p]);
         int order = -1;
@@ -183,6 +188,8 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
     if (dem->features & FEATURE_BOND)
         pairs->bonds = allocate_aligned(n, sizeof *pairs->bonds);
     if (dem->balance_energy) pairs->loss = allocate_aligned(n, sizeof *pairs->loss);
+    if (dem->features & FEATURE_ROLLING)
+        pairs->rolling = allocate_aligned(n, sizeof *pairs->rolling);
     if (dem->liquid) pairs->liquid = allocate_aligned(n, sizeof *pairs->liquid);
 }
 
@@ -201,6 +208,7 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->bonds);
     free(pairs->loss);
     free(pairs->liquid);
+    free(pairs->rolling);
 }
 
 void close_pair_ledger(struct dem *dem)

@@ -85,6 +85,19 @@ struct liquid_group {
     double rupture[PAIRS_IN_GROUP];   // the gap at which it ruptures, over the radius
 };
 
+// Rolling resistance: coefficients, and the moment of the rolling spring on the second
+// grain.
+struct rolling_group {
+    _Alignas(CACHE_LINE) double moment[3][PAIRS_IN_GROUP];
+    double arm[PAIRS_IN_GROUP];     // rolling friction times effective radius
+    double damping[PAIRS_IN_GROUP]; // moment per angular velocity; Hertz: times U^0.25
+};
+
+// The same coefficients of one contact.
+struct rolling_law {
+    double arm, damping;
+};
+
 // Coefficients of a contact with overlap U. Linear: normal force = normal_stiffness U,
 // shear stiffness and damping as they are. Hertz: normal force = normal_stiffness
 // U^1.5, shear stiffness times U^0.5, both dampings times U^0.25.
@@ -116,6 +129,7 @@ struct pair_list {
     struct bond_group *bonds;
     struct loss_group *loss;
     struct liquid_group *liquid;
+    struct rolling_group *rolling;
 };
 
 // The grains of LANE, as indices; set_grains scales them.

@@ -53,6 +53,8 @@ enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         set_pair_place(dem, &dem->pairs.group[p / PAIRS_IN_GROUP], p % PAIRS_IN_GROUP);
         if (dem->pairs.laws && growth != 1) set_pair_law(dem, p);
+        if (dem->pairs.rolling && growth != 1)
+            set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
     }
     if (growth != 1) set_wall_laws(dem);
 

@@ -244,6 +244,8 @@ static void derive(struct dem *dem)
         const int lane = p % PAIRS_IN_GROUP;
         group->inverse_distance[lane] = 1 / group->distance[lane];
         if (dem->pairs.laws) set_pair_law(dem, p);
+        if (dem->pairs.rolling)
+            set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
     }
     set_wall_laws(dem);
     list_walls_of_grains(dem);

@@ -109,6 +109,13 @@ static struct contact_law tangents(const struct dem *dem, struct contact_law law
     return law;
 }
 
+// Force over overlap, as the rolling spring counts it.
+static double secant(const struct dem *dem, struct contact_law law, double overlap)
+{
+    const bool hertz = dem->features & FEATURE_HERTZ;
+    return law.normal_stiffness * (hertz ? sqrt(overlap) : 1);
+}
+
 // The overlap that a contact is taken to have; negative when it does not count.
 static double overlap_of(const struct dem *dem, double overlap, bool bonded, bool now)
 {
@@ -127,13 +134,14 @@ static struct grain_stiffness pair_stiffness(const struct dem *dem, int pair,
     const double overlap = overlap_of(dem, geometry.overlap, bonded, now);
     if (overlap < 0) return (struct grain_stiffness){.weight = 0};
 
-    const struct contact_law law =
-        tangents(dem, law_of_pair(dem, pair), overlap, bonded);
+    const struct contact_law pair_law = law_of_pair(dem, pair);
+    const struct contact_law law = tangents(dem, pair_law, overlap, bonded);
     const double radius =
         bonded ? dem->pairs.bonds[pair / PAIRS_IN_GROUP].radius[pair % PAIRS_IN_GROUP]
                : 0;
     const double area = M_PI * radius * radius, inertia = 0.25 * area * radius * radius;
     const double normal = dem->bond_normal_stiffness, shear = dem->bond_shear_stiffness;
+    const struct rolling_law rolling = pair_rolling(dem, pair);
     const struct vector outward = scale(is_first ? 1 : -1, geometry.normal);
     const double arm = dem->place[particle].radius - 0.5 * geometry.overlap;
     return (struct grain_stiffness){
@@ -142,11 +150,14 @@ static struct grain_stiffness pair_stiffness(const struct dem *dem, int pair,
                    .along = law.normal_stiffness + normal * area,
                    .across = law.shear_stiffness + shear * area,
                    .twist = shear * 2 * inertia,
-                   .bending = normal * inertia},
+                   .bending =
+                       normal * inertia +
+                       rolling_stiffness(&rolling, secant(dem, pair_law, overlap))},
         .dashpot = {.normal = outward,
                     .arm = arm,
                     .along = law.normal_damping,
-                    .across = law.shear_damping},
+                    .across = law.shear_damping,
+                    .bending = rolling_damping(dem, &rolling, overlap)},
         .weight = dem->mobility[other][0] > 0 ? 2 : 1};
 }
 
@@ -157,15 +168,22 @@ static struct grain_stiffness wall_stiffness(const struct dem *dem,
     if (overlap < 0) return (struct grain_stiffness){.weight = 0};
     const struct contact_law law = tangents(dem, pair->law, overlap, false);
     const double arm = dem->place[pair->particle].radius;
-    return (struct grain_stiffness){.spring = {.normal = pair->normal,
-                                               .arm = arm,
-                                               .along = law.normal_stiffness,
-                                               .across = law.shear_stiffness},
-                                    .dashpot = {.normal = pair->normal,
-                                                .arm = arm,
-                                                .along = law.normal_damping,
-                                                .across = law.shear_damping},
-                                    .weight = 1};
+    const bool rolls = dem->features & FEATURE_ROLLING;
+    const struct rolling_law rolling =
+        rolls ? pair->rolling : (struct rolling_law){0, 0};
+    return (struct grain_stiffness){
+        .spring = {.normal = pair->normal,
+                   .arm = arm,
+                   .along = law.normal_stiffness,
+                   .across = law.shear_stiffness,
+                   .bending =
+                       rolling_stiffness(&rolling, secant(dem, pair->law, overlap))},
+        .dashpot = {.normal = pair->normal,
+                    .arm = arm,
+                    .along = law.normal_damping,
+                    .across = law.shear_damping,
+                    .bending = rolling_damping(dem, &rolling, overlap)},
+        .weight = 1};
 }
 
 // Solves dt^2 k + 2 dt c = 4; infinite when nothing resists.
@@ -218,9 +236,16 @@ static double two_grain_limit(const struct dem *dem, int particle)
     const double across = along + 2 * radius * radius * mobility[1];
     const struct contact_law law =
         tangents(dem, pair_law(dem, particle, particle), dem->expected_overlap, false);
+    const double overlap = dem->expected_overlap;
+    const struct rolling_law rolling = rolling_of_two(dem, particle);
+    const double k = rolling_stiffness(
+        &rolling, secant(dem, pair_law(dem, particle, particle), overlap));
+    const double c = rolling_damping(dem, &rolling, overlap);
     return largest_step(
-        fmax(along * law.normal_stiffness, across * law.shear_stiffness),
-        fmax(along * law.normal_damping, across * law.shear_damping));
+        fmax(fmax(along * law.normal_stiffness, across * law.shear_stiffness),
+             2 * mobility[1] * k),
+        fmax(fmax(along * law.normal_damping, across * law.shear_damping),
+             2 * mobility[1] * c));
 }
 
 double automatic_time_step(const struct dem *dem)

@@ -160,6 +160,8 @@ static void add_walls(struct column_list *list, struct dem *dem)
     PAIR("wall_pair_depth", depth, 1);
     PAIR("wall_pair_force", load, 3);
     PAIR("wall_pair_moment", moment, 3);
+    if (dem->features & FEATURE_ROLLING)
+        PAIR("wall_pair_rolling_moment", rolling_moment, 3);
     if (!walls_are_wet(dem)) return;
     PAIR("wall_pair_bridge_pull", bridge_pull, 1);
     PAIR("wall_pair_bridge_volume", bridge_volume, 1);
@@ -223,6 +225,7 @@ static void add_pairs(struct column_list *list, struct dem *dem)
     PAIRS("pair_first_moment", moment, struct moment_group, first, 3);
     PAIRS("pair_second_moment", moment, struct moment_group, second, 3);
     PAIRS("pair_shear_force", shear, struct shear_group, force, 3);
+    PAIRS("pair_rolling_moment", rolling, struct rolling_group, moment, 3);
     PAIRS("bond_shear_force", bonds, struct bond_group, shear_force, 3);
     PAIRS("bond_bending", bonds, struct bond_group, bending, 3);
     PAIRS("bond_twist", bonds, struct bond_group, twist, 1);

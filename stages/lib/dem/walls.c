@@ -51,10 +51,12 @@ void find_wall_pairs(struct dem *dem)
                 pair.shear_force = last->shear_force;
                 pair.normal = last->normal;
                 pair.depth = last->depth;
+                pair.rolling_moment = last->rolling_moment;
                 pair.bridge_volume = last->bridge_volume;
                 pair.bridge_rupture = last->bridge_rupture;
                 pair.bridge_pull = last->bridge_pull;
             }
+            if (dem->features & FEATURE_ROLLING) set_wall_rolling(dem, &pair);
             if (walls_are_wet(dem)) set_wall_bridge_radius(dem, &pair);
             GROW_ARRAY(dem->wall_pair, dem->n_wall_pair, capacity);
             dem->wall_pair[dem->n_wall_pair++] = pair;
@@ -80,6 +82,7 @@ void set_wall_laws(struct dem *dem)
     for (int k = 0; k < dem->n_wall_pair; k++) {
         struct wall_pair *pair = &dem->wall_pair[k];
         pair->law = wall_law(dem, pair->particle, &dem->wall[pair->wall].is);
+        if (dem->features & FEATURE_ROLLING) set_wall_rolling(dem, pair);
         if (walls_are_wet(dem)) set_wall_bridge_radius(dem, pair);
     }
 }
@@ -109,23 +112,31 @@ static double shear_energy(const struct dem *dem, const struct wall_pair *pair)
                          : 0;
 }
 
+static double energy_of_rolling(const struct dem *dem, const struct wall_pair *pair)
+{
+    if (!(dem->features & FEATURE_ROLLING) || !(pair->depth > 0)) return 0;
+    const double stiffness = law_at(dem, &pair->law, pair->depth).normal_stiffness;
+    return rolling_energy(&pair->rolling, stiffness, pair->rolling_moment);
+}
+
 double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair)
 {
     if (!(pair->depth > 0)) return 0;
     const double share = dem->features & FEATURE_HERTZ ? 0.4 : 0.5; // of k U^2
     const double stiffness = law_at(dem, &pair->law, pair->depth).normal_stiffness;
-    return share * stiffness * pair->depth * pair->depth + shear_energy(dem, pair);
+    return share * stiffness * pair->depth * pair->depth + shear_energy(dem, pair) +
+           energy_of_rolling(dem, pair);
 }
 
-// The shear force of the last step in the contact plane of now: the smallest rotation
-// from the old normal to the new one, then ANGLE about the new one [K 4.13-4.15]. It is
-// dropped when the grain passes to another face.
-static struct vector rotated_shear(const struct wall_pair *pair, struct vector normal,
-                                   double angle)
+// HISTORY of the last step, a shear force or rolling moment, in the contact plane of
+// now: the smallest rotation from the old normal to the new one, then ANGLE about the
+// new one [K 4.13-4.15]. It is dropped when the grain passes to another face.
+static struct vector rotated(const struct wall_pair *pair, struct vector history,
+                             struct vector normal, double angle)
 {
     const double cosine = dot(pair->normal, normal);
     if (!(cosine > 0)) return (struct vector){0, 0, 0};
-    const struct vector f = pair->shear_force;
+    const struct vector f = history;
     const struct vector flat =
         subtract(f, scale(dot(f, normal) / (1 + cosine), add(pair->normal, normal)));
     return add(scale(1 - 0.5 * angle * angle, flat), scale(angle, cross(normal, flat)));
@@ -149,7 +160,7 @@ static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
     *lost += shear_energy(dem, pair);
     const struct vector before =
         scale(shear_retained(dem, pair->depth, contact->overlap),
-              rotated_shear(pair, contact->normal, angle));
+              rotated(pair, pair->shear_force, contact->normal, angle));
     pair->shear_force = before;
     pair->normal = contact->normal;
     pair->depth = contact->overlap;
@@ -173,8 +184,32 @@ static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
 struct push {
     struct vector force;
     struct vector shear; // the part of it across the normal
+    struct vector couple;
     double dashpots, slip;
 };
+
+// The rolling spring and dashpot of PAIR, of which ANGLE is how far it turned about the
+// normal; before its shear force, which takes normal and depth along. Adds to PUSH.
+static void resist_rolling(const struct dem *dem, struct wall_pair *pair,
+                           const struct wall_geometry *contact, double angle,
+                           double normal_force, struct push *push)
+{
+    const struct vector n = contact->normal;
+    const struct vector spin = subtract(dem->wall[pair->wall].spin,
+                                        as_vector(dem->motion[pair->particle].angular));
+    const bool hertz = dem->features & FEATURE_HERTZ;
+    const double before = fmax(pair->depth, 0), now = contact->overlap;
+    const struct wall_rolling step = {
+        .turned = rotated(pair, pair->rolling_moment, n, angle),
+        .rolling = subtract(spin, scale(dot(spin, n), n)),
+        .stiffness_before = law_at(dem, &pair->law, before).normal_stiffness,
+        .stiffness = law_at(dem, &pair->law, now).normal_stiffness,
+        .retained = shear_retained(dem, before, now),
+        .normal_force = normal_force,
+        .damping = hertz ? sqrt(sqrt(now)) : 1,
+        .time_step = dem->cycle > 0 ? dem->time_step : 0};
+    push->couple = advance_wall_rolling(pair, &step, &push->slip, &push->dashpots);
+}
 
 // Velocity of the wall's surface relative to the grain's [K 4.17].
 static struct vector sliding_velocity(const struct dem *dem,
@@ -213,6 +248,8 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
     const double angle = 0.5 * dt * dot(spins, n);
     const double friction_normal_force =
         dem->friction_feels_dashpot ? fmax(spring + dashpot, 0) : spring;
+    if (dem->features & FEATURE_ROLLING)
+        resist_rolling(dem, pair, contact, angle, friction_normal_force, &push);
     const bool slips = advance_shear(dem, pair, contact, scale(dt, sideways), angle,
                                      law.friction * friction_normal_force, &push.slip);
     push.shear = pair->shear_force;
@@ -236,8 +273,10 @@ static double resistance(const struct dem *dem, const struct wall_pair *pair)
 static void leave_wall(struct dem *dem, struct wall_pair *pair, double overlap)
 {
     const struct vector none = {0, 0, 0};
-    dem->energy_ledger.slip += dem->balance_energy ? shear_energy(dem, pair) : 0;
-    pair->shear_force = none;
+    if (dem->balance_energy)
+        dem->energy_ledger.slip +=
+            shear_energy(dem, pair) + energy_of_rolling(dem, pair);
+    pair->shear_force = pair->rolling_moment = none;
     pair->depth = overlap;
     pair->load = pair->moment = none;
 }
@@ -258,10 +297,12 @@ static void touch_wall(struct dem *dem, struct wall_pair *pair)
         push.force = subtract(push.force, scale(pair->bridge_pull, contact.normal));
     // The grain feels the opposite.
     pair->load = scale(-1, push.force);
-    pair->moment = scale(-contact.arm, cross(contact.normal, push.shear));
+    pair->moment =
+        subtract(scale(-contact.arm, cross(contact.normal, push.shear)), push.couple);
     struct rigid_wall *wall = &dem->wall[pair->wall];
     wall->force = add(wall->force, push.force);
-    wall->moment = add(wall->moment, cross(contact.lever, push.force));
+    wall->moment =
+        add(wall->moment, add(cross(contact.lever, push.force), push.couple));
     if (touches) wall->resistance += resistance(dem, pair);
     if (!dem->balance_energy) return;
     dem->energy_ledger.dashpots += push.dashpots;
