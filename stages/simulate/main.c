@@ -73,20 +73,19 @@ static struct vector *read_forces(const struct invocation *invocation,
     return force;
 }
 
-static struct scene read_scene(const struct simulate_parameters *parameters,
-                               const struct packing *packing,
-                               const struct artifact *input)
+// In place: the setup of SCENE points into it.
+static void read_scene(const struct simulate_parameters *parameters,
+                       const struct packing *packing, const struct artifact *input,
+                       struct scene *scene)
 {
     struct vector *velocity = artifact_has_dataset(input, "/particles/velocity")
                                   ? artifact_get(input, "/particles/velocity", NULL)
                                   : NULL;
-    struct scene scene;
     struct reason reason;
     const enum status status =
-        make_scene(parameters, packing, velocity, &scene, &reason);
+        make_scene(parameters, packing, velocity, scene, &reason);
     if (status) die(status, "%s", reason.text);
     free(velocity);
-    return scene;
 }
 
 // A servo whose force is further than this share from what it should be was too slow,
@@ -127,18 +126,22 @@ static void describe(const struct simulate_parameters *parameters,
                  "%.6g N/m, contact angle %.6g degrees\n",
                  model, scene->liquid.surface_tension, parameters->contact_angle);
     const bool bonds = scene->setup.packing->n_bond > 0;
+    bool rolling = false;
+    for (int k = 0; k < scene->n_material; k++)
+        rolling = rolling || scene->material[k].rolling_friction > 0;
     snprintf(text, size,
              "discrete elements: leapfrog, %s, Coulomb friction [K 4.25]\n"
              "%d materials, %d walls, %d groups of grains, %d of them driven\n"
-             "%s%s"
-             "left out: %srolling resistance, %sflow of air or liquid around the "
-             "grains\n",
+             "%s%s%s"
+             "left out: %s%s%sflow of air or liquid around the grains\n",
              laws[parameters->law], scene->n_material, scene->setup.n_wall,
              scene->n_group, scene->n_driven,
              !bonds                                  ? ""
              : parameters->bond_kind == BOND_CONTACT ? "contact bonds\n"
                                                      : "parallel bonds\n",
-             liquid, bonds ? "" : "bonds, ", *liquid ? "" : "liquid bridges, ");
+             liquid, rolling ? "elastic-plastic rolling resistance\n" : "",
+             bonds ? "" : "bonds, ", rolling ? "" : "rolling resistance, ",
+             *liquid ? "" : "liquid bridges, ");
 }
 
 static void write(const struct simulate_parameters *parameters,
@@ -190,7 +193,8 @@ int main(int argc, char **argv)
     json_t *inputs = one_input(input);
     struct vector *force = read_forces(&invocation, &parameters, &packing, inputs);
     if (parameters.bond_kind == BOND_NONE) packing.n_bond = 0;
-    struct scene scene = read_scene(&parameters, &packing, input);
+    struct scene scene;
+    read_scene(&parameters, &packing, input, &scene);
 
     struct checkpoint checkpoint;
     checkpoint_begin(&checkpoint, &invocation, inputs);

@@ -34,6 +34,14 @@ static const struct parameter material_table[] = {
      AT_LEAST(0),
      .text = "law=linear: of the dashpots, over critical damping [K 4.28]; null: that "
              "of the restitution"},
+    {"rolling_friction", PARAMETER_NUMBER, "1", "0", OF_MATERIAL(rolling_friction),
+     AT_LEAST(0),
+     .text =
+         "largest rolling moment over the normal force times R_i R_j / (R_i + R_j), "
+         "elastic-plastic (type C of Ai et al. 2011); of two materials the smaller "
+         "counts; not with bonds"},
+    {"rolling_damping", PARAMETER_NUMBER, "1", "0.3", OF_MATERIAL(rolling_damping),
+     AT_LEAST(0), .text = "of the rolling spring, over critical damping"},
     {0}};
 
 #define OF_PAIR(member) offsetof(struct pair_parameters, member)
@@ -46,6 +54,8 @@ static const struct parameter pair_table[] = {
     {"restitution", PARAMETER_NUMBER, "1", "null", OF_PAIR(restitution),
      BETWEEN(1e-6, 1),
      .text = "between the two, law=hertz or timed; null: the smaller of theirs"},
+    {"rolling_friction", PARAMETER_NUMBER, "1", "null", OF_PAIR(rolling_friction),
+     AT_LEAST(0), .text = "between the two; null: the smaller of theirs"},
     {0}};
 
 #define TIME_TABLE(at)                                                                 \

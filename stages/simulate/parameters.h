@@ -16,12 +16,13 @@ struct material_parameters {
     double density, friction, restitution;
     double young_modulus, poisson_ratio;
     double normal_stiffness, shear_stiffness, damping_ratio;
+    double rolling_friction, rolling_damping;
 };
 
 // A row of "pairs": what two materials do to each other. NAN: the smaller of the two.
 struct pair_parameters {
     const char *first, *second;
-    double friction, restitution;
+    double friction, restitution, rolling_friction;
 };
 
 // Factor on a motion at these times (s), linear between them; none: always 1.

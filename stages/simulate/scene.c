@@ -39,6 +39,8 @@ static struct dem_material make_material(const struct material_parameters *row,
         .local_damping = parameters->local_damping,
         .contact_time = parameters->contact_time,
         .restitution = row->restitution,
+        .rolling_friction = row->rolling_friction,
+        .rolling_damping = row->rolling_friction > 0 ? row->rolling_damping : 0,
         .young_modulus = row->young_modulus,
         .poisson_ratio = row->poisson_ratio};
 }
@@ -60,12 +62,15 @@ static void make_pair_tables(struct scene *scene)
     const struct dem_material *material = scene->material;
     scene->pair_friction = NEW_ARRAY(double, n *n);
     scene->pair_restitution = NEW_ARRAY(double, n *n);
+    scene->pair_rolling = NEW_ARRAY(double, n *n);
     for (int a = 0; a < n; a++)
         for (int b = 0; b < n; b++) {
             scene->pair_friction[a * n + b] =
                 fmin(material[a].friction, material[b].friction);
             scene->pair_restitution[a * n + b] =
                 fmin(material[a].restitution, material[b].restitution);
+            scene->pair_rolling[a * n + b] =
+                fmin(material[a].rolling_friction, material[b].rolling_friction);
         }
 }
 
@@ -87,6 +92,9 @@ static enum status read_pairs(const struct simulate_parameters *parameters,
             given_or(row->friction, friction[a * n + b]);
         rebound[a * n + b] = rebound[b * n + a] =
             given_or(row->restitution, rebound[a * n + b]);
+        double *rolling = scene->pair_rolling;
+        rolling[a * n + b] = rolling[b * n + a] =
+            given_or(row->rolling_friction, rolling[a * n + b]);
     }
     return STATUS_OK;
 }
@@ -259,6 +267,7 @@ static void set_engine(const struct simulate_parameters *parameters,
     setup->material_of = scene->material_of;
     setup->pair_friction = scene->pair_friction;
     setup->pair_restitution = scene->pair_restitution;
+    setup->pair_rolling_friction = scene->pair_rolling;
     setup->n_group = scene->n_driven;
     setup->group = scene->driven;
     setup->group_of = scene->driven_of;
@@ -297,7 +306,8 @@ void scene_free(struct scene *scene)
         scene->material,         scene->pair_friction, scene->material_of,
         scene->pair_restitution, scene->group_of,      scene->driven_of,
         scene->driven_group,     scene->driven,        scene->wall,
-        scene->wall_more,        scene->velocity,      scene->spin};
+        scene->wall_more,        scene->velocity,      scene->spin,
+        scene->pair_rolling};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     *scene = (struct scene){0};

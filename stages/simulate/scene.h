@@ -15,12 +15,12 @@ struct scene_wall {
     double servo_pressure, servo_area; // NAN: not given
 };
 
-// It owns its arrays; SETUP points into them, into the packing and the parameters. Free
-// with scene_free.
+// It owns its arrays. SETUP points into them, into the struct itself, which must not be
+// copied, into the packing and the parameters. Free with scene_free.
 struct scene {
     struct dem_setup setup;
     struct dem_material *material; // (n_material)
-    double *pair_friction, *pair_restitution;
+    double *pair_friction, *pair_restitution, *pair_rolling;
     int n_material;
     uint8_t *material_of, *group_of; // (n_particle) group: from 1, 0: none
     uint8_t *driven_of;              // (n_particle) 1 + driven group, 0: none

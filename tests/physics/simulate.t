@@ -68,6 +68,15 @@ for angle, friction in [(0.3, 0.5), (1.0, 0.2)]:
     slope = (speed[-1] - speed[10]) / (time[-1] - time[10])
     near(slope, wanted, 2e-3, f"on an incline of {angle} rad it {'rolls' if rolls else 'slides'}")
 
+# With rolling friction mu_r it rolls 7/10 v^2 / (mu_r g) far and stands.
+glass = {"glass": dict(SOFT["glass"], rolling_friction=0.05, rolling_damping=0.3)}
+motion = simulate(packing([0, 0, 1e-3, 1e-3]),
+                  {"duration": 0.4, "materials": glass, "walls": {"floor": {"point": [0, 0, 0]}},
+                   "groups": {"ball": {"initial": {"velocity": [0.1, 0, 0], "spin": [0, 100, 0]}}}})
+near(motion["snapshots/position"][-1, 0, 0], 0.7 * 0.1**2 / (0.05 * 9.81), 2e-2,
+     "with rolling resistance a ball rolls as far as energy says")
+ok(np.linalg.norm(motion["snapshots/velocity"][-1]) < 1e-4, "and stands then")
+
 # --- walls -------------------------------------------------------------------------------------------
 lattice = [[(i + .5) * 2e-3, (j + .5) * 2e-3, (k + .5) * 2e-3, 1e-3]
            for i in range(4) for j in range(4) for k in range(4)]
