@@ -4,7 +4,7 @@
 #ifndef CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
 #define CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
 
-#include "sample.h"
+#include "statistics/sample.h"
 
 // Student's t test that the differences have mean 0.
 struct paired_t {

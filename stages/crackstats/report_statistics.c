@@ -6,7 +6,7 @@
 #include "basics/memory.h"
 #include "paired_test.h"
 #include "report.h"
-#include "sample.h"
+#include "statistics/sample.h"
 
 #include <math.h>
 #include <stdlib.h>

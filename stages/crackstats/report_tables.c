@@ -4,7 +4,7 @@
 // rounded to a multiple of 1/2, is the exact sum again (scatter.h).
 #include "basics/memory.h"
 #include "report.h"
-#include "sample.h"
+#include "statistics/sample.h"
 
 #include <math.h>
 #include <stdlib.h>

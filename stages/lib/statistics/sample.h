@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Statistics of samples: confidence intervals, and whether two groups differ.
-#ifndef CRAQUELURE_CRACKSTATS_SAMPLE_H
-#define CRAQUELURE_CRACKSTATS_SAMPLE_H
+#ifndef CRAQUELURE_SAMPLE_H
+#define CRAQUELURE_SAMPLE_H
 
 #include <stdbool.h>
 

@@ -6,7 +6,7 @@
 // with Satterthwaite's degrees of freedom. Mann and Whitney's U is exact by counting:
 // the number of ways to choose k of the ranks 1..n with sum s; with ties or many
 // values it is nearly normal, with the variance corrected for ties.
-#include "sample.h"
+#include "statistics/sample.h"
 
 #include "basics/memory.h"
 
