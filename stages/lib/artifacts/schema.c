@@ -11,7 +11,8 @@
 
 extern const char schema_packing[], schema_network[], schema_drying[], schema_forces[],
     schema_response[], schema_crackstats[], schema_engine[], schema_restart[],
-    schema_bridge[], schema_flow[], schema_invasion[], schema_check[], schema_motion[];
+    schema_bridge[], schema_flow[], schema_invasion[], schema_check[], schema_motion[],
+    schema_shearstats[];
 
 static const struct {
     const char *name, *text;
@@ -21,7 +22,7 @@ static const struct {
                {"engine", schema_engine},     {"restart", schema_restart},
                {"bridge", schema_bridge},     {"flow", schema_flow},
                {"invasion", schema_invasion}, {"check", schema_check},
-               {"motion", schema_motion}};
+               {"motion", schema_motion},     {"shearstats", schema_shearstats}};
 
 static json_t *load(const char *text)
 {

@@ -21,5 +21,6 @@
     schema schema_invasion, "schemas/invasion.json"
     schema schema_check, "schemas/check.json"
     schema schema_motion, "schemas/motion.json"
+    schema schema_shearstats, "schemas/shearstats.json"
 
     .section .note.GNU-stack, "", @progbits

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fields in each cell, from the sums of one or more snapshots.
+#ifndef CRAQUELURE_SHEARSTATS_FIELDS_H
+#define CRAQUELURE_SHEARSTATS_FIELDS_H
+
+#include "field_kinds.h"
+#include "sums.h"
+
+// From SUM over SNAPSHOTS snapshots. In a cylinder the components are r, angle, z. The
+// caller frees them with fields_free.
+struct fields make_fields(const struct grid *grid, const double *sum, int snapshots);
+void fields_free(struct fields *fields);
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cells of the fields: intervals along three axes, and how much of a point, spread
+// by the kernel along each axis, falls in each of them.
+#ifndef CRAQUELURE_SHEARSTATS_GRID_H
+#define CRAQUELURE_SHEARSTATS_GRID_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { MOST_SHARES = 128 }; // intervals that one point reaches along an axis
+
+struct grid_axis {
+    double lower, spacing; // m; all the angle where round
+    int n;
+    double half_width; // of the kernel, m; 0: points are not spread
+    bool repeats;      // a side of the box follows the other
+    bool reflects;     // at its lower end, 0: the axis of a cylinder
+    bool everywhere;   // one interval that all points lie in
+};
+
+// Cells are numbered with the last axis fastest. In a cylinder the axes are r, the
+// angle (everywhere), z.
+struct grid {
+    struct grid_axis axis[3];
+    bool cylindrical;
+};
+
+// The intervals that a point reaches, and its share in each.
+struct shares {
+    int n;
+    int interval[MOST_SHARES];
+    double share[MOST_SHARES];
+};
+
+int grid_cells(const struct grid *grid);
+double cell_centre(const struct grid *grid, int cell, int axis); // m; rad
+double cell_volume(const struct grid *grid, int cell);           // m3
+
+// The place of CELL along AXIS; the number of the cell STEP further along it, or -1.
+int cell_place(const struct grid *grid, int cell, int axis);
+int cell_beside(const struct grid *grid, int cell, int axis, int step);
+
+// Shares sum to 1 to rounding where the kernel lies within the axis, or it repeats.
+void find_shares(const struct grid_axis *axis, double at, struct shares *shares);
+
+// Adds VALUE (COUNT) times the share of the point AT to SUM (n_cell, STRIDE), from
+// column 0 on.
+void spread(const struct grid *grid, const double at[3], const double *value,
+            size_t count, double *sum, size_t stride);
+
+#endif

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The coarse-graining function along one axis: the triweight polynomial
+//     phi(u) = 35/32 (1 - u^2)^3,   |u| < 1,   u = distance / half width.
+// Its standard deviation is a third of its half width, so that it stands for a Gaussian
+// of that width, cut off smoothly where others cut theirs.
+#ifndef CRAQUELURE_SHEARSTATS_KERNEL_H
+#define CRAQUELURE_SHEARSTATS_KERNEL_H
+
+enum { KERNEL_REACH = 3 }; // half width over smoothing length (standard deviation)
+
+// The integral of phi up to U: 0 below -1, 1 above 1.
+static inline double kernel_share(double u)
+{
+    if (u <= -1) return 0;
+    if (u >= 1) return 1;
+    const double s = u * u;
+    return 0.5 + 35.0 / 32 * u * (1 - s * (1 - s * (3.0 / 5 - s / 7)));
+}
+
+#endif

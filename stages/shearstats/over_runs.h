@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mean of a number over the runs that have it.
+#ifndef CRAQUELURE_SHEARSTATS_OVER_RUNS_H
+#define CRAQUELURE_SHEARSTATS_OVER_RUNS_H
+
+// N of them have it; 0: the mean is 0. The standard error of the mean, and half its
+// Student's interval, are 0 for fewer than two.
+struct over_runs {
+    int n;
+    double mean, standard_error, half_width;
+};
+
+// Over the values (N) that are not NAN.
+struct over_runs over_runs(const double *value, int n, double confidence);
+
+#endif

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts and bridges by the separation of their grains [G 15].
+#ifndef CRAQUELURE_SHEARSTATS_SEPARATIONS_H
+#define CRAQUELURE_SHEARSTATS_SEPARATIONS_H
+
+#include "band.h"
+#include "frame.h"
+#include "motion.h"
+
+enum zone { ZONE_OUTSIDE = 0, ZONE_INSIDE = 1, ZONES };
+
+// Classes of equal width, class k from k WIDTH on; the first kept is LOWEST. It owns
+// its arrays; free with separations_free.
+struct separations {
+    double width; // m
+    int64_t lowest;
+    int n;
+    double (*count)[ZONES]; // (n) pairs in all snapshots
+    double (*force)[ZONES]; // (n) sum of their normal forces, N; below 0: they pull
+};
+
+// Adds the pairs of grains of snapshot S, one of which at least moves freely; INSIDE
+// where the contact is within a width of the band's centre. Without a band (FIT is
+// NULL) all are outside.
+void add_separations(struct separations *separations, const struct motion *motion,
+                     int s, const struct frame *frame, const struct split_cell *cell,
+                     const struct band_fit *fit);
+void separations_free(struct separations *separations);
+
+// Whether a place is inside the band.
+bool inside_band(const struct split_cell *cell, const struct band_fit *fit, double r,
+                 double z);
+
+#endif

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The strain rate of the coarse velocity.
+#ifndef CRAQUELURE_SHEARSTATS_STRAIN_RATE_H
+#define CRAQUELURE_SHEARSTATS_STRAIN_RATE_H
+
+#include "field_kinds.h"
+#include "grid.h"
+
+// RATE (3, 3), 1/s, in a filled CELL, from velocities and angular velocities of FIELDS.
+void strain_rate(const struct grid *grid, const struct fields *fields, int cell,
+                 double rate[9]);
+
+#endif

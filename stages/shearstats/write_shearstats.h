@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The shearstats artifact: means over the runs with intervals, and each run.
+#ifndef CRAQUELURE_SHEARSTATS_WRITE_SHEARSTATS_H
+#define CRAQUELURE_SHEARSTATS_WRITE_SHEARSTATS_H
+
+#include "artifacts/artifact.h"
+#include "study.h"
+
+// Grid, fields, summary, what flows.
+void put_fields(struct artifact *artifact, const struct study *study,
+                double confidence);
+
+// Levels, profiles and torque of a split-bottom cell, the lines, separations.
+void put_statistics(struct artifact *artifact, const struct study *study,
+                    double confidence);
+
+#endif
