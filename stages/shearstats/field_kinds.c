@@ -3,12 +3,16 @@
 #include "field_kinds.h"
 
 const struct field_kind field_kinds[FIELD_KINDS] = {
-    {"density", 1},        {"volume_fraction", 1}, {"number_density", 1},
-    {"momentum", 3},       {"velocity", 3},        {"angular_velocity", 1},
-    {"contact_stress", 9}, {"bridge_stress", 9},   {"kinetic_stress", 9},
-    {"strain_rate", 9},    {"fabric", 9},          {"coordination", 1},
-    {"bridges", 1},        {"contact_density", 1}, {"traction", 3},
-    {"pressure", 1},       {"shear_stress", 1},    {"shear_rate", 1}};
+    {"density", 1, OF_VOLUME},        {"volume_fraction", 1, OF_VOLUME},
+    {"number_density", 1, OF_VOLUME}, {"momentum", 3, OF_VOLUME},
+    {"velocity", 3, OF_GRAINS},       {"angular_velocity", 1, OF_GRAINS},
+    {"contact_stress", 9, OF_VOLUME}, {"bridge_stress", 9, OF_VOLUME},
+    {"kinetic_stress", 9, OF_VOLUME}, {"strain_rate", 9, OF_GRAINS},
+    {"fabric", 9, OF_CONTACTS},       {"coordination", 1, OF_GRAINS},
+    {"bridges", 1, OF_GRAINS},        {"contact_density", 1, OF_VOLUME},
+    {"traction", 3, OF_VOLUME},       {"pressure", 1, OF_VOLUME},
+    {"shear_stress", 1, OF_VOLUME},   {"shear_rate", 1, OF_GRAINS},
+};
 
 int field_column(enum field field)
 {

@@ -28,10 +28,14 @@ enum field {
     FIELD_KINDS
 };
 
+// What a field is a mean over: it is 0 in a cell that has none.
+enum field_basis { OF_VOLUME, OF_GRAINS, OF_CONTACTS };
+
 // One dataset each: its name, and its numbers in a cell (1, 3 or 9).
 struct field_kind {
     const char *name; // "density"
     int width;
+    enum field_basis basis;
 };
 extern const struct field_kind field_kinds[FIELD_KINDS];
 

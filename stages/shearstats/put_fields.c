@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fields are means over the runs in which the cell is filled; standard errors are those
-// of these means.
+// Fields are means over the runs; those of the grains, over the runs that have any in
+// the cell. Standard errors are those of these means.
 #include "basics/memory.h"
 #include "over_runs.h"
 #include "write_shearstats.h"
@@ -34,6 +34,13 @@ static void put_grid(struct artifact *artifact, const struct grid *grid)
     free(volume);
 }
 
+static bool is_known(const struct fields *fields, int cell, enum field_basis basis)
+{
+    return basis == OF_VOLUME   ? true
+           : basis == OF_GRAINS ? fields->filled[cell] > 0
+                                : *field_at(fields, cell, FIELD_CONTACTS) > 0;
+}
+
 // The numbers of FIELD over the runs, (n_cell, its width).
 static void put_field(struct artifact *artifact, const struct study *study,
                       enum field field, double confidence)
@@ -45,8 +52,8 @@ static void put_field(struct artifact *artifact, const struct study *study,
         for (int k = 0; k < width; k++) {
             for (int r = 0; r < study->n_run; r++) {
                 const struct fields *fields = &study->run[r].fields;
-                value[r] =
-                    fields->filled[cell] ? field_at(fields, cell, field)[k] : NAN;
+                const bool known = is_known(fields, cell, field_kinds[field].basis);
+                value[r] = known ? field_at(fields, cell, field)[k] : NAN;
             }
             const struct over_runs over = over_runs(value, study->n_run, confidence);
             mean[cell * width + k] = over.mean;

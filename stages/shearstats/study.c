@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The grid spans all centres of grains in the window of the first motion, and what the
-// kernel reaches beyond them, unless told otherwise; along axes that are not divided,
+// The grid spans all grains in the window of the first motion, and what the kernel
+// reaches beyond them, unless told otherwise; along axes that are not divided,
 // and along those that repeat, the box.
 #include "study.h"
 
@@ -16,13 +16,14 @@
 
 struct extent {
     double lower[3], upper[3]; // of centres of free grains
+    double largest;            // radius of any grain
     double bottom, top;        // along the last axis, without the highest hundredth
 };
 
 static struct extent find_extent(const struct motion *motion, const struct frame *frame)
 {
-    struct extent extent = {
-        {HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, 0, 0};
+    struct extent extent = {.lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
+                            .upper = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     const size_t n = (size_t)motion->n_particle;
     double *height = NEW_ARRAY(double, n);
     size_t n_last = 0;
@@ -37,6 +38,8 @@ static struct extent find_extent(const struct motion *motion, const struct frame
             }
             if (s == motion->last - 1) height[n_last++] = place.at[2];
         }
+    for (size_t i = 0; i < n; i++)
+        extent.largest = fmax(extent.largest, motion->radius[i]);
     extent.bottom = extent.lower[2];
     if (n_last > 0) {
         gsl_sort(height, 1, n_last);
@@ -71,15 +74,15 @@ static struct grid_axis make_axis(const struct motion *motion,
                                   double spacing, bool cylindrical, int k)
 {
     const double reach = KERNEL_REACH * smoothing;
+    const double beyond = reach + extent->largest; // contacts with walls, too
     const bool repeats = !cylindrical && motion->periodic[k];
     const bool whole = !cylindrical && !(parameters->along >> k & 1);
     const double box_lower = component(motion->lower, k);
     const double box_upper = component(motion->upper, k);
     if (cylindrical && k == 1)
         return (struct grid_axis){0, 2 * M_PI, 1, 0, false, false, true};
-    double lower = choose(parameters->lower[k], extent->lower[k] - reach);
-    const double pad = reach > 0 ? reach : 1e-9 * spacing; // plain cells end above it
-    double upper = choose(parameters->upper[k], extent->upper[k] + pad);
+    double lower = choose(parameters->lower[k], extent->lower[k] - beyond);
+    double upper = choose(parameters->upper[k], extent->upper[k] + beyond);
     if (repeats || whole) {
         lower = repeats ? box_lower : choose(parameters->lower[k], box_lower);
         upper = repeats ? box_upper : choose(parameters->upper[k], box_upper);

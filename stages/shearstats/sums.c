@@ -9,11 +9,11 @@
 //     d momentum/dt + div(flux + stress) = traction + body
 // holds exactly where W depends on differences of coordinates only.
 //
-// The integral is Gauss's with three points on each of equal pieces of l, at most half
-// a half width of the kernel long; the weights sum to 1, so that the sum of f l over
-// the grid keeps all of its digits. Force and branch are turned to the local directions
-// of each point. In a cylinder r v_angle stands beside v_angle, for the angular
-// velocity.
+// The integral is Gauss's with three points on each of equal pieces of l, at most
+// a quarter of the half width of the kernel long; the weights sum to 1, so that the sum
+// of f l over the grid keeps all of its digits. Force and branch are turned to the
+// local directions of each point. In a cylinder r v_angle stands beside v_angle, for
+// the angular velocity.
 #include "sums.h"
 
 #include "basics/memory.h"
@@ -143,14 +143,14 @@ static void add_branch(const struct frame *frame, const struct grid *grid, doubl
                       weight[k] / pieces, sum);
 }
 
-// Half a half width of the kernel; unspread, a quarter of a cell.
+// A quarter of the half width of the kernel; unspread, of a cell.
 static double longest_piece(const struct grid *grid)
 {
     double piece = HUGE_VAL;
     for (int k = 0; k < 3; k++) {
         const struct grid_axis *axis = &grid->axis[k];
         if (!axis->everywhere)
-            piece = fmin(piece, axis->half_width > 0 ? 0.5 * axis->half_width
+            piece = fmin(piece, axis->half_width > 0 ? 0.25 * axis->half_width
                                                      : 0.25 * axis->spacing);
     }
     return piece;
