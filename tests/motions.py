@@ -40,10 +40,10 @@ def write_motion(path, position, velocity, radius, mass, contacts=None, time=Non
     maps "wall_force" and the like to arrays, WALLS are points; SCENE the parameters."""
     position, velocity = np.array(position, float), np.array(velocity, float)
     n_snapshot, n = position.shape[:2]
-    contacts = contacts or [Contacts()] * n_snapshot
+    contacts = contacts or [Contacts()] * max(n_snapshot, 1)
     history = dict(history or {})
     rows = len(history.setdefault("time", np.arange(1.0)))
-    own = {"/particles/position": position[0], "/particles/radius": np.broadcast_to(radius, n),
+    own = {"/particles/position": position[0] if n_snapshot else np.zeros((n, 3)), "/particles/radius": np.broadcast_to(radius, n),
            "/particles/mass": np.broadcast_to(mass, n), "/particles/driven": driven,
            "/domain/lower": lower, "/domain/upper": upper, "/domain/periodic": periodic,
            "/walls/point": np.array(walls, float).reshape(-1, 3),
@@ -51,7 +51,7 @@ def write_motion(path, position, velocity, radius, mass, contacts=None, time=Non
            "/snapshots/box_lower": np.tile(lower, (n_snapshot, 1)),
            "/snapshots/box_upper": np.tile(upper, (n_snapshot, 1)),
            "/snapshots/position": position, "/snapshots/velocity": velocity,
-           "/snapshots/contacts": [len(c.pair) for c in contacts],
+           "/snapshots/contacts": [len(c.pair) for c in contacts][:n_snapshot],
            "/contacts/particles": np.concatenate([c.pair for c in contacts]),
            "/contacts/force": np.concatenate([c.force for c in contacts]),
            "/contacts/position": np.concatenate([c.point for c in contacts]),

@@ -97,7 +97,7 @@ int main(int argc, char **argv)
 {
     struct shearstats_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    check_parameters(&parameters);
+    check_shearstats_parameters(&parameters);
     json_t *inputs = json_array();
     struct study study;
     read_runs(&study, &invocation, &parameters, inputs);

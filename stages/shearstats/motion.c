@@ -136,7 +136,7 @@ void motion_free(struct motion *motion)
     *motion = (struct motion){0};
 }
 
-struct vector nearest_image(const struct motion *motion, struct vector between)
+struct vector shortest_image(const struct motion *motion, struct vector between)
 {
     const struct vector edge = subtract(motion->upper, motion->lower);
     for (int axis = 0; axis < 3; axis++) {

@@ -37,7 +37,7 @@ struct motion read_motion(const struct artifact *input, double from, double to);
 void motion_free(struct motion *motion);
 
 // The nearest image of the vector from one point to another.
-struct vector nearest_image(const struct motion *motion, struct vector between);
+struct vector shortest_image(const struct motion *motion, struct vector between);
 
 // The moment of the grains on wall W, or on driven group G, about the axis through
 // POINT along the unit vector AXIS, at row T of the sums; N m.

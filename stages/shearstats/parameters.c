@@ -81,7 +81,7 @@ const struct parameter shearstats_table[] = {
          "diameter"},
     {0}};
 
-void check_parameters(const struct shearstats_parameters *parameters)
+void check_shearstats_parameters(const struct shearstats_parameters *parameters)
 {
     double length = 0;
     for (int k = 0; k < 3; k++) {

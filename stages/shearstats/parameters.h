@@ -31,6 +31,6 @@ struct shearstats_parameters {
 extern const struct parameter shearstats_table[];
 
 // Exits 65 at values that do not go together.
-void check_parameters(const struct shearstats_parameters *parameters);
+void check_shearstats_parameters(const struct shearstats_parameters *parameters);
 
 #endif

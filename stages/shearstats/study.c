@@ -201,6 +201,11 @@ enum status begin_study(struct study *study, const struct motion *motion,
     if (!(study->diameter > 0))
         return refuse(reason, STATUS_BAD_DATA,
                       "/particles/driven: no grain moves freely");
+    for (int k = 0; k < 3; k++)
+        if (study->frame.cylindrical && motion->periodic[k])
+            return refuse(reason, STATUS_BAD_DATA,
+                          "/domain/periodic: the box repeats: coordinates must be "
+                          "cartesian");
     study->smoothing = choose(parameters->smoothing_length, 0.5 * study->diameter);
     study->class_width = choose(parameters->class_width, 1e-3 * study->diameter);
     const struct extent extent = find_extent(motion, &study->frame);

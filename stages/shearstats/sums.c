@@ -82,7 +82,7 @@ struct vector contact_normal(const struct motion *motion, int s, int64_t k)
     const struct vector to =
         pair[1] < 0 ? motion->point[k] : centre(motion, s, pair[1]);
     const struct vector between =
-        nearest_image(motion, subtract(to, centre(motion, s, pair[0])));
+        shortest_image(motion, subtract(to, centre(motion, s, pair[0])));
     const double length = norm(between);
     return length > 0 ? scale(1 / length, between) : (struct vector){0, 0, 0};
 }
@@ -96,7 +96,7 @@ bool branch_of(const struct motion *motion, int s, int64_t k, struct vector *fro
     const struct vector start = a_free ? centre(motion, s, a) : motion->point[k];
     const struct vector end = b_free ? centre(motion, s, b) : motion->point[k];
     *from = start;
-    *along = nearest_image(motion, subtract(end, start));
+    *along = shortest_image(motion, subtract(end, start));
     return true;
 }
 
