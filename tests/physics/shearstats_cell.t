@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """shearstats on a split-bottom cell made from closed forms (tests/split_cell.py): bands, line, torque."""
 import os
+import subprocess
 import sys
 
 import h5py
@@ -36,6 +37,7 @@ SETTINGS = dict(smoothing_length=2e-3, grid__spacing=2e-3, cell__rate=cell.RATE,
                 cell__upper=0.052, cell__walls="outer", cell__inner_radius=0.05, cell__outer_radius=0.19)
 runs = [cell.make(at(f"run{k}"), seed=k) for k in range(4)]
 f = stats(runs, **SETTINGS)
+os.rename(at("out"), at("cell"))
 z = f["levels/height"]
 ok(len(z) == 13 and f["levels/fitted"].all(), "a band at each of 13 heights")
 shift = np.array([1e-3 * np.random.default_rng(k).normal() for k in range(4)])
@@ -76,6 +78,26 @@ dense = wide["separations/count"].sum(0) / wide["separations/volume"]
 close(dense[1] / dense[0], 1, 0.08, "as dense inside the band as outside, where nothing differs")
 band = 4 * np.pi * 0.144 * 0.009 * cell.HEIGHT  # 2 W wide, all around
 close(wide["separations/volume"][1] / band, 1, 0.1, "volume inside the band")
+
+# The pictures and the table of these.
+STUDY = os.path.join("pipelines", "studies", "shear")
+for what in ["bands", "profiles", "rheology", "torque", "separations"]:
+    words = ["unger=0.15,0.06"] if what == "bands" else []
+    drawn = subprocess.run([f"{STUDY}/figure", what, f"four runs={at('cell')}", *words, at("figure.svg")],
+                           stderr=subprocess.PIPE, text=True)
+    picture = open(at("figure.svg")).read() if drawn.returncode == 0 else ""
+    said = "height" if what == "profiles" else "four runs"
+    ok(not drawn.stderr and "</svg>" in picture and said in picture, f"the picture of {what}", drawn.stderr)
+subprocess.run([f"{STUDY}/table", f"four runs={at('cell')}", "unger=0.15,0.06", at("table.md")], check=True)
+table = open(at("table.md")).read()
+ok(f"| four runs | 4 | {f['friction']:.4f} ± {f['friction_half_width']:.4f} |" in table, "friction in the table",
+   table)
+sys.path.insert(0, STUDY)
+from shear import unger_centre
+close(unger_centre(np.array([0, 0.06]), 0.15, 0.06), [0.15, 0.15 * (1 - 0.4 ** 2.5)], 1e-12,
+      "Unger's band begins at the split and ends at Fenistein's radius")
+r = unger_centre(np.array([0.02]), 0.15, 0.06)[0]
+close(r * (1 - 0.15 / r * (1 - 0.4 ** 2.5)) ** 0.4, 0.04, 1e-12, "and keeps its equation between")
 
 # The inner part turning the other way round.
 other = cell.make(at("inner"), seed=9, inner=True, rate=-cell.RATE, spread=0)
