@@ -304,7 +304,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-BENCH_STUDIES := $(addprefix bench-,dem impact walls bridge viscous replay dry network flow)
+BENCH_STUDIES := $(addprefix bench-,dem impact walls bridge viscous replay dry network flow report)
 .PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) speed-vs-error
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -335,6 +335,7 @@ bench-replay: ## error of both engines of the replay against time, and time agai
 bench-dry: ## time of drying and of invasion percolation against size (ten minutes)
 bench-network: ## measure time and memory of the tessellation, next to voro++
 bench-flow: ## measure time and memory of the flow, next to Yade
+bench-report: ## the page of 50,000 grains in a headless Chromium: first picture, slider, turning
 speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minutes)
 	@tests/bench/speed-vs-error
 

@@ -205,6 +205,29 @@ agree_on_picks("a cut")
 browser.evaluate("element('clip-axis').value = -1; page.camera.yaw += 1; page.camera.pitch = -0.3; draw(page)")
 agree_on_picks("from elsewhere")
 
+# what a large body leaves out of the picture
+SEEN = """(async () => { const { gl } = page.scene, { width, height } = page.canvas, view = viewOf(page, width, height), shots = [];
+    const seen = seenOf(page.body, view, width, height);
+    for (const shown of [allOf(page.body), seen]) {
+      page.seen = shown; putBody(page.scene, shown); page.tinted = null; updateMoment(page, view); drawScene(page.scene, view);
+      const shot = new Uint8Array(4 * width * height);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, shot);
+      shots.push(shot);
+    }
+    let differ = 0;
+    for (let k = 0; k < shots[0].length; k += 4) differ += [0, 1, 2].some((c) => shots[0][k + c] !== shots[1][k + c]);
+    page.stale = true;
+    return [seen.grains.all.length, seen.throats.all.length, seen.throats.bold, differ / width / height]; })()"""
+only("grains", "liquid", "empty")
+browser.evaluate("page.course.set(page.course.last / 3)")
+grains_drawn, throats_drawn, bold, differ = browser.evaluate(SEEN)
+ok(grains_drawn < len(radius) and throats_drawn < browser.evaluate("page.body.throat.n") and differ < 2e-3,  # slivers between the fifteen points of a throat
+   "without what grains hide the picture is the same, but for slivers of throats", (grains_drawn, throats_drawn, differ))
+few = browser.evaluate("(() => { MOVING.throats = 50; const { throats: { all, bold } } = seenOf(page.body, viewOf(page, 300, 300), 300, 300);"
+                       " const ends = all.map((t) => page.body.throat.ends[t]), falls = (list) => list.every((e, k) => !k || list[k - 1] >= e);"
+                       " return [bold, new Set(all).size === all.length, falls(ends.slice(0, bold)) && falls(ends.slice(bold))]; })()")
+ok(0 < few[0] <= 50 and few[1:] == [True, True], "of these the boldest come first, and those that empty last before others", few)
+
 # the moment: liquid and cracks against a replay of the drying
 with h5py.File(at("drying.h5")) as file:
     times, offset = file["history/time"][:], file["changes/offset"][:]

@@ -29,6 +29,30 @@ async function readArrays(meta) {
   return arrays;
 }
 
+// Numbers of KEYS by falling key.
+function fallingOrder(keys) {
+  const place = new Uint32Array(65537), order = new Uint32Array(keys.length);
+  for (let k = 0; k < keys.length; k++) place[65536 - keys[k]]++;
+  for (let key = 1; key < place.length; key++) place[key] += place[key - 1];
+  for (let k = 0; k < keys.length; k++) order[place[65535 - keys[k]]++] = k;
+  return order;
+}
+
+// Throats, those that empty last first, with the middle of each and how far it reaches.
+function throatsOf({ at }, columns) {
+  const order = fallingOrder(columns.ends), n = order.length, middle = new Float32Array(4 * n), throat = { n, middle };
+  for (const name in columns) {
+    const from = columns[name], to = throat[name] = new (from.constructor === Array ? Uint32Array : from.constructor)(n);
+    for (let k = 0; k < n; k++) to[k] = from[order[k]];
+  }
+  for (let t = 0; t < n; t++) {
+    const a = 3 * throat.first[t], b = 3 * throat.second[t];
+    for (let axis = 0; axis < 3; axis++) middle[4 * t + axis] = (at[a + axis] + at[b + axis]) / 2;
+    middle[4 * t + 3] = Math.hypot(at[a] - at[b], at[a + 1] - at[b + 1], at[a + 2] - at[b + 2]) / 2 + throat.radius[t];
+  }
+  return throat;
+}
+
 const NEVER = 65535; // a key: does not happen
 
 // The run in the units of the picture: the middle of the box is the origin, half of its
@@ -37,25 +61,26 @@ function bodyOf(meta, arrays) {
   const size = meta.upper.map((high, axis) => high - meta.lower[axis]);
   const unit = Math.hypot(...size) / 2 || 1;
   const middle = meta.lower.map((low, axis) => low + size[axis] / 2);
+  const scale = meta.scales.step / unit;
   const place = (name) => {
     const columns = ["x", "y", "z"].map((axis) => arrays[`${name}.${axis}`] || []);
     const n = columns[0].length, at = new Float32Array(3 * n);
-    for (let axis = 0; axis < 3; axis++)
-      for (let k = 0; k < n; k++)
-        at[3 * k + axis] = (meta.scales.origin[axis] + meta.scales.step * columns[axis][k] - middle[axis]) / unit;
+    columns.forEach((column, axis) => {
+      const from = (meta.scales.origin[axis] - middle[axis]) / unit;
+      for (let k = 0; k < n; k++) at[3 * k + axis] = from + scale * column[k];
+    });
     return at;
   };
-  const length = (name) => Float32Array.from(arrays[name] || [], (value) => value * meta.scales.step / unit);
-  const second = (first, apart) => Uint32Array.from(first || [], (value, k) => value + apart[k]);
+  const length = (name) => new Float32Array(arrays[name] || []).map((value) => value * scale);
+  const second = (first, apart) => new Uint32Array(first || []).map((value, k) => value + apart[k]);
+  const node = { at: place("node") };
   return {
     meta, arrays, unit, size: size.map((length) => length / unit), middle,
     grain: { at: place("grain"), radius: length("grain.radius"), n: (arrays["grain.radius"] || []).length },
-    node: { at: place("node") },
-    throat: {
-      first: arrays["throat.first"] || [], second: second(arrays["throat.first"], arrays["throat.second"]),
-      radius: length("throat.radius"), leaves: arrays["throat.leaves"], ends: arrays["throat.ends"],
-      id: arrays["throat.id"], n: (arrays["throat.id"] || []).length,
-    },
+    node, throat: throatsOf(node, {
+      first: arrays["throat.first"] || [], second: second(arrays["throat.first"], arrays["throat.second"]), radius: length("throat.radius"),
+      leaves: arrays["throat.leaves"] || [], ends: arrays["throat.ends"] || [], id: arrays["throat.id"] || [],
+    }),
     bond: {
       first: arrays["bond.first"] || [], second: second(arrays["bond.first"], arrays["bond.second"]),
       breaks: arrays["bond.breaks"], mode: arrays["bond.mode"], n: (arrays["bond.first"] || []).length,

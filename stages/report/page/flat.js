@@ -7,9 +7,9 @@ function flatThings(body, cracks, view, seen) {
   const { grain, throat, node } = body, m = view.turn, things = [];
   const eye = (at, k) => applyTurn(m, at[3 * k], at[3 * k + 1], at[3 * k + 2]);
   const isCut = (x, y, z) => view.clip[0] * x + view.clip[1] * y + view.clip[2] * z > view.clip[3];
-  for (const i of view.show.grains ? seen ? seen.grains : upTo(grain.n) : [])
+  for (const i of view.show.grains ? seen.grains.all : [])
     if (!isCut(...grain.at.subarray(3 * i, 3 * i + 3))) things.push({ kind: "grain", index: i, eye: eye(grain.at, i), radius: grain.radius[i] * view.grow });
-  for (const t of view.show.liquid || view.show.empty ? seen ? seen.throats : upTo(throat.n) : []) {
+  for (const t of view.show.liquid || view.show.empty ? seen.throats.all : []) {
     const wet = throat.ends[t] > view.key;
     if (wet ? !view.show.liquid : !view.show.empty) continue;
     const a = eye(node.at, throat.first[t]), b = eye(node.at, throat.second[t]);

@@ -60,7 +60,7 @@ function viewOf(page, width, height) {
   }
   const show = Object.fromEntries([...element("shown").querySelectorAll("input")].map((box) => [box.name, box.checked]));
   return { turn: turnOf(camera), frame: [-camera.x, -camera.y, wide, high], clip, key: course ? course.key : 0, show, colours: page.colours,
-    grow: Number(element("size").value) / 100, dense: page.dense, pixel: 2 * wide / width * page.dense, longest: page.longest, plain: page.moving && page.isSlow };
+    grow: Number(element("size").value) / 100, dense: page.dense, pixel: 2 * wide / width * page.dense, longest: page.longest, plain: page.moving && page.lateFrames > 2 };
 }
 
 // ---- drawing ------------------------------------------------------------------------
@@ -101,13 +101,14 @@ function updateMoment(page, view) {
 }
 
 // A small body at rest has twice the points of the screen, so that its edges are smooth. A
-// large one that cannot follow has half of them, and strokes for throats, while it moves.
+// large one that a machine cannot follow thirty times a second is drawn with only what is
+// bold while it moves, and if that is not enough, with half of the points.
 function followMotion(page) {
   const now = performance.now(), since = now - page.drawnAt;
   page.drawnAt = now;
-  if (page.moving && isLarge(page.body) && since < 1000) page.isSlow = page.isSlow || since > 50;
+  if (page.moving && isLarge(page.body) && since > 33 && since < 1000) page.lateFrames++;
   const screen = Math.min(2, window.devicePixelRatio || 1), still = isLarge(page.body) ? screen : Math.max(2, screen);
-  resize(page, !page.moving ? still : page.isSlow ? screen / 2 : screen);
+  resize(page, !page.moving ? still : page.lateFrames > 4 ? screen / 2 : screen);
 }
 
 function draw(page) {
@@ -137,7 +138,7 @@ function keepMoving(page) {
 function sayDrawn(page) {
   const { body, seen } = page, words = [];
   const count = (n) => n.toLocaleString("en");
-  if (seen) words.push(`Of ${count(body.grain.n)} grains and ${count(body.throat.n)} throats, ${count(seen.grains.length)} and ${count(seen.throats.length)} are drawn; grains hide the others.`);
+  if (seen.grains.all.length < body.grain.n || seen.throats.all.length < body.throat.n) words.push(`Of ${count(body.grain.n)} grains and ${count(body.throat.n)} throats, ${count(seen.grains.all.length)} and ${count(seen.throats.all.length)} are drawn; grains hide the others.`);
   if (body.meta.dryThroats) words.push(`${count(body.meta.dryThroats)} throats that never hold liquid are not drawn.`);
   words.push("Places are within a thousandth of a grain; forces within 1/250 of the largest.");
   element("drawn").textContent = words.join(" ");
@@ -174,8 +175,6 @@ function choose(page, picked) {
   showDetails(page.body, page.course || { rows: 0, key: 0 }, page.cracks, picked);
   askDraw(page);
 }
-
-const isLarge = ({ grain, throat }) => grain.n + throat.n > ALWAYS_ALL;
 
 function listen(page) {
   const again = (stale) => () => { page.stale ||= stale; askDraw(page); };
@@ -245,7 +244,7 @@ function telling(cracks, last) {
   return keys.length ? keys[keys.length >> 1] : last / 2;
 }
 
-const page = { camera: newCamera(), canvas: element("view"), colourBy: "none", drawnAt: 0, dense: 1, isSlow: false, stale: true, longest: 1 };
+const page = { camera: newCamera(), canvas: element("view"), colourBy: "none", drawnAt: 0, dense: 1, lateFrames: 0, stale: true, longest: 1 };
 
 async function start() {
   const meta = JSON.parse(element("meta").textContent);
@@ -259,12 +258,12 @@ async function start() {
     page.course = newCourse(page.body);
     page.course.listeners.push(() => { sayNow(page); askDraw(page); keepMoving(page); });
     page.course.set(telling(page.cracks, page.course.last));
-    drawCurves(page.body, page.course);
   } else {
     element("course").hidden = element("curves-section").hidden = true;
   }
   listen(page);
   draw(page);
+  if (page.course) drawCurves(page.body, page.course);
   document.documentElement.dataset.ready = "yes";
 }
 

@@ -6,7 +6,7 @@ const CORNERS = { grain: 3, crack: 3, arrow: 9, line: 1 };
 const TEXTURES = ["things", "tints", "numbers", "forces"]; // by unit
 
 function newScene(canvas, body, cracks) {
-  const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
   if (!gl) return null;
   const scene = { gl, canvas, body, cracks, programs: {}, sets: {}, squares: 0 };
   for (const name in SHADERS) {
@@ -61,12 +61,9 @@ function putSquares(scene, count) {
   gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, corner, gl.STATIC_DRAW);
 }
 
-const upTo = (n) => Int32Array.from({ length: n }, (_, k) => k);
-
-// Takes what visibleOf found, or all where SEEN is null.
+// Takes what visibleOf found.
 function putBody(scene, seen) {
-  const { body: { grain, throat, node } } = scene;
-  const grains = seen ? seen.grains : upTo(grain.n), throats = Int32Array.from(seen ? seen.throats : upTo(throat.n)).sort((s, t) => throat.ends[t] - throat.ends[s]);
+  const { body: { grain, throat, node } } = scene, grains = seen.grains.all, throats = seen.throats.all;
   const sphere = new Float32Array(4 * grains.length), tube = new Float32Array(12 * throats.length);
   for (let k = 0; k < grains.length; k++) {
     for (let axis = 0; axis < 3; axis++) sphere[4 * k + axis] = grain.at[3 * grains[k] + axis];
@@ -87,8 +84,9 @@ function putBody(scene, seen) {
   putSquares(scene, throats.length);
   scene.sets.arrow.textures.things = scene.sets.grain.textures.things;
   scene.shown = { grains, throats };
-  scene.sets.grain.count = scene.sets.arrow.count = grains.length;
-  scene.sets.throat.count = throats.length;
+  Object.assign(scene.sets.grain, { count: grains.length, bold: seen.grains.bold });
+  Object.assign(scene.sets.throat, { count: throats.length, bold: seen.throats.bold });
+  scene.sets.arrow.count = grains.length;
 }
 
 // Colours from COLOUR (index to 0..1) of what is shown.
@@ -108,19 +106,18 @@ function putForces(scene, forces) {
   put(scene, "arrow", "forces", shown, 3);
 }
 
-// How many throats there are to draw: those that empty last stand first.
-function wetOf({ shown: { throats }, body: { throat } }, view) {
-  if (view.show.empty) return throats.length;
-  let low = 0, high = throats.length;
+// The throats from FROM to END that there are to draw: those that empty last stand first.
+function drawThroats({ gl, shown: { throats }, body: { throat } }, view, from, end) {
+  let low = view.show.empty ? end : from, high = end;
   while (low < high) {
     const middle = (low + high) >> 1;
     if (throat.ends[throats[middle]] > view.key) low = middle + 1; else high = middle;
   }
-  return low;
+  if (low > from) gl.drawElements(gl.TRIANGLES, 6 * (low - from), gl.UNSIGNED_INT, 24 * from);
 }
 
 function drawSet(scene, name, view, mode, picking = false, opacity = 1) {
-  const { gl } = scene, { program, uniform } = scene.programs[name], { count, textures } = scene.sets[name];
+  const { gl } = scene, { program, uniform } = scene.programs[name], { count, bold = count, textures } = scene.sets[name];
   if (!count) return;
   const set = (key, how, ...values) => uniform[key] && gl[how](uniform[key], ...values);
   gl.useProgram(program);
@@ -146,11 +143,9 @@ function drawSet(scene, name, view, mode, picking = false, opacity = 1) {
     gl.bindTexture(gl.TEXTURE_2D, textures[key] || textures.things);
   });
   gl.activeTexture(gl.TEXTURE0);
-  set("asLine", "uniform1f", view.plain ? 1 : 0);
-  const wet = name === "throat" ? wetOf(scene, view) : count;
-  if (name !== "throat") gl.drawArrays(mode, 0, count * CORNERS[name]);
-  else if (view.plain) gl.drawArrays(gl.LINES, 0, 2 * wet);
-  else gl.drawElements(mode, 6 * wet, gl.UNSIGNED_INT, 0);
+  if (name !== "throat") return gl.drawArrays(mode, 0, (view.plain ? bold : count) * CORNERS[name]);
+  drawThroats(scene, view, 0, bold);
+  if (!view.plain) drawThroats(scene, view, bold, count);
 }
 
 function drawThings(scene, view, picking) {

@@ -31,9 +31,8 @@ const vec2 corners[3] = vec2[](vec2(-1.7321, -1.0), vec2(1.7321, -1.0), vec2(0.0
 `;
 const SQUARE = `
 const vec2 corners[4] = vec2[](vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1));
-uniform float asLine; // 1: two ends, no width
-#define THING (asLine > 0.5 ? gl_VertexID / 2 : gl_VertexID / 4)
-#define CORNER (asLine > 0.5 ? vec2(2 * (gl_VertexID & 1) - 1, 0) : corners[gl_VertexID & 3])
+#define THING (gl_VertexID / 4)
+#define CORNER corners[gl_VertexID & 3]
 `;
 const ARROW = `
 const vec3 corners[9] = vec3[](vec3(0, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0), vec3(0, 1, 0), vec3(1, -1, 0), vec3(1, 1, 0), vec3(0, -1, 1), vec3(1, 0, 1), vec3(0, 1, 1));
