@@ -7,11 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct grid { // that places are put on
-    struct vector origin;
-    double step; // m
-};
-
 static double smallest_radius(const struct packing *packing)
 {
     double least = packing->n_particle ? packing->radius[0] : 1;
@@ -31,28 +26,43 @@ static void reach(struct vector *low, struct vector *high, const struct vector *
         }
 }
 
-static struct grid grid_of(const struct packing *packing, const struct vector *node,
-                           int n_node)
+// Wherever grains go.
+static void reach_motion(const struct run *run, struct vector *low, struct vector *high)
 {
+    struct vector *place = artifact_get(run->motion, "/snapshots/position", NULL);
+    for (int s = 0; s < run->n_load; s++)
+        reach(low, high, place + (size_t)s * (size_t)run->packing.n_particle,
+              run->packing.n_particle);
+    free(place);
+}
+
+static struct grid grid_of(const struct run *run, const struct vector *node, int n_node)
+{
+    const struct packing *packing = &run->packing;
     struct vector low = packing->lower, high = packing->upper;
     reach(&low, &high, packing->position, packing->n_particle);
     reach(&low, &high, node, n_node);
+    if (run->motion) reach_motion(run, &low, &high);
     const double fine = smallest_radius(packing) / 500;
     return (struct grid){low,
                          fmin(fine, largest_component(subtract(high, low)) / 65535)};
 }
 
-static void put_points(struct arrays *arrays, const char *prefix,
-                       const struct grid *grid, const struct vector *point, int n)
+uint32_t on_grid(const struct grid *grid, struct vector point, int axis)
+{
+    return (uint32_t)lround((component(point, axis) - component(grid->origin, axis)) /
+                            grid->step);
+}
+
+void put_points(struct arrays *arrays, const char *prefix, const struct grid *grid,
+                const struct vector *point, int n)
 {
     uint32_t *value = NEW_ARRAY(uint32_t, n);
     for (int axis = 0; axis < 3; axis++) {
         char name[40];
         snprintf(name, sizeof name, "%s.%c", prefix, "xyz"[axis]);
-        const double from = component(grid->origin, axis);
         for (int i = 0; i < n; i++)
-            value[i] =
-                (uint32_t)lround((component(point[i], axis) - from) / grid->step);
+            value[i] = on_grid(grid, point[i], axis);
         arrays_put(arrays, name, value, (size_t)n, false);
     }
     free(value);
@@ -249,7 +259,7 @@ static void put_load_course(struct arrays *arrays, const struct run *run,
 
 static uint32_t share_of(double force, double largest)
 {
-    return (uint32_t)lround(128 + 127 * force / largest);
+    return (uint32_t)lround(128 + (largest > 0 ? 127 * force / largest : 0));
 }
 
 // Some of the loads, evenly spaced along the course.
@@ -257,6 +267,7 @@ static void put_moments(struct arrays *arrays, const struct run *run,
                         const struct course *course, int most, struct shown_body *body)
 {
     const size_t n = (size_t)run->packing.n_particle;
+    body->moment = NEW_ARRAY(int, most);
     uint32_t *key = NEW_ARRAY(uint32_t, most);
     uint32_t *value = NEW_ARRAY(uint32_t, 3 * n * (size_t)most);
     const double last = key_of(course, run->load_time[run->n_load - 1]);
@@ -265,6 +276,7 @@ static void put_moments(struct arrays *arrays, const struct run *run,
         const uint32_t now = key_of(course, run->load_time[m]);
         if (now < shown * last / (most - 1 > 1 ? most - 1 : 1)) continue;
         key[shown] = now;
+        body->moment[shown] = m;
         for (size_t i = 0; i < n; i++)
             for (int axis = 0; axis < 3; axis++)
                 value[3 * ((size_t)shown * n + i) + (size_t)axis] = share_of(
@@ -287,7 +299,7 @@ struct shown_body put_body(struct arrays *arrays, const struct run *run,
     uint32_t *second = NEW_ARRAY(uint32_t, run->network.n_throat);
     int n_point = 0;
     struct vector *point = points_of(&run->network, second, &n_point);
-    const struct grid grid = grid_of(&run->packing, point, n_point);
+    const struct grid grid = body.grid = grid_of(run, point, n_point);
     put_points(arrays, "grain", &grid, run->packing.position, run->packing.n_particle);
     put_lengths(arrays, "grain.radius", run->packing.radius, run->packing.n_particle,
                 grid.step);
@@ -299,7 +311,7 @@ struct shown_body put_body(struct arrays *arrays, const struct run *run,
     if (run->n_load && run->packing.n_particle) {
         put_largest(arrays, run, course, &body);
         put_load_course(arrays, run, course);
-        if (body.largest_load > 0)
+        if (body.largest_load > 0 || run->motion)
             put_moments(arrays, run, course, most_moments, &body);
     }
     body.scales =
@@ -313,5 +325,6 @@ struct shown_body put_body(struct arrays *arrays, const struct run *run,
 void shown_body_free(struct shown_body *body)
 {
     json_decref(body->scales);
+    free(body->moment);
     *body = (struct shown_body){0};
 }

@@ -7,12 +7,17 @@
 
 struct shown_body {
     json_t *scales;       // what whole numbers of the arrays are multiples of
-    double largest_load;  // on any grain at any time, N; 0: none
+    double largest_load;  // arrow of any grain at any time, N or m/s; 0: none
     int heaviest;         // the grain under it
     double heaviest_time; // s
     int dry_throats;      // that never hold liquid: left out
     int refilled;         // throats that emptied, filled and emptied again
     int n_moment;         // loads that are shown
+    int *moment;          // (n_moment) which
+    struct grid {         // that places are put on
+        struct vector origin;
+        double step; // m
+    } grid;
 };
 
 // Puts RUN into ARRAYS: lengths in steps of at most 1/500 of the smallest radius, so
@@ -20,5 +25,12 @@ struct shown_body {
 struct shown_body put_body(struct arrays *arrays, const struct run *run,
                            const struct course *course, int most_moments);
 void shown_body_free(struct shown_body *body);
+
+// POINT (N) as PREFIX.x, .y, .z.
+void put_points(struct arrays *arrays, const char *prefix, const struct grid *grid,
+                const struct vector *point, int n);
+
+// The whole number of steps along AXIS at which POINT is.
+uint32_t on_grid(const struct grid *grid, struct vector point, int axis);
 
 #endif

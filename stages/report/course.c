@@ -60,8 +60,13 @@ struct course course_of(const struct run *run, int most)
     struct course course = {0};
     double *time = NULL, *saturation = NULL;
     struct steps steps = {run->record.n_step, run->record.time, run->record.saturation};
+    if (run->flow) return course;
     const bool is_replay = !steps.count && run->of[RESPONSE];
-    if (is_replay) {
+    if (run->motion) {
+        time = artifact_get(run->motion, "/history/time", &steps.count);
+        saturation = NEW_ARRAY(double, steps.count);
+        steps = (struct steps){steps.count, time, saturation};
+    } else if (is_replay) {
         time = artifact_get(run->of[RESPONSE], "/history/time", &steps.count);
         saturation = artifact_get(run->of[RESPONSE], "/history/saturation", NULL);
         steps = (struct steps){steps.count, time, saturation};
@@ -73,7 +78,7 @@ struct course course_of(const struct run *run, int most)
     course.saturation = at_rows(steps.saturation, row, course.n_row);
     course.keys_a_row = (NEVER - 1) / (course.n_row > 1 ? course.n_row - 1 : 1);
     if (run->record.n_step) get_history(&course, run->of[DRYING], row);
-    free(row);
+    course.row = row;
     free(time);
     free(saturation);
     return course;
@@ -81,6 +86,7 @@ struct course course_of(const struct run *run, int most)
 
 void course_free(struct course *course)
 {
+    free(course->row);
     free(course->time);
     free(course->saturation);
     free(course->rate);
@@ -145,9 +151,10 @@ void put_course(struct arrays *arrays, const struct course *course,
     const size_t n = (size_t)course->n_row;
     if (!n) return;
     arrays_put_doubles(arrays, "course.time", course->time, n);
-    arrays_put_doubles(arrays, "course.saturation", course->saturation, n);
+    if (!run->motion)
+        arrays_put_doubles(arrays, "course.saturation", course->saturation, n);
     if (course->rate) arrays_put_doubles(arrays, "course.rate", course->rate, n);
     if (course->clusters)
         arrays_put_doubles(arrays, "course.clusters", course->clusters, n);
-    if (run->of[RESPONSE]) put_cracks(arrays, course, run);
+    if (run->of[RESPONSE] || run->n_crack) put_cracks(arrays, course, run);
 }

@@ -10,12 +10,13 @@
 enum { NEVER = 65535 }; // a key
 
 struct course {
-    int n_row;    // 0: nothing changes over time
-    double *time; // (n_row) s
-    double *saturation;
-    double *rate;     // (n_row) kg/s; NULL: not known
-    double *clusters; // (n_row) NULL likewise
-    int keys_a_row;   // keys between two rows
+    int n_row;          // 0: nothing changes over time
+    int *row;           // (n_row) of the history it is chosen from
+    double *time;       // s
+    double *saturation; // 0 where nothing dries
+    double *rate;       // (n_row) kg/s; NULL: not known
+    double *clusters;   // (n_row) NULL likewise
+    int keys_a_row;     // keys between two rows
 };
 
 // Of the drying, else the response, else the forces; of at most MOST rows, evenly

@@ -22,6 +22,8 @@
     part numbers.js
     part data.js
     part groups.js
+    part motion.js
+    part fields.js
     part camera.js
     part shaders.js
     part visible.js

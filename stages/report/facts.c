@@ -94,17 +94,9 @@ void put_headline(FILE *page, const struct run *run, const struct course *course
 
 // ---- the list -----------------------------------------------------------------------
 
-// Where a fact can be seen: at a moment and a grain; -1: nowhere.
-struct where {
-    int64_t key, grain;
-};
-static const struct where nowhere = {-1, -1};
+const struct where nowhere = {-1, -1};
 
-static void put_fact(FILE *page, struct where where, const char *term,
-                     const char *format, ...) __attribute__((format(printf, 4, 5)));
-
-static void put_fact(FILE *page, struct where where, const char *term,
-                     const char *format, ...)
+void put_fact(FILE *page, struct where where, const char *term, const char *format, ...)
 {
     char text[600];
     va_list values;
@@ -245,7 +237,7 @@ static void put_pieces(FILE *page, const struct run *run)
                  100 * shrinkage);
 }
 
-static void put_makeup(FILE *page, const struct run *run)
+void put_makeup(FILE *page, const struct run *run)
 {
     const struct packing *packing = &run->packing;
     if (!packing->n_particle) return;

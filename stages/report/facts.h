@@ -7,6 +7,19 @@
 
 #include <stdio.h>
 
+// Where a fact can be seen: at a moment and a grain; -1: nowhere.
+struct where {
+    int64_t key, grain;
+};
+extern const struct where nowhere;
+
+// A term and what is known of it.
+void put_fact(FILE *page, struct where where, const char *term, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+// Grains, bonds, pores.
+void put_makeup(FILE *page, const struct run *run);
+
 // One sentence that says what came out.
 void put_headline(FILE *page, const struct run *run, const struct course *course);
 

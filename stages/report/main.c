@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // report: a page on which a run shows itself.
 #include "basics/file.h"
+#include "flow.h"
+#include "motion.h"
 #include "page.h"
 
 #include <stdlib.h>
@@ -17,7 +19,9 @@ static const struct parameter table[] = {
     {"rows", PARAMETER_INTEGER, "1", "1000", AT(rows), BETWEEN(2, 20000),
      .text = "most moments of the drying that the slider and the curves know"},
     {"moments", PARAMETER_INTEGER, "1", "16", AT(moments), BETWEEN(1, 1000),
-     .text = "moments at which forces are shown; fewer where grains are many"},
+     .text = "moments at which forces are shown, of a motion eight times as many "
+             "snapshots; "
+             "fewer where grains are many"},
     {0}};
 
 static const struct stage stage = {
@@ -34,10 +38,11 @@ static const struct stage stage = {
              "opens in any\nrecent browser, with or without WebGL.",
     .writes_page = true};
 
-// So many forces make a megabyte and a half.
+// So many forces make a megabyte and a half. A motion is all in its moments.
 static int moments_for(const struct run *run, int64_t wanted)
 {
     const int64_t most = 500000 / (run->packing.n_particle + 1) + 2;
+    if (run->motion) wanted *= 8;
     return (int)(wanted < most ? wanted : most);
 }
 
@@ -51,13 +56,18 @@ int main(int argc, char **argv)
     struct shown_body body =
         put_body(&arrays, &run, &course, moments_for(&run, parameters.moments));
     put_course(&arrays, &course, &run);
+    json_t *shown = run.flow     ? put_flow(&arrays, &run)
+                    : run.motion ? put_motion(&arrays, &run, &course, &body)
+                                 : NULL;
 
-    const struct contents contents = {&run, &course, &body, &arrays, parameters.title};
+    const struct contents contents = {&run,    &course, &body,
+                                      &arrays, shown,   parameters.title};
     size_t size;
     char *page = page_of(&contents, &size);
     write_whole(invocation.output, page, size);
 
     free(page);
+    json_decref(shown);
     arrays_free(&arrays);
     shown_body_free(&body);
     course_free(&course);

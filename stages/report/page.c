@@ -5,7 +5,9 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "facts.h"
+#include "flow.h"
 #include "html.h"
+#include "motion.h"
 #include "provenance.h"
 
 #include <math.h>
@@ -18,7 +20,11 @@ extern const char page_template[], page_style[], page_script[];
 
 static void put_title(FILE *page, const struct contents *contents)
 {
-    put_text(page, contents->title ? contents->title : "A body of grains as it dries");
+    const struct run *run = contents->run;
+    put_text(page, contents->title ? contents->title
+                   : run->flow     ? "Flow between grains"
+                   : run->motion   ? "Grains that move"
+                                   : "A body of grains as it dries");
 }
 
 // What a content security policy knows an inline TEXT by.
@@ -62,12 +68,22 @@ static void put_script(FILE *page, const struct contents *contents)
 
 static void put_head_line(FILE *page, const struct contents *contents)
 {
-    put_headline(page, contents->run, contents->course);
+    if (contents->run->flow)
+        put_flow_headline(page, contents->run);
+    else if (contents->run->motion)
+        put_motion_headline(page, contents->run);
+    else
+        put_headline(page, contents->run, contents->course);
 }
 
 static void put_list(FILE *page, const struct contents *contents)
 {
-    put_facts(page, contents->run, contents->course, contents->body);
+    if (contents->run->flow)
+        put_flow_facts(page, contents->run, contents->body);
+    else if (contents->run->motion)
+        put_motion_facts(page, contents->run, contents->course, contents->body);
+    else
+        put_facts(page, contents->run, contents->course, contents->body);
 }
 
 static void put_cautions(FILE *page, const struct contents *contents)
@@ -176,13 +192,17 @@ static void put_meta(FILE *page, const struct contents *contents)
     const struct packing *packing = &run->packing;
     const struct vector low = packing->lower, high = packing->upper;
     json_t *meta = json_pack(
-        "{s:O,s:O,s:o,s:[fff],s:[fff],s:[bbb],s:i,s:i,s:i,s:f,s:f,s:o}", "arrays",
-        contents->arrays->list, "scales", contents->body->scales, "files",
+        "{s:O,s:O,s:o,s:[fff],s:[fff],s:[bbb],s:i,s:i,s:i,s:f,s:f,s:o,s:s,s:O*}",
+        "arrays", contents->arrays->list, "scales", contents->body->scales, "files",
         files_of(run), "lower", low.x, low.y, low.z, "upper", high.x, high.y, high.z,
         "periodic", packing->periodic[0], packing->periodic[1], packing->periodic[2],
         "rows", contents->course->n_row, "keysARow", contents->course->keys_a_row,
         "dryThroats", contents->body->dry_throats, "bondRadius", bond_radius(run),
-        "tension", tension_of(run), "profiles", profiles_of(contents));
+        "tension", tension_of(run), "profiles", profiles_of(contents), "subject",
+        run->flow     ? "flow"
+        : run->motion ? "motion"
+                      : "drying",
+        "shown", contents->shown);
     if (!meta) die(STATUS_INTERNAL, "out of memory");
     char *text = json_for_script(meta);
     fputs(text, page);

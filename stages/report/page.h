@@ -11,6 +11,7 @@ struct contents {
     const struct course *course;
     const struct shown_body *body;
     const struct arrays *arrays;
+    json_t *shown;     // what put_flow or put_motion say; NULL: a drying
     const char *title; // NULL: none given
 };
 

@@ -43,7 +43,9 @@ static void all_words(const struct run *run, struct words words[SOURCES])
     words[1] = words_of_artifact(run->tessellation);
     for (int kind = NETWORK; kind < KINDS; kind++)
         words[kind + 1] = words_of_artifact(run->of[kind]);
-    words[SOURCES - 1] = words_of_document(run->counted);
+    words[SOURCES - 1] = run->flow     ? words_of_artifact(run->flow)
+                         : run->motion ? words_of_artifact(run->motion)
+                                       : words_of_document(run->counted);
 }
 
 static void words_free(struct words words[SOURCES])
@@ -133,16 +135,22 @@ void put_commands(FILE *page, const struct run *run)
         {run->of[FORCES], "force-protocol -p scene.json drying.h5 -o forces.h5"},
         {run->of[RESPONSE], "dem-replay -p scene.json forces.h5 -o response.h5"},
         {run->counted,
-         "crackstats -p scene.json response.h5 drying.h5 -o crackstats.json"}};
+         "crackstats -p scene.json response.h5 drying.h5 -o crackstats.json"},
+        {run->flow, "flow -p scene.json packing.h5 -o flow.h5"},
+        {run->motion, "simulate -p scene.json packing.h5 -o motion.h5"}};
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
         if (steps[k].there) put_line(page, "craquelure %s\n", steps[k].line);
-    put_line(page, "craquelure report . -o report.html\n");
+    const char *alone = run->flow ? "flow.h5" : run->motion ? "motion.h5" : ".";
+    put_line(page, "craquelure report %s -o report.html\n", alone);
 }
 
 static const char *program_of(const struct run *run, const char *name, char text[64])
 {
-    const struct artifact *artifact =
-        !strcmp(name, "tessellation.h5") ? run->tessellation : NULL;
+    const struct artifact *artifact = !strcmp(name, "tessellation.h5")
+                                          ? run->tessellation
+                                      : !strcmp(name, "flow.h5")   ? run->flow
+                                      : !strcmp(name, "motion.h5") ? run->motion
+                                                                   : NULL;
     static const char *const file[KINDS] = {"packing.h5", "network.h5", "drying.h5",
                                             "forces.h5", "response.h5"};
     for (int kind = 0; kind < KINDS; kind++)

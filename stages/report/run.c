@@ -4,6 +4,7 @@
 #include "artifacts/document.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "flow.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,21 +60,34 @@ static bool was_merged(const struct artifact *network)
     return artifact_has_number(network, "/summary/unmerged_throats");
 }
 
+// Where ARTIFACT is kept, and under which name; NULL where a page has no use for it.
+static struct artifact **place_of(struct run *run, const struct artifact *artifact,
+                                  const char **name)
+{
+    *name = artifact->schema->name;
+    if (!strcmp(*name, "flow")) return &run->flow;
+    if (!strcmp(*name, "motion")) return &run->motion;
+    int kind = 0;
+    while (kind < KINDS && strcmp(kind_name[kind], *name))
+        kind++;
+    if (kind == KINDS) return NULL;
+    if (kind != NETWORK || was_merged(artifact)) return &run->of[kind];
+    *name = "tessellation";
+    return &run->tessellation;
+}
+
 static void keep_artifact(struct run *run, struct artifact *artifact)
 {
-    int kind = 0;
-    while (kind < KINDS && strcmp(kind_name[kind], artifact->schema->name))
-        kind++;
-    if (kind == KINDS)
+    const char *stem;
+    struct artifact **place = place_of(run, artifact, &stem);
+    if (!place)
         die(STATUS_BAD_DATA, "%s: a page shows no %s; inspect does",
-            input_name(artifact->path), artifact->schema->name);
-    const bool is_raw = kind == NETWORK && !was_merged(artifact);
-    struct artifact **place = is_raw ? &run->tessellation : &run->of[kind];
+            input_name(artifact->path), stem);
     if (*place)
         die(STATUS_USAGE, "%s: is a second %s: a page shows one run",
             input_name(artifact->path), artifact->schema->name);
     char name[40];
-    snprintf(name, sizeof name, "%s.h5", is_raw ? "tessellation" : kind_name[kind]);
+    snprintf(name, sizeof name, "%s.h5", stem);
     note_source(run, name, artifact->schema->id, artifact->sha256);
     *place = artifact;
 }
@@ -94,6 +108,14 @@ static bool is_folder(const char *path)
 {
     struct stat there;
     return !stat(path, &there) && S_ISDIR(there.st_mode);
+}
+
+static void must_be_alone(const struct run *run)
+{
+    const struct artifact *alone = run->flow ? run->flow : run->motion;
+    if (alone && json_array_size(run->sources) > 1)
+        die(STATUS_USAGE, "%s: a page shows a %s by itself, without other artifacts",
+            input_name(alone->path), alone->schema->name);
 }
 
 // The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
@@ -172,6 +194,7 @@ static void read_grains_of(struct run *run)
     const struct artifact *last = run->tessellation;
     for (int kind = 0; kind < KINDS; kind++)
         last = run->of[kind] ? run->of[kind] : last;
+    last = run->flow ? run->flow : run->motion ? run->motion : last;
     if (!last) die(STATUS_USAGE, "no artifact with grains among the inputs");
     run->packing = artifact_get_packing(last);
 }
@@ -188,17 +211,22 @@ static void read_liquid(struct run *run)
 
 static void read_cracks(struct run *run)
 {
-    const struct artifact *response = run->of[RESPONSE];
+    const struct artifact *response = run->motion ? run->motion : run->of[RESPONSE];
     if (!response) return;
     run->crack_bond = artifact_get(response, "/cracks/bond", &run->n_crack);
     run->crack_time = artifact_get(response, "/cracks/time", NULL);
-    run->crack_saturation = artifact_get(response, "/cracks/saturation", NULL);
+    if (!run->motion)
+        run->crack_saturation = artifact_get(response, "/cracks/saturation", NULL);
     run->crack_mode = artifact_get(response, "/cracks/mode", NULL);
 }
 
 static void read_loads(struct run *run)
 {
     const struct artifact *forces = run->of[FORCES];
+    if (run->motion) {
+        run->load_time = artifact_get(run->motion, "/snapshots/time", &run->n_load);
+        run->load = artifact_get(run->motion, "/snapshots/velocity", NULL);
+    }
     if (!forces) return;
     run->load_time = artifact_get(forces, "/time", &run->n_load);
     run->load_saturation = artifact_get(forces, "/saturation", NULL);
@@ -213,9 +241,13 @@ struct run run_of_paths(const char *const *paths, int n)
             keep_folder(&run, paths[k]);
         else
             keep(&run, paths[k]);
+    must_be_alone(&run);
     read_grains_of(&run);
     check_fit(&run);
-    read_liquid(&run);
+    if (run.flow)
+        read_flow(&run);
+    else
+        read_liquid(&run);
     read_cracks(&run);
     read_loads(&run);
     return run;
@@ -234,6 +266,8 @@ void close_run(struct run *run)
     for (int kind = 0; kind < KINDS; kind++)
         close_kept(run->of[kind]);
     close_kept(run->tessellation);
+    close_kept(run->flow);
+    close_kept(run->motion);
     json_decref(run->counted);
     json_decref(run->repeated);
     json_decref(run->checked);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page is made from: the artifacts of one run, each of which may be missing.
+// What a page is made from: the artifacts of one run, each of which may be missing; or
+// one flow, or one motion.
 #ifndef CRAQUELURE_REPORT_RUN_H
 #define CRAQUELURE_REPORT_RUN_H
 
@@ -12,10 +13,11 @@ enum kind { PACKING, NETWORK, DRYING, FORCES, RESPONSE, KINDS };
 struct run {
     struct artifact *of[KINDS];    // NULL: not there
     struct artifact *tessellation; // a network that no throats were merged in
-    json_t *counted;               // crackstats of this run; NULL likewise
-    json_t *repeated;              // crackstats of several runs
-    json_t *checked;               // findings of check
-    json_t *sources;               // [{"name", "schema", "sha256"}, ...] all of them
+    struct artifact *flow, *motion;
+    json_t *counted;  // crackstats of this run; NULL likewise
+    json_t *repeated; // crackstats of several runs
+    json_t *checked;  // findings of check
+    json_t *sources;  // [{"name", "schema", "sha256"}, ...] all of them
 
     struct packing packing;      // the grains
     struct network network;      // n_throat 0: not known
@@ -26,9 +28,10 @@ struct run {
     double *crack_time, *crack_saturation;
     uint8_t *crack_mode;
 
+    // Arrows: forces of the liquid or, of a flow, of the fluid (N); velocities (m/s).
     int n_load;
-    double *load_time, *load_saturation; // (n_load)
-    struct vector *load;                 // (n_load, n_particle) N
+    double *load_time, *load_saturation; // (n_load) NULL where nothing dries
+    struct vector *load;                 // (n_load, n_particle)
 };
 
 // Reads PATHS (N): artifacts, or folders of them. Exits 65 where two say different

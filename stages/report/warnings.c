@@ -128,6 +128,34 @@ static void warn_of_grains(FILE *page, const struct run *run)
     }
 }
 
+static void warn_of_flow(FILE *page, const struct artifact *flow)
+{
+    if (!flow) return;
+    const double imbalance = artifact_get_number(flow, "/summary/imbalance"),
+                 closed = artifact_get_number(flow, "/summary/closed_throats"),
+                 pockets = artifact_get_number(flow, "/summary/pockets");
+    if (imbalance > 1e-6)
+        warn(page, "In the worst pore %.2g of the flux is lost or gained.", imbalance);
+    if (closed > 0)
+        warn(page, "%.0f throats are closed by grains that overlap.", closed);
+    if (pockets > 0) warn(page, "%.0f sets of pores have no outlet.", pockets);
+}
+
+static void warn_of_motion(FILE *page, const struct artifact *motion)
+{
+    if (!motion) return;
+    const double overlap = artifact_get_number(motion, "/summary/largest_overlap"),
+                 step = artifact_get_number(motion, "/summary/time_step"),
+                 limit = artifact_get_number(motion, "/summary/time_step_limit");
+    if (overlap > 0.05)
+        warn(page,
+             "Grains overlapped by up to %.2g of the mean radius: stiffer contacts "
+             "are nearer to solid grains.",
+             overlap);
+    if (limit > 0 && step > limit)
+        warn(page, "The time step is %.2g of the stability limit.", step / limit);
+}
+
 void put_warnings(FILE *page, const struct run *run, const struct shown_body *body)
 {
     if (run->of[RESPONSE] && !run->repeated)
@@ -139,4 +167,6 @@ void put_warnings(FILE *page, const struct run *run, const struct shown_body *bo
     warn_of_forces(page, run);
     warn_of_liquid(page, run, body);
     warn_of_grains(page, run);
+    warn_of_flow(page, run->flow);
+    warn_of_motion(page, run->motion);
 }

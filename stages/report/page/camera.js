@@ -18,7 +18,7 @@ function applyTurn(m, x, y, z) {
 
 // Half the width and height of what is seen.
 function extentOf(camera, width, height, body) {
-  const m = turnOf(camera), half = body.size.map((s) => s / 2);
+  const m = turnOf(camera), half = body.half;
   const reach = (row) => Math.abs(m[row]) * half[0] + Math.abs(m[row + 1]) * half[1] + Math.abs(m[row + 2]) * half[2];
   const up = Math.max(reach(3), reach(0) * height / width) * 1.08 / camera.zoom || 1;
   return [up * width / height, up];

@@ -35,15 +35,16 @@ function axisUnit(most, unit) {
 // between x and the moment (none: the chart has no moment).
 function newChart(spec, course) {
   const { width, height, left, right, top, bottom } = CHART;
-  const [xWord, xFactor] = axisUnit(spec.xMost || Math.max(...spec.x), spec.xUnit), most = Math.max(...spec.lines.map((line) => line.y.reduce((a, b) => Math.max(a, b), 0)));
-  const [yWord, yFactor] = axisUnit(most, spec.unit);
-  const xEnd = (spec.xMost || Math.max(...spec.x)) * xFactor || 1, yEnd = (most * yFactor || 1) * 1.06;
+  const [xWord, xFactor] = axisUnit(spec.xMost || Math.max(...spec.x), spec.xUnit), reach = (of) => spec.lines.reduce((all, line) => line.y.reduce((a, b) => of(a, b), all), 0);
+  const most = reach(Math.max), least = reach(Math.min);
+  const [yWord, yFactor] = axisUnit(Math.max(most, -least), spec.unit);
+  const xEnd = (spec.xMost || Math.max(...spec.x)) * xFactor || 1, yEnd = (most * yFactor || (least < 0 ? 0 : 1)) * 1.06, yBegin = least * yFactor * 1.06;
   const x = (value) => { const share = value * xFactor / xEnd; return left + (width - left - right) * (spec.backwards ? 1 - share : share); };
-  const y = (value) => height - bottom - (height - bottom - top) * value * yFactor / yEnd;
+  const y = (value) => height - bottom - (height - bottom - top) * (value * yFactor - yBegin) / (yEnd - yBegin);
   const picture = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "chart", tabindex: 0, role: "img", "aria-label": spec.title });
   for (const tick of ticksOf(0, xEnd)) picture.append(svg("line", { class: "grid", x1: x(tick / xFactor), x2: x(tick / xFactor), y1: top, y2: height - bottom }),
     svg("text", { x: x(tick / xFactor), y: height - bottom + 18, "text-anchor": "middle" }, String(tick)));
-  for (const tick of ticksOf(0, yEnd)) picture.append(svg("line", { class: "grid", x1: left, x2: width - right, y1: y(tick / yFactor), y2: y(tick / yFactor) }),
+  for (const tick of ticksOf(yBegin, yEnd)) picture.append(svg("line", { class: "grid", x1: left, x2: width - right, y1: y(tick / yFactor), y2: y(tick / yFactor) }),
     svg("text", { x: left - 7, y: y(tick / yFactor) + 4, "text-anchor": "end" }, String(tick)));
   picture.append(svg("path", { class: "axis", d: `M${left} ${top}V${height - bottom}H${width - right}` }),
     svg("text", { x: (left + width - right) / 2, y: height - 8, "text-anchor": "middle" }, spec.xLabel + (xWord ? ` (${xWord})` : "")),
@@ -65,7 +66,7 @@ function newChart(spec, course) {
   });
   picture.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (!step) return;
+    if (!step || !course) return;
     event.preventDefault();
     course.set(course.key + step * course.last / 100);
   });
@@ -75,8 +76,9 @@ function newChart(spec, course) {
 function drawLine(picture, spec, line, k, x, y) {
   let path = "";
   for (let p = 0; p < spec.x.length; p++) {
+    if (line.y[p] === null) continue;
     const at = x(spec.x[p]).toFixed(1), up = y(line.y[p]).toFixed(1);
-    path += p ? (spec.steps ? `H${at}V${up}` : `L${at} ${up}`) : `M${at} ${up}`;
+    path += path ? (spec.steps ? `H${at}V${up}` : `L${at} ${up}`) : `M${at} ${up}`;
   }
   const stroke = svg("path", { class: "line", d: path });
   stroke.style.stroke = `var(--${line.colour})`;
@@ -84,7 +86,7 @@ function drawLine(picture, spec, line, k, x, y) {
   picture.append(stroke);
   line.element = stroke;
   if (!line.name) return;
-  const from = CHART.left + 8 + 130 * k, sample = svg("path", { class: "line", d: `M${from} 14h22` });
+  const from = CHART.left + 8 + 390 / Math.max(3, spec.lines.length) * k, sample = svg("path", { class: "line", d: `M${from} 14h22` });
   sample.style.stroke = stroke.style.stroke;
   if (line.dash) sample.setAttribute("stroke-dasharray", line.dash);
   picture.append(sample, svg("text", { x: from + 28, y: 18 }, line.name));
@@ -92,7 +94,7 @@ function drawLine(picture, spec, line, k, x, y) {
 
 function tsvOf(spec) {
   const head = [spec.xLabel + (spec.xUnit ? ` (${spec.xUnit})` : ""), ...spec.lines.map((line) => (line.name || spec.label) + (spec.unit ? ` (${spec.unit})` : ""))];
-  const rows = spec.x.map((value, k) => [value, ...spec.lines.map((line) => line.y[k])].map((v) => Number(v.toPrecision(7))).join("\t"));
+  const rows = spec.x.map((value, k) => [value, ...spec.lines.map((line) => line.y[k])].map((v) => v === null ? "" : Number(v.toPrecision(7))).join("\t"));
   return [head.join("\t"), ...rows].join("\n") + "\n";
 }
 
@@ -124,24 +126,36 @@ function suctionOf({ throat, lastKey, meta, unit }) {
   return { keys, value };
 }
 
+const LINE_COLOURS = ["liquid", "shear", "force", "second"], DASHES = [null, "8 5", "3 3", "12 4 3 4"];
+
+// Charts that the program names, over COMMON or over their own x.
+function namedSpecs({ arrays, meta }, common) {
+  const named = (meta.shown && meta.shown.charts) || [];
+  return named.map((chart) => ({ ...(chart.x ? { xUnit: "" } : common), steps: false, ...chart,
+    lines: chart.lines.map((line, k) => ({ name: line.name, y: line.y || Array.from(arrays[line.array]), colour: LINE_COLOURS[k], dash: DASHES[k] })) }));
+}
+
 function specsOf(body, course, along) {
-  const { arrays, meta } = body, specs = [], keys = Array.from({ length: meta.rows }, (_, row) => row * meta.keysARow);
+  const { arrays, meta } = body;
+  if (!course) return namedSpecs(body, {});
+  const specs = [], keys = Array.from({ length: meta.rows }, (_, row) => row * meta.keysARow);
   const bySaturation = along === "saturation";
   const over = (column) => (key) => course.at(column, key);
   const axis = (column, label, unit, backwards) => ({
     xLabel: label, xUnit: unit, backwards, xOf: over(column), xMost: column.reduce((a, b) => Math.max(a, b), 0),
     keyOf: (x) => { const [row, share] = placeIn(backwards ? Array.from(column, (v) => -v) : column, backwards ? -x : x); return (row + share) * meta.keysARow; },
   });
-  const time = axis(course.time, "time", "s", false), saturation = axis(course.saturation, "saturation (drying runs to the right)", "", true);
-  const common = bySaturation ? saturation : time;
+  const time = { ...axis(course.time, "time", "s", false) }, saturation = course.saturation && axis(course.saturation, "saturation (drying runs to the right)", "", true);
+  const common = bySaturation && saturation ? saturation : time;
   const add = (title, label, unit, lines, at = keys, steps = true) => specs.push({ ...common, title, label, unit, steps, lines, x: at.map(common.xOf) });
   const line = (name, colour, y, dash) => ({ name, colour, y, dash });
   if (arrays["course.tension"]) add("Broken bonds so far", "bonds", "", [line("in tension", "tension", arrays["course.tension"]), line("in shear", "shear", arrays["course.shear"], "8 5")]);
   const rate = arrays["course.rate"];
   if (rate) add("Drying rate, of the first", "rate / first rate", "", [line("", "liquid", Array.from(rate, (r) => r / (rate[0] || 1)))]);
-  specs.push({ ...time, title: "Saturation over time", label: "saturation", unit: "", steps: false, lines: [line("", "liquid", course.saturation)], x: Array.from(course.time) });
+  if (saturation) specs.push({ ...time, title: "Saturation over time", label: "saturation", unit: "", steps: false, lines: [line("", "liquid", course.saturation)], x: Array.from(course.time) });
   if (arrays["course.clusters"]) add("Liquid clusters", "clusters", "", [line("", "liquid", arrays["course.clusters"])]);
-  if (arrays["load.key"]) add("Force of the liquid on a grain", "force", "N", [line("largest", "force", arrays["load.largest"]), line("mean", "force", arrays["load.mean"], "8 5")], Array.from(arrays["load.key"]), false);
+  if (arrays["load.key"]) add(wordsOf(body).arrowChart, wordsOf(body).arrow, wordsOf(body).unit, [line("largest", "force", arrays["load.largest"]), line("mean", "force", arrays["load.mean"], "8 5")], Array.from(arrays["load.key"]), false);
+  specs.push(...namedSpecs(body, { ...common, x: keys.map(common.xOf) }));
   if (meta.tension > 0 && body.throat.n) {
     const { keys: at, value } = suctionOf(body);
     if (at.length > 1) add("Suction at which throats empty, mean", "2 γ cos θ / r", "Pa", [line("", "liquid", value)], at, false);
@@ -166,14 +180,16 @@ function profileChart({ meta }, course) {
 function drawCurves(body, course) {
   const place = document.getElementById("curves"), along = document.getElementById("along");
   let charts = [];
+  document.getElementById("along-label").hidden = !course || !course.saturation;
   const redraw = () => {
     charts = specsOf(body, course, along.value).map((spec) => newChart(spec, course));
-    const profile = profileChart(body, course);
+    const profile = course && profileChart(body, course);
     if (profile) charts.push(profile);
     place.replaceChildren(...charts.map((chart) => chart.element));
-    charts.forEach((chart) => chart.setKey(course.key));
+    document.getElementById("curves-section").hidden = !charts.length;
+    if (course) charts.forEach((chart) => chart.setKey(course.key));
   };
   along.addEventListener("change", redraw);
-  course.listeners.push((key) => charts.forEach((chart) => chart.setKey(key)));
+  if (course) course.listeners.push((key) => charts.forEach((chart) => chart.setKey(key)));
   redraw();
 }

@@ -61,21 +61,20 @@ function bodyOf(meta, arrays) {
   const size = meta.upper.map((high, axis) => high - meta.lower[axis]);
   const unit = Math.hypot(...size) / 2 || 1;
   const middle = meta.lower.map((low, axis) => low + size[axis] / 2);
-  const scale = meta.scales.step / unit;
+  const scale = meta.scales.step / unit, from = middle.map((m, axis) => (meta.scales.origin[axis] - m) / unit);
   const place = (name) => {
     const columns = ["x", "y", "z"].map((axis) => arrays[`${name}.${axis}`] || []);
     const n = columns[0].length, at = new Float32Array(3 * n);
     columns.forEach((column, axis) => {
-      const from = (meta.scales.origin[axis] - middle[axis]) / unit;
-      for (let k = 0; k < n; k++) at[3 * k + axis] = from + scale * column[k];
+      for (let k = 0; k < n; k++) at[3 * k + axis] = from[axis] + scale * column[k];
     });
     return at;
   };
   const length = (name) => new Float32Array(arrays[name] || []).map((value) => value * scale);
   const second = (first, apart) => new Uint32Array(first || []).map((value, k) => value + apart[k]);
   const node = { at: place("node") };
-  return {
-    meta, arrays, unit, size: size.map((length) => length / unit), middle,
+  const body = {
+    meta, arrays, unit, size: size.map((length) => length / unit), half: size.map((length) => length / unit / 2), middle,
     grain: { at: place("grain"), radius: length("grain.radius"), n: (arrays["grain.radius"] || []).length },
     node, throat: throatsOf(node, {
       first: arrays["throat.first"] || [], second: second(arrays["throat.first"], arrays["throat.second"]), radius: length("throat.radius"),
@@ -85,8 +84,12 @@ function bodyOf(meta, arrays) {
       first: arrays["bond.first"] || [], second: second(arrays["bond.first"], arrays["bond.second"]),
       breaks: arrays["bond.breaks"], mode: arrays["bond.mode"], n: (arrays["bond.first"] || []).length,
     },
-    lastKey: Math.max(0, meta.rows - 1) * meta.keysARow,
+    lastKey: Math.max(0, meta.rows - 1) * meta.keysARow, place: { from, scale },
   };
+  body.meanRadius = body.grain.radius.reduce((sum, r) => sum + r, 0) / (body.grain.n || 1);
+  body.moves = movesOf(body);
+  if (body.moves) moveBody(body, 0);
+  return body;
 }
 
 // A broken bond as a disc: between the surfaces of its two grains.

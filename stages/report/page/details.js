@@ -7,7 +7,8 @@ function placeText(body, at, k) {
 }
 
 function whenText(course, key) {
-  return course.rows ? `saturation ${short(course.at(course.saturation, key))}, ${withUnit(course.at(course.time, key), "s")}` : "";
+  if (!course.rows) return "";
+  return (course.saturation ? `saturation ${short(course.at(course.saturation, key))}, ` : "") + withUnit(course.at(course.time, key), "s");
 }
 
 function printing(dataset, files, filter) {
@@ -17,7 +18,7 @@ function printing(dataset, files, filter) {
 
 // Which artifact has a dataset, the first that may.
 function meta_has(name, dataset) {
-  const within = { "/particles": /^(packing|drying|forces|response)\.h5/, "/throats": /^(drying|network)\.h5/, "/bonds": /^(packing|response)\.h5/, "/cracks": /^response\.h5/, "/force": /^forces\.h5/ };
+  const within = { "/particles": /^(packing|drying|forces|response|flow|motion)\.h5/, "/throats": /^(drying|network|flow)\.h5/, "/contacts": /^motion\.h5/, "/bonds": /^(packing|response|motion)\.h5/, "/cracks": /^response\.h5/, "/force": /^forces\.h5/ };
   return within[`/${dataset.split("/")[1]}`].test(name);
 }
 
@@ -31,17 +32,26 @@ function describeGrain(body, course, i) {
     if (bond.breaks[b] === NEVER) continue;
     history.push([bond.breaks[b], `bond with grain ${bond.first[b] === i ? bond.second[b] : bond.first[b]} broke in ${MODES[bond.mode[b]]} at ${whenText(course, bond.breaks[b])}`]);
   }
-  const rows = [["centre", placeText(body, grain.at, i)], ["diameter", withUnit(2 * grain.radius[i] * body.unit, "m")], ["bonds", `${whole} of ${bonds} whole`]];
-  if (arrays["grain.largest"]) rows.push(["largest force", `${withUnit(arrays["grain.largest"][i], "N")} at ${whenText(course, arrays["grain.largest_key"][i])}`]);
+  const rows = [["centre", placeText(body, grain.at, i)], ["diameter", withUnit(2 * grain.radius[i] * body.unit, "m")]];
+  if (bonds) rows.push(["bonds", `${whole} of ${bonds} whole`]);
+  if (arrays["grain.largest"]) rows.push([wordsOf(body).most, withUnit(arrays["grain.largest"][i], wordsOf(body).unit) + (course.rows ? ` at ${whenText(course, arrays["grain.largest_key"][i])}` : "")]);
+  for (const { array, label, of, kinds, unit } of fieldsOf(body)) if (of === "grain") rows.push([label.replace("grains by ", ""), kinds ? String(arrays[array][i]) : withUnit(arrays[array][i], unit)]);
   return { title: `Grain ${i}`, rows, history: history.sort((a, b) => a[0] - b[0]).map(([, text]) => text), command: printing("/particles/position", meta.files, `.[${i}]`) };
 }
 
+function describeContact(body, t) {
+  const { throat, arrays, meta, grain } = body, id = throat.id[t], j = arrays["chain.second"][id];
+  return { title: "Contact", rows: [["of", `grain ${throat.first[t]} with ${j === grain.n ? "a wall" : `grain ${j}`}`], ["force", withUnit(arrays["chain.force"][id] / 255 * meta.shown.contact, "N")]], history: [], command: printing("/contacts/force", meta.files, ".") };
+}
+
 function describeThroat(body, course, t) {
+  if (body.moves) return describeContact(body, t);
   const { throat, node, meta } = body, id = throat.id[t], a = throat.first[t], b = throat.second[t];
   const length = Math.hypot(...[0, 1, 2].map((axis) => node.at[3 * a + axis] - node.at[3 * b + axis])) * body.unit;
   const rows = [["radius", withUnit(throat.radius[t] * body.unit, "m")], ["length", withUnit(length, "m")]];
   if (meta.tension > 0 && throat.radius[t] > 0) rows.push(["entry suction", withUnit(2 * meta.tension / (throat.radius[t] * body.unit), "Pa")]);
-  const history = throat.ends[t] === NEVER ? ["never empties"] : [`begins to empty at ${whenText(course, throat.leaves[t])}`, `is empty at ${whenText(course, throat.ends[t])}`];
+  for (const { array, label, of, unit } of fieldsOf(body)) if (of === "throat") rows.push([label.replace("pores by ", ""), withUnit(body.arrays[array][id], unit)]);
+  const history = meta.subject === "flow" ? [] : throat.ends[t] === NEVER ? ["never empties"] : [`begins to empty at ${whenText(course, throat.leaves[t])}`, `is empty at ${whenText(course, throat.ends[t])}`];
   return { title: `Throat ${id}`, rows, history, command: printing("/throats/radius", meta.files, `.[${id}]`) };
 }
 
@@ -59,7 +69,7 @@ function describe(body, course, cracks, picked) {
 
 function showDetails(body, course, cracks, picked) {
   const place = document.getElementById("picked");
-  if (!picked) return place.replaceChildren(html("p", { textContent: "Nothing there. Click a grain, a throat or a broken bond for its numbers." }));
+  if (!picked) return place.replaceChildren(html("p", { textContent: `Nothing there. ${wordsOf(body).pick}` }));
   const { title, rows, history, command } = describe(body, course, cracks, picked);
   place.replaceChildren(html("p", {}, html("b", { textContent: title })),
     html("dl", {}, ...rows.flatMap(([term, text]) => [html("dt", { textContent: term }), html("dd", { textContent: text })])),

@@ -31,6 +31,9 @@ function forcesAt({ arrays, grain }, m) {
 function tintsOf(page, key) {
   const { body, colours, colourBy, picked } = page;
   let grainTint = () => colours.grain, throatTint = () => colours.liquid;
+  const field = fieldsOf(body).find(({ array }) => array === colourBy);
+  if (field && field.of === "grain") grainTint = fieldTint(body, field, colours);
+  if (field && field.of === "throat") throatTint = fieldTint(body, field, colours);
   if (colourBy === "force") {
     const forces = forcesAt(body, momentAt(body, key));
     grainTint = (i) => mix(colours.grain, colours.force, Math.min(1, Math.hypot(forces[3 * i], forces[3 * i + 1], forces[3 * i + 2])));
@@ -93,6 +96,7 @@ function updateMoment(page, view) {
     }
     page.tinted = tinted;
   }
+  sayLegend(page);
   const m = momentAt(page.body, view.key);
   if (page.scene && view.show.forces && page.forced !== m) {
     putForces(page.scene, forcesAt(page.body, m));
@@ -115,11 +119,20 @@ function draw(page) {
   page.waiting = false;
   followMotion(page);
   const view = viewOf(page, page.canvas.width, page.canvas.height);
+  if (page.body.moves && page.movedTo !== view.key) moveTo(page, view.key);
   if (page.stale) updateShown(page, view);
   updateMoment(page, view);
   if (page.scene) drawScene(page.scene, view);
   else page.things = drawFlat(page.canvas, page.body, page.cracks, { ...view, grainTint: page.tints.grain, throatTint: page.tints.throat }, page.seen);
   sayScale(view);
+}
+
+function moveTo(page, key) {
+  moveBody(page.body, key);
+  page.cracks = cracksOf(page.body);
+  if (page.scene) { page.scene.cracks = page.cracks; putCracks(page.scene); }
+  page.movedTo = key;
+  page.stale = true;
 }
 
 function askDraw(page) {
@@ -139,8 +152,9 @@ function sayDrawn(page) {
   const { body, seen } = page, words = [];
   const count = (n) => n.toLocaleString("en");
   if (seen.grains.all.length < body.grain.n || seen.throats.all.length < body.throat.n) words.push(`Of ${count(body.grain.n)} grains and ${count(body.throat.n)} throats, ${count(seen.grains.all.length)} and ${count(seen.throats.all.length)} are drawn; grains hide the others.`);
-  if (body.meta.dryThroats) words.push(`${count(body.meta.dryThroats)} throats that never hold liquid are not drawn.`);
-  words.push("Places are within a thousandth of a grain; forces within 1/250 of the largest.");
+  if (body.meta.dryThroats) words.push(`${count(body.meta.dryThroats)} ${wordsOf(body).left}`);
+  if (body.moves) words.push(`A contact is as thick as its force: the largest, ${withUnit(body.meta.shown.contact, "N")}, as 0.6 of the mean grain. Between snapshots (${body.arrays["moment.key"].length}) grains go straight and contacts are those of the one before.`);
+  words.push(`Places are within a thousandth of a grain; arrows within 1/250 of the largest.`);
   element("drawn").textContent = words.join(" ");
 }
 
@@ -155,7 +169,8 @@ function sayNow(page) {
   if (!course) return;
   const broken = [0, 0];
   for (const crack of cracks) if (crack.key <= course.key) broken[crack.mode]++;
-  const words = `saturation ${course.at(course.saturation, course.key).toFixed(3)}, ${withUnit(course.at(course.time, course.key), "s")}`;
+  const saturation = course.saturation ? `saturation ${course.at(course.saturation, course.key).toFixed(3)}, ` : "";
+  const words = saturation + withUnit(course.at(course.time, course.key), "s");
   const cracked = body.arrays["course.tension"] ? `; broken: ${broken[0]} in tension, ${broken[1]} in shear` : "";
   element("now").textContent = words + cracked;
   element("moment").setAttribute("aria-valuetext", words + cracked);
@@ -203,12 +218,14 @@ function listen(page) {
 
 // Five moments side by side, for paper.
 function drawStrip(page) {
-  const { course, body, cracks } = page, shares = course ? [0.1, 0.25, 0.4, 0.7, 1] : [1];
+  const { course, body } = page, shares = course ? [0.1, 0.25, 0.4, 0.7, 1] : [1];
   const figures = shares.map((share) => {
     const canvas = html("canvas", { width: 440, height: 640 }), colours = readColours();
-    const key = course ? Math.round(share * course.last) : 0, view = { ...viewOf(page, 440, 640), key, colours, dense: 1 };
+    const key = course ? Math.round(share * course.last) : 0;
+    if (body.moves) moveTo(page, key);
+    const view = { ...viewOf(page, 440, 640), key, colours, dense: 1 };
     const tints = tintsOf({ ...page, colours, picked: null }, key);
-    drawFlat(canvas, body, cracks, { ...view, grainTint: tints.grain, throatTint: tints.throat }, page.seen);
+    drawFlat(canvas, body, page.cracks, { ...view, grainTint: tints.grain, throatTint: tints.throat }, body.moves ? visibleOf(body, view, 440, 640) : page.seen);
     return html("figure", {}, canvas, html("figcaption", { textContent: course ? whenText(course, key) : "" }));
   });
   element("strip").replaceChildren(...figures);
@@ -218,7 +235,9 @@ function drawStrip(page) {
 
 function prepareControls(body) {
   const small = !isLarge(body);
-  element("size").value = small ? 62 : 100;
+  nameControls(body);
+  page.colourBy = element("colour").value;
+  element("size").value = body.moves ? 80 : small ? 62 : 100;
   element("shown").querySelector("[name=empty]").checked = small && body.grain.n < 1000;
   const without = (name, there) => { if (!there) { const box = element("shown").querySelector(`[name=${name}]`); box.checked = false; box.disabled = true; } };
   without("liquid", body.throat.n);
@@ -256,14 +275,15 @@ async function start() {
   startScene(page);
   if (meta.rows > 1) {
     page.course = newCourse(page.body);
-    page.course.listeners.push(() => { sayNow(page); askDraw(page); keepMoving(page); });
+    page.course.listeners.push(() => { sayNow(page); askDraw(page); });
     page.course.set(telling(page.cracks, page.course.last));
+    page.course.listeners.push(() => keepMoving(page));
   } else {
-    element("course").hidden = element("curves-section").hidden = true;
+    element("course").hidden = true;
   }
   listen(page);
   draw(page);
-  if (page.course) drawCurves(page.body, page.course);
+  drawCurves(page.body, page.course);
   document.documentElement.dataset.ready = "yes";
 }
 

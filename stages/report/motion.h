@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grains that move: places and contact forces at snapshots, curves of the history.
+#ifndef CRAQUELURE_REPORT_MOTION_H
+#define CRAQUELURE_REPORT_MOTION_H
+
+#include "body.h"
+
+#include <stdio.h>
+
+// Places, groups, contacts at the moments of BODY and the history at the rows of
+// COURSE; returns {"fields": [...], "charts": [...]} for the script.
+json_t *put_motion(struct arrays *arrays, const struct run *run,
+                   const struct course *course, const struct shown_body *body);
+
+void put_motion_headline(FILE *page, const struct run *run);
+void put_motion_facts(FILE *page, const struct run *run, const struct course *course,
+                      const struct shown_body *body);
+
+#endif
