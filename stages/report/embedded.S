@@ -35,4 +35,12 @@
     part main.js
     .byte 0
 
+    begin study_template
+    part study.html
+    .byte 0
+
+    begin study_script
+    part study.js
+    .byte 0
+
     .section .note.GNU-stack, "", @progbits

@@ -149,14 +149,26 @@ static void put_modes(FILE *page, const struct run *run)
                  count[0], count[1], 100.0 * count[1] / (count[0] + count[1]));
 }
 
+double counted_mean(const struct run *run, const char *group, const char *name)
+{
+    return IN(run->counted, "mean", group, name);
+}
+
+int row_of_half_rate(const struct course *course)
+{
+    int row = 0;
+    while (row < course->n_row && course->rate &&
+           course->rate[row] > course->rate[0] / 2)
+        row++;
+    return course->rate && row < course->n_row ? row : -1;
+}
+
 static void put_rates(FILE *page, const struct run *run, const struct course *course)
 {
     if (!course->rate || !course->n_row) return;
     char time[40];
-    int row = 0;
-    while (row < course->n_row && course->rate[row] > course->rate[0] / 2)
-        row++;
-    if (row < course->n_row)
+    const int row = row_of_half_rate(course);
+    if (row >= 0)
         put_fact(page, (struct where){(int64_t)row * course->keys_a_row, -1},
                  "Rate at half its start", "at saturation %.3g (%s)",
                  course->saturation[row], with_unit(course->time[row], "s", time));
@@ -222,16 +234,16 @@ static void put_forces(FILE *page, const struct run *run, const struct course *c
 
 static void put_pieces(FILE *page, const struct run *run)
 {
-    const double pieces = IN(run->counted, "mean", "fragments", "count");
+    const double pieces = counted_mean(run, "fragments", "count");
     if (!isnan(pieces))
         put_fact(page, nowhere, "Pieces at the end", "%.0f, the largest of %.0f grains",
-                 pieces, IN(run->counted, "mean", "fragments", "largest"));
-    const double largest = IN(run->counted, "mean", "clusters", "largest");
+                 pieces, counted_mean(run, "fragments", "largest"));
+    const double largest = counted_mean(run, "clusters", "largest");
     if (!isnan(largest))
         put_fact(page, nowhere, "Connected cracks",
                  "%.0f clusters, the largest of %.0f bonds",
-                 IN(run->counted, "mean", "clusters", "count"), largest);
-    const double shrinkage = IN(run->counted, "mean", "shrinkage", "largest");
+                 counted_mean(run, "clusters", "count"), largest);
+    const double shrinkage = counted_mean(run, "shrinkage", "largest");
     if (!isnan(shrinkage))
         put_fact(page, nowhere, "Shrinkage", "at most %.3g %% of the volume",
                  100 * shrinkage);

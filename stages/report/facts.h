@@ -28,6 +28,12 @@ void put_headline(FILE *page, const struct run *run, const struct course *course
 void put_facts(FILE *page, const struct run *run, const struct course *course,
                const struct shown_body *body);
 
+// A number of crackstats, or NAN.
+double counted_mean(const struct run *run, const char *group, const char *name);
+
+// The first row at which the rate is half of the first; -1: none.
+int row_of_half_rate(const struct course *course);
+
 // Everything that a reader should know before trusting a number.
 void put_warnings(FILE *page, const struct run *run, const struct shown_body *body);
 

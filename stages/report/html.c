@@ -44,6 +44,13 @@ void put_line(FILE *page, const char *format, ...)
     free(text);
 }
 
+void put_cell(FILE *page, const char *before, const char *text, const char *after)
+{
+    fputs(before, page);
+    put_text(page, text);
+    fputs(after, page);
+}
+
 char *json_for_script(const json_t *json)
 {
     char *text = json_dumps(json, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_SORT_KEYS |

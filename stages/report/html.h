@@ -13,6 +13,9 @@ void put_text(FILE *page, const char *text);
 void put_line(FILE *page, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+// TEXT as text, between two pieces of markup.
+void put_cell(FILE *page, const char *before, const char *text, const char *after);
+
 // JSON that may stand in a script element: no "<" in it.
 char *json_for_script(const json_t *json);
 

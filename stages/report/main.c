@@ -30,9 +30,10 @@ static const struct stage stage = {
     .summary = "report -- a page on which a run shows itself: the body in 3D, curves, "
                "numbers, warnings",
     .reads = "the folder of a run, or its artifacts: packing, network, drying, forces, "
-             "response, crackstats (of the run; of several), check",
+             "response, crackstats (of the run; of several), check; a flow; a motion; "
+             "several folders of runs, or one that holds such folders",
     .writes = "report",
-    .most_inputs = 16,
+    .most_inputs = 100000,
     .parameters = table,
     .notes = "The page is one HTML file that needs no network and no other file. It "
              "opens in any\nrecent browser, with or without WebGL.",
@@ -46,32 +47,52 @@ static int moments_for(const struct run *run, int64_t wanted)
     return (int)(wanted < most ? wanted : most);
 }
 
-int main(int argc, char **argv)
+static void write_page(const struct contents *contents, const char *output)
 {
-    struct report_parameters parameters;
-    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    struct run run = run_of_paths(invocation.inputs, invocation.n_input);
-    struct course course = course_of(&run, (int)parameters.rows);
+    size_t size;
+    char *page = page_of(contents, &size);
+    write_whole(output, page, size);
+    free(page);
+}
+
+static void report_run(const struct invocation *invocation,
+                       const struct report_parameters *parameters)
+{
+    struct run run = run_of_paths(invocation->inputs, invocation->n_input);
+    struct course course = course_of(&run, (int)parameters->rows);
     struct arrays arrays = arrays_new();
     struct shown_body body =
-        put_body(&arrays, &run, &course, moments_for(&run, parameters.moments));
+        put_body(&arrays, &run, &course, moments_for(&run, parameters->moments));
     put_course(&arrays, &course, &run);
     json_t *shown = run.flow     ? put_flow(&arrays, &run)
                     : run.motion ? put_motion(&arrays, &run, &course, &body)
                                  : NULL;
-
-    const struct contents contents = {&run,    &course, &body,
-                                      &arrays, shown,   parameters.title};
-    size_t size;
-    char *page = page_of(&contents, &size);
-    write_whole(invocation.output, page, size);
-
-    free(page);
+    const struct contents contents = {.run = &run,
+                                      .course = &course,
+                                      .body = &body,
+                                      .arrays = &arrays,
+                                      .shown = shown,
+                                      .title = parameters->title};
+    write_page(&contents, invocation->output);
     json_decref(shown);
     arrays_free(&arrays);
     shown_body_free(&body);
     course_free(&course);
     close_run(&run);
+}
+
+int main(int argc, char **argv)
+{
+    struct report_parameters parameters;
+    struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    struct study *study =
+        study_of(invocation.inputs, invocation.n_input, invocation.output);
+    if (study)
+        write_page(&(struct contents){.study = study, .title = parameters.title},
+                   invocation.output);
+    else
+        report_run(&invocation, &parameters);
+    study_free(study);
     invocation_free(&invocation);
     return 0;
 }

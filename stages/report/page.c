@@ -15,16 +15,18 @@
 #include <string.h>
 
 extern const char page_template[], page_style[], page_script[];
+extern const char study_template[], study_script[];
 
 // ---- one function a place of the template -------------------------------------------
 
 static void put_title(FILE *page, const struct contents *contents)
 {
     const struct run *run = contents->run;
-    put_text(page, contents->title ? contents->title
-                   : run->flow     ? "Flow between grains"
-                   : run->motion   ? "Grains that move"
-                                   : "A body of grains as it dries");
+    put_text(page, contents->title   ? contents->title
+                   : contents->study ? "Runs beside each other"
+                   : run->flow       ? "Flow between grains"
+                   : run->motion     ? "Grains that move"
+                                     : "A body of grains as it dries");
 }
 
 // What a content security policy knows an inline TEXT by.
@@ -50,8 +52,7 @@ static void put_style_hash(FILE *page, const struct contents *contents)
 
 static void put_script_hash(FILE *page, const struct contents *contents)
 {
-    (void)contents;
-    put_hash(page, page_script);
+    put_hash(page, contents->study ? study_script : page_script);
 }
 
 static void put_style(FILE *page, const struct contents *contents)
@@ -62,13 +63,14 @@ static void put_style(FILE *page, const struct contents *contents)
 
 static void put_script(FILE *page, const struct contents *contents)
 {
-    (void)contents;
-    fputs(page_script, page);
+    fputs(contents->study ? study_script : page_script, page);
 }
 
 static void put_head_line(FILE *page, const struct contents *contents)
 {
-    if (contents->run->flow)
+    if (contents->study)
+        put_study_headline(page, contents->study);
+    else if (contents->run->flow)
         put_flow_headline(page, contents->run);
     else if (contents->run->motion)
         put_motion_headline(page, contents->run);
@@ -217,6 +219,28 @@ static void put_data(FILE *page, const struct contents *contents)
     free(text);
 }
 
+// ---- a study ------------------------------------------------------------------------
+
+static void put_differing(FILE *page, const struct contents *contents)
+{
+    put_differences(page, contents->study);
+}
+
+static void put_table(FILE *page, const struct contents *contents)
+{
+    put_runs(page, contents->study);
+}
+
+static void put_strips(FILE *page, const struct contents *contents)
+{
+    put_distributions(page, contents->study);
+}
+
+static void put_comparison(FILE *page, const struct contents *contents)
+{
+    put_tests(page, contents->study);
+}
+
 // ---- the template -------------------------------------------------------------------
 
 static const struct {
@@ -237,7 +261,11 @@ static const struct {
               {"sources", put_files},
               {"version", put_version},
               {"meta", put_meta},
-              {"data", put_data}};
+              {"data", put_data},
+              {"differences", put_differing},
+              {"runs", put_table},
+              {"distributions", put_strips},
+              {"tests", put_comparison}};
 
 static void put_place(FILE *page, const char *name, size_t length,
                       const struct contents *contents)
@@ -255,7 +283,7 @@ char *page_of(const struct contents *contents, size_t *size)
 {
     char *text = NULL;
     FILE *page = open_memstream(&text, size);
-    const char *from = page_template;
+    const char *from = contents->study ? study_template : page_template;
     for (const char *open; (open = strstr(from, "{{"));) {
         const char *close = strstr(open, "}}");
         fwrite(from, 1, (size_t)(open - from), page);

@@ -4,9 +4,11 @@
 #define CRAQUELURE_REPORT_PAGE_H
 
 #include "body.h"
+#include "study.h"
 
-// All that stands in a page.
+// All that stands in a page: of a run, or of a study.
 struct contents {
+    const struct study *study; // NULL: of a run
     const struct run *run;
     const struct course *course;
     const struct shown_body *body;

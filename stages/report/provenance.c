@@ -101,7 +101,7 @@ void put_modelled(FILE *page, const struct run *run)
 
 // ---- how to make it again -----------------------------------------------------------
 
-void put_scene(FILE *page, const struct run *run)
+json_t *scene_of(const struct run *run)
 {
     struct words words[SOURCES];
     all_words(run, words);
@@ -115,11 +115,17 @@ void put_scene(FILE *page, const struct run *run)
         if (json_object_set_new_nocheck(scene, stage, parameters))
             json_decref(parameters);
     }
+    words_free(words);
+    return scene;
+}
+
+void put_scene(FILE *page, const struct run *run)
+{
+    json_t *scene = scene_of(run);
     char *text = json_dumps(scene, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     if (text) put_text(page, text);
     free(text);
     json_decref(scene);
-    words_free(words);
 }
 
 void put_commands(FILE *page, const struct run *run)

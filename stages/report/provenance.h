@@ -12,7 +12,8 @@
 void put_left_out(FILE *page, const struct run *run);
 void put_modelled(FILE *page, const struct run *run);
 
-// The effective parameters of all stages, as one scene.
+// The effective parameters of all stages, as one scene. The caller owns it.
+json_t *scene_of(const struct run *run);
 void put_scene(FILE *page, const struct run *run);
 
 // Command lines that make the run again from that scene.

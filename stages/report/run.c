@@ -5,21 +5,14 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "flow.h"
+#include "folders.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static const char *const kind_name[KINDS] = {"packing", "network", "drying", "forces",
                                              "response"};
-
-// As `make run` and `make demo` name them; those of the two limits lie in a folder of
-// their own, below what both share.
-static const char *const usual[] = {"packing.h5",      "tessellation.h5", "network.h5",
-                                    "drying.h5",       "forces.h5",       "response.h5",
-                                    "crackstats.json", "seeds.json",      "check.json"};
 
 // ---- which artifacts ----------------------------------------------------------------
 
@@ -104,12 +97,6 @@ static void keep(struct run *run, const char *path)
     keep_artifact(run, artifact_open_bytes(name, bytes, NULL));
 }
 
-static bool is_folder(const char *path)
-{
-    struct stat there;
-    return !stat(path, &there) && S_ISDIR(there.st_mode);
-}
-
 static void must_be_alone(const struct run *run)
 {
     const struct artifact *alone = run->flow ? run->flow : run->motion;
@@ -118,31 +105,14 @@ static void must_be_alone(const struct run *run)
             input_name(alone->path), alone->schema->name);
 }
 
-// The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
-static char *find_in(const char *folder, const char *name)
-{
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s", folder, name) < 0)
-        die(STATUS_INTERNAL, "out of memory");
-    if (!access(path, F_OK)) return path;
-    free(path);
-    return NULL;
-}
-
 static void keep_folder(struct run *run, const char *folder)
 {
-    static const int n_usual = sizeof usual / sizeof *usual, n_shared = 3;
-    char *path[sizeof usual / sizeof *usual];
-    int found = 0;
-    for (int k = 0; k < n_usual; k++)
-        found += (path[k] = find_in(folder, usual[k])) != NULL;
-    if (!found) die(STATUS_NO_INPUT, "%s: holds no artifact of a run", folder);
-    char above[4096];
-    snprintf(above, sizeof above, "%.4000s/..", folder);
-    for (int k = 0; k < n_usual; k++) {
-        if (!path[k] && k < n_shared) path[k] = find_in(above, usual[k]);
-        if (path[k]) keep(run, path[k]);
-        free(path[k]);
+    if (!has_artifact(folder))
+        die(STATUS_NO_INPUT, "%s: holds no artifact of a run", folder);
+    for (int k = 0; k < USUAL_NAMES; k++) {
+        char *path = find_usual(folder, k);
+        if (path) keep(run, path);
+        free(path);
     }
 }
 

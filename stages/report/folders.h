@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Folders of runs, and ways between them.
+#ifndef CRAQUELURE_REPORT_FOLDERS_H
+#define CRAQUELURE_REPORT_FOLDERS_H
+
+#include <stdbool.h>
+
+bool is_folder(const char *path);
+
+// The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
+char *find_in(const char *folder, const char *name);
+
+// Whether it holds one that `make run` makes.
+bool has_artifact(const char *folder);
+
+// The artifact K of a run under the name that `make run` gives it in FOLDER, or NULL;
+// the first SHARED_NAMES of the USUAL_NAMES also in the two folders above. The caller
+// frees it.
+enum { SHARED_NAMES = 3, USUAL_NAMES = 9 };
+char *find_usual(const char *folder, int k);
+
+// PATHS (N) where they are several folders; the folders with runs in one that has no
+// artifact itself, by name; else NULL. Frees nothing; the caller frees all of it.
+char **run_folders(const char *const *paths, int n, int *count);
+
+// FOLDER/NAME as a link in a page OUTPUT ("-": here), or NULL where it is not there.
+// The caller frees it.
+char *link_to(const char *folder, const char *name, const char *output);
+
+#endif

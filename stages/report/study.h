@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many runs on one page: a row each, how their results scatter, and whether two groups
+// of them differ.
+#ifndef CRAQUELURE_REPORT_STUDY_H
+#define CRAQUELURE_REPORT_STUDY_H
+
+#include <stdio.h>
+
+struct study;
+
+// Of the runs in PATHS (N): several folders, or one that holds no artifact itself but
+// folders with runs. NULL where they are neither. Links lead from the folder of OUTPUT
+// to each run's report.html that is there. The caller frees it with study_free.
+struct study *study_of(const char *const *paths, int n, const char *output);
+void study_free(struct study *study);
+
+void put_study_headline(FILE *page, const struct study *study);
+
+// What of the scenes differs.
+void put_differences(FILE *page, const struct study *study);
+
+// A row for each run.
+void put_runs(FILE *page, const struct study *study);
+
+// A strip of points for each result: one line a group, with its mean and interval.
+void put_distributions(FILE *page, const struct study *study);
+
+// Two groups against each other; nothing where there are not two.
+void put_tests(FILE *page, const struct study *study);
+
+#endif
