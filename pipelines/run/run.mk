@@ -5,7 +5,9 @@
 #     make report SCENE=samples/x.json ->  build/runs/x/report.html, a page that shows the run
 #     make simulate SCENE=samples/drum.json  ->  build/runs/drum/motion.h5
 #     make demo                        ->  the sample in both drying limits, for several draws of
-#                                          the throat radii, and pages and pictures of the first
+#                                          the throat radii, pages and pictures of the first, and
+#                                          a page of all
+#     make demo PAGES=no               ->  the same without pages
 #     make demo SCENE=samples/x.json   ->  the same for another scene
 #     make demo DEMO_SEEDS="3 4 5"     ->  the same for these draws
 
@@ -33,8 +35,8 @@ dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
 simulate = $(call step,$1,simulate,$(SIMULATE),$2,$3,$4)
 crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
 
-# A page, with title $3.
-page = $(call step,$1,report,$(REPORT),$2,title="$3",$4)
+# A page, with title $3, which leads to page $5.
+page = $(call step,$1,report,$(REPORT),$2,title="$3" $(5:%=study="%"),$4)
 
 pipeline_goals += demo run report simulate
 
@@ -156,17 +158,26 @@ demo_moments := $(foreach limit,$(demo_limits),$(foreach s,0.9 0.6 0.3 \
 	0,'$(limit), saturation $s=$(demo_folder)/$(limit)/response.h5@$s'))
 $(call report,$(demo_patterns),figures/crack-patterns,$(demo_limits:%=$(demo_folder)/%/response.h5),$(demo_moments))
 
-# A page of the first run of each limit, with the intervals over all.
+# A page of the first run of each limit, with the intervals over all; and one of all runs.
+PAGES ?=# no: none
+ifneq ($(PAGES),no)
 demo_pages := $(demo_limits:%=$(demo_folder)/%/report.html)
 $(foreach limit,$(demo_limits),$(call page,$(demo_folder)/$(limit)/report.html,$(demo_scene),$(notdir \
 	$(demo_folder))/$(limit),$(call network_artifacts,$(demo_folder)) $(call \
-	history_artifacts,$(demo_folder)/$(limit)) $(filter $(demo_folder)/$(limit)/seeds.json,$(demo_means))))
+	history_artifacts,$(demo_folder)/$(limit)) $(filter $(demo_folder)/$(limit)/seeds.json,$(demo_means)),../study.html))
+demo_study := $(demo_folder)/study.html
+demo_all := $(foreach limit,$(demo_limits),$(call demo_run_folders,$(limit)))
+$(call artifact,$(demo_study),scene=$(demo_scene) stage=report version=$(call version_of,report),$(call \
+	network_artifacts,$(demo_folder)) $(foreach folder,$(demo_all),$(call \
+	history_artifacts,$(folder))) $(demo_pages),$(RUN) $(REPORT) -p $(demo_scene) --set $(call \
+	quoted,title="$(notdir $(demo_folder))") $(demo_all) -o $(demo_study),$(REPORT))
+endif
 
-demo: $(demo_pages) $(demo_counts) $(demo_means) $(demo_picture) $(demo_patterns)
+demo: $(demo_pages) $(demo_study) $(demo_counts) $(demo_means) $(demo_picture) $(demo_patterns)
 ifdef really
 	@$(foreach limit,$(demo_limits),$(call headline,$(filter $(demo_folder)/$(limit)/%,$(demo_means)),$(limit): );)
 	@echo 'artifacts: $(demo_folder)'
 	@echo 'pictures:  $(demo_picture) $(demo_patterns)'
-	@echo 'pages:     $(demo_pages)'
+	$(if $(demo_pages),@echo 'pages:     $(demo_study) $(demo_pages)')
 endif
 endif

@@ -104,24 +104,34 @@ char **run_folders(const char *const *paths, int n, int *count)
     return all;
 }
 
-// The way from folder FROM to TO, both whole.
+char *link_text(const char *path)
+{
+    char *link = allocate(3 * strlen(path) + 1, 1), *end = link;
+    for (const char *c = path; *c; c++)
+        if (strchr("%?#:\\\"<> ", *c))
+            end += sprintf(end, "%%%02X", (unsigned char)*c);
+        else
+            *end++ = *c;
+    *end = 0;
+    return link;
+}
+
+// The way from folder FROM to TO, both whole, as a link.
 static char *way(const char *from, const char *to)
 {
     size_t same = 0;
     for (size_t c = 0; from[c] && from[c] == to[c]; c++)
         if (from[c] == '/') same = c + 1;
-    char *text = NULL;
+    char *path = NULL;
     size_t size;
-    FILE *link = open_memstream(&text, &size);
+    FILE *text = open_memstream(&path, &size);
     for (const char *c = from + same; *c; c++)
-        if (*c == '/') fputs("../", link);
-    for (const char *c = to + same; *c; c++) // "%", "?", "#" and ":" mean other things
-        if (strchr("%?#:\\\"<> ", *c))
-            fprintf(link, "%%%02X", (unsigned char)*c);
-        else
-            fputc(*c, link);
-    fclose(link);
-    return text;
+        if (*c == '/') fputs("../", text);
+    fputs(to + same, text);
+    fclose(text);
+    char *link = link_text(path);
+    free(path);
+    return link;
 }
 
 char *link_to(const char *folder, const char *name, const char *output)

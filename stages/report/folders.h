@@ -23,6 +23,9 @@ char *find_usual(const char *folder, int k);
 // artifact itself, by name; else NULL. Frees nothing; the caller frees all of it.
 char **run_folders(const char *const *paths, int n, int *count);
 
+// PATH as a link: what means something else there is %XX. The caller frees it.
+char *link_text(const char *path);
+
 // FOLDER/NAME as a link in a page OUTPUT ("-": here), or NULL where it is not there.
 // The caller frees it.
 char *link_to(const char *folder, const char *name, const char *output);

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 struct report_parameters {
-    const char *title;
+    const char *title, *study;
     int64_t rows, moments;
 };
 
@@ -16,6 +16,8 @@ struct report_parameters {
 
 static const struct parameter table[] = {
     {"title", PARAMETER_TEXT, "1", "null", AT(title), .text = "of the page"},
+    {"study", PARAMETER_TEXT, "1", "null", AT(study),
+     .text = "page of all runs that this one belongs to, seen from its own; a link"},
     {"rows", PARAMETER_INTEGER, "1", "1000", AT(rows), BETWEEN(2, 20000),
      .text = "most moments of the drying that the slider and the curves know"},
     {"moments", PARAMETER_INTEGER, "1", "16", AT(moments), BETWEEN(1, 1000),
@@ -72,7 +74,8 @@ static void report_run(const struct invocation *invocation,
                                       .body = &body,
                                       .arrays = &arrays,
                                       .shown = shown,
-                                      .title = parameters->title};
+                                      .title = parameters->title,
+                                      .study_page = parameters->study};
     write_page(&contents, invocation->output);
     json_decref(shown);
     arrays_free(&arrays);

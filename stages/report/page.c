@@ -6,6 +6,7 @@
 #include "basics/status.h"
 #include "facts.h"
 #include "flow.h"
+#include "folders.h"
 #include "html.h"
 #include "motion.h"
 #include "provenance.h"
@@ -76,6 +77,15 @@ static void put_head_line(FILE *page, const struct contents *contents)
         put_motion_headline(page, contents->run);
     else
         put_headline(page, contents->run, contents->course);
+}
+
+static void put_way(FILE *page, const struct contents *contents)
+{
+    if (!contents->study_page) return;
+    char *link = link_text(contents->study_page);
+    put_cell(page, "<p class=\"small\"><a href=\"", link,
+             "\">All runs of this study</a></p>");
+    free(link);
 }
 
 static void put_list(FILE *page, const struct contents *contents)
@@ -252,6 +262,7 @@ static const struct {
               {"style", put_style},
               {"script", put_script},
               {"headline", put_head_line},
+              {"way", put_way},
               {"facts", put_list},
               {"warnings", put_cautions},
               {"left-out", put_out},

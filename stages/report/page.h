@@ -13,8 +13,9 @@ struct contents {
     const struct course *course;
     const struct shown_body *body;
     const struct arrays *arrays;
-    json_t *shown;     // what put_flow or put_motion say; NULL: a drying
-    const char *title; // NULL: none given
+    json_t *shown;          // what put_flow or put_motion say; NULL: a drying
+    const char *title;      // NULL: none given
+    const char *study_page; // that leads to all runs; NULL likewise
 };
 
 // The page as text of *SIZE bytes; the caller frees it.

@@ -24,25 +24,28 @@ made() { sed -n 's/^  RUN   //p' | sed 's|.*/||' | xargs; } # what was remade
 
 # --- run ---------------------------------------------------------------------------------
 
-all='packing.h5 tessellation.h5 network.h5 drying.h5 forces.h5 response.h5 crackstats.json'
+run='packing.h5 tessellation.h5 network.h5 drying.h5 forces.h5 response.h5 crackstats.json'
+all="$run report.html"
 is 'a scene runs' "$all" "$(craquelure run 'scenes/small scene.json' 2>"$scratch/said" | made)"
-is 'in ./runs' "$all" "$(cd runs/small_scene && echo *.h5 *.json | xargs -n1 |
+is 'in ./runs' "$all" "$(cd runs/small_scene && echo *.h5 *.json *.html | xargs -n1 |
     grep -xFf <(tr ' ' '\n' <<<"$all") | awk -v all="$all" 'BEGIN { n = split(all, order) }
         { seen[$0] = 1 } END { for (k = 1; k <= n; k++) if (seen[order[k]]) print order[k] }' | xargs)"
 yes 'to the bytes of the tree' cmp runs/small_scene/crackstats.json "$scratch/runs/small/crackstats.json"
 again=$(craquelure run 'scenes/small scene.json')
 is 'again: nothing is remade' '' "$(made <<<"$again")"
-is 'and it says how many bonds broke, and where' 'artifacts: runs/small_scene' "$(tail -1 <<<"$again")"
-is 'a changed parameter remakes what depends on it' 'response.h5 crackstats.json' \
+is 'and it says how many bonds broke, and where' 'artifacts: runs/small_scene page: runs/small_scene/report.html' \
+    "$(tail -2 <<<"$again" | xargs)"
+is 'a changed parameter remakes what depends on it' 'response.h5 crackstats.json report.html' \
     "$(craquelure run 'scenes/small scene.json' -s dem-replay.bond.normal_strength=1e3 2>/dev/null | made)"
 is 'which it is' 1000 \
     "$(craquelure inspect runs/small_scene/response.h5 | jq .parameters.bond.normal_strength)"
 is 'the scene itself is as it was' 16000 \
     "$(jq '.["dem-replay"].bond.normal_strength | floor' 'scenes/small scene.json')"
-craquelure run 'scenes/small scene.json' --runs="$scratch/else where" --name=other >"$scratch/shown" 2>&1
+craquelure run 'scenes/small scene.json' --runs="$scratch/else where" --name=other --no-page >"$scratch/shown" 2>&1
 is 'in a chosen folder, by a chosen name' "artifacts: $scratch/else where/other" \
     "$(tail -1 "$scratch/shown")"
 yes 'where it is' test -s "$scratch/else where/other/crackstats.json"
+is 'without a page' no "$([[ -e $scratch/else\ where/other/report.html ]] && echo yes || echo no)"
 is 'a sample by its name' 0 "$(craquelure run stiff-5x5x10 -s dem-replay.cycles=1 \
     -s 'pack.counts=[2,2,2]' -s force-protocol.steps=3 >/dev/null 2>&1; echo $?)"
 
@@ -63,7 +66,8 @@ END
 chmod +x mycrackstats
 is 'a stage of one'\''s own' 'one run: 7 of 8 bonds broke, 4 in tension, 3 in shear' \
     "$(env -i PATH=/usr/bin:/bin CRACKSTATS=./mycrackstats "$prefix/bin/craquelure" run \
-        'scenes/small scene.json' 2>/dev/null | tail -2 | head -1)"
+        'scenes/small scene.json' 2>/dev/null | tee "$scratch/own" | grep broke)"
+is 'whose run has no page, and is whole' 1 "$(grep -c '^no page: report: .*crackstats.json' "$scratch/own")"
 
 # --- what is refused ---------------------------------------------------------------------
 
@@ -104,6 +108,11 @@ for limit in inviscid immobile; do
     is "$limit: the mean of three draws, its interval and their range" "$mean" \
         "$(grep -o "^$limit: .*draws of the throat radii: [0-9]* to [0-9]*)" "$scratch/demo")"
 done
+for page in study inviscid/report immobile/report; do
+    yes "and makes $page.html" grep -q '</html>' "runs/small_scene/$page.html"
+done
+is 'pages lead to each other' '2 2' "$(grep -o '<a href="[a-z]*/report.html">' runs/small_scene/study.html | wc -l) $(
+    cat runs/small_scene/*/report.html | grep -c '<a href="../study.html">')"
 for picture in picture patterns; do
     yes "and draws $picture.svg" grep -q '</svg>' "runs/small_scene/$picture.svg"
 done

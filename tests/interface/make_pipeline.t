@@ -33,12 +33,12 @@ echo "$name" >>ran
     echo "$name ${sets[*]}"
     jq -cS --arg name "$name" '.[$name] // {}
         | walk(if type == "object" then del(.comment, .unseen) else . end)' "$scene"
-    cat "${inputs[@]}"
+    for input in "${inputs[@]}"; do [[ -d $input ]] || cat "$input"; done
 } >"$output"
 END
 chmod +x stage
 all='pack tessellate merge-nodes dry force-protocol dem-replay crackstats'
-for name in $all; do
+for name in $all report; do
     mkdir -p "stages/$name"
     cp stage "build/bin/$name"
     echo 1 >"stages/$name/version"
@@ -298,11 +298,11 @@ END
 : >ran
 make demo DEMO_SEEDS='5 3' >said 2>&1
 is 'they pass through the same pipeline: a network, and per draw and limit the rest' \
-    '4 crackstats 4 dem-replay 4 dry 4 force-protocol 1 merge-nodes 1 pack 1 tessellate' \
+    '6 crackstats 4 dem-replay 4 dry 4 force-protocol 1 merge-nodes 1 pack 3 report 1 tessellate' \
     "$(sort ran | uniq -c | xargs)"
 : >ran
 make demo DEMO_SEEDS='5 3 8' >said 2>&1
-is 'one more: nothing else again' '2 crackstats 2 dem-replay 2 dry 2 force-protocol' \
+is 'one more: nothing else again' '4 crackstats 2 dem-replay 2 dry 2 force-protocol 3 report' \
     "$(sort ran | uniq -c | xargs)"
 : >ran
 make run SCENE=samples/stiff-5x5x10.json >said 2>&1
