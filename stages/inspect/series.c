@@ -67,7 +67,8 @@ static void drying_series(const struct artifact *artifact, struct series *series
                                   .point = network.node_position,
                                   .n_line = network.n_throat,
                                   .line = (const int32_t(*)[2])drawn,
-                                  .cells = cells};
+                                  .cells = cells,
+                                  .shown = "saturation"};
     for (int step = 0, frame = 0; step < record.n_step; step++) {
         const double saturation = record.saturation[step];
         apply_changes(&record, step, liquid);
@@ -102,7 +103,8 @@ static void forces_series(const struct artifact *artifact, struct series *series
         add_frame(series, time[m],
                   &(struct vtu_grid){.n_point = packing.n_particle,
                                      .point = packing.position,
-                                     .points = points});
+                                     .points = points,
+                                     .shown = "force"});
     }
     free(time);
     free(force);
@@ -208,7 +210,8 @@ static void response_series(const struct artifact *artifact, struct series *seri
                                      .n_line = view.n_contact,
                                      .line = (const int32_t(*)[2])view.contact,
                                      .points = points,
-                                     .cells = cells});
+                                     .cells = cells,
+                                     .shown = "crack"});
     }
     free(time);
     free(displacement);

@@ -27,10 +27,16 @@ static void put_doubles(FILE *stream, const struct vtu_array *array, int count)
     fprintf(stream, "</DataArray>\n");
 }
 
+// ParaView colours by the active scalars, those of points before those of cells.
 static void put_arrays(FILE *stream, const char *kind, const struct vtu_array *arrays,
-                       int count)
+                       int count, const char *shown)
 {
-    fprintf(stream, "<%s>\n", kind);
+    const struct vtu_array *active = arrays;
+    while (active && active->name && strcmp(active->name, shown))
+        active++;
+    fprintf(stream, "<%s", kind);
+    if (active && active->name) fprintf(stream, " Scalars=\"%s\"", shown);
+    fprintf(stream, ">\n");
     for (; arrays && arrays->name; arrays++)
         put_doubles(stream, arrays, count);
     fprintf(stream, "</%s>\n", kind);
@@ -67,8 +73,8 @@ void write_vtu(const char *path, const struct vtu_grid *grid)
                 grid->n_point);
     fprintf(stream, "</Points>\n");
     put_cells(stream, grid, n_cell, grid->line ? 2 : 1);
-    put_arrays(stream, "PointData", grid->points, grid->n_point);
-    put_arrays(stream, "CellData", grid->cells, n_cell);
+    put_arrays(stream, "PointData", grid->points, grid->n_point, grid->shown);
+    put_arrays(stream, "CellData", grid->cells, n_cell, grid->shown);
     fprintf(stream, "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
     fclose(stream);
     write_whole(path, text, size);

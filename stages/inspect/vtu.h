@@ -23,6 +23,7 @@ struct vtu_grid {
     const int32_t (*line)[2];       // (n_line) or NULL: one vertex a point
     const struct vtu_array *points; // ends with a NULL name
     const struct vtu_array *cells;  // ends with a NULL name
+    const char *shown; // the array that gives the colours until someone chooses
 };
 
 // Writes PATH whole or not at all; exits as write_whole does.

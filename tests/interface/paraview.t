@@ -77,6 +77,8 @@ with scratch() as folder:
         ok(first.GetNumberOfPoints() == n_point
            and (n_cell is None or first.GetNumberOfCells() == n_cell),
            f"{name}: VTK reads them")
+        active = [data.GetScalars() and data.GetScalars().GetName() for data in (first.GetPointData(), first.GetCellData())]
+        ok(active == ([None, array] if array else ["force", None]), f"{name}: it opens coloured by {array or 'force'}", active)
         if array:
             ok(first.GetCellData().GetArray(array) is not None, f"{name}: {array} on the lines")
         if array == "crack":
