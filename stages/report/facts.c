@@ -69,6 +69,10 @@ static void say_cracks(FILE *page, const struct run *run)
     const int bonds = run->packing.n_bond, n = run->n_crack;
     if (!n) {
         put_line(page, "None of the %d bonds broke.", bonds);
+        const double shrinkage = counted_mean(run, "shrinkage", "largest");
+        if (shrinkage > 0)
+            put_line(page, " The body shrank by up to %.3g %% of its volume.",
+                     100 * shrinkage);
         return;
     }
     put_line(page, "%d of %d bonds broke (%.2g %%)", n, bonds, 100.0 * n / bonds);
@@ -119,6 +123,14 @@ void put_fact(FILE *page, struct where where, const char *term, const char *form
     fputs("</dd></div>\n", page);
 }
 
+// Where between two sides of the box.
+static double share_of_box(const struct packing *packing, struct vector place, int axis)
+{
+    const double low = component(packing->lower, axis),
+                 high = component(packing->upper, axis);
+    return (component(place, axis) - low) / (high - low);
+}
+
 static void put_first_crack(FILE *page, const struct run *run,
                             const struct course *course)
 {
@@ -127,16 +139,24 @@ static void put_first_crack(FILE *page, const struct run *run,
     const struct packing *packing = &run->packing;
     const int32_t *bond = packing->bond[run->crack_bond[0]];
     struct vector *place = artifact_get(run->of[RESPONSE], "/cracks/position", NULL);
-    const double height =
-        (place[0].z - packing->lower.z) / (packing->upper.z - packing->lower.z);
+    const struct vector first = place[0];
     free(place);
-    char time[40];
+    int others = 0;
+    while (others + 1 < run->n_crack &&
+           run->crack_time[others + 1] == run->crack_time[0])
+        others++;
+    char time[40], more[60] = "";
+    if (others)
+        snprintf(more, sizeof more, "; %d more opened under the same load", others);
     put_fact(page, (struct where){key_of(course, run->crack_time[0]), bond[0]},
              "First crack",
              "at saturation %.3g (%s), in %s, between grains %d and %d, at %.0f %% of "
-             "the height of the box",
+             "the height of the box (z), %.0f %% along x and %.0f %% along y%s",
              run->crack_saturation[0], with_unit(run->crack_time[0], "s", time),
-             mode[run->crack_mode[0]], bond[0], bond[1], 100 * height);
+             mode[run->crack_mode[0]], bond[0], bond[1],
+             100 * share_of_box(packing, first, 2),
+             100 * share_of_box(packing, first, 0),
+             100 * share_of_box(packing, first, 1), more);
 }
 
 static void put_modes(FILE *page, const struct run *run)
@@ -185,6 +205,30 @@ static void put_rates(FILE *page, const struct run *run, const struct course *co
         put_fact(page, nowhere, "Gas breaks through", "at saturation %.3g", through);
 }
 
+// What FORCE on the second of two grains does to them; where the box repeats the way
+// between them is not that between their places.
+static const char *push_or_pull(const struct run *run, const int32_t pair[2],
+                                struct vector force)
+{
+    const struct packing *packing = &run->packing;
+    if (packing->periodic[0] || packing->periodic[1] || packing->periodic[2])
+        return "between";
+    const struct vector apart =
+        subtract(packing->position[pair[1]], packing->position[pair[0]]);
+    return dot(force, apart) > 0 ? "presses" : "pulls at";
+}
+
+static void say_contact(FILE *page, const struct run *run, const struct course *course,
+                        const int32_t pair[2], struct vector force, double when)
+{
+    char text[40];
+    put_fact(page, (struct where){key_of(course, when), pair[0]},
+             "Largest contact force",
+             "%s %s grains %d and %d, at saturation %.3g (of the snapshots)",
+             with_unit(norm(force), "N", text), push_or_pull(run, pair, force), pair[0],
+             pair[1], saturation_at(course, when));
+}
+
 static void put_largest_contact(FILE *page, const struct run *run,
                                 const struct course *course)
 {
@@ -201,19 +245,26 @@ static void put_largest_contact(FILE *page, const struct run *run,
             most = norm(force[k]);
             at = k;
         }
-    if (most > 0) {
-        const int32_t *grains = pair[at % (size_t)n_contact];
-        const double when = time[at / (size_t)n_contact];
-        char text[40];
-        put_fact(page, (struct where){key_of(course, when), grains[0]},
-                 "Largest contact force",
-                 "%s between grains %d and %d, at saturation %.3g (of %d snapshots)",
-                 with_unit(most, "N", text), grains[0], grains[1],
-                 saturation_at(course, when), n_snapshot);
-    }
+    if (most > 0)
+        say_contact(page, run, course, pair[at % (size_t)n_contact], force[at],
+                    time[at / (size_t)n_contact]);
     free(pair);
     free(time);
     free(force);
+}
+
+// The sides that dry.
+static void put_open_sides(FILE *page, const struct run *run)
+{
+    static const char *const side[] = {"-x", "+x",          "-y",
+                                       "+y", "-z (bottom)", "+z (top)"};
+    const double bits = summary_of(run, DRYING, "/summary/open_walls");
+    char text[80] = "";
+    for (int w = 0; bits > 0 && w < 6; w++)
+        if ((int)bits >> w & 1)
+            snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s",
+                     *text ? ", " : "", side[w]);
+    if (*text) put_fact(page, nowhere, "Open to the air", "%s", text);
 }
 
 static void put_forces(FILE *page, const struct run *run, const struct course *course,
@@ -221,11 +272,12 @@ static void put_forces(FILE *page, const struct run *run, const struct course *c
 {
     char text[40];
     if (body->largest_load > 0)
-        put_fact(
-            page, (struct where){key_of(course, body->heaviest_time), body->heaviest},
-            "Carries most", "grain %d: the liquid pulls it with %s at saturation %.3g",
-            body->heaviest, with_unit(body->largest_load, "N", text),
-            saturation_at(course, body->heaviest_time));
+        put_fact(page,
+                 (struct where){key_of(course, body->heaviest_time), body->heaviest},
+                 "Pulled most by the liquid",
+                 "grain %d: the liquid pulls it with %s at saturation %.3g",
+                 body->heaviest, with_unit(body->largest_load, "N", text),
+                 saturation_at(course, body->heaviest_time));
     const double suction = summary_of(run, FORCES, "/summary/capillary_pressure");
     if (suction > 0)
         put_fact(page, nowhere, "Suction", "%s", with_unit(suction, "Pa", text));
@@ -275,6 +327,7 @@ void put_facts(FILE *page, const struct run *run, const struct course *course,
     put_first_crack(page, run, course);
     put_modes(page, run);
     put_rates(page, run, course);
+    put_open_sides(page, run);
     put_forces(page, run, course, body);
     put_pieces(page, run);
     put_makeup(page, run);

@@ -68,6 +68,22 @@ static void stage_of(const struct words *words, char stage[64])
 
 static const char left_out[] = "left out: ";
 
+// A line that tells what STAGE left out or modelled.
+static void put_line_of(FILE *page, const char *stage, const char *line)
+{
+    fputs("<li><b>", page);
+    put_text(page, stage);
+    fputs("</b>: ", page);
+    put_text(page, line);
+    fputs("</li>\n", page);
+}
+
+// The drying has the boundary layer that the network stages leave to it.
+static bool is_made_up_for(const struct run *run, int k, const char *item)
+{
+    return k < DRYING + 1 && run->of[DRYING] && !strcmp(item, "boundary layer");
+}
+
 static void put_lines(FILE *page, const struct run *run, bool of_left_out)
 {
     struct words words[SOURCES];
@@ -79,11 +95,9 @@ static void put_lines(FILE *page, const struct run *run, bool of_left_out)
         for (char *line; rest && (line = strsep(&rest, "\n"));) {
             const bool is_out = !strncmp(line, left_out, sizeof left_out - 1);
             if (!*line || is_out != of_left_out) continue;
-            fputs("<li><b>", page);
-            put_text(page, stage);
-            fputs("</b> ", page);
-            put_text(page, is_out ? line + sizeof left_out - 1 : line);
-            fputs("</li>\n", page);
+            if (is_out) line += sizeof left_out - 1;
+            if (!is_out || !is_made_up_for(run, k, line))
+                put_line_of(page, stage, line);
         }
     }
     words_free(words);

@@ -77,7 +77,7 @@ with h5py.File(at("drying.h5")) as file:
     half = np.argmax(file["history/rate"][:] <= file["history/rate"][0] / 2)
     ok(f"at saturation {file['history/saturation'][half]:.3g} ("
        in text, "at which saturation the rate is half its first")
-ok("<b>dry</b> gravity, Knudsen effect" in text, "what was left out")
+ok("<b>dry</b>: gravity, Knudsen effect" in text, "what was left out")
 
 
 def places_of(text):
