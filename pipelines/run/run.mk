@@ -24,6 +24,7 @@ DEM_REPLAY ?= $(BUILD)/bin/dem-replay
 CRACKSTATS ?= $(BUILD)/bin/crackstats
 REPORT ?= $(BUILD)/bin/report
 SIMULATE ?= $(BUILD)/bin/simulate
+SHEARSTATS ?= $(BUILD)/bin/shearstats
 
 # $1 is made by the stage of that name from scene $2, with the overrides $3, and the files $4.
 pack = $(call step,$1,pack,$(PACK),$2,$3,$4)
@@ -32,6 +33,7 @@ merge-nodes = $(call step,$1,merge-nodes,$(MERGE_NODES),$2,$3,$4)
 dry = $(call step,$1,dry,$(DRY),$2,$3,$4)
 force-protocol = $(call step,$1,force-protocol,$(FORCE_PROTOCOL),$2,$3,$4)
 dem-replay = $(call step,$1,dem-replay,$(DEM_REPLAY),$2,$3,$4)
+shearstats = $(call step,$1,shearstats,$(SHEARSTATS),$2,$3,$4)
 simulate = $(call step,$1,simulate,$(SIMULATE),$2,$3,$4)
 crackstats = $(call step,$1,crackstats,$(CRACKSTATS),$2,$3,$4)
 

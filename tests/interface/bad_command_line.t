@@ -14,7 +14,7 @@ for place in ["out/result", "./out/result", "out/../out/result", "beside/result"
             ["dry", "network", "--checkpoint", place],
             f"--checkpoint {place}: is where the output goes: name another file")
 for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
-                "deform", "crackstats", "report", "bridge", "flow", "invade", "inspect",
+                "deform", "crackstats", "report", "bridge", "flow", "invade", "inspect", "simulate",
                 "shearstats"]:
     refused_in_shell(f"{program} refuses an unknown option", USAGE,
                      f"$BIN/{program} --nonsense", ".*: unrecognized option '--nonsense'")

@@ -11,6 +11,7 @@ SHEAR_SCENE ?= samples/split-bottom.json
 SHEAR_SEEDS ?= 1# packings
 SHEAR_MODELS ?= table weigert willett-full willett-reduced rabinovich-lambert
 SHEAR_VOLUMES ?= 13.6e-12 74.2e-12# m3, of each bridge
+SHEAR_UNGER ?= 93.8e-3,38.6e-3# m, radius of the split and height of the bed, for the curve of Unger et al.
 
 shear_folder := $(RUNS)/shear
 
@@ -26,10 +27,22 @@ shear_wet = $(call simulate,$(shear_folder)/$1/$3-$2.h5,$(SHEAR_SCENE),bridges.v
 # The runs, by name, of all packings.
 shear_arms = dry $(foreach v,$(SHEAR_VOLUMES),$(foreach m,$(SHEAR_MODELS),$m-$v))
 
+# The statistics of arm $1 over all packings.
+shear_statistics = $(call shearstats,$(shear_folder)/$1.h5,$(SHEAR_SCENE),,$(foreach seed,$(SHEAR_SEEDS),$(shear_folder)/$(seed)/$1.h5))
+# A picture of kind $1 of the arms $2.
+shear_picture = $(call artifact,$(shear_folder)/$1.svg,stage=studies/shear version=1,$(shear_programs) $(2:%=$(shear_folder)/%.h5),pipelines/studies/shear/figure $1 $(foreach arm,$2,$(arm)=$(shear_folder)/$(arm).h5) $(if $(filter bands,$1),unger=$(SHEAR_UNGER)) $(shear_folder)/$1.svg)
+
 shear: ## wet shear flow in a split-bottom cell, by five models of bridges (an hour of one core)
 
 ifneq ($(call asked,shear,$(shear_folder)),)
 $(foreach seed,$(SHEAR_SEEDS),$(call shear_packing,$(seed)))
-shear_runs := $(foreach arm,$(shear_arms),$(foreach seed,$(SHEAR_SEEDS),$(shear_folder)/$(seed)/$(arm).h5))
-$(call study,shear,$(shear_runs))
+shear_names := $(call shear_arms)
+shear_programs := $(addprefix pipelines/studies/shear/,figure figure.gp table shear.py) $(pipeline_library)
+$(foreach arm,$(shear_names),$(call shear_statistics,$(arm)))
+# With the exact bridge; the models beside each other are in the table.
+shear_drawn := $(filter dry table-%,$(shear_names))
+shear_pictures := bands profiles rheology torque separations
+$(foreach kind,$(shear_pictures),$(call shear_picture,$(kind),$(if $(filter torque,$(kind)),$(shear_names),$(shear_drawn))))
+$(call artifact,$(shear_folder)/shear.md,stage=studies/shear version=1,$(shear_programs) $(shear_names:%=$(shear_folder)/%.h5),pipelines/studies/shear/table $(foreach arm,$(shear_names),$(arm)=$(shear_folder)/$(arm).h5) unger=$(SHEAR_UNGER) $(shear_folder)/shear.md)
+$(call study,shear,$(shear_folder)/shear.md $(shear_pictures:%=$(shear_folder)/%.svg))
 endif
