@@ -79,7 +79,7 @@ static void fit_run_levels(const struct study *study, const struct block_sums *b
     struct band_fit *fit = NEW_ARRAY(struct band_fit, n * blocks->n);
     for (int b = 0; b < blocks->n; b++)
         fit_levels(&study->grid, blocks->sum + (size_t)b * blocks->width,
-                   blocks->snapshots[b], cell, smoothing, fit + b * n);
+                   blocks->snapshots[b], cell, smoothing, fit + (size_t)b * (size_t)n);
     double *centre = NEW_ARRAY(double, blocks->n),
            *width = NEW_ARRAY(double, blocks->n);
     for (int k = 0; k < n; k++) {

@@ -58,7 +58,8 @@ static void put_level_number(struct artifact *artifact, const struct study *stud
     for (int k = 0; k < 3; k++) {
         snprintf(part, sizeof part, parts[k], what);
         snprintf(name, sizeof name, "/levels/%s", part);
-        artifact_put_table(artifact, name, table + k * n_run * n, n_run, n);
+        artifact_put_table(artifact, name, table + (size_t)k * (size_t)(n_run * n),
+                           n_run, n);
     }
     snprintf(name, sizeof name, "/levels/%s", what);
     artifact_put(artifact, name, mean, n);
@@ -212,9 +213,10 @@ static void put_separations(struct artifact *artifact, const struct study *study
     double *value = NEW_ARRAY(double, n_run);
     for (int k = 0; k < n * ZONES; k++) {
         double forces = 0, of;
-        from[k / ZONES] = (double)(lowest + k / ZONES) * study->class_width;
+        const int64_t class = lowest + k / ZONES;
+        from[k / ZONES] = (double)class * study->class_width;
         for (int r = 0; r < n_run; r++) {
-            value[r] = count_in(&study->run[r], lowest + k / ZONES, k % ZONES, &of);
+            value[r] = count_in(&study->run[r], class, k % ZONES, &of);
             forces += of / n_run;
         }
         const struct over_runs over = over_runs(value, n_run, confidence);

@@ -10,7 +10,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 bool inside_band(const struct split_cell *cell, const struct band_fit *fit, double r,
                  double z)
@@ -19,25 +18,34 @@ bool inside_band(const struct split_cell *cell, const struct band_fit *fit, doub
     return fit && band_at(cell, fit, z, &centre, &width) && fabs(r - centre) < width;
 }
 
+void separations_free(struct separations *separations)
+{
+    free(separations->count);
+    free(separations->force);
+    *separations = (struct separations){0};
+}
+
 // Room for class K.
 static void include_class(struct separations *separations, int64_t k)
 {
-    const int64_t old_lowest = separations->lowest;
-    const int old_n = separations->n;
-    if (old_n > 0 && k >= old_lowest && k < old_lowest + old_n) return;
-    const int64_t lowest = old_n == 0 || k < old_lowest ? k : old_lowest;
-    const int64_t past =
-        old_n == 0 || k >= old_lowest + old_n ? k + 1 : old_lowest + old_n;
+    const struct separations old = *separations;
+    const int64_t end = old.lowest + old.n;
+    if (old.n > 0 && k >= old.lowest && k < end) return;
+    const int64_t lowest = old.n == 0 || k < old.lowest ? k : old.lowest;
+    const int64_t past = old.n == 0 || k >= end ? k + 1 : end;
     const size_t n = (size_t)(past - lowest), row = sizeof(double[ZONES]);
-    double(*count)[ZONES] = allocate(n, row), (*force)[ZONES] = allocate(n, row);
-    if (old_n > 0) {
-        memcpy(count + (old_lowest - lowest), separations->count, (size_t)old_n * row);
-        memcpy(force + (old_lowest - lowest), separations->force, (size_t)old_n * row);
-    }
-    free(separations->count);
-    free(separations->force);
-    *separations =
-        (struct separations){separations->width, lowest, (int)n, count, force};
+    struct separations grown = {.width = old.width,
+                                .lowest = lowest,
+                                .n = (int)n,
+                                .count = allocate(n, row),
+                                .force = allocate(n, row)};
+    for (int kept = 0; kept < old.n; kept++)
+        for (int zone = 0; zone < ZONES; zone++) {
+            grown.count[old.lowest - lowest + kept][zone] = old.count[kept][zone];
+            grown.force[old.lowest - lowest + kept][zone] = old.force[kept][zone];
+        }
+    separations_free(separations);
+    *separations = grown;
 }
 
 void add_separations(struct separations *separations, const struct motion *motion,
@@ -58,11 +66,4 @@ void add_separations(struct separations *separations, const struct motion *motio
         separations->force[row][zone] +=
             dot(motion->force[k], contact_normal(motion, s, k));
     }
-}
-
-void separations_free(struct separations *separations)
-{
-    free(separations->count);
-    free(separations->force);
-    *separations = (struct separations){0};
 }

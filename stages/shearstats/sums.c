@@ -27,15 +27,16 @@ static const int symmetric[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 
 
 static double *count_neighbours(const struct motion *motion, int s)
 {
-    double *count = NEW_ARRAY(double, 2 * motion->n_particle);
+    double *count = NEW_ARRAY(double, 2 * (size_t)motion->n_particle);
     for (int64_t k = motion->contact_first[s]; k < motion->contact_first[s + 1]; k++) {
         const bool touches = motion->overlap[k] >= 0;
         const bool joined = motion->bridge_volume && motion->bridge_volume[k] > 0;
         for (int end = 0; end < 2; end++) {
             const int32_t grain = motion->pair[k][end];
             if (grain < 0) continue;
-            count[2 * grain] += touches;
-            count[2 * grain + 1] += joined;
+            double *of = count + 2 * (size_t)grain;
+            of[0] += touches;
+            of[1] += joined;
         }
     }
     return count;
@@ -62,8 +63,8 @@ static void add_grains(const struct motion *motion, int s, const struct frame *f
         }
         for (int k = 0; k < 6; k++)
             value[SUM_FLUX + k] = m * v[symmetric[k][0]] * v[symmetric[k][1]];
-        value[SUM_TOUCHING] = neighbours[2 * i];
-        value[SUM_JOINED] = neighbours[2 * i + 1];
+        value[SUM_TOUCHING] = neighbours[2 * (size_t)i];
+        value[SUM_JOINED] = neighbours[2 * (size_t)i + 1];
         spread(grid, place.at, value, GRAIN_SUMS, sum, SUM_ALL);
     }
     free(neighbours);
