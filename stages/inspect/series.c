@@ -305,7 +305,8 @@ static void motion_series(const struct artifact *artifact, struct series *series
                                      .n_line = drawn,
                                      .line = (const int32_t(*)[2])(pair + first),
                                      .points = points,
-                                     .cells = cells});
+                                     .cells = cells,
+                                     .shown = "velocity"});
     }
     void *const owned[] = {time,     lower,        upper, position, velocity, spin,
                            contacts, group_number, group, pair,     force};

@@ -5,6 +5,7 @@
 #include "motion.h"
 
 #include "basics/memory.h"
+#include "basics/status.h"
 #include "facts.h"
 #include "html.h"
 
@@ -66,10 +67,16 @@ static struct contacts contacts_of(const struct run *run)
         .force = artifact_get(run->motion, "/contacts/force", NULL),
         .point = artifact_get(run->motion, "/contacts/position", NULL),
         .offset = NEW_ARRAY(int64_t, run->n_load + 1)};
+    int rows;
+    free(artifact_get(run->motion, "/contacts/overlap", &rows));
     int64_t *count = artifact_get(run->motion, "/snapshots/contacts", NULL);
-    for (int s = 0; s < run->n_load; s++)
+    for (int s = 0; s < run->n_load && contacts.offset[s] <= rows; s++)
         contacts.offset[s + 1] = contacts.offset[s] + count[s];
     free(count);
+    if (contacts.offset[run->n_load] != rows)
+        die(STATUS_BAD_DATA,
+            "%s: /snapshots/contacts: must add up to the %d rows of /contacts",
+            input_name(run->motion->path), rows);
     return contacts;
 }
 
@@ -206,6 +213,7 @@ static json_t *put_chart(struct arrays *arrays, const struct run *run,
 {
     json_t *lines = json_array();
     for (int k = 0; k < n_line && line[k].dataset; k++) {
+        if (!artifact_has_dataset(run->motion, line[k].dataset)) continue;
         char array[80];
         snprintf(array, sizeof array, "%s.%s.%d", title, line[k].name, k);
         put_line_of(arrays, run, course, &line[k], array);
@@ -241,9 +249,10 @@ json_t *put_motion(struct arrays *arrays, const struct run *run,
     const double largest = put_chains(arrays, run, body);
     json_t *list = json_array(), *fields = json_array();
     for (size_t k = 0; course->n_row && k < sizeof charts / sizeof *charts; k++)
-        json_array_append_new(list, put_chart(arrays, run, course, charts[k].title,
-                                              charts[k].label, charts[k].unit,
-                                              charts[k].line, 4));
+        if (artifact_has_dataset(run->motion, charts[k].line[0].dataset))
+            json_array_append_new(list, put_chart(arrays, run, course, charts[k].title,
+                                                  charts[k].label, charts[k].unit,
+                                                  charts[k].line, 4));
     if (course->n_row) put_wall_forces(list, arrays, run, course);
     json_t *group = put_numbers(arrays, run, "/particles/group", "grain.group",
                                 "grains by group"),
@@ -300,6 +309,9 @@ static double peak(const struct run *run, const char *name, int *when)
 // less what is lost.
 static void put_balance(FILE *page, const struct run *run)
 {
+    if (!artifact_has_dataset(run->motion, "/history/work") ||
+        !artifact_has_dataset(run->motion, "/history/dissipation"))
+        return;
     int n;
     double *kinetic = artifact_get(run->motion, "/history/kinetic_energy", &n);
     double *elastic = artifact_get(run->motion, "/history/elastic_energy", NULL);
@@ -353,9 +365,9 @@ void put_motion_facts(FILE *page, const struct run *run, const struct course *co
              at_end(run, "/history/coordination"),
              at_end(run, "/history/unbalanced_ratio"));
     put_balance(page, run);
-    put_fact(page, nowhere, "Time steps", "%.0f of at most %s",
+    put_fact(page, nowhere, "Time steps", "%.0f, of %s at the end",
              number(run, "/summary/cycles"),
-             with_unit(number(run, "/summary/time_step_limit"), "s", text));
+             with_unit(number(run, "/summary/time_step"), "s", text));
     if (run->n_crack) {
         const int32_t *bond = run->packing.bond[run->crack_bond[0]];
         put_fact(page, (struct where){key_of(course, run->crack_time[0]), bond[0]},

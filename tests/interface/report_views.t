@@ -115,6 +115,12 @@ for title, words, status, said in [("a flow and a packing", ["flow.h5", "packing
     ended, error = refused(*map(at, words))
     ok(ended == status and said in error and error.count("\n") == 1, f"{title} is refused", (ended, error))
 
+shutil.copy(at("motion.h5"), at("counts.h5"))
+with h5py.File(at("counts.h5"), "r+") as file:
+    file["snapshots/contacts"][...] = [3, 1, 0, 2, 9]
+ended, error = refused(at("counts.h5"))
+ok(ended == 65 and "must add up to the 6 rows" in error, "contacts that do not add up are refused", (ended, error))
+
 # ---- in a browser -------------------------------------------------------------------------
 
 if MISSING:

@@ -35,7 +35,7 @@ function axisUnit(most, unit) {
 // between x and the moment (none: the chart has no moment).
 function newChart(spec, course) {
   const { width, height, left, right, top, bottom } = CHART;
-  const [xWord, xFactor] = axisUnit(spec.xMost || Math.max(...spec.x), spec.xUnit), reach = (of) => spec.lines.reduce((all, line) => line.y.reduce((a, b) => of(a, b), all), 0);
+  const [xWord, xFactor] = axisUnit(spec.xMost || Math.max(...spec.x), spec.xUnit), reach = (of) => spec.lines.reduce((all, line) => line.y.reduce((a, b) => Number.isFinite(b) ? of(a, b) : a, all), 0);
   const most = reach(Math.max), least = reach(Math.min);
   const [yWord, yFactor] = axisUnit(Math.max(most, -least), spec.unit);
   const xEnd = (spec.xMost || Math.max(...spec.x)) * xFactor || 1, yEnd = (most * yFactor || (least < 0 ? 0 : 1)) * 1.06, yBegin = least * yFactor * 1.06;
@@ -76,7 +76,7 @@ function newChart(spec, course) {
 function drawLine(picture, spec, line, k, x, y) {
   let path = "";
   for (let p = 0; p < spec.x.length; p++) {
-    if (line.y[p] === null) continue;
+    if (!Number.isFinite(line.y[p])) continue; // not known then
     const at = x(spec.x[p]).toFixed(1), up = y(line.y[p]).toFixed(1);
     path += path ? (spec.steps ? `H${at}V${up}` : `L${at} ${up}`) : `M${at} ${up}`;
   }

@@ -240,7 +240,7 @@ function prepareControls(body) {
   element("size").value = body.moves ? 80 : small ? 62 : 100;
   element("shown").querySelector("[name=empty]").checked = small && body.grain.n < 1000;
   const without = (name, there) => { if (!there) { const box = element("shown").querySelector(`[name=${name}]`); box.checked = false; box.disabled = true; } };
-  without("liquid", body.throat.n);
+  without("liquid", body.moves || body.throat.n);
   without("empty", body.throat.n);
   without("cracks", body.bond.n);
   without("forces", body.arrays["moment.key"]);
