@@ -26,7 +26,7 @@ static void reach(struct vector *low, struct vector *high, const struct vector *
         }
 }
 
-// Wherever grains go.
+// Wherever grains go, and where they touch walls.
 static void reach_motion(const struct run *run, struct vector *low, struct vector *high)
 {
     struct vector *place = artifact_get(run->motion, "/snapshots/position", NULL);
@@ -34,6 +34,10 @@ static void reach_motion(const struct run *run, struct vector *low, struct vecto
         reach(low, high, place + (size_t)s * (size_t)run->packing.n_particle,
               run->packing.n_particle);
     free(place);
+    int n_contact;
+    struct vector *touch = artifact_get(run->motion, "/contacts/position", &n_contact);
+    reach(low, high, touch, n_contact);
+    free(touch);
 }
 
 static struct grid grid_of(const struct run *run, const struct vector *node, int n_node)

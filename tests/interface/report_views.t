@@ -78,12 +78,12 @@ def write_motion(path):
             file[f"snapshots/{name}"] = values
         file["contacts/particles"] = np.array([[0, 1], [2, 3], [4, -1], [5, 6], [0, -2], [7, 8]], "i4")
         file["contacts/force"] = np.array([[0, 0, 2.0], [1, 0, 0], [0, 0.5, 0], [0, 4.0, 0], [0, 0, 1], [3, 0, 0]])
-        file["contacts/position"] = np.tile(box[0], (6, 1))
+        file["contacts/position"] = np.tile(box[0] - 0.2, (6, 1))  # a wall far below
         file["contacts/overlap"], file["contacts/bond"] = np.zeros(6), np.full(6, -1, "i4")
-    return place, velocity
+    return place, velocity, box[0]
 
 
-place, velocity = write_motion(at("motion.h5"))
+place, velocity, lower = write_motion(at("motion.h5"))
 speed = np.linalg.norm(velocity, axis=1)
 
 # ---- the text -----------------------------------------------------------------------------
@@ -158,6 +158,8 @@ ok("grain 5 with grain 6" in browser.evaluate("element('picked').textContent") a
    browser.evaluate("element('picked').textContent"), "a contact says its grains and its force", browser.evaluate("element('picked').textContent"))
 browser.evaluate("page.course.set(0); draw(page)")
 ok(browser.evaluate("describeContact(page.body, 2).rows[0][1]") == "grain 4 with a wall", "also that with a wall")
+end = browser.evaluate("[0, 1, 2].map((k) => page.body.node.at[3 * page.body.throat.second[2] + k] * page.body.unit + page.body.middle[k])")
+ok(np.allclose(end, lower - 0.2, atol=1e-5), "which ends at the wall", (end, lower))
 browser.evaluate("element('colour').value = 'grain.group'; element('colour').dispatchEvent(new Event('change')); draw(page)")
 groups = browser.evaluate("[0, 1, 2, 3, 4].map((i) => page.tints.grain(i).join())")
 ok(groups[0] == groups[3] and groups[1] == groups[4] and len(set(groups)) == 3, "grains by group", groups)
