@@ -136,6 +136,49 @@ static void test_books_of_local_damping(void **state)
     assert_true(end.local_damping > 0.02 * end.kinetic);
 }
 
+// Grains in a box that repeats and closes in: its work is in the books.
+static double strained_box(struct dem_setup setup, double safety,
+                           struct dem_energy *end)
+{
+    enum { STEPS = 200 };
+    struct packing packing = loose_grains();
+    packing.periodic[0] = packing.periodic[1] = packing.periodic[2] = true;
+    setup.packing = &packing;
+    setup.balance_energy = true;
+    setup.time_step_safety = safety;
+    setup.gravity.z = 0;
+    struct dem *dem = create(&setup);
+    struct vector *velocity = random_vectors(N, 0.2, 32);
+    dem_set_velocity(dem, velocity, NULL);
+    free(velocity);
+    const double began = dem_energy(dem).kinetic;
+    const double stretch[3] = {exp(-0.3 / STEPS), exp(-0.2 / STEPS),
+                               exp(-0.25 / STEPS)};
+    for (int k = 0; k < STEPS; k++) {
+        assert_int_equal(dem_rescale(dem, stretch, 1), STATUS_OK);
+        run(dem, (int64_t)(0.4 / safety));
+    }
+    const double missing = imbalance(dem, began);
+    *end = dem_energy(dem);
+    dem_free(dem);
+    packing_free(&packing);
+    return missing;
+}
+
+static void test_books_of_a_strained_box(void **state)
+{
+    (void)state;
+    for (int law = DEM_LINEAR; law <= DEM_HERTZ; law++) {
+        struct dem_energy end;
+        const struct dem_setup setup = rubbing_setup((enum dem_law)law);
+        const double coarse = strained_box(setup, 0.02, &end);
+        const double fine = strained_box(setup, 0.005, &end);
+        if (!(fine < 2e-3 && fine < 0.5 * coarse))
+            fail_msg("law %d missing: %g, and %g in longer steps", law, fine, coarse);
+        assert_true(end.gained > end.kinetic && end.elastic > 0.1 * end.gained);
+    }
+}
+
 // Springs and dashpots against rolling, between grains and at walls.
 static void test_books_of_rolling(void **state)
 {
@@ -204,6 +247,7 @@ int main(void)
         cmocka_unit_test(test_books_of_each_law),
         cmocka_unit_test(test_books_without_tensile_damping),
         cmocka_unit_test(test_books_of_local_damping),
+        cmocka_unit_test(test_books_of_a_strained_box),
         cmocka_unit_test(test_books_of_rolling),
         cmocka_unit_test(test_books_of_broken_bonds),
     };

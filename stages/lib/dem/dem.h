@@ -202,8 +202,8 @@ struct dem_energy {
     double kinetic; // J, translation and rotation; without driven groups
     double elastic; // J, contacts and bonds
     // Since the start, J; 0 unless balance_energy.
-    double gained; // work of gravity, of external forces, and of walls and groups that
-                   // move
+    double gained; // work of gravity, of external forces, of walls and groups that
+                   // move, and of rescaling
     double dashpots, slip, local_damping; // lost
     double broken;                        // elastic energy of bonds when they broke
     double bridges; // that liquid bridges took up, and lost when they ruptured
@@ -255,8 +255,9 @@ void dem_set_local_damping(struct dem *dem, double share);
 
 // Stretches the box with all centres along x, y and z about its lower corner, and
 // scales all radii by GROWTH; densities stay. Velocities and shear forces stay as they
-// are. Returns STATUS_OK, or STATUS_BAD_DATA with bonds, liquid or driven groups, which
-// it leaves as they are. O(pairs).
+// are. Its work counts as gained, but for contacts with walls, which stay. Returns
+// STATUS_OK, or STATUS_BAD_DATA and does nothing with bonds or driven groups, or where
+// grains with liquid grow. O(pairs).
 enum status dem_rescale(struct dem *dem, const double stretch[3], double growth);
 
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would

@@ -110,6 +110,16 @@ static struct dem_energy ledger_totals(const struct dem *dem)
     return ledger;
 }
 
+double elastic_energy(const struct dem *dem)
+{
+    double sum = 0;
+    for (int p = 0; p < dem->pairs.n_pair; p++)
+        sum += pair_energy(dem, p);
+    for (int k = 0; k < dem->n_wall_pair; k++)
+        sum += wall_pair_energy(dem, &dem->wall_pair[k]);
+    return sum;
+}
+
 struct dem_energy dem_energy(const struct dem *dem)
 {
     struct dem_energy energy = ledger_totals(dem);
@@ -120,10 +130,7 @@ struct dem_energy dem_energy(const struct dem *dem)
         energy.kinetic +=
             0.5 * (dem->mass[i] * dot(v, v) + inertia(dem, i) * dot(w, w));
     }
-    for (int p = 0; p < dem->pairs.n_pair; p++)
-        energy.elastic += pair_energy(dem, p);
-    for (int k = 0; k < dem->n_wall_pair; k++)
-        energy.elastic += wall_pair_energy(dem, &dem->wall_pair[k]);
+    energy.elastic = elastic_energy(dem);
     const double unit = dem->unit.stiffness * dem->unit.length * dem->unit.length;
     double *const part[] = {&energy.kinetic,  &energy.elastic, &energy.gained,
                             &energy.dashpots, &energy.slip,    &energy.local_damping,

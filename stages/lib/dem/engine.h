@@ -351,6 +351,8 @@ void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double ov
 struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
                                       const struct wall_pair *pair);
 
+double elastic_energy(const struct dem *dem); // of all pairs and walls [energy.c]
+
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);
 void list_walls_of_grains(struct dem *dem); // sets wall_offset

@@ -5,9 +5,15 @@
 // start anew: `start` is where they are and displacements are 0, so pairs get new
 // separations and overlaps but keep their histories. The list of pairs stays valid
 // until the approach of two surfaces, counted in closed_in, has used up the skin.
+//
+// Work on the grains: the change of elastic energy, and what bridges pull with times
+// the change of their gaps.
 #include "dem/engine.h"
 
+#include "basics/memory.h"
+
 #include <math.h>
+#include <stdlib.h>
 
 static struct vector stretched(const struct dem *dem, struct vector x,
                                const double stretch[3])
@@ -41,30 +47,62 @@ static void stretch_box(struct dem *dem, const double stretch[3])
     }
 }
 
-enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
+// New separations and overlaps of all pairs. Returns what bridges took up as their gaps
+// changed.
+static double place_pairs(struct dem *dem, const double *gap_before, bool grown)
 {
-    if (dem->n_bond > 0 || dem->liquid || dem->n_driven > 0) return STATUS_BAD_DATA;
-    move_starts(dem, stretch, growth);
-    stretch_box(dem, stretch);
-    if (growth != 1) {
-        set_masses(dem, NULL);
-        set_external(dem);
-    }
+    double taken = 0;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
-        set_pair_place(dem, &dem->pairs.group[p / PAIRS_IN_GROUP], p % PAIRS_IN_GROUP);
-        if (dem->pairs.laws && growth != 1) set_pair_law(dem, p);
-        if (dem->pairs.rolling && growth != 1)
+        const int group = p / PAIRS_IN_GROUP, lane = p % PAIRS_IN_GROUP;
+        set_pair_place(dem, &dem->pairs.group[group], lane);
+        if (dem->pairs.laws && grown) set_pair_law(dem, p);
+        if (dem->pairs.rolling && grown)
             set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
+        if (gap_before && is_bridged(dem, p))
+            taken += dem->pairs.liquid[group].pull[lane] *
+                     (-pair_geometry(dem, p, 0).overlap - gap_before[p]);
     }
-    if (growth != 1) set_wall_laws(dem);
+    return taken;
+}
 
-    // How much two grains that do not touch may have approached, half of it each.
+static double *gaps_now(const struct dem *dem)
+{
+    double *gap = NEW_ARRAY(double, dem->pairs.n_pair);
+    for (int p = 0; p < dem->pairs.n_pair; p++)
+        gap[p] = -pair_geometry(dem, p, 0).overlap;
+    return gap;
+}
+
+// How much two grains that do not touch may have approached, half of it each.
+static void count_approach(struct dem *dem, const double stretch[3], double growth)
+{
     const double least = fmin(stretch[0], fmin(stretch[1], stretch[2]));
-    const double reach = 2 * dem->largest_radius + dem->skin;
+    const double reach = 2 * dem->largest_radius + dem->skin + bridge_cutoff(dem);
     const double nearer =
         fmax(0, 1 - least) * reach + fmax(0, 1 - 1 / growth) * 2 * dem->largest_radius;
     dem->closed_in += 0.5 * nearer;
     dem->travelled += 0.5 * nearer;
+}
+
+enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
+{
+    const bool grown = growth != 1, wet = dem->liquid;
+    if (dem->n_bond > 0 || dem->n_driven > 0 || (wet && grown)) return STATUS_BAD_DATA;
+    const double elastic = dem->balance_energy ? elastic_energy(dem) : 0;
+    double *gap = dem->balance_energy && wet ? gaps_now(dem) : NULL;
+    move_starts(dem, stretch, growth);
+    stretch_box(dem, stretch);
+    if (grown) {
+        set_masses(dem, NULL);
+        set_external(dem);
+    }
+    const double taken = place_pairs(dem, gap, grown);
+    if (grown) set_wall_laws(dem);
+    count_approach(dem, stretch, growth);
+    free(gap);
+    if (!dem->balance_energy) return STATUS_OK;
+    dem->energy_ledger.bridges += taken;
+    dem->energy_ledger.gained += taken + elastic_energy(dem) - elastic;
     return STATUS_OK;
 }
 
