@@ -212,17 +212,34 @@ static void set_mixer(struct mixer *mixer, bool closed)
     free(position);
 }
 
+// How far down grain I was at the last forces.
+static double of_grain_then(const struct dem *dem, int i)
+{
+    return dem_time_step(dem) * of_grain(dem, i, dem_velocities).z -
+           of_grain(dem, i, dem_displacements).z;
+}
+
 static double books_of_mixer(double safety, struct dem_energy *end)
 {
     struct mixer mixer;
     set_mixer(&mixer, true);
     mixer.scene.setup.time_step_safety = safety;
+    mixer.wall[5].velocity.z = -0.01; // a lid that comes down
     struct dem *dem = create(&mixer.scene.setup);
     const struct dem_energy began = dem_energy(dem);
     run(dem, (int64_t)rint(0.1 / dem_time_step(dem)));
     *end = dem_energy(dem);
     const double there = end->kinetic + end->elastic + end->dashpots + end->slip;
     const double work = end->gained;
+    double drives = 0, moved = 0;
+    for (int g = 0; g < 2; g++)
+        drives += dem_group_state(dem, g).work;
+    for (int w = 0; w < 6; w++)
+        drives += dem_wall_state(dem, w).work;
+    for (int i = 0; i < LOOSE; i++)
+        moved += weight() * pow(mixer.scene.packing.radius[i] / GRAIN, 3) *
+                 of_grain_then(dem, i);
+    assert_close(drives + moved, work, 1e-9); // gravity does the rest
     dem_free(dem);
     packing_free(&mixer.scene.packing);
     return fabs(there - began.kinetic - began.elastic - work) / work;

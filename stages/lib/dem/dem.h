@@ -308,18 +308,20 @@ struct dem_census {
 struct dem_census dem_census(const struct dem *dem);
 
 // Load of the grains on a wall in the last cycle: force and moment about its POINT; and
-// the displacement of its POINT, m.
+// the displacement of its POINT, m; and its work on the grains since the start, J, 0
+// unless balance_energy.
 struct dem_wall_state {
     struct vector force, moment, displacement;
+    double work;
 };
 struct dem_wall_state dem_wall_state(const struct dem *dem, int wall);
 
 // Load of all that is not of the group (grains, walls, bridges) on a group in the last
 // cycle: force and moment about its point; and how far it has moved, m, and turned,
-// rad. O(n_particle).
+// rad; and its work as that of walls. O(n_particle).
 struct dem_group_state {
     struct vector force, moment, displacement;
-    double angle;
+    double angle, work;
 };
 struct dem_group_state dem_group_state(const struct dem *dem, int group);
 

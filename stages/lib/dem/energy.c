@@ -80,9 +80,7 @@ static double pair_energy(const struct dem *dem, int pair)
     return energy;
 }
 
-// What grain I has booked as gained of the step after the other energies:
-// displacements are one step ahead.
-static double booked_ahead(const struct dem *dem, int i)
+double booked_ahead(const struct dem *dem, int i)
 {
     const double step = places_ahead(dem) * dem->time_step;
     if (is_driven(dem, i)) {

@@ -105,6 +105,7 @@ struct rigid_wall {
     struct vector velocity, spin; // half a step behind
     struct vector force, moment;  // what grains did to it in the last cycle
     double resistance; // of its contacts now: stiffness times dt plus damping, in sum
+    double work;       // on the grains, if the balance is wanted
 };
 
 struct driven_group {
@@ -352,6 +353,9 @@ struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
                                       const struct wall_pair *pair);
 
 double elastic_energy(const struct dem *dem); // of all pairs and walls [energy.c]
+// What grain I has booked as gained of the step after the other energies, as
+// displacements are one step ahead.
+double booked_ahead(const struct dem *dem, int i);
 
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);

@@ -89,8 +89,10 @@ struct dem_group_state dem_group_state(const struct dem *dem, int group)
     const double angle = compensated_value(of->angle);
     const double then = angle - places_ahead(dem) * dem->time_step * of->spin;
     struct vector force = {0, 0, 0}, moment = {0, 0, 0};
+    double work = 0;
     for (int i = 0; i < dem->n_particle; i++) {
         if (dem->group_of[i] != group + 1) continue;
+        if (dem->grain_ledger) work += dem->grain_ledger[i][0] - booked_ahead(dem, i);
         const struct motion load = load_on_grain(dem, i);
         const struct vector push = as_vector(load.linear);
         force = add(force, push);
@@ -102,7 +104,8 @@ struct dem_group_state dem_group_state(const struct dem *dem, int group)
                                     .moment = scale(unit * length, moment),
                                     .displacement =
                                         scale(length, group_translation(of)),
-                                    .angle = angle};
+                                    .angle = angle,
+                                    .work = unit * length * work};
 }
 
 void dem_radii(const struct dem *dem, double *radius)

@@ -147,6 +147,7 @@ static void add_walls(struct column_list *list, struct dem *dem)
     WALL("wall_force", force, 3);
     WALL("wall_moment", moment, 3);
     WALL("wall_resistance", resistance, 1);
+    if (dem->balance_energy) WALL("wall_work", work, 1);
 #undef WALL
     struct wall_pair *pair = dem->wall_pair;
     add_integers(list, "wall_pair_particle", ARRAY_INT32,

@@ -369,6 +369,13 @@ static double power(const struct rigid_wall *wall)
     return -dot(wall->force, wall->velocity) - dot(wall->moment, wall->spin);
 }
 
+static void book_work(struct dem *dem, struct rigid_wall *wall, double time)
+{
+    const double work = time * power(wall);
+    dem->energy_ledger.gained += work;
+    wall->work += work;
+}
+
 void sweep_walls(struct dem *dem)
 {
     if (dem->cycle == 0) start_walls(dem);
@@ -377,14 +384,14 @@ void sweep_walls(struct dem *dem)
     // Work over the last time step: the mean of the forces at its two ends.
     for (int w = 0; w < dem->n_wall; w++) {
         struct rigid_wall *wall = &dem->wall[w];
-        dem->energy_ledger.gained += half * power(wall);
+        book_work(dem, wall, half);
         wall->force = wall->moment = (struct vector){0, 0, 0};
         wall->resistance = 0;
     }
     for (int k = 0; k < dem->n_wall_pair; k++)
         touch_wall(dem, &dem->wall_pair[k]);
     for (int w = 0; w < dem->n_wall; w++)
-        dem->energy_ledger.gained += half * power(&dem->wall[w]);
+        book_work(dem, &dem->wall[w], half);
 }
 
 // ---- from outside ------------------------------------------------------------------
@@ -407,5 +414,6 @@ struct dem_wall_state dem_wall_state(const struct dem *dem, int wall)
     const double length = dem->unit.length, force = dem->unit.stiffness * length;
     return (struct dem_wall_state){.force = scale(force, of->force),
                                    .moment = scale(force * length, of->moment),
-                                   .displacement = scale(length, of->displacement)};
+                                   .displacement = scale(length, of->displacement),
+                                   .work = force * length * of->work};
 }
