@@ -367,6 +367,8 @@ void move_walls(struct dem *dem);
 double wall_travel(const struct dem *dem);
 // Sets the coefficients of wall pairs again.
 void set_wall_laws(struct dem *dem);
+// The forces of a pair on its grain and wall now [wall_contact.c].
+void touch_wall(struct dem *dem, struct wall_pair *pair);
 // Elastic energy as of the last force.
 double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair);
 
