@@ -9,9 +9,10 @@
 // half a step behind the displacements. energy.c and observe.c account for that.
 //
 // A team of threads runs cycles together until pairs must be sought again. Each thread
-// sweeps its chunks of pair groups and, close behind, moves the grains that are
-// finished. After a barrier the threads move the shared grains (engine.h). After a
-// second barrier the first thread ends the cycle and begins the next.
+// finds the forces of its share of walls, and when all threads have, sweeps its chunks
+// of pair groups and, close behind, moves the grains that are finished. After a barrier
+// the threads move the shared grains (engine.h). After a second barrier the first
+// thread ends the cycle and begins the next.
 #include "dem/engine.h"
 
 #include "basics/barrier.h"
@@ -164,6 +165,15 @@ struct team {
     struct outcome *part; // (barrier.size)
 };
 
+// Part of thread ME in the forces of walls, which grains need before they move.
+static void touch_walls_together(struct dem *dem, struct team *team, int me)
+{
+    const int n = dem->n_wall_pair, share = (n + dem->n_chunk - 1) / dem->n_chunk;
+    for (int t = me; t < dem->n_chunk; t += team->barrier.size)
+        touch_walls(dem, smaller(t * share, n), smaller((t + 1) * share, n));
+    barrier_wait(&team->barrier);
+}
+
 // Work of thread ME in one cycle: its chunks of groups, and then, when all threads are
 // there, its part of the shared grains.
 static struct outcome sweep_chunks(struct dem *dem, struct team *team, int me)
@@ -172,6 +182,7 @@ static struct outcome sweep_chunks(struct dem *dem, struct team *team, int me)
     const int n_chunk = dem->n_chunk,
               shared_in_chunk = (dem->n_shared + n_chunk - 1) / n_chunk;
     struct outcome mine = {0, {0, true}};
+    if (walls_are_shared(dem)) touch_walls_together(dem, team, me);
     if (n == 0 && me == 0) mine.max_speed = move_grains(dem, 0, dem->n_particle);
     for (int t = me; t < n_chunk; t += team->barrier.size) {
         const int begin = smaller(t * share, n);
@@ -262,7 +273,8 @@ static void prepare_cycle(struct dem *dem, struct run_control *control)
 static void begin_cycle(struct dem *dem, const struct run_control *control)
 {
     dem->keeps_loads = control->done == control->cycles - 1; // for who looks after it
-    sweep_walls(dem);
+    begin_walls(dem);
+    if (!walls_are_shared(dem)) touch_walls(dem, 0, dem->n_wall_pair);
     advance_groups(dem);
 }
 
@@ -271,6 +283,7 @@ static void end_cycle(struct dem *dem, struct outcome outcome,
 {
     if (outcome.n_broken > 0) record_cracks(dem);
     if (dem->liquid) publish_bridge_counts(dem);
+    add_up_walls(dem);
     move_walls(dem);
     const double fastest = fmax(sqrt(outcome.max_speed.square), fastest_wall(dem));
     dem->last_travel = dem->time_step * fastest;

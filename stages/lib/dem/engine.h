@@ -35,8 +35,9 @@
 // Share of the stability limit that an automatic time step is, unless the setup says
 // otherwise.
 #define AUTOMATIC_SHARE 0.5
-// Fewer pairs are left to one thread: starting others would cost more.
-enum { MIN_PARALLEL_PAIRS = 5000 };
+// Fewer pairs, of grains or with walls, are left to one thread: starting others, or
+// waiting for them once more, would cost more.
+enum { MIN_PARALLEL_PAIRS = 5000, MIN_PARALLEL_WALL_PAIRS = 200 };
 
 // What a scene needs; the bits choose a compiled pair sweep.
 enum feature {
@@ -92,6 +93,10 @@ struct wall_pair {
     struct vector normal;       // towards the wall, at the last force
     double depth;               // overlap at the last force
     struct vector load, moment; // on the grain, at the last force
+    // What the wall gets of this force, and what was lost in the step.
+    bool acts;
+    struct vector wall_moment; // about its point
+    double resistance, dashpots, slip, bridge_work;
     struct rolling_law rolling;
     struct vector rolling_moment; // of the rolling spring on the wall
     // Of the liquid bridge, where walls are wet; as those of a liquid_group.
@@ -360,15 +365,18 @@ double booked_ahead(const struct dem *dem, int i);
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);
 void list_walls_of_grains(struct dem *dem); // sets wall_offset
-void sweep_walls(struct dem *dem);
+// In a cycle: before the forces of its pairs are found, and after.
+void begin_walls(struct dem *dem);
+void add_up_walls(struct dem *dem);
 void move_walls(struct dem *dem);
 // How far any wall has moved since pairs were found: as with grains, at most half the
 // skin.
 double wall_travel(const struct dem *dem);
 // Sets the coefficients of wall pairs again.
 void set_wall_laws(struct dem *dem);
-// The forces of a pair on its grain and wall now [wall_contact.c].
-void touch_wall(struct dem *dem, struct wall_pair *pair);
+// Finds the forces of pairs BEGIN..END-1, each of which changes itself only
+// [wall_contact.c].
+void touch_walls(struct dem *dem, int begin, int end);
 // Elastic energy as of the last force.
 double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair);
 
@@ -425,6 +433,12 @@ void shorten_time_step(struct dem *dem);
 static inline int groups_in_chunk(const struct dem *dem)
 {
     return (dem->pairs.n_group + dem->n_chunk - 1) / dem->n_chunk;
+}
+
+// Whether threads share the pairs with walls.
+static inline bool walls_are_shared(const struct dem *dem)
+{
+    return dem->n_chunk > 1 && dem->n_wall_pair >= MIN_PARALLEL_WALL_PAIRS;
 }
 
 static inline struct vector as_vector(const double a[3])

@@ -93,15 +93,18 @@ static void set_volume(const struct dem *dem, struct liquid_group *group, int la
                 &group->volume[lane], &group->rupture[lane]);
 }
 
-static void count_bridge(struct liquid *liquid, int i, int j, int by)
+static void count_at_end(struct liquid *liquid, int i, int by)
 {
-    const int end[2] = {i, j};
-    for (int k = 0; k < 2; k++) {
 #pragma omp atomic
-        liquid->next[end[k]] += by;
-    }
+    liquid->next[i] += by;
 #pragma omp atomic write
     liquid->changed = 1;
+}
+
+static void count_bridge(struct liquid *liquid, int i, int j, int by)
+{
+    count_at_end(liquid, i, by);
+    count_at_end(liquid, j, by);
 }
 
 // Forms, keeps or ruptures the bridge in lane LANE of group K, at GAP; adds it to
@@ -224,10 +227,7 @@ void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double ov
     const double radius = pair->bridge_radius, gap = -overlap / radius;
     const bool existed = pair->bridge_volume > 0;
     const bool exists = gap <= 0 || (existed && gap <= pair->bridge_rupture);
-    if (exists != existed) {
-        liquid->next[pair->particle] += exists - existed;
-        liquid->changed = 1;
-    }
+    if (exists != existed) count_at_end(liquid, pair->particle, exists - existed);
     if (!exists) pair->bridge_volume = 0;
     pair->bridge_pull = 0;
     if (exists && (!existed || liquid->is.shared)) {

@@ -193,25 +193,26 @@ static double resistance(const struct dem *dem, const struct wall_pair *pair)
 }
 
 // A grain that does not touch the wall forgets its shear force.
-static void leave_wall(struct dem *dem, struct wall_pair *pair, double overlap)
+static void leave_wall(const struct dem *dem, struct wall_pair *pair, double overlap)
 {
     const struct vector none = {0, 0, 0};
     if (dem->balance_energy)
-        dem->energy_ledger.slip +=
-            shear_energy(dem, pair) + energy_of_rolling(dem, pair);
+        pair->slip = shear_energy(dem, pair) + energy_of_rolling(dem, pair);
     pair->shear_force = pair->rolling_moment = none;
     pair->depth = overlap;
     pair->load = pair->moment = none;
 }
 
-void touch_wall(struct dem *dem, struct wall_pair *pair)
+static void touch_wall(struct dem *dem, struct wall_pair *pair)
 {
     const struct wall_geometry contact =
         wall_geometry(dem, pair->particle, pair->wall, 0);
     const bool touches = contact.overlap >= 0, wet = walls_are_wet(dem);
+    pair->resistance = pair->dashpots = pair->slip = pair->bridge_work = 0;
     if (wet) update_wall_bridge(dem, pair, contact.overlap);
     if (!touches) leave_wall(dem, pair, contact.overlap);
-    if (!touches && !is_wall_bridged(dem, pair)) return;
+    pair->acts = touches || is_wall_bridged(dem, pair);
+    if (!pair->acts) return;
 
     const struct vector v = sliding_velocity(dem, pair, &contact);
     struct push push = {.dashpots = 0};
@@ -222,15 +223,17 @@ void touch_wall(struct dem *dem, struct wall_pair *pair)
     pair->load = scale(-1, push.force);
     pair->moment =
         subtract(scale(-contact.arm, cross(contact.normal, push.shear)), push.couple);
-    struct rigid_wall *wall = &dem->wall[pair->wall];
-    wall->force = add(wall->force, push.force);
-    wall->moment =
-        add(wall->moment, add(cross(contact.lever, push.force), push.couple));
-    if (touches) wall->resistance += resistance(dem, pair);
-    if (!dem->balance_energy) return;
-    dem->energy_ledger.dashpots += push.dashpots;
-    dem->energy_ledger.slip += push.slip;
+    pair->wall_moment = add(cross(contact.lever, push.force), push.couple);
+    if (!touches) push.slip = pair->slip;
+    pair->dashpots = push.dashpots;
+    pair->slip = push.slip;
+    if (touches) pair->resistance = resistance(dem, pair);
     if (wet && dem->cycle > 0)
-        dem->energy_ledger.bridges +=
-            pair->bridge_pull * dot(v, contact.normal) * dem->time_step;
+        pair->bridge_work = pair->bridge_pull * dot(v, contact.normal) * dem->time_step;
+}
+
+void touch_walls(struct dem *dem, int begin, int end)
+{
+    for (int k = begin; k < end; k++)
+        touch_wall(dem, &dem->wall_pair[k]);
 }

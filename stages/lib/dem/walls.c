@@ -145,22 +145,43 @@ static void book_work(struct dem *dem, struct rigid_wall *wall, double time)
     wall->work += work;
 }
 
-void sweep_walls(struct dem *dem)
+// Half of the last time step, over which the forces at each of its ends count.
+static double half_step(const struct dem *dem)
+{
+    return dem->cycle > 0 && dem->balance_energy ? 0.5 * dem->time_step : 0;
+}
+
+void begin_walls(struct dem *dem)
 {
     if (dem->cycle == 0) start_walls(dem);
-    const double half =
-        dem->cycle > 0 && dem->balance_energy ? 0.5 * dem->time_step : 0;
-    // Work over the last time step: the mean of the forces at its two ends.
     for (int w = 0; w < dem->n_wall; w++) {
         struct rigid_wall *wall = &dem->wall[w];
-        book_work(dem, wall, half);
+        book_work(dem, wall, half_step(dem));
         wall->force = wall->moment = (struct vector){0, 0, 0};
         wall->resistance = 0;
     }
+}
+
+static void add_up_pair(struct dem *dem, const struct wall_pair *pair)
+{
+    struct rigid_wall *wall = &dem->wall[pair->wall];
+    if (pair->acts) {
+        wall->force = subtract(wall->force, pair->load);
+        wall->moment = add(wall->moment, pair->wall_moment);
+        wall->resistance += pair->resistance;
+    }
+    if (!dem->balance_energy) return;
+    dem->energy_ledger.dashpots += pair->dashpots;
+    dem->energy_ledger.slip += pair->slip;
+    dem->energy_ledger.bridges += pair->bridge_work;
+}
+
+void add_up_walls(struct dem *dem)
+{
     for (int k = 0; k < dem->n_wall_pair; k++)
-        touch_wall(dem, &dem->wall_pair[k]);
+        add_up_pair(dem, &dem->wall_pair[k]);
     for (int w = 0; w < dem->n_wall; w++)
-        book_work(dem, &dem->wall[w], half);
+        book_work(dem, &dem->wall[w], half_step(dem));
 }
 
 // ---- from outside ------------------------------------------------------------------
