@@ -141,10 +141,9 @@ static json_t *fabric(const double sum[9])
     const double trace = sum[0] + sum[4] + sum[8];
     if (!(trace > 0)) return json_null();
     json_t *rows = json_array();
-    for (int i = 0; i < 3; i++)
-        json_array_append_new(rows, json_pack("[f,f,f]", sum[3 * i] / trace,
-                                              sum[3 * i + 1] / trace,
-                                              sum[3 * i + 2] / trace));
+    for (const double *row = sum; row < sum + 9; row += 3)
+        json_array_append_new(
+            rows, json_pack("[f,f,f]", row[0] / trace, row[1] / trace, row[2] / trace));
     return rows;
 }
 

@@ -19,7 +19,7 @@ struct neighbour_grains {
 
 // O(n_face_node). The caller frees it with neighbour_grains_free.
 struct neighbour_grains find_neighbour_grains(const struct network *network);
-void neighbour_grains_free(struct neighbour_grains *surroundings);
+void neighbour_grains_free(struct neighbour_grains *around);
 
 // The vector from FROM to the grain, m.
 struct vector to_grain(const struct packing *packing, struct grain_beside beside,

@@ -54,9 +54,10 @@ static enum status continue_replay(struct run *run, struct reason *reason)
     }
     if (status) return status;
     run->n_before += response->n_weight_crack;
+    past.first_step = first_step(run);
     past.cycle = run->engine->cycles(run);
     past.crack = own_cracks(run, &past.n_crack);
-    return restore_response(response, run->packing, run->load, first_step(run),
+    return restore_response(response, run->packing, run->load,
                             run->settings->n_snapshot, &past, &state->stage,
                             &run->place, reason);
 }

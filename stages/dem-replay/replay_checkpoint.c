@@ -387,13 +387,13 @@ static enum status restore_contacts(struct response *response,
 }
 
 enum status restore_response(struct response *response, const struct packing *packing,
-                             const struct load *load, int first_step,
-                             int most_snapshots, const struct engine_past *past,
+                             const struct load *load, int most_snapshots,
+                             const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason)
 {
     struct array_reader reader = {.list = list, .reason = reason};
-    enum status status = restore_history(response, first_step, load->n_time,
+    enum status status = restore_history(response, past->first_step, load->n_time,
                                          past->cycle, &reader, place);
     if (status == STATUS_OK)
         status = restore_cracks(response, load->n_time, past, &reader);

@@ -60,15 +60,16 @@ struct engine_past {
     const struct dem_crack *crack;
     int n_crack;
     int64_t cycle;
+    int first_step; // no step is before it
 };
 
 // Fills RESPONSE, as empty as replay begins with, from LIST and the PAST, and *PLACE
-// with the step that was on the way. No step is before FIRST_STEP, and there are at
-// most MOST_SNAPSHOTS. STATUS_BAD_DATA, with the array and the rule in the reason: not
-// the list of such a replay. What RESPONSE has by then is freed with response_free.
+// with the step that was on the way. There are at most MOST_SNAPSHOTS. STATUS_BAD_DATA,
+// with the array and the rule in the reason: not the list of such a replay. What
+// RESPONSE has by then is freed with response_free.
 enum status restore_response(struct response *response, const struct packing *packing,
-                             const struct load *load, int first_step,
-                             int most_snapshots, const struct engine_past *past,
+                             const struct load *load, int most_snapshots,
+                             const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason);
 

@@ -11,6 +11,7 @@
 #include "basics/status.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -121,16 +122,16 @@ void warn_of_defaults(const struct replay_parameters *parameters,
     const bool is_parallel = parameters->settings.bond.kind == DEM_PARALLEL_BOND;
     const int count = is_parallel && packing->n_bond ? 4 : of_contacts;
     char names[200] = "";
+    size_t length = 0;
     double mean = 0;
     for (int i = 0; i < packing->n_particle; i++)
         mean += packing->radius[i] / packing->n_particle;
     if (packing->n_particle == 0) return;
     if (mean <= 10 * radius_of_defaults && mean >= 0.1 * radius_of_defaults) return;
     for (int k = 0; k < count; k++)
-        if (is_default(parameters, keys[k])) {
-            if (names[0]) strcat(names, ", ");
-            strcat(names, keys[k]);
-        }
+        if (is_default(parameters, keys[k]))
+            length += (size_t)snprintf(names + length, sizeof names - length, "%s%s",
+                                       length ? ", " : "", keys[k]);
     if (names[0])
         report("the defaults of %s are those of grains of 250 nm radius; these have "
                "%.3g m: docs/your-grains.md says what to take",

@@ -20,8 +20,9 @@ struct conditions fall_along(const struct grains *grains, int axis, double drop)
     if (grains->repeats[axis]) {
         set_component(&conditions.gradient, axis, -drop / component(grains->box, axis));
     } else {
-        conditions.pressure[2 * axis] = drop;
-        conditions.pressure[2 * axis + 1] = 0;
+        double *of_walls = conditions.pressure + (size_t)axis * 2;
+        of_walls[0] = drop;
+        of_walls[1] = 0;
     }
     return conditions;
 }

@@ -16,6 +16,7 @@
 #include "small_grains.h"
 #include "write_flow.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -33,7 +34,7 @@ struct flow_parameters {
 #define AT(member) offsetof(struct flow_parameters, member)
 #define WALL(key, kind, unit, wall, what)                                              \
     {                                                                                  \
-        key, PARAMETER_NUMBER, unit, "null", AT(imposed.kind[wall]), .text = what      \
+        key, PARAMETER_NUMBER, unit, "null", AT(imposed.kind[wall]), .text = (what)    \
     }
 
 static const struct parameter table[] = {
@@ -144,6 +145,7 @@ static double *find_opening(const struct artifact *input,
     if (!given && !(norm(rate) > 0)) return NULL;
     struct vector *velocity = given ? artifact_get(input, "/particles/velocity", NULL)
                                     : NEW_ARRAY(struct vector, n);
+    assert(n == 0 || flow->grains.position);
     for (int i = 0; i < n; i++) {
         const struct vector at = flow->grains.position[i];
         velocity[i] =

@@ -14,6 +14,7 @@
 #include "basics/memory.h"
 #include "sparse/conjugate_gradients.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 // A grain beside a throat.
@@ -53,7 +54,9 @@ static struct corner *corner_of(struct throats *throats, const struct sector *se
 {
     const struct vector middle = scale(0.5, add(sector->from, sector->to));
     const struct vector arm = subtract(sector->centre, middle);
-    for (int k = throats->first[sector->throat]; k < throats->n_corner; k++)
+    const int first = throats->first[sector->throat];
+    assert(throats->corner || first == throats->n_corner);
+    for (int k = first; k < throats->n_corner; k++)
         if (throats->corner[k].grain == sector->grain &&
             distance(throats->corner[k].arm, arm) <= 1e-6 * norm(arm))
             return &throats->corner[k];

@@ -14,6 +14,7 @@
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 static bool is_at_last_step(const struct liquid_loads *liquid)
@@ -86,6 +87,7 @@ static void find_cluster_suction(const struct liquid_loads *liquid)
     const struct network *network = liquid->network;
     const int n = network->n_throat;
     int *cluster = NEW_ARRAY(int, n);
+    assert(liquid->suction);
     double *least = NEW_ARRAY(double, n); // at z = 0, of the cluster so named
     liquid_loads_clusters(liquid, cluster);
     for (int t = 0; t < n; t++)
@@ -173,6 +175,7 @@ static void interpolate_field(const struct liquid_loads *liquid, double time)
 {
     const struct liquid_record *record = liquid->record;
     const size_t n = (size_t)liquid->network->n_throat;
+    assert(liquid->suction && liquid->field);
     int after = 0;
     while (after < record->n_snapshot && record->snapshot_time[after] <= time)
         after++;

@@ -341,12 +341,13 @@ static void describe(const struct force_parameters *parameters, const char *diff
              left, weight);
 }
 
-static void write_forces(const struct packing *packing, const struct protocol *protocol,
-                         const struct process *process, const struct findings *found,
-                         double gravity, const struct liquid_properties *liquid,
-                         const char *model, const struct invocation *invocation,
+static void write_forces(const struct protocol *protocol, const struct process *process,
+                         const struct findings *found, double gravity,
+                         const struct liquid_properties *liquid, const char *model,
+                         const struct invocation *invocation,
                          const struct artifact *input)
 {
+    const struct packing *packing = &process->network->packing;
     struct artifact *artifact = artifact_create("forces", invocation->output);
     artifact_put_packing(artifact, packing);
     artifact_put_liquid(artifact, liquid);
@@ -379,7 +380,7 @@ int main(int argc, char **argv)
 
     struct sectors sectors;
     struct throat_loads loads = {0};
-    struct pendular_rings rings;
+    struct pendular_rings rings = {0};
     struct reason reason;
     enum status status = sectors_find(&network, &sectors, &reason);
     if (!status)
@@ -398,8 +399,8 @@ int main(int argc, char **argv)
     struct liquid_properties liquid = artifact_get_liquid(input);
     liquid.surface_tension = parameters.surface_tension;
     liquid.contact_angle = parameters.contact_angle;
-    write_forces(&network.packing, &protocol, &process, &found, parameters.gravity,
-                 &liquid, model, &invocation, input);
+    write_forces(&protocol, &process, &found, parameters.gravity, &liquid, model,
+                 &invocation, input);
 
     protocol_free(&protocol);
     throat_loads_free(&loads);

@@ -15,6 +15,7 @@
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 enum { GAS_FROM_THE_START = 0, LIQUID = -1 };
@@ -32,6 +33,7 @@ static void number_events(const struct network *network,
                           const struct invasion *invasion, struct outcome *outcome)
 {
     const bool throats = conditions->rule == INVADE_THROATS;
+    assert(invasion->throat || !throats);
     int32_t *node_event = outcome->node_event, *throat_event = outcome->throat_event;
     for (int i = 0; i < network->n_node; i++)
         node_event[i] = throats && (network->node_walls[i] & conditions->inlet)

@@ -311,7 +311,9 @@ static enum status strain_to_porosity(struct densification *d, double porosity,
 static enum status press_to_contacts(struct densification *d, double wanted,
                                      struct reason *reason)
 {
-    for (double target = 1e-5; target < 0.1; target *= 1.25) {
+    enum { TARGETS = 42 }; // the last below 0.1
+    double target = 1e-5;
+    for (int k = 0; k < TARGETS; k++, target *= 1.25) {
         if (was_done(d, target)) continue;
         const enum status status = press(d, target, d->making->how->tolerance, reason);
         if (status != STATUS_OK) return status;

@@ -36,7 +36,7 @@ static void put_hash(FILE *page, const char *text)
     char digest[65];
     unsigned char bytes[32];
     sha256(text, strlen(text), digest);
-    for (int k = 0; k < 32; k++) {
+    for (size_t k = 0; k < sizeof bytes; k++) {
         const char two[] = {digest[2 * k], digest[2 * k + 1], 0};
         bytes[k] = (unsigned char)strtoul(two, NULL, 16);
     }

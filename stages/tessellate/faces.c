@@ -11,6 +11,7 @@
 #include "basics/memory.h"
 #include "sort_rows.h"
 
+#include <assert.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,6 +69,7 @@ static bool walk_around_edge(const struct triangulation *cells, struct part part
     loop->count = 0;
     do {
         const struct cell *here = &cells->cell[at];
+        assert(out != stays && 0 <= out && out < 4 && 0 <= stays && stays < 4);
         if (at < part.end) cells->seen[at] |= OPPOSITE_EDGE[out][stays];
         append_corner(loop, cells->node[at], node_image(cells, at));
         const int32_t next = here->neighbour[out], kept = here->vertex[stays];

@@ -7,6 +7,7 @@
 #include "basics/memory.h"
 #include "remove_cells.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,7 @@ void loops_append(struct loops *loops, const int32_t side[2], struct image image
     GROW_ARRAY(loops->row, loops->count, loops->capacity);
     if (!loops->begin) GROW_ARRAY(loops->begin, 0, loops->begin_capacity);
     GROW_ARRAY(loops->begin, loops->count + 1, loops->begin_capacity);
+    assert(loops->begin);
     int first = 0;
     for (int k = 1; k < count; k++)
         if (corner[k].node < corner[first].node) first = k;

@@ -180,7 +180,7 @@ static void find_areas(const struct open_surface *face, bool lateral,
         allocate((size_t)layer->n_lateral, sizeof *layer->lateral_edge);
     for (int k = 0; k < layer->n_lateral; k++) {
         const struct planar_edge *edge = &cells.edge[k];
-        for (int end = 0; end < 2; end++) {
+        for (size_t end = 0; end < 2; end++) {
             layer->lateral[k][end] = edge->point[end];
             layer->lateral_edge[k][2 * end] =
                 face->corner.x / face->unit + edge->end[end].x;
@@ -221,7 +221,7 @@ enum status boundary_layer_make(const struct network *network, int wall, double 
 // Appends the N_MORE rows of MORE to the N rows of ARRAY, which may move.
 static void *append_rows(void *array, int n, const void *more, int n_more, size_t size)
 {
-    array = reallocate(array, (size_t)(n + n_more), size);
+    array = reallocate(array, (size_t)n + (size_t)n_more, size);
     if (n_more > 0)
         memcpy((char *)array + (size_t)n * size, more, (size_t)n_more * size);
     return array;

@@ -168,8 +168,9 @@ struct emptying_times emptying_times_make(struct occupancy *occupancy, bool by_t
     for (int t = 0; t < n; t++) {
         times.saturation[t] = occupancy_saturation(occupancy, t);
         times.timer[t] = -1;
-        times.share_place[2 * t] = times.share_place[2 * t + 1] = -1;
     }
+    for (size_t k = 0; k < 2 * (size_t)n; k++)
+        times.share_place[k] = -1;
     for (int k = 0; k < occupancy->n_wet; k++)
         share_by_node(&times, occupancy->wet[k]);
     occupancy->vapour.mesh.n_reached_air = 0;

@@ -17,11 +17,11 @@
 // part still has all the digits of a double.
 static const double MIN_PART = 1e-10;
 
-void mark_dirty(struct emptying_times *times, int k)
+void mark_dirty(struct emptying_times *times, int timer)
 {
-    if (times->is_dirty[k]) return;
-    times->is_dirty[k] = true;
-    times->dirty[times->n_dirty++] = k;
+    if (times->is_dirty[timer]) return;
+    times->is_dirty[timer] = true;
+    times->dirty[times->n_dirty++] = timer;
 }
 
 // The timer of a reservoir; a new one has no throat yet.
@@ -145,9 +145,10 @@ void evaporation_shares_add_up(struct emptying_times *times)
     memset(times->has_sum, 0, (size_t)times->n * sizeof *times->has_sum);
 }
 
-void evaporation_shares_set_rate(struct emptying_times *times, int k)
+void evaporation_shares_set_rate(struct emptying_times *times, int timer)
 {
-    if (times->has_sum[k]) times->rate[k] = compensated_value(times->sum[k]);
+    if (times->has_sum[timer])
+        times->rate[timer] = compensated_value(times->sum[timer]);
 }
 
 bool evaporation_shares_lack_digits(const struct emptying_times *times)

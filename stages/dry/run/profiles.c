@@ -172,9 +172,9 @@ struct profiles profiles_make(const struct network *network,
     for (int k = 0; k < n_level; k++) {
         step = go_on_to(&snapshot, history, step, level[k]);
         profiles.step[k] = step;
-        cut_profile(&snapshot, profiles.slice + k * PROFILE_SLICES,
+        cut_profile(&snapshot, profiles.slice + (size_t)k * PROFILE_SLICES,
                     &profiles.surface[k]);
-        count_clusters(&snapshot, profiles.clusters + k * PROFILE_CLASSES);
+        count_clusters(&snapshot, profiles.clusters + (size_t)k * PROFILE_CLASSES);
         if (keep_throats)
             memcpy(profiles.throat_saturation + (size_t)k * n_throat,
                    snapshot.saturation, n_throat * sizeof(double));

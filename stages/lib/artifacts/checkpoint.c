@@ -116,7 +116,7 @@ static void digest_list(EVP_MD_CTX *digest, const struct array_list *list)
         NEW_ARRAY(const struct named_array *, list->count);
     for (int k = 0; k < list->count; k++)
         sorted[k] = &list->array[k];
-    qsort(sorted, (size_t)list->count, sizeof *sorted, by_name);
+    qsort(sorted, (size_t)list->count, sizeof(const struct named_array *), by_name);
     for (int k = 0; k < list->count; k++) {
         const struct named_array *array = sorted[k];
         EVP_DigestUpdate(digest, array->name, strlen(array->name) + 1);

@@ -354,6 +354,6 @@ void sha256(const void *data, size_t size, char digest[65])
     unsigned char raw[32];
     if (!EVP_Q_digest(NULL, "SHA256", NULL, data, size, raw, NULL))
         die(STATUS_INTERNAL, "SHA-256 is not available");
-    for (int k = 0; k < 32; k++)
+    for (size_t k = 0; k < sizeof raw; k++)
         sprintf(&digest[2 * k], "%02x", raw[k]);
 }

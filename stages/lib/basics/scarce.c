@@ -65,16 +65,16 @@ void *malloc(size_t size)
     return checked(next(size), size);
 }
 
-void *calloc(size_t count, size_t size)
+void *calloc(size_t nmemb, size_t size)
 {
     NEXT(calloc);
-    return checked(next(count, size), product(count, size));
+    return checked(next(nmemb, size), product(nmemb, size));
 }
 
-void *realloc(void *old, size_t size)
+void *realloc(void *ptr, size_t size)
 {
     NEXT(realloc);
-    return checked(next(old, size), size);
+    return checked(next(ptr, size), size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
@@ -89,19 +89,19 @@ void *memalign(size_t alignment, size_t size)
     return checked(next(alignment, size), size);
 }
 
-int posix_memalign(void **memory, size_t alignment, size_t size)
+int posix_memalign(void **memptr, size_t alignment, size_t size)
 {
     NEXT(posix_memalign);
-    const int error = next(memory, alignment, size);
+    const int error = next(memptr, alignment, size);
     if (error == ENOMEM) checked(NULL, size);
     return error;
 }
 
-int pthread_create(pthread_t *thread, const pthread_attr_t *attributes,
-                   void *(*start)(void *), void *context)
+int pthread_create(pthread_t *thread, const pthread_attr_t *attr,
+                   void *(*start_routine)(void *), void *arg)
 {
     NEXT(pthread_create);
-    const int error = next(thread, attributes, start, context);
+    const int error = next(thread, attr, start_routine, arg);
     if (error) end("cannot start another thread: --threads=1 needs none", 0);
     return 0;
 }

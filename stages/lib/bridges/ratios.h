@@ -29,7 +29,7 @@ struct bridge_ratios;
 // MB; the same numbers on every call. Returns STATUS_OK, STATUS_BAD_DATA, or
 // STATUS_NOT_CONVERGED where the exact solution fails. The caller frees it.
 enum status bridge_ratios_create(const struct bridge_sizes *sizes, double contact_angle,
-                                 struct bridge_ratios **ratios, struct reason *reason);
+                                 struct bridge_ratios **result, struct reason *reason);
 void bridge_ratios_free(struct bridge_ratios *ratios);
 
 // s of two grains, of which one may be a plane (INFINITY); 0 where they differ by

@@ -121,7 +121,7 @@ static double steepness_of(int half)
 }
 
 // Interpolates at HALF_ORDER volumes by ORDER places.
-static void fit_half_place(const double value[HALF_ORDER][SAMPLES], int place,
+static void fit_half_place(const double value[HALF_ORDER][SAMPLES], size_t place,
                            float8 row[HALF_ORDER / 2])
 {
     double across[ORDER][HALF_ORDER], power[HALF_ORDER];
@@ -158,7 +158,7 @@ static void fill_ratio(struct bridge_ratios *ratios, const struct bodies *bodies
     }
     if (task->status) return;
     memcpy(to->inverse[k], at.turning, sizeof at.turning);
-    for (int place = 0; place < PLACES; place++)
+    for (size_t place = 0; place < PLACES; place++)
         fit_half_place(value, place, to->force[place][k]);
 }
 

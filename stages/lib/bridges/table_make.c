@@ -41,10 +41,10 @@ static double zeta_at(int place, double w)
 }
 
 enum status sample_forces(const struct bodies *bodies, double volume,
-                          const struct volume_patch *patch, double u,
+                          const struct volume_patch *at, double u,
                           double values[SAMPLES])
 {
-    const double inverse = POLYNOMIAL(patch->turning, u), steepness = patch->steepness;
+    const double inverse = POLYNOMIAL(at->turning, u), steepness = at->steepness;
     double gap[SAMPLES];
     struct equilibrium found[SAMPLES];
     for (int s = 0; s < SAMPLES; s++) { // from contact on: gaps rise
@@ -113,7 +113,7 @@ static enum status fit_volumes(const struct bodies *bodies, int patch,
 }
 
 // Interpolates at ORDER by ORDER nodes.
-static void fit_place(const double value[ORDER][SAMPLES], int place, float8 row[2])
+static void fit_place(const double value[ORDER][SAMPLES], size_t place, float8 row[2])
 {
     double across[ORDER][ORDER], power[ORDER];
     for (int v = 0; v < ORDER; v++) {
@@ -137,7 +137,7 @@ enum status make_patch(const struct bodies *bodies, int patch, struct volume_pat
         const double u = chebyshev_node(v, ORDER);
         status = sample_forces(bodies, patch_volume(patch, u), at, u, value[v]);
     }
-    for (int place = 0; place < PLACES && !status; place++)
+    for (size_t place = 0; place < PLACES && !status; place++)
         fit_place(value, place, force[place]);
     return status;
 }

@@ -257,6 +257,7 @@ approximate_cholesky_create(const struct conductance_matrix *matrix)
                                             .work = NEW_ARRAY(float, n + 1)};
     reserve_entries(factor, 5 * (size_t)n);
     struct round round = {0};
+    reserve(&round, 1);
     for (int done = 0; graph.n > 0;) {
         eliminate_independent(&graph, &round);
         done = append(factor, done, &round, max_weight);

@@ -126,7 +126,7 @@ void GATHER(const struct dense_front *dense, int n, const double *weight, double
             VECTOR sum[3] = {0};
             for (int k = 0; k < dense->n_pending; k++) {
                 VECTOR part[3];
-                memcpy(part, pending + k * BLOCK + column, sizeof part);
+                memcpy(part, pending + (size_t)k * BLOCK + column, sizeof part);
                 const VECTOR times = (NUMBER)weight[k] - (VECTOR){0};
                 for (int v = 0; v < 3; v++)
                     sum[v] = FMADD(times, part[v], sum[v]);

@@ -96,6 +96,7 @@ static enum status read_box(struct lines *lines, const char *flags,
         double low, high;
         char more;
         if (!next_line(lines) ||
+            // NOLINTNEXTLINE(cert-err34-c): out of range becomes infinite, refused next
             sscanf(lines->line, "%lf %lf %c", &low, &high, &more) != 2 ||
             !isfinite(low) || !isfinite(high) || !(low < high))
             return bad_line(lines, "the box, a lower and an upper bound", reason);

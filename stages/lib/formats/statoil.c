@@ -134,9 +134,10 @@ static enum status read_line(struct reading *reading, int wanted, double *number
     } while (*reading->rest == '\n' && reading->rest++);
     for (int k = 0; k < wanted; k++) {
         reading->rest += strspn(reading->rest, blanks);
+        const bool is_over = *reading->rest == '\n';
         char *end = NULL;
-        number[k] = *reading->rest == '\n' ? 0 : strtod(reading->rest, &end);
-        if (*reading->rest == '\n' || end == reading->rest || !isfinite(number[k]))
+        number[k] = is_over ? 0 : strtod(reading->rest, &end);
+        if (is_over || end == reading->rest || !isfinite(number[k]))
             return refuse(reason, STATUS_BAD_DATA,
                           "%s: line %d: must begin with %d "
                           "numbers",
@@ -188,7 +189,7 @@ static enum status read_throats(struct reading *link1, struct reading *link2,
                                 struct network *network, struct reason *reason)
 {
     const int n_link = network->n_throat;
-    double first[6] = {0}, second[7];
+    double first[6] = {0}, second[7] = {0};
     int t = 0;
     for (int number = 1; number <= n_link; number++) {
         enum status status = read_row(link1, number, 6, first, reason);

@@ -12,16 +12,17 @@
 #include <gsl/gsl_eigen.h>
 #include <math.h>
 
-double whole_mass(const struct whole *whole, int i)
+double whole_mass(const struct whole *whole, int grain)
 {
-    const double radius = whole->packing->radius[i] / whole->length;
-    return whole->is_gone && whole->is_gone[i] ? 0 : radius * radius * radius;
+    const double radius = whole->packing->radius[grain] / whole->length;
+    return whole->is_gone && whole->is_gone[grain] ? 0 : radius * radius * radius;
 }
 
-struct vector whole_place(const struct whole *whole, int i)
+struct vector whole_place(const struct whole *whole, int grain)
 {
-    struct vector from = subtract(whole->packing->position[i], whole->packing->lower);
-    if (whole->displacement) from = add(from, whole->displacement[i]);
+    struct vector from =
+        subtract(whole->packing->position[grain], whole->packing->lower);
+    if (whole->displacement) from = add(from, whole->displacement[grain]);
     return subtract(scale(1 / whole->length, from), whole->centre);
 }
 

@@ -100,7 +100,9 @@ static void add_body(struct slices *slices, const struct piece *body)
         first = fmax(first, 0);
         last = fmin(last, slices->count - 1);
     }
-    for (double k = first; k <= last; k++) {
+    const int reached = (int)fmax(0, last - first + 1);
+    for (int place = 0; place < reached; place++) {
+        const double k = first + place;
         low.z = k * w - height;
         high.z = (k + 1) * w - height;
         const double wrapped = k - slices->count * floor(k / slices->count);

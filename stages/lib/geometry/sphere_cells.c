@@ -43,10 +43,11 @@ static void copy_along(struct spheres *all, const struct sphere_cells *cells, in
     const double far = fmin(sphere.radius + cells->reach, period / 2);
     const double first = ceil((lower - x - far) / period),
                  last = floor((lower + period - x + far) / period);
-    for (double boxes = first; boxes <= last; boxes++) {
+    const int count = (int)(last - first) + 1;
+    for (int copied = 0; copied < count; copied++) {
         struct sphere copy = sphere;
-        set_component(&copy.centre, axis, x + boxes * period);
-        if (boxes == first)
+        set_component(&copy.centre, axis, x + (first + copied) * period);
+        if (copied == 0)
             all->sphere[k] = copy;
         else
             add_sphere(all, copy);
@@ -67,7 +68,8 @@ static void arrange_spheres(struct spheres *all, const struct sphere_cells *cell
         for (int k = 0; k < before && cells->repeats[axis]; k++)
             copy_along(all, cells, k, axis);
     }
-    qsort(all->sphere, (size_t)all->n, sizeof *all->sphere, compare_spheres);
+    if (all->n > 0)
+        qsort(all->sphere, (size_t)all->n, sizeof *all->sphere, compare_spheres);
 }
 
 // ---- cells --------------------------------------------------------------------------

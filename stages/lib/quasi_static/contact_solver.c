@@ -32,52 +32,53 @@ struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_
     return c;
 }
 
-void contact_solver_clear(struct contact_solver *c)
+void contact_solver_clear(struct contact_solver *solver)
 {
-    for (int k = 0; k < c->n_group; k++)
-        forward_solves_free(&c->group[k].solves);
-    c->n_group = c->n_active = c->count = c->n_acting = c->n_factored = 0;
-    c->work = 0;
-    for (int j = 0; j < c->n_pair; j++)
-        c->active_of[j] = -1;
+    for (int k = 0; k < solver->n_group; k++)
+        forward_solves_free(&solver->group[k].solves);
+    solver->n_group = solver->n_active = solver->count = solver->n_acting =
+        solver->n_factored = 0;
+    solver->work = 0;
+    for (int j = 0; j < solver->n_pair; j++)
+        solver->active_of[j] = -1;
 }
 
-void contact_solver_free(struct contact_solver *c)
+void contact_solver_free(struct contact_solver *solver)
 {
-    if (!c) return;
-    contact_solver_clear(c);
-    void *const owned[] = {c->active,
-                           c->active_of,
-                           c->group,
-                           c->active_of_row,
-                           c->component_of_row,
-                           c->matrix,
-                           c->order,
-                           c->acting,
-                           c->factored,
-                           c->deformation,
-                           c->free_deformation,
-                           c->excess,
-                           c->residual,
-                           c->step,
-                           c->rhs,
-                           c->solution,
-                           c->work_space,
-                           c->compliance,
-                           c->factored_slope};
+    if (!solver) return;
+    contact_solver_clear(solver);
+    void *const owned[] = {solver->active,
+                           solver->active_of,
+                           solver->group,
+                           solver->active_of_row,
+                           solver->component_of_row,
+                           solver->matrix,
+                           solver->order,
+                           solver->acting,
+                           solver->factored,
+                           solver->deformation,
+                           solver->free_deformation,
+                           solver->excess,
+                           solver->residual,
+                           solver->step,
+                           solver->rhs,
+                           solver->solution,
+                           solver->work_space,
+                           solver->compliance,
+                           solver->factored_slope};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
-    free(c);
+    free(solver);
 }
 
-int contact_solver_count(const struct contact_solver *c)
+int contact_solver_count(const struct contact_solver *solver)
 {
-    return c->count;
+    return solver->count;
 }
 
-double contact_solver_work(const struct contact_solver *c)
+double contact_solver_work(const struct contact_solver *solver)
 {
-    return c->work;
+    return solver->work;
 }
 
 bool contact_solver_is_costly(const struct contact_solver *c)
@@ -255,22 +256,22 @@ bool contact_solver_solve(struct contact_solver *c,
     return false;
 }
 
-void contact_solver_subtract(const struct contact_solver *c, double compliance_factor,
-                             struct displacement *residual)
+void contact_solver_subtract(const struct contact_solver *solver,
+                             double compliance_factor, struct displacement *residual)
 {
-    for (int k = 0; k < c->n_group; k++) {
-        const struct row_group *group = &c->group[k];
+    for (int k = 0; k < solver->n_group; k++) {
+        const struct row_group *group = &solver->group[k];
         double load[BATCH];
         for (int l = 0; l < group->solves.columns; l++)
-            load[l] = compliance_factor * c->excess[group->first + l];
-        stiffness_subtract(c->stiffness, &group->solves, load);
+            load[l] = compliance_factor * solver->excess[group->first + l];
+        stiffness_subtract(solver->stiffness, &group->solves, load);
     }
-    for (int e = 0; e < c->n_active; e++) {
-        const struct active_pair *active = &c->active[e];
-        const struct contact_pair *pair = &c->pair[active->pair];
+    for (int e = 0; e < solver->n_active; e++) {
+        const struct active_pair *active = &solver->active[e];
+        const struct contact_pair *pair = &solver->pair[active->pair];
         double load[COMPONENTS] = {0};
         for (int k = 0; k < active->count; k++)
-            load[k] = c->excess[active->row[k]];
+            load[k] = solver->excess[active->row[k]];
         for (int end = 0; end < 2; end++) {
             if (pair->grain[end] < 0) continue;
             const struct displacement part = pair_load_on_grain(pair, end, load);

@@ -271,11 +271,11 @@ bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enoug
     double best = INFINITY, nearly = enough;
     for (int row = 0; row < c->count; row++)
         nearly = fmax(nearly, 1e-6 * fabs(c->free_deformation[row]));
-    double left = update_contacts(c, is_augmented);
+    update_contacts(c, is_augmented);
     for (int waited = 0; waited < (best > nearly ? PATIENCE : AT_THE_END); waited++) {
         if (!find_step(c)) return false;
         advance(c);
-        left = update_contacts(c, is_augmented);
+        const double left = update_contacts(c, is_augmented);
         if (left <= enough && update_contacts(c, false) <= enough) return true;
         if (left < 0.5 * best) {
             best = left;

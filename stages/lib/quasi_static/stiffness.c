@@ -7,6 +7,7 @@
 
 #include "basics/memory.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,7 +95,7 @@ static void lay_out(struct stiffness *s)
         }
         s->diagonal[column] = first;
     }
-    s->start[s->n_moving * DEGREES] = at;
+    s->start[(size_t)s->n_moving * DEGREES] = at;
 }
 
 struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
@@ -139,7 +140,8 @@ static double *numbers_of(const struct stiffness *s, int block, int *stride)
     const struct block *b = &s->block[block];
     const int column = b->column * DEGREES;
     *stride = s->start[column + 1] - s->start[column];
-    return s->value + s->start[column] + (block - s->diagonal[b->column]) * DEGREES;
+    return s->value + s->start[column] +
+           (ptrdiff_t)(block - s->diagonal[b->column]) * DEGREES;
 }
 
 // B^T of the grain at END, a row for each component.
@@ -177,6 +179,7 @@ static void add_pair(struct stiffness *s, int j, const double tangent[COMPONENTS
         add_block(s, s->diagonal[number[end]], arm[end], arm[end], tangent);
     }
     if (s->block_of[j] < 0) return;
+    assert(number[0] >= 0 && number[1] >= 0); // what only two that move have
     const int lower = number[0] < number[1] ? 0 : 1;
     add_block(s, s->block_of[j], arm[1 - lower], arm[lower], tangent);
 }
@@ -210,7 +213,8 @@ bool stiffness_factor(struct stiffness *s, const double (*tangent)[COMPONENTS],
                       const struct pair_stiffness *geometric, const double soft[2])
 {
     if (s->n_moving == 0) return true;
-    memset(s->value, 0, (size_t)s->start[s->n_moving * DEGREES] * sizeof *s->value);
+    memset(s->value, 0,
+           (size_t)s->start[(size_t)s->n_moving * DEGREES] * sizeof *s->value);
     for (int j = 0; j < s->n_pair; j++)
         add_pair(s, j, tangent[j]);
     for (int j = 0; j < s->n_pair && geometric; j++)
@@ -245,7 +249,7 @@ void stiffness_begin(struct stiffness *s, const struct displacement *load)
 {
     for (int i = 0; i < s->n; i++)
         if (s->number[i] >= 0)
-            memcpy(s->load + s->number[i] * DEGREES, &load[i], sizeof load[i]);
+            memcpy(s->load + (size_t)s->number[i] * DEGREES, &load[i], sizeof load[i]);
     if (s->n_moving == 0) return;
     supernodal_forward(s->factor, s->load, s->begun);
     memcpy(s->left, s->begun, (size_t)s->n_moving * DEGREES * sizeof *s->left);
@@ -259,7 +263,8 @@ void stiffness_finish(struct stiffness *s, struct displacement *answer)
     memcpy(s->left, s->begun, (size_t)s->n_moving * DEGREES * sizeof *s->left);
     for (int i = 0; i < s->n; i++)
         if (s->number[i] >= 0)
-            memcpy(&answer[i], s->load + s->number[i] * DEGREES, sizeof answer[i]);
+            memcpy(&answer[i], s->load + (size_t)s->number[i] * DEGREES,
+                   sizeof answer[i]);
 }
 
 void stiffness_deformation(const struct stiffness *s,

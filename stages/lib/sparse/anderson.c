@@ -117,7 +117,7 @@ void anderson_step(struct anderson *anderson, double *step)
     keep(anderson, step);
     const int n = anderson->n, m = anderson->n_kept;
     double r[ANDERSON_DEPTH][ANDERSON_DEPTH], part[ANDERSON_DEPTH];
-    bool good[ANDERSON_DEPTH];
+    bool good[ANDERSON_DEPTH] = {false};
     for (int k = 0; k < m; k++) {
         good[k] = orthogonalise(anderson, k, r[k]);
         part[k] = product(anderson->basis[k], step, n);

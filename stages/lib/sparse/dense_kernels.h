@@ -13,7 +13,7 @@ static inline double dot_product(int n, const double *a, const double *b)
     double4 sum[2] = {{0}};
     int i = 0;
     for (; i + 8 <= n; i += 8)
-        for (int k = 0; k < 2; k++)
+        for (long k = 0; k < 2; k++)
             sum[k] = fmadd(load_unaligned(a + i + 4 * k), load_unaligned(b + i + 4 * k),
                            sum[k]);
     const double4 both = sum[0] + sum[1];

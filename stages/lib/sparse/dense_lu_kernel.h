@@ -93,13 +93,13 @@ static void finish_pivots(double *matrix, int stride, const int *row, int width,
         doublew left[2] = {load_unaligned(tile[p]),
                            load_unaligned(tile[p] + SIMD_WIDTH)};
         for (int i = 0; i < p; i++)
-            for (int q = 0; q < 2; q++)
+            for (long q = 0; q < 2; q++)
                 left[q] = fmadd(splat(to[first + i]),
                                 load_unaligned(tile[i] + SIMD_WIDTH * q), left[q]);
-        for (int q = 0; q < 2; q++)
+        for (long q = 0; q < 2; q++)
             store_unaligned(tile[p] + SIMD_WIDTH * q, left[q]);
         memcpy(to + last, tile[p], (size_t)columns * sizeof *to);
-        for (int q = 0; q < 2; q++)
+        for (long q = 0; q < 2; q++)
             store_unaligned(tile[p] + SIMD_WIDTH * q, -left[q]);
     }
 }
@@ -110,15 +110,15 @@ SIMD_INLINE void add_tile_rows(int rows, int width, double *const share[],
 {
     doublew sum[HEIGHT][2];
     for (int r = 0; r < rows; r++)
-        for (int q = 0; q < 2; q++)
+        for (long q = 0; q < 2; q++)
             sum[r][q] = load_unaligned(to[r] + SIMD_WIDTH * q);
     for (int p = 0; p < width; p++)
         for (int r = 0; r < rows; r++)
-            for (int q = 0; q < 2; q++)
+            for (long q = 0; q < 2; q++)
                 sum[r][q] = fmadd(splat(share[r][p]),
                                   load_unaligned(tile[p] + SIMD_WIDTH * q), sum[r][q]);
     for (int r = 0; r < rows; r++)
-        for (int q = 0; q < 2; q++)
+        for (long q = 0; q < 2; q++)
             store_unaligned(to[r] + SIMD_WIDTH * q, sum[r][q]);
 }
 

@@ -138,7 +138,8 @@ void forward_solves_product(const struct supernodal *f, const struct forward_sol
             from_b += f->super[b->super[l++]].columns;
     }
     for (int i = 0; i < a->columns; i++)
-        memcpy(product + i * b->columns, sum[i], (size_t)b->columns * sizeof *product);
+        memcpy(product + (size_t)i * (size_t)b->columns, sum[i],
+               (size_t)b->columns * sizeof *product);
 }
 
 void forward_solves_apply(const struct supernodal *f,

@@ -112,7 +112,8 @@ struct supernodal *supernodal_new(int n, const int *start, const int *row)
     f->work = NEW_ARRAY(double, ((size_t)f->tallest + PACKED) * (size_t)f->widest);
     f->local = NEW_ARRAY(int, f->tallest);
     f->in_reach = NEW_ARRAY(bool, f->n_super);
-    f->lanes = allocate_aligned((size_t)n, MOST_SOLVES * BATCH * sizeof *f->lanes);
+    f->lanes =
+        allocate_aligned((size_t)n, (size_t)MOST_SOLVES * BATCH * sizeof *f->lanes);
     return f;
 }
 

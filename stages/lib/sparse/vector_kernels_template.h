@@ -65,7 +65,7 @@ SIMD_INLINE void forward_columns(const struct supernode *super, int first, int w
     {
         double *at = lanes_of(super, first + j, parts, x);
         const double pivot = panel[(long)j * rows + first + j];
-        UNROLLED for (int q = 0; q < parts; q++)
+        UNROLLED for (long q = 0; q < parts; q++)
         {
             own[j][q] = load_unaligned(at + SIMD_WIDTH * q);
             UNROLLED for (int l = 0; l < wide; l++) if (l < j) own[j][q] =
@@ -78,11 +78,12 @@ SIMD_INLINE void forward_columns(const struct supernode *super, int first, int w
     for (int i = first + wide; i < rows; i++) {
         double *at = lanes_of(super, i, parts, x);
         doublew left[PARTS];
-        UNROLLED for (int q = 0; q < parts; q++) left[q] =
+        UNROLLED for (long q = 0; q < parts; q++) left[q] =
             load_unaligned(at + SIMD_WIDTH * q);
-        UNROLLED for (int j = 0; j < wide; j++) UNROLLED for (int q = 0; q < parts; q++)
-            left[q] = subtract_product(left[q], panel[(long)j * rows + i], own[j][q]);
-        UNROLLED for (int q = 0; q < parts; q++)
+        UNROLLED for (int j = 0; j < wide; j++)
+            UNROLLED for (long q = 0; q < parts; q++) left[q] =
+                subtract_product(left[q], panel[(long)j * rows + i], own[j][q]);
+        UNROLLED for (long q = 0; q < parts; q++)
             store_unaligned(at + SIMD_WIDTH * q, left[q]);
     }
 }
@@ -164,14 +165,14 @@ SIMD_INLINE void add_tile(int n, const double *a, int a_lanes, const double *b,
                           int tile, int parts, double *sum)
 {
     doublew part[8][PARTS];
-    UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (int q = 0; q < parts; q++)
-        part[i][q] = load_unaligned(sum + i * BATCH + SIMD_WIDTH * q);
-    for (int p = 0; p < n; p++, a += a_lanes, b += SIMD_WIDTH * parts)
-        UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (int q = 0; q < parts; q++)
-            part[i][q] =
+    UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (long q = 0; q < parts; q++)
+        part[i][q] = load_unaligned(sum + (long)i * BATCH + SIMD_WIDTH * q);
+    for (int p = 0; p < n; p++, a += a_lanes, b += (long)SIMD_WIDTH * parts)
+        UNROLLED for (int i = 0; i < tile; i++)
+            UNROLLED for (long q = 0; q < parts; q++) part[i][q] =
                 fmadd(splat(a[i]), load_unaligned(b + SIMD_WIDTH * q), part[i][q]);
-    UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (int q = 0; q < parts; q++)
-        store_unaligned(sum + i * BATCH + SIMD_WIDTH * q, part[i][q]);
+    UNROLLED for (int i = 0; i < tile; i++) UNROLLED for (long q = 0; q < parts; q++)
+        store_unaligned(sum + (long)i * BATCH + SIMD_WIDTH * q, part[i][q]);
 }
 
 #if SIMD_WIDTH == 4
@@ -228,19 +229,19 @@ SIMD_INLINE void multiply_tile(int tall, int k, const double *a, int a_stride,
 {
     doublew sum[TILE_COLUMNS][TALL], of_a[TALL];
     UNROLLED for (int j = 0; j < TILE_COLUMNS; j++)
-        UNROLLED for (int q = 0; q < tall; q++) sum[j][q] = splat(0);
+        UNROLLED for (long q = 0; q < tall; q++) sum[j][q] = splat(0);
     for (int p = 0; p < k; p++, a += a_stride, packed += TILE_COLUMNS) {
-        UNROLLED for (int q = 0; q < tall; q++) of_a[q] =
+        UNROLLED for (long q = 0; q < tall; q++) of_a[q] =
             load_unaligned(a + SIMD_WIDTH * q);
         UNROLLED for (int j = 0; j < TILE_COLUMNS; j++)
-            UNROLLED for (int q = 0; q < tall; q++) sum[j][q] =
+            UNROLLED for (long q = 0; q < tall; q++) sum[j][q] =
                 fmadd(of_a[q], splat(packed[j]), sum[j][q]);
     }
     UNROLLED for (int j = 0; j < TILE_COLUMNS; j++)
         UNROLLED for (int q = 0; q < tall; q++)
     {
         if (j >= columns) continue;
-        double *to = c + (long)j * c_stride + SIMD_WIDTH * q;
+        double *to = c + (long)j * c_stride + (long)SIMD_WIDTH * q;
         if (rows >= SIMD_WIDTH * (q + 1))
             store_unaligned(to, sum[j][q]);
         else

@@ -89,7 +89,7 @@ static struct ranked *sorted(struct sample a, struct sample b)
         all[k] = (struct ranked){a.value[k], true};
     for (int k = 0; k < b.n; k++)
         all[a.n + k] = (struct ranked){b.value[k], false};
-    qsort(all, (size_t)(a.n + b.n), sizeof *all, by_value);
+    qsort(all, (size_t)a.n + (size_t)b.n, sizeof *all, by_value);
     return all;
 }
 

@@ -230,7 +230,8 @@ static bool find_corners(const struct weighted_point *point, int n, int32_t corn
 static void surround(struct insertion *insertion, const int32_t corner[4])
 {
     for (int c = 0; c < 5; c++) {
-        struct live_cell *cell = &insertion->cell[add_cell(insertion)];
+        const int32_t added = add_cell(insertion); // may move the cells
+        struct live_cell *cell = &insertion->cell[added];
         *cell = (struct live_cell){0};
         int32_t beside[4] = {1, 2, 3, 4};
         memcpy(cell->vertex, corner, sizeof cell->vertex);
@@ -253,9 +254,11 @@ static void surround(struct insertion *insertion, const int32_t corner[4])
 // beyond is cell 0, which nothing takes.
 static void surround_by_walls(struct insertion *insertion)
 {
-    for (int c = 0; c < 9; c++)
-        insertion->cell[add_cell(insertion)] = (struct live_cell){
+    for (int c = 0; c < 9; c++) {
+        const int32_t added = add_cell(insertion); // may move the cells
+        insertion->cell[added] = (struct live_cell){
             .vertex = {INFINITE, INFINITE, INFINITE, INFINITE}, .error = -1};
+    }
     for (int corner = 0; corner < 8; corner++) {
         struct live_cell *cell = &insertion->cell[1 + corner];
         const bool turned =

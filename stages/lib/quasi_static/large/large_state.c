@@ -54,9 +54,10 @@ void large_state_allocate_pairs(struct quasi_static *qs)
     large->geometric = reallocate(large->geometric, count, sizeof *large->geometric);
 }
 
-struct displacement displacement_since_previous(const struct quasi_static *qs, int i)
+struct displacement displacement_since_previous(const struct quasi_static *qs,
+                                                int grain)
 {
-    return displacement_between(&qs->previous[i], &qs->displacement[i]);
+    return displacement_between(&qs->previous[grain], &qs->displacement[grain]);
 }
 
 // Dashpots, (1 + damping) K in all, have no geometric part: it is divided by as much.

@@ -14,21 +14,21 @@
 
 void subtract_geometric_load(const struct quasi_static *qs,
                              const struct displacement *moved,
-                             struct displacement *left)
+                             struct displacement *residual)
 {
     for (int j = 0; j < qs->n_pair; j++) {
         const int32_t *grain = qs->pair[j].grain;
         double of_ends[12] = {0}, turning[12] = {0};
-        for (int end = 0; end < 2; end++)
+        for (size_t end = 0; end < 2; end++)
             if (grain[end] >= 0)
                 memcpy(of_ends + 6 * end, &moved[grain[end]], sizeof *moved);
         for (int r = 0; r < 12; r++)
             for (int c = 0; c < 12; c++)
                 turning[r] += qs->large->geometric[j].block[r][c] * of_ends[c];
-        for (int end = 0; end < 2; end++) {
+        for (size_t end = 0; end < 2; end++) {
             struct displacement part;
             memcpy(&part, turning + 6 * end, sizeof part);
-            if (grain[end] >= 0) displacement_subtract(&left[grain[end]], part);
+            if (grain[end] >= 0) displacement_subtract(&residual[grain[end]], part);
         }
     }
 }
