@@ -40,7 +40,7 @@ struct slices slices_of_bond(const struct packing *packing, int bond, int n)
     return slices_at(height_share(packing, z), n);
 }
 
-struct counts counts_new(struct classes classes)
+struct counts counts_init(struct classes classes)
 {
     const size_t n_slice = (size_t)classes.n_slice;
     const size_t n_interval = (size_t)classes.n_interval;

@@ -47,7 +47,7 @@ double height_share(const struct packing *packing, double z);
 struct slices slices_of_bond(const struct packing *packing, int bond, int n);
 
 // All 0, in the shapes of CLASSES. The caller frees them with counts_free.
-struct counts counts_new(struct classes classes);
+struct counts counts_init(struct classes classes);
 void counts_free(struct counts *counts);
 
 // Sets ALL to the cracks of both periods.

@@ -14,7 +14,7 @@
 #include <gsl/gsl_statistics_double.h>
 #include <stdlib.h>
 
-struct drying_front drying_front_new(struct classes classes)
+struct drying_front drying_front_init(struct classes classes)
 {
     return (struct drying_front){
         .slice =

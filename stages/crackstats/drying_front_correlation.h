@@ -19,7 +19,7 @@ struct drying_front {
 };
 
 // All 0. The caller frees it with drying_front_free.
-struct drying_front drying_front_new(struct classes classes);
+struct drying_front drying_front_init(struct classes classes);
 void drying_front_free(struct drying_front *front);
 
 // Adds RUN, whose forces come from LIQUID: the saturations of its slices, and for each

@@ -15,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct ensemble ensemble_new(int most_runs, struct classes classes)
+struct ensemble ensemble_init(int most_runs, struct classes classes)
 {
     return (struct ensemble){.classes = classes,
                              .statistics = NEW_ARRAY(struct run_statistics, most_runs),
-                             .counts = counts_new(classes),
-                             .squares = squares_new(classes),
-                             .front = drying_front_new(classes)};
+                             .counts = counts_init(classes),
+                             .squares = squares_init(classes),
+                             .front = drying_front_init(classes)};
 }
 
 void ensemble_free(struct ensemble *ensemble)
@@ -102,7 +102,7 @@ static void note_front(double *value, const struct run *run,
 {
     value[FRONT_CORRELATION] = value[FRONT_SATURATION] = NAN;
     if (!liquid) return;
-    struct drying_front front = drying_front_new(ensemble->classes);
+    struct drying_front front = drying_front_init(ensemble->classes);
     drying_front_add(&front, run, liquid, ensemble->classes);
     value[FRONT_CORRELATION] =
         front_correlation(front.slice, place, ensemble->classes, 1);
@@ -126,7 +126,7 @@ void ensemble_add(struct ensemble *ensemble, const struct run *run,
 {
     if (ensemble->n_run == 0) begin_snapshots(ensemble, run);
     double *value = ensemble->statistics[ensemble->n_run++].value;
-    struct counts counts = counts_new(ensemble->classes);
+    struct counts counts = counts_init(ensemble->classes);
     count_cracks(&counts, run, ensemble->classes);
     struct orientation orientation = {0};
     add_orientation(&orientation, run);

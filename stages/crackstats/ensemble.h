@@ -30,7 +30,7 @@ struct ensemble {
 
 // An empty ensemble with room for MOST_RUNS runs, counted by CLASSES. The caller frees
 // it with ensemble_free.
-struct ensemble ensemble_new(int most_runs, struct classes classes);
+struct ensemble ensemble_init(int most_runs, struct classes classes);
 void ensemble_free(struct ensemble *ensemble);
 
 // Adds RUN, which must have as many snapshots as the runs before. LIQUID is the drying

@@ -160,9 +160,9 @@ static void check_classes(const struct crackstats_parameters *parameters)
 static struct ensemble read_study(const struct invocation *invocation, json_t *digests,
                                   const struct crackstats_parameters *parameters)
 {
-    struct ensemble ensemble =
-        ensemble_new(invocation->n_input, (struct classes){(int)parameters->slices,
-                                                           (int)parameters->intervals});
+    struct ensemble ensemble = ensemble_init(
+        invocation->n_input,
+        (struct classes){(int)parameters->slices, (int)parameters->intervals});
     struct reading reading = {
         .invocation = invocation, .digests = digests, .seen = json_object()};
     struct run run;

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct squares squares_new(struct classes classes)
+struct squares squares_init(struct classes classes)
 {
     const size_t n_slice = (size_t)classes.n_slice;
     const size_t n_interval = (size_t)classes.n_interval;

@@ -21,7 +21,7 @@ struct squares {
 };
 
 // All 0, in the shapes of CLASSES. The caller frees them with squares_free.
-struct squares squares_new(struct classes classes);
+struct squares squares_init(struct classes classes);
 void squares_free(struct squares *squares);
 
 // Adds the squares of the counts of one RUN, and of its cracks by ORIENTATION. Both

@@ -29,7 +29,7 @@ struct liquid_state {
     struct rank_queue queue;
 };
 
-static struct liquid_state liquid_state_make(const struct network *network,
+static struct liquid_state liquid_state_init(const struct network *network,
                                              const struct held_liquid *held)
 {
     const int n = network->n_throat;
@@ -42,7 +42,7 @@ static struct liquid_state liquid_state_make(const struct network *network,
                                  .widest = NEW_ARRAY(int, n),
                                  .rank = NEW_ARRAY(int, n),
                                  .cluster = NEW_ARRAY(int, n),
-                                 .queue = rank_queue_make(n)};
+                                 .queue = rank_queue_init(n)};
     rank_descending(network->throat_radius, n, state.widest, NULL);
     for (int k = 0; k < n; k++)
         state.rank[state.widest[k]] = k;
@@ -217,7 +217,7 @@ static double redistribute_cluster(struct liquid_state *state, int cluster,
 double redistribute_liquid(const struct network *network,
                            const struct held_liquid *held, double *saturation)
 {
-    struct liquid_state state = liquid_state_make(network, held);
+    struct liquid_state state = liquid_state_init(network, held);
     find_clusters(&state);
     const struct members members = list_members(&state);
     struct compensated expelled = {0};

@@ -90,7 +90,7 @@ static void empty_enclosed(struct network *network, unsigned open_walls)
 static void map_saturations(const struct middles *old, const struct network *renewed,
                             const double *saturation, double *to)
 {
-    struct places places = places_make(&renewed->packing, old->n, old->at);
+    struct places places = places_init(&renewed->packing, old->n, old->at);
     for (int t = 0; t < renewed->n_throat; t++) {
         if (renewed->throat_kind[t] != THROAT_NETWORK) continue;
         const int k = nearest_place(&places, throat_middle(renewed, t));
@@ -108,7 +108,7 @@ static void map_volumes(const struct middles *old, const struct network *before,
         free_middles(&wet);
         wet = find_middles(renewed, NULL);
     }
-    struct places places = places_make(&renewed->packing, wet.n, wet.at);
+    struct places places = places_init(&renewed->packing, wet.n, wet.at);
     for (int k = 0; k < old->n; k++) {
         const int t = old->throat[k];
         const int near = saturation[t] > 0 ? nearest_place(&places, old->at[k]) : -1;
@@ -156,7 +156,7 @@ enum status map_radii(const struct network *before,
     }
     struct middles old = find_middles(before, NULL);
     follow_grains(before, around, moved, &old);
-    struct places places = places_make(&renewed->packing, old.n, old.at);
+    struct places places = places_init(&renewed->packing, old.n, old.at);
     for (int t = 0; t < renewed->n_throat; t++) {
         if (renewed->throat_kind[t] != THROAT_NETWORK) continue;
         const int k = nearest_place(&places, throat_middle(renewed, t));

@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-struct places places_make(const struct packing *packing, int n, const struct vector *at)
+struct places places_init(const struct packing *packing, int n, const struct vector *at)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
     struct box_of_places box = {{0}, {0}};
@@ -15,7 +15,7 @@ struct places places_make(const struct packing *packing, int n, const struct vec
     }
     const double two = 2 * (edge.x * edge.y * edge.z) / fmax(n, 1); // places a cell
     return (struct places){packing, at,
-                           linked_cells_make(&box, n, at, 0, NULL, cbrt(two))};
+                           linked_cells_init(&box, n, at, 0, NULL, cbrt(two))};
 }
 
 void places_free(struct places *places)

@@ -13,7 +13,7 @@ struct places {
 };
 
 // O(n). Keeps PACKING and AT. The caller frees it with places_free.
-struct places places_make(const struct packing *packing, int n,
+struct places places_init(const struct packing *packing, int n,
                           const struct vector *at);
 void places_free(struct places *places);
 

@@ -66,7 +66,7 @@ double *find_clearances(const struct network *network, enum clearance how,
 {
     struct clear_way *way = find_clear_ways(network, how, reason);
     if (!way) return NULL;
-    struct sphere_cells grains = sphere_cells_make(&network->packing);
+    struct sphere_cells grains = sphere_cells_init(&network->packing);
     double *least = NEW_ARRAY(double, network->n_throat);
     for (int t = 0; t < network->n_throat; t++) {
         const struct vector from = network->node_position[network->throat_nodes[t][0]];

@@ -9,9 +9,9 @@
 
 #include <stdlib.h>
 
-struct loose_grains loose_make(int n)
+struct loose_grains loose_init(int n)
 {
-    return (struct loose_grains){.fragments = fragments_new(n),
+    return (struct loose_grains){.fragments = fragments_init(n),
                                  .is_loose = NEW_ARRAY(bool, n)};
 }
 

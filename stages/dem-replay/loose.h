@@ -19,7 +19,7 @@ struct loose_grains {
     int n_loose, first_one; // how many, and the lowest of them
 };
 
-struct loose_grains loose_make(int n_particle);
+struct loose_grains loose_init(int n_particle);
 void loose_free(struct loose_grains *loose);
 
 // Finds the loose grains of now. HELD (n_particle) grains are fixed; if there are none

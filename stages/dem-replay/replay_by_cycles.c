@@ -110,7 +110,7 @@ static enum status restore(struct run *run, const struct kept_state *kept,
 static enum status begin(struct run *run, struct reason *reason)
 {
     struct by_cycles *state = run->state = NEW_ARRAY(struct by_cycles, 1);
-    state->loose = loose_make(run->packing->n_particle);
+    state->loose = loose_init(run->packing->n_particle);
     run->is_whole = run->settings->weight && !run->settings->begin;
     const enum status status = create(run, &state->dem, reason);
     const struct array_list *earlier = run->settings->begin;

@@ -58,7 +58,7 @@ struct placed_bond {
     int bond;
 };
 
-static struct ruler ruler_make(const struct packing *packing)
+static struct ruler ruler_init(const struct packing *packing)
 {
     struct ruler ruler = {.packing = packing};
     for (int axis = 0; axis < 3; axis++) {
@@ -119,7 +119,7 @@ double *bond_strengths(const struct strength_scatter *scatter,
     const int n = packing->n_bond;
     double *drawn = draw_strengths(scatter, n);
     if (!drawn) return NULL;
-    const struct ruler ruler = ruler_make(packing);
+    const struct ruler ruler = ruler_init(packing);
     struct placed_bond *placed = NEW_ARRAY(struct placed_bond, n);
     for (int b = 0; b < n; b++)
         placed[b] = measure(&ruler, b);

@@ -61,7 +61,7 @@ static void put_profiles(struct artifact *artifact, const struct network *networ
     static const double level[] = {0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
     const int n_level = sizeof level / sizeof *level;
     struct profiles profiles =
-        profiles_make(network, history, conditions->open_walls,
+        profiles_init(network, history, conditions->open_walls,
                       conditions->liquid != LIQUID_IMMOBILE, n_level, level, false);
     put_moments(artifact, "profiles", history, &profiles);
     artifact_put(artifact, "/profiles/depth", profiles.depth, PROFILE_SLICES);
@@ -77,7 +77,7 @@ static void put_snapshots(struct artifact *artifact, const struct network *netwo
                           const struct drying_history *history,
                           const struct drying_conditions *conditions)
 {
-    struct profiles profiles = profiles_make(
+    struct profiles profiles = profiles_init(
         network, history, conditions->open_walls, conditions->liquid != LIQUID_IMMOBILE,
         conditions->n_snapshot, conditions->snapshot, true);
     put_moments(artifact, "snapshots", history, &profiles);

@@ -16,7 +16,7 @@ void put_boundary_layer(struct artifact *artifact, const struct network *network
     struct boundary_layer layer;
     struct reason reason;
     const enum status status =
-        boundary_layers_make(network, conditions->open_walls, 1,
+        boundary_layers_init(network, conditions->open_walls, 1,
                              history->boundary_layer_thickness, &form, &layer, &reason);
     if (status) die(status, "%s", reason.text);
     artifact_put(artifact, "/boundary_layer/node", layer.exposed, layer.n_exposed);

@@ -324,7 +324,7 @@ static enum status close_balances(const struct balance *balance,
     conductance_matrix_residual(matrix, given, x, residual);
     pressures->imbalance = INFINITY;
     struct linear_solver solver;
-    enum status status = linear_solver_make(matrix, solving->solver, &solver, reason);
+    enum status status = linear_solver_init(matrix, solving->solver, &solver, reason);
     pressures->direct = solver.cholesky;
     if (!status)
         status =

@@ -244,7 +244,7 @@ static struct protocol find_protocol(const struct process *process,
     else if (count <= most)
         times = uniform_times(&process->record->drying, (int)count);
     if (!times) refuse_size(parameters, count, bytes * grains, grains);
-    struct protocol protocol = make_protocol(process, times, (int)count);
+    struct protocol protocol = protocol_init(process, times, (int)count);
     if (parameters->gravity > 0)
         protocol.liquid = liquid_masses(process, &protocol, parameters->gravity);
     return protocol;

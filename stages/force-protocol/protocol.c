@@ -16,7 +16,7 @@ static inline double larger(double a, double b)
     return a > b ? a : b;
 }
 
-struct protocol make_protocol(const struct process *process, double *times, int n_time)
+struct protocol protocol_init(const struct process *process, double *times, int n_time)
 {
     const size_t n_particle = (size_t)process->network->packing.n_particle;
     struct protocol protocol = {

@@ -25,7 +25,7 @@ struct protocol {
 // The forces at N_TIME increasing TIMES (s), which the protocol takes over. Between
 // steps of the drying they are linear in time, except with SUCTION_FIELD. OpenMP. The
 // caller frees with protocol_free.
-struct protocol make_protocol(const struct process *process, double *times, int n_time);
+struct protocol protocol_init(const struct process *process, double *times, int n_time);
 void protocol_free(struct protocol *protocol);
 
 // The largest force on a grain at any time (N).

@@ -69,7 +69,7 @@ static void measure_nodes(const struct network *network, double *radius, double 
         }
 }
 
-enum status entry_make(const struct network *network, enum invasion_rule rule,
+enum status entry_init(const struct network *network, enum invasion_rule rule,
                        const struct entry_conditions *conditions, struct entry *entry,
                        struct reason *reason)
 {

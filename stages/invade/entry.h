@@ -27,7 +27,7 @@ struct entry {
 // STATUS_BAD_DATA with the dataset, the row, the rule and the value: a throat of kind
 // THROAT_NETWORK without radius or with less than no volume, or none of that kind; or
 // gravity along an axis on which the box repeats.
-enum status entry_make(const struct network *network, enum invasion_rule rule,
+enum status entry_init(const struct network *network, enum invasion_rule rule,
                        const struct entry_conditions *conditions, struct entry *entry,
                        struct reason *reason);
 

@@ -247,12 +247,12 @@ int main(int argc, char **argv)
     struct entry entry;
     struct invasion invasion = {0};
     enum status status =
-        entry_make(&network, conditions->rule, &parameters.entry, &entry, &reason);
+        entry_init(&network, conditions->rule, &parameters.entry, &entry, &reason);
     conditions->entry_priority = entry.entry_priority;
     if (!status) status = invade(&network, conditions, &invasion, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     struct outcome outcome =
-        outcome_make(&network, conditions, &invasion, entry.pressure);
+        outcome_init(&network, conditions, &invasion, entry.pressure);
     struct transport transport = {0};
     if (parameters.transport)
         status = transport_find(&network, conditions, &outcome, &transport, &reason);

@@ -143,7 +143,7 @@ static void find_clusters(const struct network *network, unsigned outlet,
 
 // --- the whole ---------------------------------------------------------------------
 
-struct outcome outcome_make(const struct network *network,
+struct outcome outcome_init(const struct network *network,
                             const struct invasion_conditions *conditions,
                             const struct invasion *invasion, const double *pressure)
 {

@@ -29,7 +29,7 @@ struct outcome {
 
 // PRESSURE (n_throat or n_node): entry pressures, Pa (entry.h). The caller frees the
 // outcome with outcome_free.
-struct outcome outcome_make(const struct network *network,
+struct outcome outcome_init(const struct network *network,
                             const struct invasion_conditions *conditions,
                             const struct invasion *invasion, const double *pressure);
 

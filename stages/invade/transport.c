@@ -134,7 +134,7 @@ static enum status iterate(int n, int n_link, const struct link *link,
     struct conductance_matrix matrix =
         conductance_matrix_of_links(n, n + 2, n_link, link);
     struct linear_solver solver;
-    enum status status = linear_solver_make(&matrix, SOLVER_AUTO, &solver, reason);
+    enum status status = linear_solver_init(&matrix, SOLVER_AUTO, &solver, reason);
     conductance_matrix_residual(&matrix, NULL, x, residual);
     bool closed = false;
     for (int round = 0, iterations = 0; !status && !closed && round < MAX_ROUNDS;
@@ -279,7 +279,7 @@ static enum status check(const struct phase_network *conductor, struct reason *r
 }
 
 static struct phase_network
-phase_network_make(const struct network *network,
+phase_network_init(const struct network *network,
                    const struct invasion_conditions *conditions)
 {
     struct phase_network conductor = {.network = network,
@@ -368,7 +368,7 @@ enum status transport_find(const struct network *network,
     for (int k = 0; k < PHASES * PROPERTIES; k++)
         transport->relative[k / PROPERTIES][k % PROPERTIES] =
             NEW_ARRAY(double, MAX_STATES);
-    struct phase_network conductor = phase_network_make(network, conditions);
+    struct phase_network conductor = phase_network_init(network, conditions);
     enum status status = check(&conductor, reason);
     if (!status) status = find_one_phase(&conductor, transport, reason);
     for (int k = 0; !status && k < transport->n; k++) {

@@ -34,7 +34,7 @@ struct domain_parameters {
 // Cylinders and rings stand along z, from lower.z to upper.z. In two dimensions centres
 // lie in the plane y = middle, the domain is one largest diameter thick, and a sphere
 // is a disc of that thickness. What the methods work with, complete: made by
-// domain_make or domain_around, and changed by methods whose box moves.
+// domain_init or domain_around, and changed by methods whose box moves.
 struct domain {
     int dimensions;              // 2 or 3
     enum domain_shape shape;     // of its outer walls
@@ -52,7 +52,7 @@ struct domain {
 // parameters make no domain, when such a grain fits nowhere in the shape, or when what
 // is cut out does not lie wholly inside it. Sides and centres that are not given begin
 // at the origin.
-enum status domain_make(const struct domain_parameters *parameters, int dimensions,
+enum status domain_init(const struct domain_parameters *parameters, int dimensions,
                         double largest, struct domain *domain, struct reason *reason);
 
 // The same for the box of a lattice, LOWER to UPPER; of PARAMETERS only periodic sides

@@ -218,7 +218,7 @@ static enum status cut_out(const struct domain_parameters *parameters,
 
 // ---- making -------------------------------------------------------------------------
 
-enum status domain_make(const struct domain_parameters *parameters, int dimensions,
+enum status domain_init(const struct domain_parameters *parameters, int dimensions,
                         double largest, struct domain *domain, struct reason *reason)
 {
     *domain = (struct domain){.dimensions = dimensions,

@@ -79,7 +79,7 @@ static enum status lattice_domain(const struct pack_parameters *parameters,
     const int dimensions = dimensions_of(parameters);
     if (fills_domain(parameters)) {
         const enum status status =
-            domain_make(wanted, dimensions, radius, domain, reason);
+            domain_init(wanted, dimensions, radius, domain, reason);
         return status ? status
                       : lattice_counts(lattice, domain, radius, counts, reason);
     }
@@ -151,7 +151,7 @@ static enum status make_drawn(const struct pack_parameters *parameters,
     struct sizes sizes;
     enum status status = sizes_prepare(&parameters->sizes, &sizes, reason);
     if (!status)
-        status = domain_make(&parameters->domain, dimensions_of(parameters),
+        status = domain_init(&parameters->domain, dimensions_of(parameters),
                              sizes.largest, domain, reason);
     if (status) return status;
     gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
@@ -309,7 +309,7 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
     if (!given) {
         status = give_box(parameters, &sizes, random, &box, reason);
         if (!status)
-            status = domain_make(&box, dimensions_of(parameters), sizes.largest, domain,
+            status = domain_init(&box, dimensions_of(parameters), sizes.largest, domain,
                                  reason);
         if (!status)
             status = count_grains(parameters, domain, &sizes, random, &count, reason);

@@ -408,7 +408,7 @@ enum status cut_network(struct network *network, int k, enum clearance clearance
                       .node_capacity = network->n_node};
     enum status status = check_sides(&cut, reason);
     if (status) return status;
-    cut.grains = sphere_cells_make(&network->packing);
+    cut.grains = sphere_cells_init(&network->packing);
     cut.near = NEW_ARRAY(bool, network->n_node);
     cut.holds = NEW_ARRAY(bool, network->n_node);
     cut.crossing = allocate((size_t)network->n_throat, sizeof *cut.crossing);

@@ -158,7 +158,7 @@ static struct sphere_cells cells_in_units(const struct generators *generators,
             scaled.position[generators->origin[i].base] = generators->point[i].at;
     for (int i = 0; i < n; i++)
         scaled.radius[i] = packing->radius[i] / generators->unit;
-    struct sphere_cells cells = sphere_cells_make(&scaled);
+    struct sphere_cells cells = sphere_cells_init(&scaled);
     free(scaled.position);
     free(scaled.radius);
     return cells;

@@ -163,9 +163,9 @@ static void begin_drying(const struct network *network,
                                         .gas_parts = c->liquid != LIQUID_IMMOBILE};
     struct boundary_layer layer;
     struct reason reason;
-    if (boundary_layers_make(network, c->open_walls, scale.length, scale.boundary_layer,
+    if (boundary_layers_init(network, c->open_walls, scale.length, scale.boundary_layer,
                              &(struct boundary_form){.layers = 0}, &layer, &reason) ||
-        occupancy_make(network, c->open_walls, &form, layer, occupancy, &reason)) {
+        occupancy_init(network, c->open_walls, &form, layer, occupancy, &reason)) {
         fprintf(stderr, "bench_dry: %s\n", reason.text);
         exit(STATUS_INTERNAL);
     }
@@ -197,7 +197,7 @@ static int follow_shifts(const int n[3], const struct drying_conditions c, int e
     struct occupancy occupancy;
     begin_drying(&network, &c, &occupancy);
     struct emptying_times times =
-        emptying_times_make(&occupancy, c.liquid == LIQUID_IMMOBILE);
+        emptying_times_init(&occupancy, c.liquid == LIQUID_IMMOBILE);
     double *before = NEW_ARRAY(double, network.n_node);
     struct shifts shifts = {0};
     for (int event = 0; occupancy.n_liquid > 0; event++) {

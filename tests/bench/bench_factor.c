@@ -50,7 +50,8 @@ static cholmod_sparse *lattice(cholmod_common *common, int side, int height)
 
 static double time_ours(const cholmod_sparse *matrix, int rounds, double *work)
 {
-    struct supernodal *factor = supernodal_new((int)matrix->nrow, matrix->p, matrix->i);
+    struct supernodal *factor =
+        supernodal_create((int)matrix->nrow, matrix->p, matrix->i);
     double best = INFINITY;
     for (int k = 0; k < rounds; k++) {
         const double began = seconds();

@@ -24,7 +24,7 @@ static struct boundary_layer make(const struct network *network, int wall,
     struct boundary_layer layer;
     struct reason reason = {""};
     const enum status status =
-        boundary_layer_make(network, wall, spacing, 10.0, form, &layer, &reason);
+        boundary_layer_init(network, wall, spacing, 10.0, form, &layer, &reason);
     if (status) fail_msg("%s", reason.text);
     return layer;
 }
@@ -320,7 +320,7 @@ static void test_auxiliary_feet(void **state)
     struct boundary_layer layer;
     struct reason reason = {""};
     assert_int_equal(
-        boundary_layer_make(&network, 5, spacing, 10, &form, &layer, &reason),
+        boundary_layer_init(&network, 5, spacing, 10, &form, &layer, &reason),
         STATUS_BAD_DATA);
     boundary_layer_free(&layer);
     for (int t = 0; t < network.n_throat; t++) { // what is above the third level
@@ -462,7 +462,7 @@ static void test_columns_and_levels_are_eliminated(void **state)
                                       : lattice_network(3, 4, 1, spacing);
         struct boundary_layer layer =
             make(&network, 5, &(struct boundary_form){.layers = wide ? 4 : 20});
-        struct vapour vapour = vapour_make(&network, spacing, 0, &layer, 0);
+        struct vapour vapour = vapour_init(&network, spacing, 0, &layer, 0);
         for (int i = 0; i < layer.n_exposed; i++)
             if (!foot_is_wet(i)) vapour_dry_node(&vapour, layer.exposed[i]);
         gsl_vector *potential = solve_at_once(&layer);

@@ -114,7 +114,7 @@ static void empty_in_random_order(bool gas_parts, uint64_t *seed)
 {
     struct network network = random_network(seed);
     struct incidence incidence = network_incidence(&network);
-    struct clusters clusters = clusters_make(&network, &incidence, NULL, gas_parts);
+    struct clusters clusters = clusters_init(&network, &incidence, NULL, gas_parts);
     struct reference reference = {0};
     int left = 0;
     for (int t = 0; t < THROATS; t++) {

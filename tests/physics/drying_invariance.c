@@ -192,7 +192,7 @@ static struct kin *kin_when_emptied(const struct network *network,
 {
     struct kin *kin = NEW_ARRAY(struct kin, network->n_throat);
     struct incidence incidence = network_incidence(network);
-    struct clusters clusters = clusters_make(network, &incidence, NULL, true);
+    struct clusters clusters = clusters_init(network, &incidence, NULL, true);
     for (int k = 0; k < history->n_event; k++) {
         const int throat = history->event_throat[k];
         const int cluster = clusters.of_throat[throat];
@@ -282,7 +282,7 @@ static void check_drying_is_invasion(double gravity)
     assert_int_equal(invade(&network, &rule, &invasion, &reason), 0);
 
     struct incidence incidence = network_incidence(&network);
-    struct clusters clusters = clusters_make(&network, &incidence, NULL, true);
+    struct clusters clusters = clusters_init(&network, &incidence, NULL, true);
     bool *gas = NEW_ARRAY(bool, network.n_node);
     int n = 0;
     for (int k = 0; k < history.n_event; k++) {

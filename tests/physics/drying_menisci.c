@@ -225,7 +225,7 @@ static void check(enum liquid_limit liquid, bool follow)
     struct boundary_layer layer;
     struct occupancy occupancy;
     struct reason reason;
-    assert_int_equal(boundary_layers_make(
+    assert_int_equal(boundary_layers_init(
                          &network, conditions.open_walls, scale.length,
                          scale.boundary_layer,
                          &(struct boundary_form){.feet = FEET_SURFACE, .lumped = true},
@@ -233,11 +233,11 @@ static void check(enum liquid_limit liquid, bool follow)
                      STATUS_OK);
     const struct occupancy_form form = {.length = scale.length,
                                         .gas_parts = liquid != LIQUID_IMMOBILE};
-    assert_int_equal(occupancy_make(&network, conditions.open_walls, &form, layer,
+    assert_int_equal(occupancy_init(&network, conditions.open_walls, &form, layer,
                                     &occupancy, &reason),
                      STATUS_OK);
-    struct kelvin_menisci kelvin = kelvin_menisci_make(&occupancy, &conditions);
-    struct losses losses = losses_make(network.n_throat);
+    struct kelvin_menisci kelvin = kelvin_menisci_init(&occupancy, &conditions);
+    struct losses losses = losses_init(network.n_throat);
     uint64_t seed = 3;
     int n_wait = 0;
     for (int k = 0; occupancy.n_liquid > 3; k++) {

@@ -63,7 +63,7 @@ static void check_elimination(double decades, uint64_t seed)
     for (int i = 0; i <= SITES; i++)
         for (int j = 0; j <= SITES; j++)
             matrix[i][j] = 0;
-    struct kron_fronts mesh = kron_fronts_make(SITES, false);
+    struct kron_fronts mesh = kron_fronts_init(SITES, false);
     for (int k = 0; k < LINKS; k++)
         link_random(&mesh, matrix, decades, &seed);
     bool free_site[SITES] = {false};
@@ -108,7 +108,7 @@ static void test_every_digit_where_conductances_are_alike(void **state)
 static void test_shut_in_is_exactly_zero(void **state)
 {
     (void)state;
-    struct kron_fronts mesh = kron_fronts_make(4, false);
+    struct kron_fronts mesh = kron_fronts_init(4, false);
     kron_fronts_link(&mesh, 0, 1, 1);
     kron_fronts_link(&mesh, 1, 2, 1);
     kron_fronts_link_air(&mesh, 3, 1);

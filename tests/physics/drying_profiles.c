@@ -41,7 +41,7 @@ static void check_profiles(enum liquid_limit liquid)
     const struct drying_conditions conditions = kharaghani_conditions(liquid);
     struct drying_history history = dry_and_check(&network, &conditions);
     const double level[] = {1, 0.8, 0.5, 0.2, 0};
-    struct profiles profiles = profiles_make(&network, &history, WALL_Z_UPPER,
+    struct profiles profiles = profiles_init(&network, &history, WALL_Z_UPPER,
                                              liquid != LIQUID_IMMOBILE, 5, level, true);
     assert_int_equal(profiles.step[0], 0);
     assert_int_equal(profiles.step[4], history.n_step - 1);

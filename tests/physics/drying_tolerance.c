@@ -55,21 +55,21 @@ static struct errors dry_beside_exact(const struct network *network,
     struct boundary_layer layer;
     struct occupancy occupancy;
     struct reason reason;
-    assert_int_equal(boundary_layers_make(network, conditions->open_walls, scale.length,
+    assert_int_equal(boundary_layers_init(network, conditions->open_walls, scale.length,
                                           scale.boundary_layer,
                                           &(struct boundary_form){conditions->feet,
                                                                   conditions->layers,
                                                                   conditions->lumped},
                                           &layer, &reason),
                      STATUS_OK);
-    assert_int_equal(occupancy_make(network, conditions->open_walls, &form, layer,
+    assert_int_equal(occupancy_init(network, conditions->open_walls, &form, layer,
                                     &occupancy, &reason),
                      STATUS_OK);
-    struct vapour exact = vapour_make(network, scale.length, 0, &occupancy.layer, 0);
+    struct vapour exact = vapour_init(network, scale.length, 0, &occupancy.layer, 0);
     int *liquid_beside = duplicate(occupancy.liquid_beside, (size_t)network->n_node,
                                    sizeof *liquid_beside);
     struct emptying_times times =
-        emptying_times_make(&occupancy, conditions->liquid == LIQUID_IMMOBILE);
+        emptying_times_init(&occupancy, conditions->liquid == LIQUID_IMMOBILE);
     struct errors errors = {0};
     compare(&occupancy, &exact, &errors);
     while (occupancy.n_liquid > 0) {

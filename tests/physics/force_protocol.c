@@ -88,7 +88,7 @@ static void forces_at_uniform_times(void **state)
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     struct protocol protocol =
-        make_protocol(&process, uniform_times(&pair.record.drying, 7), 7);
+        protocol_init(&process, uniform_times(&pair.record.drying, 7), 7);
     for (int m = 0; m < 7; m++) {
         const double t = 0.5 * m, first = fmax(0, 1 - t);
         const double second = t < 1 ? 1 : (3 - t) / 2;
@@ -106,7 +106,7 @@ static void forces_at_uniform_times(void **state)
     protocol_free(&protocol);
 
     // Only the ends: at time 1 a third of the way has gone, and F_0 = (0, 0, -2.5).
-    protocol = make_protocol(&process, uniform_times(&pair.record.drying, 2), 2);
+    protocol = protocol_init(&process, uniform_times(&pair.record.drying, 2), 2);
     assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
     protocol_free(&protocol);
     pair_free(&pair);
@@ -125,7 +125,7 @@ static void what_jumps_is_missed(void **state)
     patches_sort(lines, 2);
     const struct process process = process_of(&pair);
     struct protocol protocol =
-        make_protocol(&process, uniform_times(&pair.record.drying, 4), 4);
+        protocol_init(&process, uniform_times(&pair.record.drying, 4), 4);
     static const double pull[] = {0, 8, 8, 0};
     for (int m = 0; m < 4; m++)
         assert_same(protocol.force[2 * m + 1].x, pull[m]);
@@ -134,7 +134,7 @@ static void what_jumps_is_missed(void **state)
 
     // Beside jumps what bends without one counts as well: F_0 at time 1, as above.
     pair.law.contact_line = 0.016;
-    protocol = make_protocol(&process, uniform_times(&pair.record.drying, 2), 2);
+    protocol = protocol_init(&process, uniform_times(&pair.record.drying, 2), 2);
     assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
     protocol_free(&protocol);
     pair_free(&pair);
@@ -177,7 +177,7 @@ static void net_force_and_moment(void **state)
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     struct protocol protocol =
-        make_protocol(&process, uniform_times(&pair.record.drying, 4), 4);
+        protocol_init(&process, uniform_times(&pair.record.drying, 4), 4);
     double force, moment;
     net_load(&protocol, &pair.network.packing, &force, &moment);
     assert_same(force, sqrt(37.5) / (5 * sqrt(1.25) + 2.5));

@@ -237,7 +237,7 @@ static void check_error(const struct scene *scene)
     const struct drying_record *drying = &scene->record.drying;
     for (int count = 2; count < 20; count++) {
         struct protocol protocol =
-            make_protocol(&process, uniform_times(drying, count), count);
+            protocol_init(&process, uniform_times(drying, count), count);
         assert_same(interpolation_error(&process, &protocol),
                     most_missed(&process, &protocol));
         protocol_free(&protocol);

@@ -183,8 +183,8 @@ static void solve_cluster_cholesky(const struct sample *sample, double *flow)
         link[k] = sample->link[k];
         if (k % 2) link[k].conductance = 0.5;
     }
-    struct cluster_laplacian *graph =
-        cluster_laplacian_make(&common, NODES, sample->n_link - ENDS, link, row, entry);
+    struct cluster_laplacian *graph = cluster_laplacian_create(
+        &common, NODES, sample->n_link - ENDS, link, row, entry);
     for (int i = 0; i < NODES; i++)
         graph->source[row[i]] = -sample->extracted[i];
     for (int e = 0; e < ENDS; e++) {

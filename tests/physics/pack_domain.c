@@ -30,7 +30,7 @@ static struct domain made(const struct domain_parameters *parameters, int dimens
 {
     struct domain domain;
     struct reason reason;
-    assert_int_equal(domain_make(parameters, dimensions, 0.1, &domain, &reason),
+    assert_int_equal(domain_init(parameters, dimensions, 0.1, &domain, &reason),
                      STATUS_OK);
     return domain;
 }

@@ -69,7 +69,7 @@ static void answers_are_those_of_the_matrix(void **state)
 {
     (void)state;
     struct springs *s = make_springs(0.1);
-    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    struct supernodal *factor = supernodal_create(N, s->start, s->row);
     double x[N], product[N];
     for (int again = 0; again < 2; again++) {
         assert_true(supernodal_factor(factor, s->value));
@@ -89,7 +89,7 @@ static void halves_make_the_same_products(void **state)
 {
     (void)state;
     struct springs *s = make_springs(0.1);
-    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    struct supernodal *factor = supernodal_create(N, s->start, s->row);
     assert_true(supernodal_factor(factor, s->value));
     const int index[2][6] = {{3, 77, 500, 3, 77, 500}, {78, 3, 700, 78, 3, 700}};
     const double value[2][6] = {{1, 2, -1, 0.5, 0, 3}, {-1, 1, 2, 4, 0.1, 0}};
@@ -135,7 +135,7 @@ static void a_pivot_of_rounding_stays_a_number(void **state)
 {
     (void)state;
     struct springs *s = make_springs(0);
-    struct supernodal *factor = supernodal_new(N, s->start, s->row);
+    struct supernodal *factor = supernodal_create(N, s->start, s->row);
     assert_true(supernodal_factor(factor, s->value));
     double x[N] = {[0] = 1, [N - 1] = -1}, product[N];
     solve(factor, x);
@@ -146,7 +146,7 @@ static void a_pivot_of_rounding_stays_a_number(void **state)
     assert_false(supernodal_factor(factor, s->value));
     supernodal_free(factor);
     free(s);
-    assert_null(supernodal_new(0, &(int){0}, NULL));
+    assert_null(supernodal_create(0, &(int){0}, NULL));
 }
 
 // Without a diagonal, so that pivots must be sought.

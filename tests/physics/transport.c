@@ -30,14 +30,14 @@ static struct result invaded(const struct network *network, unsigned inlet,
     struct invasion_conditions conditions = {
         .inlet = inlet, .outlet = outlet, .trapping = trapping};
     struct entry entry;
-    assert_int_equal(entry_make(network, INVADE_THROATS,
+    assert_int_equal(entry_init(network, INVADE_THROATS,
                                 &(struct entry_conditions){tension, 0, 1000, 0}, &entry,
                                 &result.reason),
                      0);
     conditions.entry_priority = entry.entry_priority;
     assert_int_equal(invade(network, &conditions, &result.invasion, &result.reason), 0);
     result.outcome =
-        outcome_make(network, &conditions, &result.invasion, entry.pressure);
+        outcome_init(network, &conditions, &result.invasion, entry.pressure);
     result.status = transport_find(network, &conditions, &result.outcome,
                                    &result.transport, &result.reason);
     entry_free(&entry);

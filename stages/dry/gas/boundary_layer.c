@@ -141,7 +141,7 @@ static struct planar_cells cells_of(const struct open_surface *face,
     for (int i = 0; i < layer->n_exposed; i++)
         place[i] = place_on_face(face, layer->exposed[i]);
     const struct planar_cells cells =
-        planar_cells_make(place, layer->n_exposed, &face->region);
+        planar_cells_init(place, layer->n_exposed, &face->region);
     free(place);
     return cells;
 }
@@ -194,7 +194,7 @@ static void find_areas(const struct open_surface *face, bool lateral,
     planar_cells_free(&cells);
 }
 
-enum status boundary_layer_make(const struct network *network, int wall, double length,
+enum status boundary_layer_init(const struct network *network, int wall, double length,
                                 double thickness, const struct boundary_form *form,
                                 struct boundary_layer *layer, struct reason *reason)
 {
@@ -250,7 +250,7 @@ static void append_layer(struct boundary_layer *to, const struct boundary_layer 
     to->spacing = more->spacing;
 }
 
-enum status boundary_layers_make(const struct network *network, unsigned walls,
+enum status boundary_layers_init(const struct network *network, unsigned walls,
                                  double length, double thickness,
                                  const struct boundary_form *form,
                                  struct boundary_layer *layer, struct reason *reason)
@@ -261,7 +261,7 @@ enum status boundary_layers_make(const struct network *network, unsigned walls,
         if (!(walls >> wall & 1)) continue;
         struct boundary_layer more;
         status =
-            boundary_layer_make(network, wall, length, thickness, form, &more, reason);
+            boundary_layer_init(network, wall, length, thickness, form, &more, reason);
         if (!status) append_layer(layer, &more);
         boundary_layer_free(&more);
     }

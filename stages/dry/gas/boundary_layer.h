@@ -29,7 +29,7 @@ struct boundary_form {
     bool lumped; // no lattice: each node exchanges with the air through its own area
 };
 
-// In units of the length given to boundary_layer_make.
+// In units of the length given to boundary_layer_init.
 struct boundary_layer {
     int layers;     // from the surface, level 0, to the drying air, level LAYERS
     double spacing; // between levels
@@ -63,13 +63,13 @@ void boundary_feet_mark(const struct network *network, int wall,
 // STATUS_BAD_DATA: no node for a column; a wall that is not there because the box
 // repeats; too many levels to number. The caller frees LAYER with boundary_layer_free,
 // also after a failure.
-enum status boundary_layer_make(const struct network *network, int wall, double length,
+enum status boundary_layer_init(const struct network *network, int wall, double length,
                                 double thickness, const struct boundary_form *form,
                                 struct boundary_layer *layer, struct reason *reason);
 
 // The same on all WALLS (bits of enum wall) that are open, as one. Those of two walls
 // are not joined around the edge.
-enum status boundary_layers_make(const struct network *network, unsigned walls,
+enum status boundary_layers_init(const struct network *network, unsigned walls,
                                  double length, double thickness,
                                  const struct boundary_form *form,
                                  struct boundary_layer *layer, struct reason *reason);

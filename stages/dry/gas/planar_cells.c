@@ -260,7 +260,7 @@ static int compare_edges(const void *a, const void *b)
     return (e->width > f->width) - (e->width < f->width);
 }
 
-struct planar_cells planar_cells_make(const struct planar *point, int n,
+struct planar_cells planar_cells_init(const struct planar *point, int n,
                                       const struct planar_region *region)
 {
     struct planar_cells cells = {.area = NEW_ARRAY(double, n)};

@@ -88,7 +88,7 @@ static void add_boundary_layer(struct kron_fronts *mesh, const struct network *n
         add_by_levels(mesh, layer, n_node);
 }
 
-struct vapour vapour_make(const struct network *network, double length,
+struct vapour vapour_init(const struct network *network, double length,
                           double knudsen_radius, const struct boundary_layer *layer,
                           double tolerance)
 {
@@ -99,7 +99,7 @@ struct vapour vapour_make(const struct network *network, double length,
         if (network->throat_kind[t] == THROAT_NETWORK)
             vapour.conductance[t] =
                 throat_conductance(network, t, length, knudsen_radius);
-    vapour.mesh = kron_fronts_make(vapour.n_site, tolerance > 0);
+    vapour.mesh = kron_fronts_init(vapour.n_site, tolerance > 0);
     add_boundary_layer(&vapour.mesh, network, layer);
     return vapour;
 }

@@ -27,7 +27,7 @@ struct vapour {
 // are area over length in these units. Throats of radius KNUDSEN_RADIUS (m) have half
 // the diffusivity, narrower ones less; 0: no Knudsen effect. The caller frees the
 // result with vapour_free.
-struct vapour vapour_make(const struct network *network, double length,
+struct vapour vapour_init(const struct network *network, double length,
                           double knudsen_radius, const struct boundary_layer *layer,
                           double tolerance);
 

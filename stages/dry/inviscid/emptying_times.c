@@ -137,7 +137,7 @@ static void set_rates(struct emptying_times *times, bool all_changed)
         find_end(times, k);
 }
 
-struct emptying_times emptying_times_make(struct occupancy *occupancy, bool by_throat)
+struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_throat)
 {
     const int n = occupancy->network->n_throat;
     struct emptying_times times = {

@@ -55,7 +55,7 @@ struct emptying_times {
 
 // For OCCUPANCY as they are, with the liquid there is in each throat; they must live as
 // long, and throats be emptied only here.
-struct emptying_times emptying_times_make(struct occupancy *occupancy, bool by_throat);
+struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_throat);
 
 // Goes to the moment at which the first throat, or several that tie to rounding, lose
 // their last liquid; they become times->ended. Returns the time that has passed; -1 if

@@ -12,7 +12,7 @@
 
 #include <stdlib.h>
 
-struct dried_nodes dried_nodes_make(int n_throat, int n_site, bool by_throat)
+struct dried_nodes dried_nodes_init(int n_throat, int n_site, bool by_throat)
 {
     return (struct dried_nodes){.body = NEW_ARRAY(int, n_throat),
                                 .seen = NEW_ARRAY(bool, n_throat),

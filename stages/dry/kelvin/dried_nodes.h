@@ -32,7 +32,7 @@ struct dried_nodes {
 
 // For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
 // with dried_nodes_free.
-struct dried_nodes dried_nodes_make(int n_throat, int n_site, bool by_throat);
+struct dried_nodes dried_nodes_init(int n_throat, int n_site, bool by_throat);
 
 // Call _note_before when THROAT is about to be emptied, _note_after when it has been.
 void dried_nodes_note_before(struct dried_nodes *dried, struct occupancy *occupancy,

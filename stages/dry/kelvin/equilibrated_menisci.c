@@ -62,7 +62,8 @@ static int capacity_for(int n)
     return n + n / 4 + 64;
 }
 
-struct equilibrated_menisci *equilibrated_make(int n_throat, int n_site, bool by_throat)
+struct equilibrated_menisci *equilibrated_create(int n_throat, int n_site,
+                                                 bool by_throat)
 {
     const int capacity = capacity_for(n_throat);
     struct equilibrated_menisci *equilibrated =
@@ -75,8 +76,8 @@ struct equilibrated_menisci *equilibrated_make(int n_throat, int n_site, bool by
         .root = NEW_ARRAY(double, capacity),
         .x = NEW_ARRAY(double, capacity),
         .work = NEW_ARRAY(double, capacity),
-        .rows = schur_rows_make(n_throat, n_site),
-        .dried = dried_nodes_make(n_throat, n_site, by_throat)};
+        .rows = schur_rows_init(n_throat, n_site),
+        .dried = dried_nodes_init(n_throat, n_site, by_throat)};
     for (int t = 0; t < n_throat; t++)
         equilibrated->slot[t] = -1;
     cholmod_serial_start(&equilibrated->common);

@@ -14,8 +14,8 @@ struct equilibrated_menisci;
 
 // For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
 // with equilibrated_free.
-struct equilibrated_menisci *equilibrated_make(int n_throat, int n_site,
-                                               bool by_throat);
+struct equilibrated_menisci *equilibrated_create(int n_throat, int n_site,
+                                                 bool by_throat);
 
 // Empties THROAT, as occupancy_empty_throat, and notes what that changes in the system.
 void equilibrated_empty_throat(struct equilibrated_menisci *equilibrated,

@@ -50,7 +50,7 @@ static void find_initial_conductances(struct kelvin_menisci *kelvin,
     free(link);
 }
 
-struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
+struct kelvin_menisci kelvin_menisci_init(struct occupancy *occupancy,
                                           const struct drying_conditions *conditions)
 {
     const struct network *network = occupancy->network;
@@ -83,7 +83,7 @@ struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
         .level = NEW_ARRAY(double, occupancy->vapour.n_site),
         .flow = NEW_ARRAY(double, occupancy->vapour.n_site)};
     kelvin.equilibrated =
-        equilibrated_make(n, occupancy->vapour.n_site, kelvin.by_throat);
+        equilibrated_create(n, occupancy->vapour.n_site, kelvin.by_throat);
     for (int t = 0; t < n; t++)
         kelvin.section[t] = occupancy->volume[t] / network->throat_length[t];
     find_initial_conductances(&kelvin, occupancy);

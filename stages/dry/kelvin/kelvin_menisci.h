@@ -67,7 +67,7 @@ struct kelvin_menisci {
 
 // For OCCUPANCY before any throat has emptied. The caller frees it with
 // kelvin_menisci_free.
-struct kelvin_menisci kelvin_menisci_make(struct occupancy *occupancy,
+struct kelvin_menisci kelvin_menisci_init(struct occupancy *occupancy,
                                           const struct drying_conditions *conditions);
 
 // Sets LOSSES to what each body loses, or takes up (negative), in ascending throats,

@@ -50,7 +50,7 @@ static const double HYSTERESIS = 0.01;
 // converged begins to move at once.
 static const double CURVATURE_MARGIN = 0.1;
 
-struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
+struct kelvin_viscous kelvin_viscous_init(struct kelvin_menisci *kelvin,
                                           struct liquid_flow *flow)
 {
     const struct network *network = flow->network;
@@ -66,7 +66,7 @@ struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
                                       .mapped = NEW_ARRAY(double, n),
                                       .lumped = NEW_ARRAY(double, n),
                                       .single = NEW_ARRAY(double, n),
-                                      .anderson = anderson_make(n)};
+                                      .anderson = anderson_init(n)};
     for (int t = 0; t < n; t++)
         coupling.excess[t] = -1;
     liquid_flow_respond(flow);

@@ -38,7 +38,7 @@ struct kelvin_viscous {
 };
 
 // KELVIN and FLOW must live as long. The caller frees it with kelvin_viscous_free.
-struct kelvin_viscous kelvin_viscous_make(struct kelvin_menisci *kelvin,
+struct kelvin_viscous kelvin_viscous_init(struct kelvin_menisci *kelvin,
                                           struct liquid_flow *flow);
 
 // Sets LOSSES to what each throat loses, or takes up (negative), in ascending throats,

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct schur_rows schur_rows_make(int n_throat, int n_site)
+struct schur_rows schur_rows_init(int n_throat, int n_site)
 {
     return (struct schur_rows){.offset = NEW_ARRAY(int, n_throat + 1),
                                .at = NEW_ARRAY(struct at_node, 2 * (size_t)n_throat),

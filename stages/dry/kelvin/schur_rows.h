@@ -28,7 +28,7 @@ struct schur_rows {
 
 // For a network of N_THROAT throats and vapour of N_SITE sites. The caller frees it
 // with schur_rows_free.
-struct schur_rows schur_rows_make(int n_throat, int n_site);
+struct schur_rows schur_rows_init(int n_throat, int n_site);
 
 // Call after the bodies have been listed: lists the wet nodes of each.
 void schur_rows_list(struct schur_rows *rows, const struct kelvin_menisci *kelvin,

@@ -49,7 +49,7 @@ static bool make_graph(struct liquid_flow *flow, const struct cluster_problem *p
         solver->site[solver->node[k]] = -1;
     int *row = NEW_ARRAY(int, n), *entry = NEW_ARRAY(int, n_link);
     memory->graph =
-        cluster_laplacian_make(&solver->common, n, n_link, solver->link, row, entry);
+        cluster_laplacian_create(&solver->common, n, n_link, solver->link, row, entry);
     if (memory->graph) {
         memory->node = NEW_ARRAY(int, n);
         for (int k = 0; k < n; k++) {

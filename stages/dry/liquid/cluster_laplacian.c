@@ -59,16 +59,16 @@ static void fill_rows(struct cluster_laplacian *graph, int n_link,
     }
 }
 
-struct cluster_laplacian *cluster_laplacian_make(cholmod_common *common, int n,
-                                                 int n_link,
-                                                 const struct graph_link *link,
-                                                 int *row, int *entry)
+struct cluster_laplacian *cluster_laplacian_create(cholmod_common *common, int n,
+                                                   int n_link,
+                                                   const struct graph_link *link,
+                                                   int *row, int *entry)
 {
     if (!updated_cholesky_order(common, n, n_link, link, row)) return NULL;
     struct cluster_laplacian *graph = NEW_ARRAY(struct cluster_laplacian, 1);
     allocate_rows(graph, n, n_link);
     fill_rows(graph, n_link, link, row, entry);
-    graph->factor = updated_cholesky_make(common, graph);
+    graph->factor = updated_cholesky_create(common, graph);
     return graph;
 }
 

@@ -48,10 +48,10 @@ struct cluster_laplacian {
 // row of each node, ENTRY (n_link) one of the two places of each link. COMMON must live
 // as long. The caller frees the graph with cluster_laplacian_free. NULL if memory ran
 // out.
-struct cluster_laplacian *cluster_laplacian_make(cholmod_common *common, int n,
-                                                 int n_link,
-                                                 const struct graph_link *link,
-                                                 int *row, int *entry);
+struct cluster_laplacian *cluster_laplacian_create(cholmod_common *common, int n,
+                                                   int n_link,
+                                                   const struct graph_link *link,
+                                                   int *row, int *entry);
 
 // Gives the link at ENTRY another conductance, 0 or more.
 void cluster_laplacian_set(struct cluster_laplacian *graph, int entry,

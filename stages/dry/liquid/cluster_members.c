@@ -52,7 +52,7 @@ void cluster_members_follow(struct cluster_members *members,
     if (cluster >= 0) put_first(members, throat, cluster, list);
 }
 
-struct cluster_members cluster_members_make(const struct clusters *clusters,
+struct cluster_members cluster_members_init(const struct clusters *clusters,
                                             int n_throat)
 {
     struct cluster_members members = {.cluster = NEW_ARRAY(int, n_throat),

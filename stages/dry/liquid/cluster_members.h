@@ -18,7 +18,7 @@ struct cluster_members {
 };
 
 // The caller frees it with cluster_members_free.
-struct cluster_members cluster_members_make(const struct clusters *clusters,
+struct cluster_members cluster_members_init(const struct clusters *clusters,
                                             int n_throat);
 
 // Moves THROAT to the list where CLUSTERS has it now; off all lists once it is empty.

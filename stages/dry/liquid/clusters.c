@@ -275,7 +275,7 @@ static void find_clusters(struct clusters *clusters)
     free(seen);
 }
 
-struct clusters clusters_make(const struct network *network,
+struct clusters clusters_init(const struct network *network,
                               const struct incidence *incidence,
                               const double *entry_priority, bool gas_parts)
 {

@@ -198,16 +198,16 @@ void flow_solver_forget(struct flow_solver *solver, const struct occupancy *occu
     reserve(solver, occupancy->clusters.n_id);
     cluster_members_free(&solver->members);
     solver->members =
-        cluster_members_make(&occupancy->clusters, occupancy->network->n_throat);
+        cluster_members_init(&occupancy->clusters, occupancy->network->n_throat);
 }
 
-struct flow_solver *flow_solver_make(const struct occupancy *occupancy)
+struct flow_solver *flow_solver_create(const struct occupancy *occupancy)
 {
     const int n_node = occupancy->network->n_node,
               n_throat = occupancy->network->n_throat;
     struct flow_solver *solver = NEW_ARRAY(struct flow_solver, 1);
     *solver = (struct flow_solver){
-        .members = cluster_members_make(&occupancy->clusters, n_throat),
+        .members = cluster_members_init(&occupancy->clusters, n_throat),
         .row = NEW_ARRAY(int, n_node),
         .entry = NEW_ARRAY(int, n_throat),
         .potential = NEW_ARRAY(struct compensated, n_node),

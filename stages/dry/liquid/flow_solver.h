@@ -61,7 +61,7 @@ struct cluster_problem {
 };
 
 // Keeps OCCUPANCY, which must live as long. The caller frees it with flow_solver_free.
-struct flow_solver *flow_solver_make(const struct occupancy *occupancy);
+struct flow_solver *flow_solver_create(const struct occupancy *occupancy);
 void flow_solver_free(struct flow_solver *solver);
 
 // The scale of the flows: the largest to or from a moving meniscus, or what evaporates.

@@ -11,7 +11,7 @@
 
 #include <stdlib.h>
 
-struct losses losses_make(int n_throat)
+struct losses losses_init(int n_throat)
 {
     return (struct losses){.loss = NEW_ARRAY(struct loss, n_throat),
                            .evaporation = NEW_ARRAY(double, n_throat),

@@ -21,7 +21,7 @@ struct losses {
 };
 
 // Room for N_THROAT throats. The caller frees it with losses_free.
-struct losses losses_make(int n_throat);
+struct losses losses_init(int n_throat);
 
 // Shares what the wet nodes evaporate among the throats with liquid beside them, in
 // proportion to their cross-sections, and finds with FLOW the loss of each throat.

@@ -28,7 +28,7 @@ static double height_of_middle(const struct menisci *menisci, int throat)
     return (height_of_node(menisci, node[0]) + height_of_node(menisci, node[1])) / 2;
 }
 
-struct menisci menisci_make(const struct network *network,
+struct menisci menisci_init(const struct network *network,
                             const struct drying_conditions *conditions,
                             const struct drying_scale *scale)
 {

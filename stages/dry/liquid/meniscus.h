@@ -22,7 +22,7 @@ struct menisci {
 // The throats of NETWORK (kept) under CONDITIONS. Without viscosity the unit of
 // pressure is the capillary pressure of a throat one mean length in radius. The caller
 // frees it with menisci_free.
-struct menisci menisci_make(const struct network *network,
+struct menisci menisci_init(const struct network *network,
                             const struct drying_conditions *conditions,
                             const struct drying_scale *scale);
 
@@ -35,7 +35,7 @@ double menisci_potential(const struct menisci *menisci, int throat, int referenc
 double menisci_weight(const struct menisci *menisci, int throat, int node);
 
 // Fills ENTRY_PRIORITY (n_throat) with the potentials at which gas enters the throats,
-// for clusters_make: gas enters where it is largest.
+// for clusters_init: gas enters where it is largest.
 void menisci_entry_priority(const struct menisci *menisci, double *entry_priority);
 
 void menisci_free(struct menisci *menisci);

@@ -72,7 +72,7 @@ static unsigned opposite(unsigned walls)
     return (walls & lower) << 1 | (walls >> 1 & lower);
 }
 
-enum status occupancy_make(const struct network *network, unsigned open_walls,
+enum status occupancy_init(const struct network *network, unsigned open_walls,
                            const struct occupancy_form *form,
                            struct boundary_layer layer, struct occupancy *occupancy,
                            struct reason *reason)
@@ -87,9 +87,9 @@ enum status occupancy_make(const struct network *network, unsigned open_walls,
     for (int i = 0; i < network->n_node; i++)
         occupancy->wet_place[i] = -1;
     fill_throats(occupancy, form->length);
-    occupancy->vapour = vapour_make(network, form->length, form->knudsen_radius,
+    occupancy->vapour = vapour_init(network, form->length, form->knudsen_radius,
                                     &occupancy->layer, form->vapour_tolerance);
-    occupancy->clusters = clusters_make(network, &occupancy->incidence,
+    occupancy->clusters = clusters_init(network, &occupancy->incidence,
                                         form->entry_priority, form->gas_parts);
     return expose_surface(occupancy, reason);
 }

@@ -35,8 +35,8 @@ struct occupancy {
 struct occupancy_form {
     double length;                // m, the unit
     bool gas_parts;               // as in struct clusters
-    const double *entry_priority; // (n_throat) as clusters_make takes it
-    double knudsen_radius;        // m, as vapour_make takes it
+    const double *entry_priority; // (n_throat) as clusters_init takes it
+    double knudsen_radius;        // m, as vapour_init takes it
     double vapour_tolerance;      // likewise
 };
 
@@ -45,7 +45,7 @@ struct occupancy_form {
 // also after a failure.
 //
 // STATUS_BAD_DATA with a throat if no path leads from it to an open wall.
-enum status occupancy_make(const struct network *network, unsigned open_walls,
+enum status occupancy_init(const struct network *network, unsigned open_walls,
                            const struct occupancy_form *form,
                            struct boundary_layer layer, struct occupancy *occupancy,
                            struct reason *reason);

@@ -105,8 +105,8 @@ static bool factorise(struct updated_cholesky *factor,
     return good;
 }
 
-struct updated_cholesky *updated_cholesky_make(cholmod_common *common,
-                                               const struct cluster_laplacian *graph)
+struct updated_cholesky *updated_cholesky_create(cholmod_common *common,
+                                                 const struct cluster_laplacian *graph)
 {
     struct updated_cholesky *factor = NEW_ARRAY(struct updated_cholesky, 1);
     *factor = (struct updated_cholesky){.common = common,

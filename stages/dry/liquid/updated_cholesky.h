@@ -17,8 +17,8 @@ bool updated_cholesky_order(cholmod_common *common, int n, int n_link,
 // A factor for GRAPH, whose rows are in that order; it is computed at the first
 // updated_cholesky_follow. COMMON must live as long. The caller frees it with
 // updated_cholesky_free.
-struct updated_cholesky *updated_cholesky_make(cholmod_common *common,
-                                               const struct cluster_laplacian *graph);
+struct updated_cholesky *updated_cholesky_create(cholmod_common *common,
+                                                 const struct cluster_laplacian *graph);
 void updated_cholesky_free(struct updated_cholesky *factor);
 
 // Notes that the link at ENTRY has changed; the next _follow applies it.

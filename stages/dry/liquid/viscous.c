@@ -29,7 +29,7 @@ enum { MAX_ROUNDS = 200 };
 enum { SELECTIVE_ROUNDS = 20 };
 static const double BEGIN_FRACTION = 0.9;
 
-struct liquid_flow liquid_flow_make(const struct occupancy *occupancy, double length,
+struct liquid_flow liquid_flow_init(const struct occupancy *occupancy, double length,
                                     struct menisci menisci)
 {
     const struct network *network = occupancy->network;
@@ -39,7 +39,7 @@ struct liquid_flow liquid_flow_make(const struct occupancy *occupancy, double le
                                .resistance = NEW_ARRAY(double, network->n_throat),
                                .moving = NEW_ARRAY(bool, network->n_throat),
                                .pressure = NEW_ARRAY(double, network->n_node),
-                               .solver = flow_solver_make(occupancy)};
+                               .solver = flow_solver_create(occupancy)};
     for (int t = 0; t < network->n_throat; t++) {
         const double r = network->throat_radius[t] / length;
         if (network->throat_kind[t] != THROAT_NETWORK) continue;

@@ -44,7 +44,7 @@ struct liquid_flow {
 
 // For a network full of liquid. Takes over MENISCI. The caller frees it with
 // liquid_flow_free.
-struct liquid_flow liquid_flow_make(const struct occupancy *occupancy, double length,
+struct liquid_flow liquid_flow_init(const struct occupancy *occupancy, double length,
                                     struct menisci menisci);
 
 // THROAT has emptied, and OCCUPANCY has followed.

@@ -103,15 +103,15 @@ static void prepare(struct run *run)
     const bool has_kelvin = run->conditions->kelvin;
     if (is_viscous)
         run->flow =
-            liquid_flow_make(&run->occupancy, run->scale.length,
-                             menisci_make(network, run->conditions, &run->scale));
-    if (has_kelvin) run->kelvin = kelvin_menisci_make(&run->occupancy, run->conditions);
+            liquid_flow_init(&run->occupancy, run->scale.length,
+                             menisci_init(network, run->conditions, &run->scale));
+    if (has_kelvin) run->kelvin = kelvin_menisci_init(&run->occupancy, run->conditions);
     if (is_viscous && has_kelvin)
-        run->coupling = kelvin_viscous_make(&run->kelvin, &run->flow);
+        run->coupling = kelvin_viscous_init(&run->kelvin, &run->flow);
     if (is_viscous || has_kelvin)
-        run->losses = losses_make(network->n_throat);
+        run->losses = losses_init(network->n_throat);
     else
-        run->times = emptying_times_make(&run->occupancy,
+        run->times = emptying_times_init(&run->occupancy,
                                          run->conditions->liquid == LIQUID_IMMOBILE);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, network->n_throat);
@@ -121,12 +121,12 @@ static void prepare(struct run *run)
         run->saturation[t] = occupancy_saturation(&run->occupancy, t);
 }
 
-// The order of entry under gravity, for clusters_make. The caller frees it.
+// The order of entry under gravity, for clusters_init. The caller frees it.
 static double *find_entry_priority(const struct network *network,
                                    const struct drying_conditions *conditions,
                                    const struct drying_scale *scale)
 {
-    struct menisci menisci = menisci_make(network, conditions, scale);
+    struct menisci menisci = menisci_init(network, conditions, scale);
     double *entry_priority = NEW_ARRAY(double, network->n_throat);
     menisci_entry_priority(&menisci, entry_priority);
     menisci_free(&menisci);
@@ -138,7 +138,7 @@ static enum status make_occupancy(const struct network *network, struct run *run
 {
     const struct drying_conditions *conditions = run->conditions;
     struct boundary_layer layer;
-    enum status status = boundary_layers_make(
+    enum status status = boundary_layers_init(
         network, conditions->open_walls, run->scale.length, run->scale.boundary_layer,
         &(struct boundary_form){conditions->feet, conditions->layers,
                                 conditions->lumped},
@@ -156,7 +156,7 @@ static enum status make_occupancy(const struct network *network, struct run *run
         .entry_priority = entry_priority,
         .knudsen_radius = knudsen_radius(conditions),
         .vapour_tolerance = conditions->vapour_tolerance};
-    status = occupancy_make(network, conditions->open_walls, &form, layer,
+    status = occupancy_init(network, conditions->open_walls, &form, layer,
                             &run->occupancy, reason);
     free(entry_priority);
     return status;
@@ -214,7 +214,7 @@ enum status dry_network(const struct network *network,
 
     struct run run = {.conditions = conditions,
                       .scale = drying_scale(network, conditions),
-                      .recorder = recorder_make(history)};
+                      .recorder = recorder_init(history)};
     status = make_occupancy(network, &run, reason);
     const struct keeper *keeper = progress ? progress->keeper : NULL;
     if (!status && conditions->vapour_tolerance > 0 && keeper &&

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-struct recorder recorder_make(struct drying_history *history)
+struct recorder recorder_init(struct drying_history *history)
 {
     *history = (struct drying_history){.change_offset = NEW_ARRAY(int64_t, 1)};
     return (struct recorder){.history = history};

@@ -15,7 +15,7 @@ struct recorder {
 };
 
 // Starts HISTORY, which is overwritten. It is complete after each recorder_add_step.
-struct recorder recorder_make(struct drying_history *history);
+struct recorder recorder_init(struct drying_history *history);
 
 // A step's changes come before the step itself, ascending in throats.
 void recorder_add_change(struct recorder *recorder, int throat, double saturation);

@@ -45,7 +45,7 @@ static int slice_of(const struct snapshot *snapshot, int throat)
     return slice < 0 ? 0 : slice < PROFILE_SLICES ? slice : PROFILE_SLICES - 1;
 }
 
-static struct snapshot snapshot_make(const struct network *network, unsigned open_walls,
+static struct snapshot snapshot_init(const struct network *network, unsigned open_walls,
                                      bool gas_parts)
 {
     struct snapshot snapshot = {.network = network,
@@ -150,7 +150,7 @@ static int go_on_to(struct snapshot *snapshot, const struct drying_history *hist
     return step;
 }
 
-struct profiles profiles_make(const struct network *network,
+struct profiles profiles_init(const struct network *network,
                               const struct drying_history *history, unsigned open_walls,
                               bool gas_parts, int n_level, const double *level,
                               bool keep_throats)
@@ -166,7 +166,7 @@ struct profiles profiles_make(const struct network *network,
         .throat_saturation = keep_throats ? NEW_ARRAY(double, n *n_throat) : NULL};
     for (int s = 0; s < PROFILE_SLICES; s++)
         profiles.depth[s] = (s + 0.5) / PROFILE_SLICES;
-    struct snapshot snapshot = snapshot_make(network, open_walls, gas_parts);
+    struct snapshot snapshot = snapshot_init(network, open_walls, gas_parts);
     int step = 0;
     apply_changes(&snapshot, history, step);
     for (int k = 0; k < n_level; k++) {

@@ -23,7 +23,7 @@ struct profiles {
 // LEVEL (N_LEVEL) falls from one to the next. A slice without throats has saturation 0.
 // Each throat counts where its middle is. The caller frees the result with
 // profiles_free. O(n_change + n_level * n_throat).
-struct profiles profiles_make(const struct network *network,
+struct profiles profiles_init(const struct network *network,
                               const struct drying_history *history, unsigned open_walls,
                               bool gas_parts, int n_level, const double *level,
                               bool keep_throats);

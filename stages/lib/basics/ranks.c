@@ -124,7 +124,7 @@ void rank_descending(const double *value, int n, int *order, bool *same)
 
 // --- queue -------------------------------------------------------------------------
 
-struct rank_queue rank_queue_make(int n)
+struct rank_queue rank_queue_init(int n)
 {
     struct rank_queue queue = {0};
     do {

@@ -21,7 +21,7 @@ struct rank_queue {
 };
 
 // An empty one. The caller frees it with rank_queue_free.
-struct rank_queue rank_queue_make(int n);
+struct rank_queue rank_queue_init(int n);
 void rank_queue_add(struct rank_queue *queue, int rank);
 
 // Removes the lowest and returns it; -1 if there is none.

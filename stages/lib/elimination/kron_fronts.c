@@ -20,7 +20,7 @@
 // A front that has been larger than this is stored as a large one.
 enum { LARGE_FRONT = 96 };
 
-struct kron_fronts kron_fronts_make(int n_site, bool is_rounded)
+struct kron_fronts kron_fronts_init(int n_site, bool is_rounded)
 {
     struct kron_fronts fronts = {.n_site = n_site,
                                  .is_rounded = is_rounded,

@@ -51,7 +51,7 @@ struct kron_fronts {
 };
 
 // No links yet. ROUNDED: links on large fronts are kept as floats.
-struct kron_fronts kron_fronts_make(int n_site, bool is_rounded);
+struct kron_fronts kron_fronts_init(int n_site, bool is_rounded);
 
 // Adds to the conductance between A and B, of which none has been eliminated, or
 // between SITE and the air.

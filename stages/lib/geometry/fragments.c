@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-struct fragments fragments_new(int n)
+struct fragments fragments_init(int n)
 {
     return (struct fragments){
         .n = n, .of = NEW_ARRAY(int32_t, n), .is_held = NEW_ARRAY(bool, n)};

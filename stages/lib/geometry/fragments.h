@@ -14,7 +14,7 @@ struct fragments {
 };
 
 // For N grains. The caller frees them with fragments_free.
-struct fragments fragments_new(int n);
+struct fragments fragments_init(int n);
 void fragments_free(struct fragments *fragments);
 
 // Found in three calls: begin, join for each intact bond, end.

@@ -61,7 +61,7 @@ static void size_cells(struct linked_cells *cells, const struct box_of_places *b
         cells->per_length[axis] = cells->count[axis] / length[axis];
 }
 
-struct linked_cells linked_cells_make(const struct box_of_places *box, int n,
+struct linked_cells linked_cells_init(const struct box_of_places *box, int n,
                                       const struct vector *place, int n_chosen,
                                       const int *chosen, double width)
 {

@@ -25,7 +25,7 @@ struct linked_cells {
 // Those of N places that CHOSEN (NULL: all) lists, N_CHOSEN of them, rising, in cells
 // of WIDTH > 0 or more, about as many as places at most. O(n). The caller frees it with
 // linked_cells_free.
-struct linked_cells linked_cells_make(const struct box_of_places *box, int n,
+struct linked_cells linked_cells_init(const struct box_of_places *box, int n,
                                       const struct vector *place, int n_chosen,
                                       const int *chosen, double width);
 void linked_cells_free(struct linked_cells *cells);

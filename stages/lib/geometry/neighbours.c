@@ -47,7 +47,7 @@ static struct grid fill_grid(const struct spheres *all, const uint8_t *level, in
     memcpy(box.lower, all->lower, sizeof box.lower);
     memcpy(box.period, all->period, sizeof box.period);
     struct grid grid = {
-        linked_cells_make(&box, all->count, all->position, members, chosen, width),
+        linked_cells_init(&box, all->count, all->position, members, chosen, width),
         NEW_ARRAY(struct member, members)};
     for (int k = 0; k < members; k++) {
         const int i = grid.cells.member[k];

@@ -168,7 +168,7 @@ static void fill_cells(struct sphere_cells *cells, const struct spheres *all,
     }
 }
 
-struct sphere_cells sphere_cells_make(const struct packing *packing)
+struct sphere_cells sphere_cells_init(const struct packing *packing)
 {
     struct sphere_cells cells = {0};
     double length[3];

@@ -29,7 +29,7 @@ struct sphere_cells {
 
 // O(n_particle), in time and memory: the more grains overlap, the fewer cells. Grains
 // of kind GRAIN_AUXILIARY are not there. The caller frees it with sphere_cells_free.
-struct sphere_cells sphere_cells_make(const struct packing *packing);
+struct sphere_cells sphere_cells_init(const struct packing *packing);
 void sphere_cells_free(struct sphere_cells *cells);
 
 // Which cell along AXIS X lies in. Where the box repeats they are counted on beyond its

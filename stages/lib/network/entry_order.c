@@ -36,7 +36,7 @@ static int64_t ticks(double value, double whole)
     return whole > 0 ? llround(value / whole * TICKS) : 0;
 }
 
-static struct ruler ruler_make(const struct network *network, bool throats)
+static struct ruler ruler_init(const struct network *network, bool throats)
 {
     struct ruler ruler = {network, throats, {INFINITY, INFINITY, INFINITY}, 0, 0};
     for (int axis = 0; axis < 3; axis++) {
@@ -117,7 +117,7 @@ static void put_in_order(const struct network *network, bool throats, int n,
         const int begin = (int)(tie - same) - 1;
         for (k = begin + 1; k < n && same[k];)
             k++;
-        if (!ruler.network) ruler = ruler_make(network, throats);
+        if (!ruler.network) ruler = ruler_init(network, throats);
         sort_tied(&ruler, order + begin, k - begin);
     }
     free(same);

@@ -84,7 +84,7 @@ static void touch_node(struct front *front, int node)
     rank_queue_add(&front->queue, front->rank[node]);
 }
 
-static struct front front_make(const struct network *network,
+static struct front front_init(const struct network *network,
                                const struct invasion_conditions *conditions)
 {
     const bool throats = conditions->rule == INVADE_THROATS;
@@ -95,7 +95,7 @@ static struct front front_make(const struct network *network,
                           .rank = NEW_ARRAY(int, n),
                           .ahead = NEW_ARRAY(int32_t, throats ? n : 0),
                           .gas = NEW_ARRAY(bool, network->n_node),
-                          .queue = rank_queue_make(n)};
+                          .queue = rank_queue_init(n)};
     if (throats)
         order_throats(network, conditions->entry_priority, front.order);
     else
@@ -244,7 +244,7 @@ enum status invade(const struct network *network,
         return refuse(reason, STATUS_BAD_DATA, "no throat reaches the inlet");
     if (conditions->trapping && !has_throat(network, conditions->outlet))
         return refuse(reason, STATUS_BAD_DATA, "no throat reaches the outlet");
-    struct front front = front_make(network, conditions);
+    struct front front = front_init(network, conditions);
     if (throats) invasion->throat = NEW_ARRAY(int32_t, network->n_throat);
     invasion->node = NEW_ARRAY(int32_t, throats ? network->n_throat : network->n_node);
     follow(&front, invasion);

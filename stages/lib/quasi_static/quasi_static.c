@@ -67,7 +67,7 @@ enum status quasi_static_create(struct quasi_static **result,
     for (size_t k = 0; k < sizeof of_grains / sizeof *of_grains; k++)
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
     qs->is_detached = NEW_ARRAY(bool, n);
-    qs->fragments = fragments_new(n);
+    qs->fragments = fragments_init(n);
     qs->regularisation[0] = qs->regularisation[1] = regularisation_of(qs);
     allocate_pair_arrays(qs);
     qs->may_detach = !setup->large_displacements;

@@ -114,7 +114,7 @@ struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
     for (int j = 0; j < n_pair; j++)
         s->block_of[j] = find_block(s, block_between(s, &pair[j]));
     lay_out(s);
-    s->factor = supernodal_new(s->n_moving * DEGREES, s->start, s->row);
+    s->factor = supernodal_create(s->n_moving * DEGREES, s->start, s->row);
     double **const of_degrees[] = {&s->load, &s->begun, &s->left};
     for (size_t k = 0; k < sizeof of_degrees / sizeof *of_degrees; k++)
         *of_degrees[k] = NEW_ARRAY(double, (size_t)s->n_moving *DEGREES);

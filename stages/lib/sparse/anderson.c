@@ -22,7 +22,7 @@ static const double LOST = 10;
 // A change with less than this share normal to the others adds nothing.
 static const double ALIKE = 1e-3;
 
-struct anderson anderson_make(int most)
+struct anderson anderson_init(int most)
 {
     struct anderson anderson = {.last_residual = NEW_ARRAY(double, most),
                                 .last_step = NEW_ARRAY(double, most)};

@@ -18,7 +18,7 @@ struct anderson {
 };
 
 // Room for up to MOST unknowns. The caller frees it with anderson_free.
-struct anderson anderson_make(int most);
+struct anderson anderson_init(int most);
 void anderson_free(struct anderson *anderson);
 
 // Begins a new problem of N unknowns, or another G: forgets all steps.

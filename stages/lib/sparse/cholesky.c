@@ -31,8 +31,8 @@ static cholmod_sparse *lower_triangle(const struct conductance_matrix *matrix,
     return take_matrix(common, entries);
 }
 
-enum status cholesky_make(const struct conductance_matrix *matrix,
-                          struct cholesky **made, struct reason *reason)
+enum status cholesky_create(const struct conductance_matrix *matrix,
+                            struct cholesky **made, struct reason *reason)
 {
     struct cholesky *cholesky = *made = NEW_ARRAY(struct cholesky, 1);
     cholmod_common *common = &cholesky->common;

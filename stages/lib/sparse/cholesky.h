@@ -14,8 +14,8 @@ struct cholesky;
 // Factors MATRIX. STATUS_NOT_CONVERGED: it is not positive definite to rounding;
 // STATUS_INTERNAL: out of memory. The caller frees *MADE with cholesky_free, also after
 // a failure.
-enum status cholesky_make(const struct conductance_matrix *matrix,
-                          struct cholesky **made, struct reason *reason);
+enum status cholesky_create(const struct conductance_matrix *matrix,
+                            struct cholesky **made, struct reason *reason);
 void cholesky_free(struct cholesky *cholesky);
 
 // Solves for B (n) into X (n); false when out of memory. X is taken to be 0 at sites

@@ -29,7 +29,7 @@ static void precondition(void *context, const double *residual, double *z)
                                residual, z);
 }
 
-enum status linear_solver_make(const struct conductance_matrix *matrix,
+enum status linear_solver_init(const struct conductance_matrix *matrix,
                                enum solver solver, struct linear_solver *linear,
                                struct reason *reason)
 {
@@ -37,7 +37,7 @@ enum status linear_solver_make(const struct conductance_matrix *matrix,
                                      .correction = NEW_ARRAY(double, matrix->n)};
     if (solver == SOLVER_CHOLESKY ||
         (solver == SOLVER_AUTO && matrix->n <= DIRECT_MOST))
-        return cholesky_make(matrix, &linear->cholesky, reason);
+        return cholesky_create(matrix, &linear->cholesky, reason);
     linear->factor = approximate_cholesky_create(matrix);
     linear->residual = NEW_ARRAY(double, matrix->n);
     for (int k = 0; k < 3; k++)

@@ -23,8 +23,8 @@ struct linear_solver {
 };
 
 // The matrix must outlive it. The caller frees with linear_solver_free, also after an
-// error: those of cholesky_make; iteration has none.
-enum status linear_solver_make(const struct conductance_matrix *matrix,
+// error: those of cholesky_create; iteration has none.
+enum status linear_solver_init(const struct conductance_matrix *matrix,
                                enum solver solver, struct linear_solver *linear,
                                struct reason *reason);
 void linear_solver_free(struct linear_solver *linear);

@@ -83,7 +83,7 @@ static void find_targets(struct supernodal *f, const int *start, const int *row)
         }
 }
 
-struct supernodal *supernodal_new(int n, const int *start, const int *row)
+struct supernodal *supernodal_create(int n, const int *start, const int *row)
 {
     if (n == 0) return NULL;
     struct supernodal *f = NEW_ARRAY(struct supernodal, 1);

@@ -13,7 +13,7 @@ struct supernodal;
 // Analyses the pattern of N by N matrices whose lower triangle has, in column c, the
 // rows ROW[START[c]] to ROW[START[c + 1] - 1]; entries above the diagonal are ignored.
 // The caller frees the result with supernodal_free. NULL: N is 0.
-struct supernodal *supernodal_new(int n, const int *start, const int *row);
+struct supernodal *supernodal_create(int n, const int *start, const int *row);
 void supernodal_free(struct supernodal *factor);
 
 // Factors the matrix with VALUE in the order of ROW. A pivot lost to rounding becomes

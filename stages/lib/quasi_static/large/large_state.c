@@ -20,7 +20,7 @@ struct large_state *large_state_create(struct quasi_static *qs)
             (*of_pairs[k])[j] = frame_of(&qs->pair[j]);
     }
     large->geometric = NEW_ARRAY(struct pair_stiffness, qs->n_pair);
-    large->acceleration = anderson_make(6 * qs->n);
+    large->acceleration = anderson_init(6 * qs->n);
     anderson_begin(&large->acceleration, 6 * qs->n);
     large->searched_at = NEW_ARRAY(struct vector, qs->n);
     large->residual_at_start = NEW_ARRAY(struct displacement, qs->n);
