@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double most_grains = 0.95; // a body, but for a few that lie loose
+static const double MOST_GRAINS = 0.95; // a body, but for a few that lie loose
 
 struct near_pair {
     double gap; // of the sum of the radii
@@ -100,7 +100,7 @@ struct bond_facts bond_facts(const struct packing *packing)
     facts.supported = count_supported(packing, holds);
     free(holds);
     count_pieces(packing, &facts);
-    const int wanted = (int)ceil(most_grains * n);
+    const int wanted = (int)ceil(MOST_GRAINS * n);
     static const double within[] = {0.02, 0.1, 0.5}; // wider ones find many more pairs
     for (int k = 0; k < 3 && isnan(facts.gap) && facts.largest < wanted; k++)
         facts.gap = joining_gap(packing, wanted, within[k]);
@@ -133,7 +133,7 @@ void judge_bonds(const struct packing *packing, const struct bond_facts *facts, 
     if (!packing->n_bond)
         add_finding(findings, FINDING_WRONG, "bonds",
                     "no bonds, so that none can break: %s", what);
-    else if (facts->largest < most_grains * n)
+    else if (facts->largest < MOST_GRAINS * n)
         add_finding(
             findings, facts->largest < n / 2 ? FINDING_WRONG : FINDING_NOTE, "pieces",
             "bonds join %d of %d grains to one piece (%d pieces, %d grains without "

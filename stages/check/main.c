@@ -88,7 +88,7 @@ static void judge_free(const struct packing_facts *facts, struct findings *findi
 static void judge_weight(const struct bond_numbers *weight, struct findings *findings)
 {
     const double most = fmax(weight->grain, weight->body);
-    if (!(most >= weight_matters)) return;
+    if (!(most >= WEIGHT_MATTERS)) return;
     add_finding(findings, FINDING_NOTE, "weight",
                 "%s weighs about %.2g of its suction: gravity=9.81 in force-protocol "
                 "and dem-replay adds weight",

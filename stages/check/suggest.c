@@ -20,7 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double suction_over_tension = 4.6, force_over_suction = 1.4;
+static const double SUCTION_OVER_TENSION = 4.6, FORCE_OVER_SUCTION = 1.4;
 
 double bottom_of(const struct packing_facts *facts)
 {
@@ -31,12 +31,12 @@ static double expected_suction(const struct material *material, double radius)
 {
     const double tension =
         material->surface_tension * cos(material->contact_angle * M_PI / 180);
-    return suction_over_tension * tension / radius;
+    return SUCTION_OVER_TENSION * tension / radius;
 }
 
 double expected_stress(const struct material *material, double radius)
 {
-    return force_over_suction * fabs(expected_suction(material, radius)) /
+    return FORCE_OVER_SUCTION * fabs(expected_suction(material, radius)) /
            (material->radius_fraction * material->radius_fraction);
 }
 
@@ -50,8 +50,8 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
     double volume = 0;
     for (int i = 0; i < packing->n_particle; i++)
         volume += 4 * M_PI / 3 * pow(packing->radius[i], 3);
-    const double weight = material->density * gravity_of_the_earth * volume;
-    const double force = force_over_suction * suction * M_PI * r * r;
+    const double weight = material->density * GRAVITY_OF_THE_EARTH * volume;
+    const double force = FORCE_OVER_SUCTION * suction * M_PI * r * r;
     return (struct bond_numbers){.grain = weight / packing->n_particle / force,
                                  .body = weight / (side.x * side.y * suction)};
 }

@@ -11,7 +11,7 @@
 
 #include <stdlib.h>
 
-static const double border = 1e-9; // rounding, of the whole
+static const double BORDER = 1e-9; // rounding, of the whole
 
 static int class_at(double place, int n)
 {
@@ -20,12 +20,12 @@ static int class_at(double place, int n)
 
 int class_of(double share, int n)
 {
-    return class_at((share - border) * n, n);
+    return class_at((share - BORDER) * n, n);
 }
 
 struct slices slices_at(double share, int n)
 {
-    return (struct slices){{class_of(share, n), class_at((share + border) * n, n)}};
+    return (struct slices){{class_of(share, n), class_at((share + BORDER) * n, n)}};
 }
 
 double height_share(const struct packing *packing, double z)

@@ -16,7 +16,7 @@
 
 // Smaller differences, relative to the mean diameter (squared for powers), are
 // rounding.
-static const double negligible = 1e-9;
+static const double NEGLIGIBLE = 1e-9;
 
 struct state {
     const struct network *network;
@@ -57,7 +57,7 @@ static bool is_overtaken(const struct state *state, int node, int other,
 {
     const struct neighbour_grains *around = state->around;
     const double own =
-        largest_own_power(state, node) - negligible * state->diameter * state->diameter;
+        largest_own_power(state, node) - NEGLIGIBLE * state->diameter * state->diameter;
     for (int64_t k = around->offset[other]; k < around->offset[other + 1]; k++) {
         const struct grain_beside beside = {around->at[k].grain,
                                             image_sum(around->at[k].image, image)};
@@ -79,7 +79,7 @@ static bool is_on_hole(const struct state *state, int node)
 static bool is_outside(const struct state *state, int node)
 {
     const struct packing *packing = &state->network->packing;
-    const double slack = negligible * state->diameter;
+    const double slack = NEGLIGIBLE * state->diameter;
     const struct vector at = state->network->node_position[node];
     for (int wall = 0; wall < WALL_COUNT; wall++) {
         const double beyond = component(at, wall / 2) - wall_position(packing, wall);
@@ -127,7 +127,7 @@ static bool is_interrupted(const struct state *state, int t)
         double span[2];
         if (!body.within && body_span(&body, from, add(from, along), span) &&
             (fmin(span[1], 1) - fmax(span[0], 0)) * norm(along) >
-                negligible * state->diameter)
+                NEGLIGIBLE * state->diameter)
             return true;
     }
     return false;
@@ -151,7 +151,7 @@ static bool is_overtaken_through_hole(const struct state *state, int node,
     const struct network *network = state->network;
     if (!is_on_hole(state, node)) return false;
     const double own =
-        largest_own_power(state, node) - negligible * state->diameter * state->diameter;
+        largest_own_power(state, node) - NEGLIGIBLE * state->diameter * state->diameter;
     for (int i = 0; i < network->packing.n_particle; i++) {
         if (!at_hole[i]) continue;
         const struct grain_beside beside = {

@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-static const double rounding = 1e-6; // of the sum of the radii, as pack.touching_gap
+static const double ROUNDING = 1e-6; // of the sum of the radii, as pack.touching_gap
 
 void bond_grains(struct packing *packing, enum bonds_by by, double gap)
 {
@@ -16,6 +16,6 @@ void bond_grains(struct packing *packing, enum bonds_by by, double gap)
     packing->n_bond = 0;
     if (by == BONDS_BY_NONE) return;
     free(packing->bond);
-    packing->bond = neighbour_pairs(packing, by == BONDS_BY_DISTANCE ? gap : rounding,
+    packing->bond = neighbour_pairs(packing, by == BONDS_BY_DISTANCE ? gap : ROUNDING,
                                     &packing->n_bond);
 }

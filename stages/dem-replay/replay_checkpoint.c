@@ -17,7 +17,7 @@
 
 // Numbers beyond `largest` are no state of a run; `most_cycles` is the last whole
 // number before doubles have gaps.
-static const double largest = 1e150, most_cycles = 0x1p53;
+static const double LARGEST = 1e150, MOST_CYCLES = 0x1p53;
 static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge";
 
 // ---- out ----------------------------------------------------------------------------
@@ -174,9 +174,9 @@ enum status restore_load(const struct array_list *list, int n_particle,
 {
     struct array_reader reader = {.list = list, .reason = reason};
     const struct vector *applied = read_array(
-        &reader, "force", ARRAY_FLOAT64, 3 * (int64_t)n_particle, -largest, largest);
+        &reader, "force", ARRAY_FLOAT64, 3 * (int64_t)n_particle, -LARGEST, LARGEST);
     const struct net_load *off =
-        read_array(&reader, "taken_off", ARRAY_FLOAT64, 6, -largest, largest);
+        read_array(&reader, "taken_off", ARRAY_FLOAT64, 6, -LARGEST, LARGEST);
     if (reader.failed) return STATUS_BAD_DATA;
     memcpy(force, applied, (size_t)n_particle * sizeof *force);
     *taken_off = *off;
@@ -203,8 +203,8 @@ const struct vector *saved_loads(const struct array_list *list,
     const int64_t each = 3 * (int64_t)packing->n_particle;
     const int64_t most = each > 0 ? array_count(list, loads_name) / each : 0;
     *n_load = (int)(most > 1 ? most : 1);
-    return read_array(&reader, loads_name, ARRAY_FLOAT64, *n_load * each, -largest,
-                      largest);
+    return read_array(&reader, loads_name, ARRAY_FLOAT64, *n_load * each, -LARGEST,
+                      LARGEST);
 }
 
 static enum status restore_history(struct response *response, int first_step,
@@ -217,14 +217,14 @@ static enum status restore_history(struct response *response, int first_step,
     const int64_t *began =
         read_array(reader, "step_began", ARRAY_INT64, 1, 0, (double)cycle);
     const double *ratio =
-        read_array(reader, "unbalanced_ratio", ARRAY_FLOAT64, n_time, 0, largest);
+        read_array(reader, "unbalanced_ratio", ARRAY_FLOAT64, n_time, 0, LARGEST);
     const int64_t *cycles =
-        read_array(reader, "cycles", ARRAY_INT64, n_time, 0, most_cycles);
+        read_array(reader, "cycles", ARRAY_INT64, n_time, 0, MOST_CYCLES);
     const int32_t *cracks =
         read_array(reader, "cracks", ARRAY_INT32, n_time, 0, INT32_MAX);
     const uint8_t *settled = read_array(reader, "settled", ARRAY_UINT8, n_time, 0, 1);
     const struct net_load *reaction = read_array(
-        reader, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time, -largest, largest);
+        reader, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time, -LARGEST, LARGEST);
     if (reader->failed) return STATUS_BAD_DATA;
     const size_t n = (size_t)n_time;
     *place = (struct replay_place){(int)*step, *began};
@@ -243,7 +243,7 @@ enum status restore_weight(struct response *response, int n_crack,
     const int64_t n_ratio = array_count(list, "weight_unbalanced_ratio");
     const int32_t *n = read_array(&reader, "weight_cracks", ARRAY_INT32, 1, 0, n_crack);
     const double *ratio = read_array(&reader, "weight_unbalanced_ratio", ARRAY_FLOAT64,
-                                     n_ratio > 0, 0, largest);
+                                     n_ratio > 0, 0, LARGEST);
     if (reader.failed) return STATUS_BAD_DATA;
     response->n_weight_crack = *n;
     if (n_ratio > 0) response->weight_unbalanced_ratio = *ratio;
@@ -292,9 +292,9 @@ static enum status restore_snapshots(struct response *response,
     const int32_t *step =
         read_array(reader, "snapshot_step", ARRAY_INT32, count, 0, load->n_time - 1);
     const struct vector *displacement = read_array(
-        reader, "snapshot_displacement", ARRAY_FLOAT64, numbers, -largest, largest);
+        reader, "snapshot_displacement", ARRAY_FLOAT64, numbers, -LARGEST, LARGEST);
     const struct vector *force =
-        read_array(reader, "snapshot_force", ARRAY_FLOAT64, numbers, -largest, largest);
+        read_array(reader, "snapshot_force", ARRAY_FLOAT64, numbers, -LARGEST, LARGEST);
     const uint8_t *intact = read_array(reader, "snapshot_intact", ARRAY_UINT8,
                                        count * packing->n_bond, 0, 1);
     if (reader->failed) return STATUS_BAD_DATA;
@@ -332,14 +332,14 @@ static struct dem_contact *read_contacts(const struct packing *packing, int64_t 
     const int32_t *bond =
         read_array(reader, "contact_bond", ARRAY_INT32, n, -1, packing->n_bond - 1);
     const double *overlap =
-        read_array(reader, "contact_overlap", ARRAY_FLOAT64, n, -largest, largest);
+        read_array(reader, "contact_overlap", ARRAY_FLOAT64, n, -LARGEST, LARGEST);
     const struct vector *force =
-        read_array(reader, "contact_force", ARRAY_FLOAT64, 3 * n, -largest, largest);
+        read_array(reader, "contact_force", ARRAY_FLOAT64, 3 * n, -LARGEST, LARGEST);
     const struct vector *position =
-        read_array(reader, "contact_position", ARRAY_FLOAT64, 3 * n, -largest, largest);
+        read_array(reader, "contact_position", ARRAY_FLOAT64, 3 * n, -LARGEST, LARGEST);
     const bool wet = array_count(reader->list, bridges_name) > 0;
     const double(*bridge)[2] =
-        wet ? read_array(reader, bridges_name, ARRAY_FLOAT64, 2 * n, -largest, largest)
+        wet ? read_array(reader, bridges_name, ARRAY_FLOAT64, 2 * n, -LARGEST, LARGEST)
             : NULL;
     if (reader->failed) return NULL;
     const int64_t odd = first_unordered(particle, n);

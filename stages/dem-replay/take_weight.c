@@ -58,7 +58,7 @@ struct taken_weight take_weight(const struct artifact *input,
     struct weighing weighing = {.packing = packing,
                                 .density = settings->material.density,
                                 .gravity = taken.gravity > 0 ? taken.gravity
-                                                             : gravity_of_the_earth,
+                                                             : GRAVITY_OF_THE_EARTH,
                                 .liquid = load->n_time > 0 ? liquid : NULL};
     taken.numbers =
         find_bond_numbers(load,
@@ -80,7 +80,7 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
 {
     static const double settled = 1e-4;
     const double most = fmax(weight->numbers.grain, weight->numbers.body);
-    if (weight->gravity == 0 && most >= weight_matters)
+    if (weight->gravity == 0 && most >= WEIGHT_MATTERS)
         report("gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 "
                "in dry, or in force-protocol and here, adds it",
                weight->numbers.grain < most ? "the body" : "a grain", most);

@@ -23,8 +23,8 @@
 
 // 13 classes of inclination: no contact of a common lattice lies on their borders.
 enum { MAX_SLICES = 4096, INCLINATIONS = 13, SIZES = 24 };
-static const int slices_of_a_diameter = 5, distances_of_a_diameter = 20,
-                 diameters_to_look = 5;
+static const int SLICES_OF_A_DIAMETER = 5, DISTANCES_OF_A_DIAMETER = 20,
+                 DIAMETERS_TO_LOOK = 5;
 
 // The packing under study, and the windows of its measurements.
 struct subject {
@@ -266,7 +266,7 @@ static void say_porosity(const struct subject *subject, struct packing_report *r
     const struct window *column = &subject->column;
     const double height = column->upper.z - column->lower.z;
     const double wanted =
-        round(slices_of_a_diameter * height / (2 * mean_radius(packing)));
+        round(SLICES_OF_A_DIAMETER * height / (2 * mean_radius(packing)));
     const int count = (int)fmax(1, fmin(wanted, MAX_SLICES));
     double *porosity = NEW_ARRAY(double, count);
     slice_porosity(packing, &subject->contacts, column, count, porosity);
@@ -279,10 +279,10 @@ static void say_porosity(const struct subject *subject, struct packing_report *r
 static void say_distances(const struct subject *subject, struct packing_report *report)
 {
     if (!subject->has_bulk) return;
-    const double width = 2 * mean_radius(subject->packing) / distances_of_a_diameter;
+    const double width = 2 * mean_radius(subject->packing) / DISTANCES_OF_A_DIAMETER;
     const double reach = radial_reach(subject->packing, &subject->bulk);
     const int count = (int)fmin(floor(reach / width),
-                                diameters_to_look * distances_of_a_diameter + 1);
+                                DIAMETERS_TO_LOOK * DISTANCES_OF_A_DIAMETER + 1);
     if (count < 2) return;
     double *value = NEW_ARRAY(double, count);
     if (!radial_distribution(subject->packing, &subject->bulk, width, count, value)) {

@@ -57,7 +57,7 @@ static void warn_of_weight(FILE *page, const struct run *run)
 {
     const double bond = fmax(summary_of(run, RESPONSE, "bond_number_body"),
                              summary_of(run, RESPONSE, "bond_number_grain"));
-    if (!(summary_of(run, RESPONSE, "gravity") > 0) && bond >= weight_matters)
+    if (!(summary_of(run, RESPONSE, "gravity") > 0) && bond >= WEIGHT_MATTERS)
         warn(page, "Gravity is left out, but the weight is %.2g of the suction.", bond);
     const double broke = summary_of(run, RESPONSE, "weight_cracks"),
                  rest = summary_of(run, RESPONSE, "weight_unbalanced_ratio");

@@ -15,7 +15,7 @@
 
 // Squares of what is larger would overflow, and so would distances; of what is smaller,
 // vanish, and so would areas.
-static const double largest_size = 1e150, least_edge = 1e-150;
+static const double LARGEST_SIZE = 1e150, LEAST_EDGE = 1e-150;
 
 enum { MOST_SYMBOLS = 24, MOST_RANK = 3, BLOCK_VALUES = 1 << 15 };
 
@@ -200,7 +200,7 @@ static enum status check_range(const struct subject *subject, const double *bloc
     static const struct {
         const char *rule, *sign;
     } rules[] = {{"minimum", ">="}, {"maximum", "<="}, {"above", ">"}, {"below", "<"}};
-    const hsize_t odd = first_breach(block, count, 4, largest_size);
+    const hsize_t odd = first_breach(block, count, 4, LARGEST_SIZE);
     if (odd < count)
         return refuse(reason, isnan(block[odd]) ? STATUS_BAD_DATA : STATUS_NO,
                       "%s: row %llu: must be %s, got %g", subject->name,
@@ -337,7 +337,7 @@ static enum status check_less_than(hid_t file, const struct subject *subject,
             return refuse(reason, STATUS_BAD_DATA,
                           "%s: row %d: must be < %s = %.17g, got %.17g", subject->name,
                           axis, other, high[axis], low[axis]);
-        if (high[axis] - low[axis] < least_edge)
+        if (high[axis] - low[axis] < LEAST_EDGE)
             return refuse(reason, STATUS_NO,
                           "%s: row %d: must be 1e-150 or more below %s", subject->name,
                           axis, other);

@@ -22,7 +22,7 @@
 #include <string.h>
 
 // Distances along the branch, in the unknowns: some two from contact to rupture.
-static const double longest_stride = 0.5, shortest_stride = 1e-10;
+static const double LONGEST_STRIDE = 0.5, SHORTEST_STRIDE = 1e-10;
 
 // A bridge found, and the direction of the branch there: that in which the gap widens
 // where the branch begins. The bridge is stable while the gap does widen, at the RATE,
@@ -147,7 +147,7 @@ static bool near(const struct unknowns *one, const struct unknowns *other)
 // The force of the stable branch is least at rupture, some 0.3 times the edge of the
 // liquid's cube up to 90 degrees. Of bridges that pull less some are two instabilities
 // further on, which no determinant tells; from contact on there is no mistaking.
-static const double least_pull = 0.16;
+static const double LEAST_PULL = 0.16;
 
 // The same, but for bridges that are stable.
 static struct problem stable_at(const struct question *asked, double volume, double gap)
@@ -167,7 +167,7 @@ static bool jump(const struct question *asked, double volume, double gap,
     state->unknowns = guess;
     if (!settle(&problem, state) || !near(&state->unknowns, &guess)) return false;
     const struct arc found = arc_of(&state->unknowns);
-    return gap <= 0 || arc_force(asked->bodies, &found) > least_pull * cbrt(volume);
+    return gap <= 0 || arc_force(asked->bodies, &found) > LEAST_PULL * cbrt(volume);
 }
 
 // At GAP (zero or less), if need be through ever larger volumes.
@@ -269,18 +269,18 @@ static bool close_in(const struct problem *problem, double gap,
 static enum status advance(const struct problem *problem, double gap,
                            struct state *state, bool *ruptured)
 {
-    double step = longest_stride;
-    for (*ruptured = false; step > shortest_stride;) {
+    double step = LONGEST_STRIDE;
+    for (*ruptured = false; step > SHORTEST_STRIDE;) {
         struct state next, last;
         double stride = step;
         const bool reached = reach(problem, step, state, &next);
         const bool stable = reached && stability(&next) > 0;
         if (stable && next.gap < gap) {
             *state = next;
-            step = fmin(1.5 * step, longest_stride);
+            step = fmin(1.5 * step, LONGEST_STRIDE);
             continue;
         }
-        bool found = stable || (reached && step < 0.6 * longest_stride);
+        bool found = stable || (reached && step < 0.6 * LONGEST_STRIDE);
         if (found && !stable) {
             found = close_in(problem, INFINITY, state, &next, &stride, &last);
             *ruptured = last.gap < gap * (1 - 1e-8); // so well it is known

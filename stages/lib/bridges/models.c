@@ -97,18 +97,18 @@ static inline double willett_fit(double t, double volume, double half_gap)
 // large). As volumes vanish the force becomes a function of S+ alone: so the fit is
 // held at this volume, and beyond the S+ of nine tenths of rupture there, falls as [G
 // 8] does.
-static const double least_volume = 3e-5;
+static const double LEAST_VOLUME = 3e-5;
 
 static inline double willett_full(const struct reduced *is)
 {
-    if (is->volume >= least_volume)
+    if (is->volume >= LEAST_VOLUME)
         return willett_fit(is->angle, is->volume, is->half_gap);
-    const double edge = cbrt(least_volume);
+    const double edge = cbrt(LEAST_VOLUME);
     const double widest = 0.9 * (1 + 0.5 * is->angle) * (edge + 0.1 * edge * edge) /
-                          (2 * sqrt(least_volume));
+                          (2 * sqrt(LEAST_VOLUME));
     struct reduced held = *is;
     held.half_gap = fmin(is->half_gap, widest);
-    return willett_fit(is->angle, least_volume, held.half_gap) * willett_reduced(is) /
+    return willett_fit(is->angle, LEAST_VOLUME, held.half_gap) * willett_reduced(is) /
            willett_reduced(&held);
 }
 
@@ -172,7 +172,7 @@ static unsigned flags_of(const struct bridge *bridge, const struct reduced *is,
     if (separation > bridge_rupture_distance(bridge)) flags |= BRIDGE_RUPTURED;
     if (is->angle > 50 * M_PI / 180) flags |= BRIDGE_ANGLE;
     if (is->volume > 0.1) flags |= BRIDGE_VOLUME;
-    if (model == BRIDGE_WILLETT_FULL && is->volume < least_volume)
+    if (model == BRIDGE_WILLETT_FULL && is->volume < LEAST_VOLUME)
         flags |= BRIDGE_VOLUME;
     const double *angle = bridge->contact_angle;
     if (angle[0] < angle[1] || angle[0] > angle[1]) flags |= BRIDGE_UNEQUAL_ANGLES;

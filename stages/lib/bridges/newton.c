@@ -12,8 +12,8 @@
 #include <math.h>
 
 enum { MOST_STEPS = 25, HALVINGS = 4 };
-static const double converged = 1e-8; // last step; the next would be of its square
-static const double longest = 0.7;    // of a step
+static const double CONVERGED_STEP = 1e-8; // last step; the next would be of its square
+static const double LONGEST_STEP = 0.7;    // of a step
 
 struct arc arc_of(const struct unknowns *unknowns)
 {
@@ -132,11 +132,11 @@ bool converge(const struct problem *problem, struct unknowns *unknowns, int *cou
         const double size = longest_of(step), before = size_of(is.residual);
         if (!isfinite(size)) return false;
         (*count)++;
-        if (size < converged) {
+        if (size < CONVERGED_STEP) {
             *unknowns = moved(unknowns, step, 1);
             return true;
         }
-        double share = fmin(1, longest / size);
+        double share = fmin(1, LONGEST_STEP / size);
         struct unknowns next = moved(unknowns, step, share);
         for (int h = 0;; h++) {
             if (sensible(problem->bodies, &next)) {

@@ -60,7 +60,7 @@ static inline void place_volumes(const double *volume, struct places *at)
     for (int k = 0; k < BATCH; k += 4) {
         const double4 v = smaller(
             -smaller(-load_unaligned(&volume[k]), zero - BRIDGE_TABLE_LEAST), most);
-        const mask4 bits = (mask4)v, patch = (bits >> 49) - least_bits;
+        const mask4 bits = (mask4)v, patch = (bits >> 49) - LEAST_BITS;
         store_unaligned(
             &at->u[k],
             2 * (double4)((bits & 0x1ffffffffffff) << 3 | 0x3ff0000000000000) - 3);

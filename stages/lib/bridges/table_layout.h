@@ -29,7 +29,7 @@ enum { WIDE = 64, NARROW = 4, PLACES = WIDE + NARROW };
 enum { TURNING_ORDER = 6, ORDER = 4 }; // coefficients of 1/A, and of all else
 
 // Patch bits (exponent, and the eighth of an octave) of the least volume.
-static const int least_bits = (1023 - OCTAVES) * EIGHTHS;
+static const int LEAST_BITS = (1023 - OCTAVES) * EIGHTHS;
 
 // For one patch of volumes, with u from -1 to 1 across it; two quads.
 struct volume_patch {
@@ -62,7 +62,7 @@ static inline struct volume_place place_volume(double volume)
     const uint64_t within = (bits & 0x1ffffffffffff) << 3 | 0x3ff0000000000000;
     double fraction; // 1 to 2
     memcpy(&fraction, &within, sizeof fraction);
-    return (struct volume_place){(int)(bits >> 49) - least_bits, 2 * fraction - 3};
+    return (struct volume_place){(int)(bits >> 49) - LEAST_BITS, 2 * fraction - 3};
 }
 
 // The volume at U of a patch, from -1 to 1.

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double largest_long = 0x1p53;
+static const double LARGEST_LONG = 0x1p53;
 
 struct checkpoint_stream stream_to_keep(void)
 {
@@ -119,7 +119,7 @@ void stream_long(struct checkpoint_stream *stream, int64_t *at)
 {
     double value = (double)*at;
     stream_numbers(stream, &value, 1);
-    stream->failed |= !(value >= 0 && value <= largest_long);
+    stream->failed |= !(value >= 0 && value <= LARGEST_LONG);
     *at = stream->failed ? 0 : (int64_t)value;
 }
 

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stddef.h>
 
-static const double critical_temperature = 647.096, critical_pressure = 22.064e6;
+static const double CRITICAL_TEMPERATURE = 647.096, CRITICAL_PRESSURE = 22.064e6;
 
 struct term {
     double factor, power;
@@ -30,14 +30,14 @@ double water_saturation_pressure(double temperature)
     static const struct term term[] = {{-7.85951783, 1}, {1.84408259, 1.5},
                                        {-11.7866497, 3}, {22.6807411, 3.5},
                                        {-15.9618719, 4}, {1.80122502, 7.5}};
-    const double theta = 1 - temperature / critical_temperature;
+    const double theta = 1 - temperature / CRITICAL_TEMPERATURE;
     const double sum = sum_of_powers(term, sizeof term / sizeof *term, theta);
-    return critical_pressure * exp(critical_temperature / temperature * sum);
+    return CRITICAL_PRESSURE * exp(CRITICAL_TEMPERATURE / temperature * sum);
 }
 
 double water_surface_tension(double temperature)
 {
-    const double theta = 1 - temperature / critical_temperature;
+    const double theta = 1 - temperature / CRITICAL_TEMPERATURE;
     return 235.8e-3 * pow(theta, 1.256) * (1 - 0.625 * theta);
 }
 

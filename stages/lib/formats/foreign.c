@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static const double largest_size = 1e150; // what artifacts hold
+static const double LARGEST_SIZE = 1e150; // what artifacts hold
 
 struct network new_network(int n_node, int n_throat)
 {
@@ -52,7 +52,7 @@ enum status check_network(struct network *network, struct reason *reason)
 {
     for (int i = 0; i < network->n_node; i++)
         for (int axis = 0; axis < 3; axis++)
-            if (!(fabs(component(network->node_position[i], axis)) <= largest_size))
+            if (!(fabs(component(network->node_position[i], axis)) <= LARGEST_SIZE))
                 return refuse(reason, STATUS_BAD_DATA,
                               "node %d: must have a place, within 1e150 m", i);
     for (int t = 0; t < network->n_throat; t++) {
@@ -61,7 +61,7 @@ enum status check_network(struct network *network, struct reason *reason)
         const double size[] = {network->throat_radius[t], network->throat_length[t],
                                throat_volume(network, t)};
         for (int k = 0; k < 3; k++)
-            if (!(size[k] >= 0 && size[k] <= largest_size))
+            if (!(size[k] >= 0 && size[k] <= LARGEST_SIZE))
                 return refuse(reason, STATUS_BAD_DATA,
                               "throat %d: its %s must be from 0 to 1e150, is %g", t,
                               (const char *[]){"radius", "length", "volume"}[k],

@@ -18,7 +18,8 @@ const char *const statoil_endings[STATOIL_FILES] = {"_node1.dat", "_node2.dat",
 
 // ---- out ----------------------------------------------------------------------------
 
-static const double circle = 1 / (4 * M_PI); // shape factor, area over perimeter^2
+static const double CIRCLE_SHAPE =
+    1 / (4 * M_PI); // shape factor, area over perimeter^2
 
 // Reservoir 0 at the inlet, 1 at the outlet: as a node, -1 and 0.
 static bool at_reservoir(const struct network *network, int node, int reservoir)
@@ -38,7 +39,7 @@ static double widest(const struct network *network, const struct incidence *inci
 static void put_link(FILE *link[2], int number, int a, int b, double radius,
                      double length, double volume)
 {
-    fprintf(link[0], "%d %d %d %.17g %.17g %.17g\n", number, a, b, radius, circle,
+    fprintf(link[0], "%d %d %d %.17g %.17g %.17g\n", number, a, b, radius, CIRCLE_SHAPE,
             length);
     fprintf(link[1], "%d %d %d 0 0 %.17g %.17g 0\n", number, a, b, length, volume);
 }
@@ -93,7 +94,7 @@ static void put_nodes(const struct network *network, const struct incidence *inc
     for (int i = 0; i < network->n_node; i++) {
         put_node(network, incidence, to_reservoir, i, node[0]);
         fprintf(node[1], "%d 0 %.17g %.17g 0\n", i + 1, widest(network, incidence, i),
-                circle);
+                CIRCLE_SHAPE);
     }
 }
 

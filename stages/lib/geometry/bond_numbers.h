@@ -3,8 +3,8 @@
 #ifndef CRAQUELURE_BOND_NUMBERS_H
 #define CRAQUELURE_BOND_NUMBERS_H
 
-static const double gravity_of_the_earth = 9.80665; // m/s2
-static const double weight_matters = 0.05; // from this Bond number on stages warn
+static const double GRAVITY_OF_THE_EARTH = 9.80665; // m/s2
+static const double WEIGHT_MATTERS = 0.05; // from this Bond number on stages warn
 
 // NAN where nothing pulls.
 struct bond_numbers {

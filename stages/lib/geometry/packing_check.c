@@ -10,9 +10,9 @@
 // m, of the median radius: at 10 mm a grain weighs some thirty times what water between
 // grains can carry (rho g r^2/sigma); below 1 nm it is smaller than molecules of
 // liquid.
-static const double largest_radius = 1e-2, smallest_radius = 1e-9;
-static const double share_that_counts = 0.01; // of the grains: fewer are slips of a few
-static const double empty_most = 0.1;         // share of the box
+static const double LARGEST_RADIUS = 1e-2, SMALLEST_RADIUS = 1e-9;
+static const double SHARE_THAT_COUNTS = 0.01; // of the grains: fewer are slips of a few
+static const double EMPTY_MOST = 0.1;         // share of the box
 
 void add_finding(struct findings *findings, enum severity severity, const char *name,
                  const char *format, ...)
@@ -36,16 +36,16 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
 {
     static const char *const unit[] = {"milli", "micro", "nano"};
     int k = 0; // the largest unit that makes grains of these numbers
-    while (k < 2 && facts->median * pow(1e-3, k + 1) > largest_radius)
+    while (k < 2 && facts->median * pow(1e-3, k + 1) > LARGEST_RADIUS)
         k++;
-    if (facts->median > largest_radius)
+    if (facts->median > LARGEST_RADIUS)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, and liquid holds no grains beyond a "
                     "centimetre: lengths in %smetres? times 1e-%d "
                     "(pack.import.scale) it is %g m",
                     facts->median, unit[k], 3 * (k + 1),
                     facts->median * pow(1e-3, k + 1));
-    if (facts->median < smallest_radius)
+    if (facts->median < SMALLEST_RADIUS)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, less than molecules of liquid have: "
                     "are lengths "
@@ -94,12 +94,12 @@ static void judge_places(const struct packing_facts *facts, struct findings *fin
 static bool look_like_diameters(const struct packing_facts *facts)
 {
     return facts->overlapping > facts->n / 2 && facts->overlap > 0.5 &&
-           facts->halved <= share_that_counts * facts->n;
+           facts->halved <= SHARE_THAT_COUNTS * facts->n;
 }
 
 static bool overlap_too_much(const struct packing_facts *facts)
 {
-    return facts->overlap > 0.5 || facts->overlapping > share_that_counts * facts->n;
+    return facts->overlap > 0.5 || facts->overlapping > SHARE_THAT_COUNTS * facts->n;
 }
 
 static void judge_overlaps(const struct packing_facts *facts, struct findings *findings)
@@ -149,7 +149,7 @@ static void judge_room(const struct packing *packing, const struct packing_facts
                 ? "diameters for radii? pack.import.diameters=true halves them"
             : overlap_too_much(facts) ? "they overlap; radii too large?"
                                       : "pack.lower and pack.upper leave them no room");
-    if (facts->empty <= empty_most) return;
+    if (facts->empty <= EMPTY_MOST) return;
     bool fills = true;
     for (int axis = 0; axis < 3; axis++)
         fills = fills &&

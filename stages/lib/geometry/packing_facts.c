@@ -19,10 +19,10 @@
 
 // Share of the sum of two radii: nearer centres coincide, to the 16 digits of
 // coordinates.
-static const double one_place = 1e-12;
-static const double stuck_out =
+static const double ONE_PLACE = 1e-12;
+static const double STUCK_OUT =
     0.01; // of the radius: DEM grains press into walls by less
-static const double halved_slack = 0.95; // contacts of DEM packings overlap by less
+static const double HALVED_SLACK = 0.95; // contacts of DEM packings overlap by less
 
 // ---- sizes --------------------------------------------------------------------------
 
@@ -79,7 +79,7 @@ static void measure_walls(const struct packing *packing, struct packing_facts *f
             count_one(&facts->outside, &facts->first_outside, i);
         if (beyond > 1)
             count_one(&facts->centres_outside, &facts->first_centre_outside, i);
-        if (beyond <= stuck_out) continue;
+        if (beyond <= STUCK_OUT) continue;
         facts->cut++;
         if (beyond > facts->depth) facts->deepest = i;
         facts->depth = fmax(facts->depth, beyond);
@@ -193,9 +193,9 @@ static void measure_pairs(const struct packing *packing,
         const double a = packing->radius[i], b = packing->radius[j];
         const double apart = norm(nearest_image(packing, i, j));
         const double overlap = (a + b - apart) / fmin(a, b);
-        if (apart <= one_place * (a + b) && !facts->coincident++)
+        if (apart <= ONE_PLACE * (a + b) && !facts->coincident++)
             memcpy(facts->same, contacts->pair[k], sizeof facts->same);
-        if (apart < 0.5 * halved_slack * (a + b)) facts->halved++;
+        if (apart < 0.5 * HALVED_SLACK * (a + b)) facts->halved++;
         if (overlap > OVERLAP_MOST) overlaps[i] = overlaps[j] = 1;
         if (overlap > facts->overlap)
             memcpy(facts->worst, contacts->pair[k], sizeof facts->worst);

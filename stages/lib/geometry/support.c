@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-static const double touching = 1e-6; // of the radius
+static const double TOUCHING_GAP = 1e-6; // of the radius
 
 bool touches_walls(const struct packing *packing, int grain, unsigned walls)
 {
@@ -15,7 +15,7 @@ bool touches_walls(const struct packing *packing, int grain, unsigned walls)
         const double x = component(packing->position[grain], wall / 2);
         const double at = wall_position(packing, wall);
         const double inwards = wall % 2 ? at - x : x - at;
-        if (walls >> wall & 1 && inwards <= (1 + touching) * packing->radius[grain])
+        if (walls >> wall & 1 && inwards <= (1 + TOUCHING_GAP) * packing->radius[grain])
             return true;
     }
     return false;

@@ -17,7 +17,7 @@
 #include <string.h>
 
 // Squares of what is larger would overflow.
-static const double largest_number = 1e150;
+static const double LARGEST_NUMBER = 1e150;
 
 // What a pass over a section knows: where it is, and how many problems it has met.
 struct filling {
@@ -154,7 +154,7 @@ static void check_bounds(struct filling *filling, const struct parameter *parame
         const double number = json_number_value(entry);
         if (!within_bounds(parameter, number))
             complain(filling, parameter->key, parameter_rule(parameter, text), value);
-        else if (fabs(number) > largest_number)
+        else if (fabs(number) > LARGEST_NUMBER)
             complain(filling, parameter->key, "at most 1e150 in size", value);
     }
 }

@@ -47,10 +47,10 @@ bool break_most_overloaded(struct quasi_static *qs)
         most = fmax(most, larger[j]);
     }
     int worst = 0;
-    while (most >= failure_threshold && larger[worst] < equal * most)
+    while (most >= FAILURE_THRESHOLD && larger[worst] < equal * most)
         worst++;
     free(larger);
-    if (!(most >= failure_threshold)) return false;
+    if (!(most >= FAILURE_THRESHOLD)) return false;
     const struct overload overload = overload_of(qs, worst);
     record_crack(qs, &qs->pair[worst],
                  overload.normal >= overload.shear ? DEM_CRACK_NORMAL

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double largest = 1e150, most_counted = 0x1p31;
+static const double LARGEST = 1e150, MOST_COUNTED = 0x1p31;
 
 // From so many factors or loads on a checkpoint costs little: one factor more.
 enum { MANY_FACTORS = 16, MANY_LOADS = 256 };
@@ -164,7 +164,7 @@ static void save_cracks(const struct quasi_static *qs, struct array_list *list)
 static void bound_numbers(double *number, int64_t count)
 {
     for (int64_t k = 0; k < count; k++)
-        if (number[k] < -largest) number[k] = -largest;
+        if (number[k] < -LARGEST) number[k] = -LARGEST;
 }
 
 struct array_list quasi_static_save(const struct quasi_static *qs)
@@ -228,9 +228,9 @@ static bool restore_cracks(struct quasi_static *qs, struct array_reader *reader)
         read_array(reader, "crack_bond", ARRAY_INT32, n, 0, qs->packing->n_bond - 1);
     const uint8_t *mode = read_array(reader, "crack_mode", ARRAY_UINT8, n, 0, 1);
     const int64_t *cycle =
-        read_array(reader, "crack_cycle", ARRAY_INT64, n, 0, most_counted);
+        read_array(reader, "crack_cycle", ARRAY_INT64, n, 0, MOST_COUNTED);
     const struct vector *position =
-        read_array(reader, "crack_position", ARRAY_FLOAT64, 3 * n, -largest, largest);
+        read_array(reader, "crack_position", ARRAY_FLOAT64, 3 * n, -LARGEST, LARGEST);
     if (reader->failed) return false;
     qs->n_crack = qs->crack_capacity = (int)n;
     qs->crack = reallocate(qs->crack, (size_t)n, sizeof *qs->crack);
@@ -245,7 +245,7 @@ static bool restore_cracks(struct quasi_static *qs, struct array_reader *reader)
 static bool restore_counted(struct quasi_static *qs, struct array_reader *reader)
 {
     const int64_t *counted =
-        read_array(reader, "counted", ARRAY_INT64, COUNTS, 0, most_counted);
+        read_array(reader, "counted", ARRAY_INT64, COUNTS, 0, MOST_COUNTED);
     const uint8_t *is_detached =
         read_array(reader, "is_gone", ARRAY_UINT8, qs->n, 0, 1);
     if (reader->failed) return false;
@@ -263,7 +263,7 @@ static bool restore_counted(struct quasi_static *qs, struct array_reader *reader
 static void restore_points(struct quasi_static *qs)
 {
     for (int j = 0; j < qs->n_pair; j++)
-        if (qs->pair[j].overlap <= -largest) qs->pair[j].overlap = -INFINITY;
+        if (qs->pair[j].overlap <= -LARGEST) qs->pair[j].overlap = -INFINITY;
 }
 
 enum status quasi_static_restore(struct quasi_static *qs, const struct array_list *list,
@@ -280,7 +280,7 @@ enum status quasi_static_restore(struct quasi_static *qs, const struct array_lis
     for (int t = 0; t < n_table; t++) {
         const int64_t count = (int64_t)width_of(&table[t]) * table[t].count;
         const double *number =
-            read_array(&reader, table[t].name, ARRAY_FLOAT64, count, -largest, largest);
+            read_array(&reader, table[t].name, ARRAY_FLOAT64, count, -LARGEST, LARGEST);
         if (!number) return STATUS_BAD_DATA;
         copy_table(&table[t], (double *)number, false);
     }

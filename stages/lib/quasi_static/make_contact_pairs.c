@@ -151,7 +151,7 @@ static void add_near(const struct contact_pair_setup *setup, struct pair_list *l
     if (packing->n_bond > 0)
         qsort(bonded, (size_t)packing->n_bond, sizeof *bonded, compare_pairs);
     int n_near;
-    int32_t(*near)[2] = neighbour_pairs(packing, search_range, &n_near);
+    int32_t(*near)[2] = neighbour_pairs(packing, SEARCH_RANGE, &n_near);
     for (int k = 0; k < n_near; k++) {
         if (packing->n_bond > 0 && bsearch(near[k], bonded, (size_t)packing->n_bond,
                                            sizeof *bonded, compare_pairs))
@@ -168,7 +168,7 @@ static void add_wall(const struct contact_pair_setup *setup, struct pair_list *l
     const struct packing *packing = setup->packing;
     for (int i = 0; i < packing->n_particle; i++) {
         const double height = packing->position[i].z - packing->lower.z;
-        if (height <= (1 + search_range) * packing->radius[i])
+        if (height <= (1 + SEARCH_RANGE) * packing->radius[i])
             append(list, wall_pair(setup, i));
     }
 }

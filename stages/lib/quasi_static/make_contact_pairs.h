@@ -22,7 +22,7 @@ struct contact_pair_setup {
 
 // Grains this far apart, over the sum of their radii, are pairs: they may come to
 // touch. Displacements are smaller, or pairs are sought again.
-static const double search_range = 0.1;
+static const double SEARCH_RANGE = 0.1;
 
 // The contact pair of grains I and J, where J lies SEPARATION (m) from I; of grain I
 // and the wall beneath. Without a bond, whatever the packing lists; a contact that

@@ -118,7 +118,7 @@ bool newton_step(struct quasi_static *qs, bool *is_fresh)
 {
     const enum step_outcome outcome = find_step(qs);
     if (qs->may_detach && (outcome == STEP_FOUND || *is_fresh) &&
-        detach_beyond(qs, qs->step, small_limit))
+        detach_beyond(qs, qs->step, SMALL_LIMIT))
         return true;
     if (outcome != STEP_FOUND) {
         if (*is_fresh || (qs->large && contact_solver_is_costly(qs->contacts)))

@@ -106,7 +106,7 @@ static enum status check_displacements(const struct quasi_static *qs,
                                        struct reason *reason)
 {
     for (int i = 0; i < qs->n; i++) {
-        if (qs->is_detached[i] || displacement_size(qs->displacement[i]) <= small_limit)
+        if (qs->is_detached[i] || displacement_size(qs->displacement[i]) <= SMALL_LIMIT)
             continue;
         if (isnan(displacement_size(qs->displacement[i])))
             return refuse_numbers(i, reason);

@@ -20,15 +20,15 @@ struct factored {
 };
 
 // Mean radii, and radians: displacements beyond are not small.
-static const double small_limit = 0.1;
+static const double SMALL_LIMIT = 0.1;
 
 // A bond breaks from this share of its strength on: rounding and the tolerance leave as
 // much open.
-static const double failure_threshold = 1 - 1e-9;
+static const double FAILURE_THRESHOLD = 1 - 1e-9;
 
 // Residuals of many grains add up: where iterations still gain much, they go on to this
 // fraction of the tolerance.
-static const double target_fraction = 1e-3;
+static const double TARGET_FRACTION = 1e-3;
 
 struct quasi_static;
 struct large_state;

@@ -30,7 +30,7 @@ static bool solve_small(struct quasi_static *qs)
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
     if (qs->damping > 0)
         qs->tolerance_now = fmax(qs->tolerance_now, 1e-3 * largest_residual(qs));
-    const double well = (qs->damping > 0 ? 1 : target_fraction) * qs->tolerance_now;
+    const double well = (qs->damping > 0 ? 1 : TARGET_FRACTION) * qs->tolerance_now;
     if (largest_residual(qs) <= well) return true; // the load is the same
     bool is_fresh = qs->factors == 0 ||
                     contact_solver_work(qs->contacts) > 16 * stiffness_work(qs->matrix);
@@ -58,7 +58,7 @@ static enum status balance_small(struct quasi_static *qs, struct reason *reason)
     do {
         roll_back_state(qs);
         rests = relax_to_equilibrium(qs);
-    } while (detach_beyond(qs, qs->displacement, small_limit) ||
+    } while (detach_beyond(qs, qs->displacement, SMALL_LIMIT) ||
              (!rests && detach_beyond(qs, qs->residual, enough)));
     if (!rests) {
         if (!qs->is_unconverged) qs->n_unconverged++;

@@ -23,7 +23,7 @@ static bool may_touch(const struct quasi_static *qs)
         smallest = fmin(smallest, qs->packing->radius[i] / qs->length);
         if (!qs->is_detached[i]) furthest = fmax(furthest, moved);
     }
-    return furthest > search_range * smallest;
+    return furthest > SEARCH_RANGE * smallest;
 }
 
 // Grains where they are now, within the box where it repeats.
@@ -105,7 +105,7 @@ static void append_near(struct quasi_static *qs)
     const int n_known = qs->n_pair;
     int32_t(*known)[2] = known_pairs(qs);
     int n_near;
-    int32_t(*near)[2] = neighbour_pairs(&now, search_range, &n_near);
+    int32_t(*near)[2] = neighbour_pairs(&now, SEARCH_RANGE, &n_near);
     for (int k = 0; k < n_near; k++) {
         const int i = near[k][0], j = near[k][1];
         if (qs->is_detached[i] || qs->is_detached[j] ||
@@ -123,7 +123,7 @@ static void append_near(struct quasi_static *qs)
                               qs->length * qs->displacement[i].translation.z -
                               now.lower.z;
         const int32_t grains[2] = {-1, i};
-        if (!qs->is_detached[i] && height <= (1 + search_range) * now.radius[i] &&
+        if (!qs->is_detached[i] && height <= (1 + SEARCH_RANGE) * now.radius[i] &&
             !(n_known > 0 &&
               bsearch(grains, known, (size_t)n_known, sizeof *known, compare_pairs)))
             append_pair(qs, wall_pair(&setup, i));

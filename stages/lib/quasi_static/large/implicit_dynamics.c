@@ -42,7 +42,7 @@ void perturb_along_mode(struct quasi_static *qs)
 
 // Bounds on the damping, and so on steps. Where forces exceed what the stiffest pair
 // bears, the upper one is larger by as much.
-static const double softest = 1e-8, stiffest = 1e12;
+static const double SOFTEST = 1e-8, STIFFEST = 1e12;
 
 // The length of steps, and of the last that were found and not found; 0: none.
 struct time_step {
@@ -60,7 +60,7 @@ static void lengthen(struct time_step *step, double moved)
     if (moved < 0.8 && step->damping < 1.1 * step->missed)
         step->damping = sqrt(before * fmin(before, step->missed));
     step->missed *= 0.25;
-    if (step->damping < softest) step->damping = 0;
+    if (step->damping < SOFTEST) step->damping = 0;
 }
 
 static void shorten(struct time_step *step, enum advance outcome, double moved)
@@ -70,7 +70,7 @@ static void shorten(struct time_step *step, enum advance outcome, double moved)
     step->damping = outcome == TOO_FAR     ? 1.5 * moved * before
                     : step->found > before ? step->found
                                            : 8 * before;
-    step->damping = fmax(step->damping, softest);
+    step->damping = fmax(step->damping, SOFTEST);
     step->found = 0;
 }
 
@@ -88,7 +88,7 @@ static bool detach_loose(struct quasi_static *qs, const struct displacement *sta
     for (int i = 0; i < qs->n; i++)
         qs->step[i] = displacement_between(&start[i], &qs->previous[i]);
     update_fragments(qs);
-    return detach_beyond(qs, qs->step, small_limit);
+    return detach_beyond(qs, qs->step, SMALL_LIMIT);
 }
 
 // At most so many steps without progress. Progress is a bond that breaks, a motion of
@@ -110,7 +110,7 @@ static bool integrate(struct quasi_static *qs, const struct displacement *start)
         if (outcome == NEW_CONTACTS) continue;
         if (outcome != ADVANCED) {
             shorten(&step, outcome, moved);
-            if (step.damping > stiffest * beyond) break;
+            if (step.damping > STIFFEST * beyond) break;
             continue;
         }
         commit_state(qs);

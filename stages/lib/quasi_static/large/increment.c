@@ -11,7 +11,7 @@
 #include <math.h>
 
 // Mean radii that a grain may move in an increment, so that others do not pass it.
-static const double stride = 0.5;
+static const double STRIDE = 0.5;
 
 // The largest rotation of a grain or pair since the last equilibrium, and approach of
 // grains; translations count as STRIDE over what an increment may turn.
@@ -21,7 +21,7 @@ static double furthest_since(const struct quasi_static *qs)
     for (int i = 0; i < qs->n; i++) {
         const struct displacement since = displacement_since_previous(qs, i);
         const double translated =
-            norm(since.translation) * qs->setup.increment / stride;
+            norm(since.translation) * qs->setup.increment / STRIDE;
         const double size = fmax(norm(since.rotation), translated);
         if (!qs->is_detached[i] && !(size <= most)) most = size;
     }
@@ -56,7 +56,7 @@ bool solve_increment(struct quasi_static *qs)
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
     if (qs->damping > 0)
         qs->tolerance_now = fmax(qs->tolerance_now, 1e-3 * largest_residual(qs));
-    const double well = (qs->damping > 0 ? 1 : target_fraction) * qs->tolerance_now;
+    const double well = (qs->damping > 0 ? 1 : TARGET_FRACTION) * qs->tolerance_now;
     bool is_fresh = qs->large->factor_is_stale || qs->damping > 0;
     if (is_astray(qs)) return false;
     if (is_fresh && !factor_tangent(qs)) return false;

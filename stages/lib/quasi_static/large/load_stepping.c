@@ -18,14 +18,14 @@
 #include <string.h>
 
 // The smallest increment of the load factor: so exactly are limit points known.
-static const double least_increment = 1e-6;
+static const double LEAST_INCREMENT = 1e-6;
 
 // Where the tangent stays positive, increments that find no equilibrium get no smaller
 // than this, of the largest that did.
-static const double rough_increment = 1e-3;
+static const double ROUGH_INCREMENT = 1e-3;
 
 // Nor are they tried again after so many that took long.
-static const int most_costly = 3;
+static const int MOST_COSTLY = 3;
 
 // ---- increments ---------------------------------------------------------------------
 
@@ -63,7 +63,7 @@ static enum advance try_increment(struct quasi_static *qs, struct load_path *pat
 {
     struct large_state *large = qs->large;
     double moved;
-    const bool is_least = path->increment <= least_increment;
+    const bool is_least = path->increment <= LEAST_INCREMENT;
     qs->may_detach = is_least;
     large->load_factor = fmin(1, path->reached + path->increment);
     const enum advance outcome = advance_increment(qs, 0, &moved);
@@ -227,11 +227,11 @@ enum status step_load(struct quasi_static *qs, struct reason *reason)
         if (qs->large->work_spent > qs->large->work_limit)
             return refuse_long(qs, &path, reason);
         const double usual = path.widest > 0 ? path.widest : 1;
-        const bool is_least = path.increment <= least_increment;
-        const bool is_rough = path.increment <= rough_increment * usual;
+        const bool is_least = path.increment <= LEAST_INCREMENT;
+        const bool is_rough = path.increment <= ROUGH_INCREMENT * usual;
         const enum advance outcome = try_increment(qs, &path);
         const bool goes_on = outcome == ADVANCED || outcome == NEW_CONTACTS;
-        const bool is_enough = is_rough || path.costly >= most_costly;
+        const bool is_enough = is_rough || path.costly >= MOST_COSTLY;
         const bool ends = is_least ? !goes_on : outcome == NOT_FOUND && is_enough;
         if (!ends) continue;
         const enum status status =
