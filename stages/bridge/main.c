@@ -111,9 +111,7 @@ static double *separations_of(const struct bridge_parameters *given, double rupt
 static void complete_liquid(struct conditions *given, bool quiet)
 {
     const unsigned needed = 1u << FLUID_SURFACE_TENSION;
-    struct reason reason;
-    if (conditions_complete(given, needed, &reason))
-        die(STATUS_BAD_DATA, "bridge.%s", reason.text);
+    conditions_require(given, needed, "bridge");
     if (!quiet) conditions_note(given, needed);
 }
 

@@ -125,10 +125,7 @@ static void bond_text(struct packing *packing, const struct contacts *contacts,
 static struct packing read_input(const char *path, struct check_parameters *parameters,
                                  json_t *inputs)
 {
-    struct reason reason;
-    if (conditions_complete(&parameters->conditions, 1u << FLUID_SURFACE_TENSION,
-                            &reason))
-        die(STATUS_BAD_DATA, "check.%s", reason.text);
+    conditions_require(&parameters->conditions, 1u << FLUID_SURFACE_TENSION, "check");
     parameters->material.surface_tension =
         parameters->conditions.property[FLUID_SURFACE_TENSION];
     parameters->material.contact_angle = parameters->conditions.contact_angle;

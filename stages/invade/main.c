@@ -206,9 +206,7 @@ static void complete_entry(struct invade_parameters *parameters)
 {
     struct conditions *given = &parameters->given;
     struct entry_conditions *entry = &parameters->entry;
-    struct reason reason;
-    if (conditions_complete(given, needed_properties(parameters), &reason))
-        die(STATUS_BAD_DATA, "invade.%s", reason.text);
+    conditions_require(given, needed_properties(parameters), "invade");
     entry->surface_tension = given->property[FLUID_SURFACE_TENSION];
     entry->contact_angle = given->contact_angle;
     entry->liquid_density = given->property[FLUID_DENSITY];

@@ -128,6 +128,14 @@ enum status conditions_complete(struct conditions *conditions, unsigned needed,
     return complete_air(conditions, reason);
 }
 
+void conditions_require(struct conditions *conditions, unsigned needed,
+                        const char *stage)
+{
+    struct reason reason;
+    const enum status status = conditions_complete(conditions, needed, &reason);
+    if (status) die(status, "%s.%s", stage, reason.text);
+}
+
 static void append(char *text, size_t size, const char *more)
 {
     const size_t length = strlen(text);

@@ -44,6 +44,10 @@ void conditions_share(json_t *section, const struct parameter *table,
 enum status conditions_complete(struct conditions *conditions, unsigned needed,
                                 struct reason *reason);
 
+// The same, or exits 65 with one line: STAGE, the key, and what to give.
+void conditions_require(struct conditions *conditions, unsigned needed,
+                        const char *stage);
+
 // One line into TEXT (SIZE bytes), which is returned: the liquid by name, temperature,
 // and those properties with their bit in SHOWN; beside a given one also the liquid's
 // own.
