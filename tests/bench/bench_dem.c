@@ -10,8 +10,9 @@
 //                                       r and a comment "# box LX LY LZ periodic"; KIND
 //                                       is smooth, grip, hertz, bonded, wet,
 //                                       wet-exact, rolling (grip that resists
-//                                       it), or driven: grip with a layer of
-//                                       a sixth of the grains in a group that turns
+//                                       it), walled (grip between six planes), or
+//                                       driven: grip with a layer of a sixth of the
+//                                       grains in a group that turns
 #include "basics/memory.h"
 #include "dem/engine.h"
 #include "geometry/neighbours.h"
@@ -270,6 +271,17 @@ static int one_packing(const char *path, const char *kind, int threads)
         setup.n_group = 1;
         setup.group = &group;
         setup.group_of = group_of;
+    }
+    struct dem_wall wall[6];
+    for (int w = 0; w < 6; w++) {
+        wall[w] = (struct dem_wall){.point = w % 2 ? packing.upper : packing.lower};
+        set_component(&wall[w].normal, w / 2, w % 2 ? -1 : 1);
+    }
+    if (strcmp(kind, "walled") == 0) {
+        setup.n_wall = 6;
+        setup.wall = wall;
+        setup.unstressed = true;
+        memset(packing.periodic, 0, sizeof packing.periodic);
     }
     struct dem *dem;
     struct reason reason;
