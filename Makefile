@@ -281,7 +281,7 @@ $(COMPLETION): tools/completion tools/run $(PROGRAMS)
 # samples and documents.
 pipeline_files := $(filter-out %__pycache__,$(wildcard $(addprefix pipelines/,run/* figures/* lib/*)))
 shared_scripts := tools/memo $(foreach f,$(pipeline_files),$(if $(suffix $f),,$f))
-shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.md docs/pictures/* \
+shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.md docs/pages/* docs/pictures/* \
 	samples/*.json schemas/*.json stages/*/version)
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 

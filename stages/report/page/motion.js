@@ -9,8 +9,12 @@ function runningSum(count) {
 
 function movesOf({ arrays, grain, place, half }) {
   if (!arrays["moment.x"]) return null;
-  ["x", "y", "z"].forEach((name, axis) => { // the eye sees wherever grains go
-    for (const value of arrays[`moment.${name}`]) half[axis] = Math.max(half[axis], Math.abs(place.from[axis] + place.scale * value));
+  const moments = arrays["moment.key"].length, far = new Float32Array(grain.n);
+  ["x", "y", "z"].forEach((name, axis) => { // the eye sees wherever grains go, but for the furthest fiftieth
+    for (let m = 0; m < moments; m++) {
+      for (let i = 0; i < grain.n; i++) far[i] = Math.abs(place.from[axis] + place.scale * arrays[`moment.${name}`][i * moments + m]);
+      half[axis] = Math.max(half[axis], far.sort()[Math.floor(0.98 * (grain.n - 1))]);
+    }
   });
   const begin = runningSum(arrays["chain.count"]), second = arrays["chain.second"], walls = new Uint32Array(second.length + 1);
   for (let k = 0; k < second.length; k++) walls[k + 1] = walls[k] + (second[k] === grain.n);
