@@ -241,7 +241,7 @@ ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # be several at work.
 recipes := $(shell mkdir -p $(BUILD) && mktemp $(BUILD)/recipes.XXXXXX)
 $(file >$(recipes),$(foreach a,$(artifacts),$(recipe/$a)))
-stale := $(shell tools/memo check $(recipes))
+stale := $(shell tools/memo check $(recipes) $(BUILD)/digests)
 ifneq ($(.SHELLSTATUS),0)
 $(error tools/memo could not tell what is stale)
 endif

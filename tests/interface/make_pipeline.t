@@ -229,6 +229,53 @@ wait $!
 mv memo-itself tools/memo
 is 'of two makes at once each sees what is stale' 1 "$(grep -c 'memo run .*stage=pack' plan)"
 
+# --- digests that are remembered ----------------------------------------------------------
+
+mkdir counting
+cat >counting/sha256sum <<'END'
+#!/bin/bash
+shift # --
+printf '%s\n' "$@" >>hashed
+exec /usr/bin/sha256sum -- "$@"
+END
+chmod +x counting/sha256sum
+# What make reads to find what is stale, as "names: what is stale".
+hashed()
+{
+    : >hashed
+    local stale
+    stale=$(PATH=$PWD/counting:$PATH planned)
+    echo "$(sed 's|.*/||' hashed | sort | xargs): $stale"
+}
+rm -r $x
+ran >/dev/null
+everything=$(cd "$x" && printf '%s\n' *.h5 *.json | sort | xargs)
+sleep 3
+is 'what is new is read, once' "$everything: " "$(hashed)"
+is 'and then remembered' ': ' "$(hashed)"
+echo stage=s version=1 input=old input=new output=none >recipe
+cp recipe again
+touch old && sleep 3 && touch new && tools/memo check recipe few >said
+is 'not what could change within a tick of the clock' old "$(sed 's/.* //' few | xargs)"
+tools/memo check again few >said
+is 'files of other recipes stay remembered' "old $(wc -l <build/digests)" \
+    "$(cp build/digests few; echo output=old stage=s version=1 >again; tools/memo check again few >said
+    sed 's/.* //' few | grep -x old) $(grep -cv ' old$' few)"
+size=$(stat -c %s $x/drying.h5)
+cp -p $x/drying.h5 was
+tr 0-9 1-90 <was >$x/drying.h5
+touch -r was $x/drying.h5
+is 'other bytes of the same size and time: read' "$size drying.h5: dry force-protocol dem-replay crackstats" \
+    "$(stat -c %s $x/drying.h5) $(hashed)"
+mv was $x/drying.h5
+is 'the old file in its place: read' 'drying.h5: ' "$(hashed)"
+echo 'no digests' >build/digests
+is 'a file of digests that is none: all is read' "$everything: " "$(hashed)"
+rm build/digests
+mkdir build/digests
+is 'digests that cannot be kept: all is read' "$everything: " "$(hashed 2>/dev/null)"
+rm -rf build/digests
+
 # --- names of files: they work, or are refused in one line, and none is run ----------------
 
 # refused VARIABLE NAME [MAKE-ARGUMENTS...]
