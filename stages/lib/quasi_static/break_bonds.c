@@ -2,6 +2,11 @@
 // Bonds break one after another at their strength [K 4.41, 4.42]: the most overloaded
 // first, and of those equal but for rounding the first listed, so that the order does
 // not depend on the last digit. Equilibrium is found again before the next.
+//
+// `overload` is load over strength, normal and shear apart (contact_pair.h), so 1 is
+// failure; FAILURE_THRESHOLD is a little below, for a bond that stands exactly at its
+// strength must break on every machine. Strengths are in Pa for a parallel bond and in
+// N for a contact bond, and are scaled by K/L or K L with K `stiffness`, L `length`.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

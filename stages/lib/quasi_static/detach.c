@@ -2,6 +2,11 @@
 // Fragments, grains that intact bonds join, and how they leave the aggregate: those
 // that nothing holds and that would move too far lose their load, their pairs are
 // detached, and the residual of the rest is found again.
+//
+// A fragment is held that has a fixed grain; without any fixed grain, the largest is
+// (geometry/fragments.h). detach_beyond takes displacements or residuals alike: what it
+// compares is the larger of the linear and the angular part. A value that is not a
+// number counts as too far.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

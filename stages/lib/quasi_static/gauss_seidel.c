@@ -2,7 +2,11 @@
 // Nonlinear Gauss-Seidel (Jean 1999): pair after pair solves its own rows p,
 //     e_p = given - f W_pp q_p(e_p),  given = e_p - residual_p + f W_pp q_p,
 // exactly while the others keep their q, and the residual follows: de_p at p, and f W
-// dq_p everywhere.
+// dq_p everywhere. Here e is the deformation, q the excess and f the compliance factor.
+//
+// It converges slowly. contact_solver.c calls it before the third and later tries of
+// semismooth_newton, so that these begin from states of contact (open, stuck, sliding)
+// that fit together. So it ends when no state changes, after ten sweeps at most.
 #include "contact_solver_internal.h"
 
 #include "return_mapping.h"

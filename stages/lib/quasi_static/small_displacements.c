@@ -2,6 +2,12 @@
 // Small displacements: directions and arms are those of the packing, so B is constant
 // and K changes with the state of contacts and bonds only. It is factored again when
 // the contact solver has spent 16 times as many multiplications as a factor takes.
+//
+// A load is solved by newton_step until the largest residual is below `well`, a small
+// part of the tolerance, so that the rounding of one load does not add to that of the
+// next. Where no equilibrium is found, fragments that nothing holds are detached, if
+// they would move beyond SMALL_LIMIT or keep a residual; each detachment begins the
+// load anew, and there are at most as many as fragments.
 #include "quasi_static_internal.h"
 
 #include <math.h>
@@ -21,7 +27,7 @@ static bool factor_small(struct quasi_static *qs)
     return stiffness_factor(qs->matrix, tangent, NULL, qs->regularisation);
 }
 
-// To target_fraction of the tolerance, or as far below the tolerance as steps reduce
+// To TARGET_FRACTION of the tolerance, or as far below the tolerance as steps reduce
 // the residual to a tenth.
 static bool solve_small(struct quasi_static *qs)
 {

@@ -3,6 +3,13 @@
 // regularisation on the diagonal: blocks of 6 by 6 for the grains that move, three
 // translations and three rotations each. Its lower triangle lies by columns; K = L L^T
 // by sparse/supernodal.h, whose forward solves are L^-1 of a load.
+//
+// The pattern is found once: block k, of the grains `column` <= `row`, stands for all
+// pairs between them, and a pair without contact or bond adds zeros. All six columns of
+// a grain have the same rows, so number (r, c) of block k lies at
+//     value[start[6 column] + 6 (k - diagonal[column]) + c stride + r],
+//     stride = start[6 column + 1] - start[6 column].
+// A fixed grain has no rows (number -1): a pair with one adds to a diagonal block only.
 #include "stiffness.h"
 
 #include "basics/memory.h"

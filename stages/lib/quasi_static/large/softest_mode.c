@@ -2,6 +2,11 @@
 // Inverse iteration with the tangent at the last equilibrium, K x' = x: x tends to the
 // mode of the lowest stiffness by its size. Where the tangent has no factor, with that
 // of the pairs alone, without geometric stiffness.
+//
+// The grain that moves most in the mode tells which fragment is let go
+// (load_stepping.c), or is named where there is none. The first x differs from grain to
+// grain, so that it has a part in modes of either symmetry. A body that nothing holds
+// has rigid motions without stiffness: davidson.c leaves these out.
 #include "softest_mode.h"
 
 int find_softest_mode(struct quasi_static *qs)
