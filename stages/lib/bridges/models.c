@@ -3,7 +3,7 @@
 // `gap`, `volume` (over the cube) and `angle` give the force. G's equation numbers
 // stand at each. A model stays finite outside the range that its authors meant;
 // flags_of says where that is. Trap: Willett's full fit grows without bound as volumes
-// vanish (least_volume).
+// vanish (LEAST_VOLUME).
 #include "bridges/bridges.h"
 
 #include <math.h>

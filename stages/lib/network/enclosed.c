@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A search from the open nodes along throats of the network; what it does not reach is
-// enclosed, and its throats count as emptied from outside.
+// enclosed, and its throats count as emptied from outside. Breadth first, in O(nodes +
+// throats): `queue` holds each node reached once, in the order of its reaching. A
+// throat that is not of the network (closed, or imposed empty) is no way. One end tells
+// for a throat, as both ends of an open throat are reached or neither is. Without an
+// open node nothing is enclosed: there is no outside to ask from.
 #include "network/enclosed.h"
 
 #include "basics/memory.h"

@@ -2,6 +2,9 @@
 // Balances of a network by CHOLMOD's simplicial factor: lower triangle, AMD ordering,
 // one right side at a time. The entries are A_ii = diagonal_i, A_ij = -value_k summed
 // over links from i to j; then P A P^T = L D L^T, and x = P^T L^-T D^-1 L^-1 P b.
+// Links to a column of n or more lead to nodes of given pressure: they are in the
+// diagonal, and no entry. A is positive definite where each cluster of nodes has such a
+// link; otherwise there is no factor: STATUS_NOT_CONVERGED.
 #include "cholesky.h"
 
 #include "basics/memory.h"

@@ -2,7 +2,11 @@
 // Solution with a supernodal factor, supernode by supernode: forward L y = b gathers
 // the rows of a panel, solves in its triangle and subtracts from the rows below;
 // backward L^T x = y subtracts the rows below first. Columns go four, two or one at a
-// time, so that each number of a row is read once for several columns.
+// time, so that each number of a row is read once for several columns. In code order
+//     forward   y_j = (b_j - sum_{l<j} L_jl y_l) / L_jj,   b_i -= L_ij y_j for i below;
+//     backward  x_j = (y_j - sum_{i below} L_ij x_i - sum_{l>j} L_lj x_l) / L_jj.
+// L_ij lies at panel[j rows + i]; a fixed order of sums gives the same digits on every
+// machine.
 #include "supernodal_internal.h"
 
 #include "dense_kernels.h"

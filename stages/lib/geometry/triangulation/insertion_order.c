@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points are sorted by one number,
+//     when = round << 54 | bits of x, y and z, 18 each, interleaved (a Z-curve),
+// with x, y and z counted in 2^18 - 1 steps of the largest extent. The round is drawn
+// from the point's index by splitmix64, not by a generator with a state, so that the
+// order depends on the points and their indices alone. The sort is stable: points with
+// the same number keep their order.
 #include "geometry/triangulation/insertion_order.h"
 
 #include "basics/memory.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From points in any order to cells: walls that are not there are put beyond all
+// points, farther than their extent, where they take no part; points are inserted in
+// the order of insertion_order.h, and the vertices of the cells are numbered back.
+// Walls have negative numbers and stay as they are.
 #include "geometry/triangulation/triangulation_in_walls.h"
 
 #include "basics/memory.h"
