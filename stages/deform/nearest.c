@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Nearest neighbour by linked cells of about two points each: rings of cells around
 // the query are searched until the next ring is farther away than the best found.
+// Distances are those to the nearest image, d - L round(d / L) along axes that repeat;
+// with about two points a cell the search is O(1) for points spread evenly, and right,
+// if slow, for others. Of several at one distance the first is the nearest.
 #include "nearest.h"
 
 #include <stdlib.h>

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Boundary conditions in the units of the computation: a flux Q becomes Q mu / unit^3.
 //     axis that repeats:  gradient = -drop / edge;   between walls:  p = drop, then 0.
+// Pressures stay in Pa: the flow is linear, so a viscosity of 1 in the solution and mu
+// in the fluxes give the same pressures. NAN means that a wall has no such condition: a
+// wall with neither lets nothing through. A wall takes one condition, and an axis along
+// which the box repeats none, as it has no walls.
 #include "conditions.h"
 
 static const char *const wall_names[WALL_COUNT] = {"x_lower", "x_upper", "y_lower",

@@ -2,6 +2,12 @@
 // Collects faces and throats in any order, sorts both, and writes them to the network:
 // each face begins with its lowest node, equal throats become one with the least
 // radius, and nodes that are no corner of a face are removed.
+//
+// A row is a key of three numbers and the item it belongs to: of a face its two sides
+// and the image of the second, of a throat its lower node, its other node and the image
+// of that. The lower node comes first, and the image is turned round with them; of the
+// two images of a throat that joins a node to its own image, the one with the number
+// above 0 is taken. So a throat has one key, from whichever face it comes.
 #include "loops.h"
 
 #include "basics/memory.h"

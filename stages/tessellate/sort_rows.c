@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counting sort by the first key, then a comparison sort in each of its short groups,
-// in parallel. Rows themselves are not moved: their indices are.
+// in parallel. Rows themselves are not moved: their indices are. The last key is the
+// item, which no two rows share, so the order is one whatever the threads do. Groups of
+// up to 32 rows are sorted by insertion.
 #include "sort_rows.h"
 
 #include "basics/memory.h"

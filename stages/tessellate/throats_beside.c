@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Throats found by their two nodes, with a binary search.
+// Throats found by their two nodes, with a binary search: throats are sorted by their
+// lower node, then by the other (loops.c). In a periodic box several throats may join
+// the same two nodes through different images of the box; throat_image tells them
+// apart. It is the image of the second node seen from the first, so an edge from the
+// higher node to the lower is looked up the other way round, and a throat from a node
+// to its own image is the same both ways.
 #include "throats_beside.h"
 
 #include "basics/memory.h"
