@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers in rising order. Comparing, not subtracting: differences of int may overflow.
+// Equal numbers have no order here: qsort may leave them in any, so what carries more
+// than the number needs a comparison of its own with a tie broken by index, or its
+// bytes would depend on the C library.
 #ifndef CRAQUELURE_SORTED_H
 #define CRAQUELURE_SORTED_H
 

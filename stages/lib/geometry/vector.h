@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors in three dimensions, by value. An array of struct vector has the layout of an
 // (n,3) dataset of doubles. Nothing is scaled: squares of lengths must neither overflow
-// nor vanish.
+// nor vanish: lengths from about 1e-150 to 1e150, in whatever unit they are. All are
+// plain sums and products in the order written, so the same digits everywhere.
 #ifndef CRAQUELURE_VECTOR_H
 #define CRAQUELURE_VECTOR_H
 
@@ -34,12 +35,14 @@ static inline double dot(struct vector a, struct vector b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+// A x B: right-handed, |A| |B| sin of the angle between them.
 static inline struct vector cross(struct vector a, struct vector b)
 {
     return (struct vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
                            a.x * b.y - a.y * b.x};
 }
 
+// |A|, and |A - B|; 0 for equal places.
 static inline double norm(struct vector a)
 {
     return sqrt(dot(a, a));

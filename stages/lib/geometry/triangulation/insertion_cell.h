@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cell of a triangulation that is being made, and its sphere.
+// A cell of a triangulation that is being made, and its sphere: that which is
+// orthogonal to the spheres of its four points, |at - p|^2 - w_p the same for each (an
+// empty circumsphere where all weights w are 0). `error` bounds its rounding, so that
+// most points are told inside or outside without exact arithmetic.
 #ifndef CRAQUELURE_LIVE_CELL_H
 #define CRAQUELURE_LIVE_CELL_H
 
@@ -9,6 +12,8 @@
 
 enum { INFINITE = -1, FIRST_WALL = -2 }; // in place of a vertex; walls 0..5 go down
 
+// The plane that VERTEX, FIRST_WALL or below, stands for; `sign` is 1 at an upper wall
+// of BOX, -1 at a lower one.
 static inline struct corner_between wall_corner(const struct wall_box *box,
                                                 int32_t vertex)
 {
