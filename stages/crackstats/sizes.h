@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sizes of clusters or fragments, collected over runs.
+// Sizes of clusters or fragments, collected over runs: one number each, in throats or
+// grains, in the order in which they are found.
 #ifndef CRAQUELURE_CRACKSTATS_SIZES_H
 #define CRAQUELURE_CRACKSTATS_SIZES_H
 

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // deform: the network of grains that have moved.
+//
+// Reads the network twice: `before` stays as it was, `after` gets the places of the
+// response and a box moved with them. Then one of three: write the packing alone; carry
+// the liquid of a drying to another network, the third input (replace); or move nodes
+// and throats with the grains around them (move).
 #include "artifacts/artifact.h"
 #include "artifacts/liquid.h"
 #include "artifacts/write_network.h"

@@ -25,6 +25,7 @@ void neighbour_grains_free(struct neighbour_grains *around);
 struct vector to_grain(const struct packing *packing, struct grain_beside beside,
                        struct vector from);
 
+// Whether both are the same grain in the same image: not two images of one.
 bool same_grain(struct grain_beside a, struct grain_beside b);
 
 #endif

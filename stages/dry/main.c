@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // dry: which throat empties when.
+//
+// In this order: read the network; complete the conditions, whose defaults depend on
+// it; draw radii if asked; take out throats imposed empty, without clearance, or shut
+// in by these, which the drying counts as empty from the start; read the saturations to
+// start from; find the checkpoint to go on from; dry (drying.h); write.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
 #include "artifacts/liquid.h"

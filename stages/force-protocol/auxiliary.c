@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grains, bonds and rows of the protocol are compacted in place.
+// Grains, bonds and rows of the protocol are compacted in place. Grains that stay keep
+// their order; a bond with one that goes is dropped, and so are the force and the
+// liquid of a grain that goes. A place is read before it is written: new numbers are
+// never above the old.
 #include "auxiliary.h"
 
 #include "basics/memory.h"

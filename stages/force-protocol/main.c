@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // force-protocol: the capillary force on every grain over the time of drying.
+//
+// In this order: read the drying; complete the liquid from it; find the law of suction
+// and the weight of the liquid; find the sectors around throats, and from them what
+// each throat's load does to each grain, and the rings (find_action); choose the times
+// and sum the loads at each (find_protocol); leave out auxiliary grains; write.
 #include "artifacts/artifact.h"
 #include "artifacts/liquid.h"
 #include "auxiliary.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads from a drying what forces need: steps and changes of saturation, which nodes
+// gas touches from the beginning, and, for a field of suction, the pressures of the
+// snapshots. Exits 65 where the drying lacks them, with the parameter of `dry` that
+// records them.
 #include "read_record.h"
 
 #include "basics/memory.h"

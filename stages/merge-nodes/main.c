@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // merge-nodes: short throats removed from a pore network [K 3.3.7].
+//
+// In this order: read the network and its periodic images, merge the nodes of throats
+// shorter than the threshold, shortest first (merge.h), see that images are still near
+// enough to be numbered, write. What was merged, fused and kept is counted in `model`.
 #include "artifacts/artifact.h"
 #include "artifacts/document.h"
 #include "artifacts/write_network.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // tessellate: the pore network between the grains.
+//
+// In this order: read the packing; find the power or Voronoi diagram and from it nodes,
+// throats, faces and clearances (tessellate.h); give throats their share of the void,
+// if asked; write. A layer of grains (dimensions=2) gives a network in its plane.
 #include "artifacts/artifact.h"
 #include "artifacts/write_network.h"
 #include "basics/status.h"

@@ -2,6 +2,11 @@
 // Chooses the solver of one cluster and checks its result: the updated factor first,
 // and if its balances do not close to FLOW_TOLERANCE, as with conductances many
 // decades apart, elimination without cancellation.
+//
+// list_ends puts the menisci that move first in `mover` (n_mover), then those that do
+// not move but whose pressure responds to their flow (to n_end). `error` is the largest
+// imbalance of a node over the largest flow; the factor that failed is freed, so that
+// the next step does not update it. Neither within FLOW_TOLERANCE: status 3.
 #include "cluster_flow.h"
 
 #include <math.h>

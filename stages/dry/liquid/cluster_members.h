@@ -25,6 +25,8 @@ struct cluster_members cluster_members_init(const struct clusters *clusters,
 void cluster_members_follow(struct cluster_members *members,
                             const struct clusters *clusters, int throat);
 
+// The first throat on LIST of CLUSTER, -1: none. The others by `next`. The order
+// depends on what was moved before; the set does not.
 static inline int cluster_members_first(const struct cluster_members *members,
                                         int cluster, enum throat_list list)
 {

@@ -19,8 +19,11 @@ struct recorder recorder_init(struct drying_history *history);
 
 // A step's changes come before the step itself, ascending in throats.
 void recorder_add_change(struct recorder *recorder, int throat, double saturation);
+// At TIME (s), not before the last one; THROAT by its index in the network.
 void recorder_add_event(struct recorder *recorder, double time, int throat,
                         enum event_kind kind);
+// TIME in s, SATURATION 0 to 1 of the network, RATE in kg/s from here on, CLUSTERS of
+// liquid. Takes all changes added since the last step.
 void recorder_add_step(struct recorder *recorder, double time, double saturation,
                        double rate, int clusters);
 

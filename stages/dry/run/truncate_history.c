@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cuts the last step at the share of it at which the saturation was reached: time,
 // changes and what has evaporated are linear within a step.
+//     share = (S_before - S) / (S_before - S_last),   time = t_before + share dt,
+//     evaporated -= rate (t_last - time),             s = s_before + share ds per
+//     throat.
+// `now` replays the changes of all steps before, as the history holds only what
+// differs. Events after the new end go, and so do the breakthrough and the end of the
+// first period if they came later: 0, as for those that never came.
 #include "truncate_history.h"
 
 #include "basics/memory.h"
