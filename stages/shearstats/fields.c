@@ -25,13 +25,13 @@
 #include <stdlib.h>
 
 // Row-major place of component K of a symmetric tensor, and its mirror.
-static const int place_in_tensor[6][2] = {{0, 0}, {4, 4}, {8, 8},
+static const int PLACE_IN_TENSOR[6][2] = {{0, 0}, {4, 4}, {8, 8},
                                           {1, 3}, {2, 6}, {5, 7}};
-static const int indices[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+static const int INDICES[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 static void set_symmetric(double *tensor, int k, double value)
 {
-    tensor[place_in_tensor[k][0]] = tensor[place_in_tensor[k][1]] = value;
+    tensor[PLACE_IN_TENSOR[k][0]] = tensor[PLACE_IN_TENSOR[k][1]] = value;
 }
 
 static void set_velocity(const double *sum, bool cylindrical, double r, double *value)
@@ -54,7 +54,7 @@ static void set_kinetic(const double *sum, bool cylindrical, double per_volume,
     const double *velocity = value + field_column(FIELD_VELOCITY);
     const double omega = value[field_column(FIELD_ANGULAR_VELOCITY)];
     for (int k = 0; k < 6; k++) {
-        const int a = indices[k][0], b = indices[k][1];
+        const int a = INDICES[k][0], b = INDICES[k][1];
         double mean = sum[SUM_MOMENTUM + a] * velocity[b];
         if (cylindrical && a == 1 && b == 1) mean = omega * sum[SUM_TURNING + 1];
         if (cylindrical && (a == 1) != (b == 1))
@@ -71,7 +71,7 @@ static void set_invariants(bool cylindrical, double *value)
     const double *rate = value + field_column(FIELD_STRAIN_RATE);
     double s[6], d[6];
     for (int k = 0; k < 6; k++) {
-        const int here = place_in_tensor[k][0], mirror = place_in_tensor[k][1];
+        const int here = PLACE_IN_TENSOR[k][0], mirror = PLACE_IN_TENSOR[k][1];
         s[k] = 0;
         for (int p = 0; p < 3; p++)
             s[k] += 0.5 * (part[p][here] + part[p][mirror]);

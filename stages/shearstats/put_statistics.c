@@ -199,8 +199,8 @@ static double count_in(const struct run_result *run, int64_t k, int zone, double
     const struct separations *of = &run->separations;
     *force = 0;
     if (of->n == 0 || k < of->lowest || k >= of->lowest + of->n) return 0;
-    *force = of->force[k - of->lowest][zone] / run->snapshots;
-    return of->count[k - of->lowest][zone] / run->snapshots;
+    *force = of->class[k - of->lowest].force[zone] / run->snapshots;
+    return of->class[k - of->lowest].count[zone] / run->snapshots;
 }
 
 static void put_separations(struct artifact *artifact, const struct study *study,

@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 bool inside_band(const struct split_cell *cell, const struct band_fit *fit, double r,
                  double z)
@@ -20,32 +21,26 @@ bool inside_band(const struct split_cell *cell, const struct band_fit *fit, doub
 
 void separations_free(struct separations *separations)
 {
-    free(separations->count);
-    free(separations->force);
+    free(separations->class);
     *separations = (struct separations){0};
 }
 
-// Room for class K.
+// Room for class K, with the classes between.
 static void include_class(struct separations *separations, int64_t k)
 {
-    const struct separations old = *separations;
-    const int64_t end = old.lowest + old.n;
-    if (old.n > 0 && k >= old.lowest && k < end) return;
-    const int64_t lowest = old.n == 0 || k < old.lowest ? k : old.lowest;
-    const int64_t past = old.n == 0 || k >= end ? k + 1 : end;
-    const size_t n = (size_t)(past - lowest), row = sizeof(double[ZONES]);
-    struct separations grown = {.width = old.width,
-                                .lowest = lowest,
-                                .n = (int)n,
-                                .count = allocate(n, row),
-                                .force = allocate(n, row)};
-    for (int kept = 0; kept < old.n; kept++)
-        for (int zone = 0; zone < ZONES; zone++) {
-            grown.count[old.lowest - lowest + kept][zone] = old.count[kept][zone];
-            grown.force[old.lowest - lowest + kept][zone] = old.force[kept][zone];
-        }
-    separations_free(separations);
-    *separations = grown;
+    const int64_t lowest = separations->lowest, n = separations->n;
+    if (n > 0 && k >= lowest && k < lowest + n) return;
+    const int64_t first = n == 0 || k < lowest ? k : lowest;
+    const int64_t past = n == 0 || k >= lowest + n ? k + 1 : lowest + n;
+    const int64_t before = n == 0 ? 0 : lowest - first, all = past - first;
+    struct separation_class *class =
+        reallocate(separations->class, (size_t)all, sizeof *class);
+    memmove(class + before, class, (size_t)n * sizeof *class);
+    for (int64_t at = 0; at < all; at++)
+        if (at < before || at >= before + n) class[at] = (struct separation_class){0};
+    separations->class = class;
+    separations->lowest = first;
+    separations->n = (int)all;
 }
 
 void add_separations(struct separations *separations, const struct motion *motion,
@@ -56,14 +51,13 @@ void add_separations(struct separations *separations, const struct motion *motio
     for (int64_t k = motion->contact_first[s]; k < motion->contact_first[s + 1]; k++) {
         struct vector from, along;
         if (motion->pair[k][1] < 0 || !branch_of(motion, s, k, &from, &along)) continue;
-        const double class = floor(-motion->overlap[k] / separations->width);
-        const int64_t in = (int64_t)fmin(fmax(class, -most), most);
+        const double place_in = floor(-motion->overlap[k] / separations->width);
+        const int64_t in = (int64_t)fmin(fmax(place_in, -most), most);
         include_class(separations, in);
         const struct place place = place_of(frame, motion->point[k]);
         const int zone = inside_band(cell, fit, place.at[0], place.at[2]);
-        const size_t row = (size_t)(in - separations->lowest);
-        separations->count[row][zone]++;
-        separations->force[row][zone] +=
-            dot(motion->force[k], contact_normal(motion, s, k));
+        struct separation_class *class = &separations->class[in - separations->lowest];
+        class->count[zone]++;
+        class->force[zone] += dot(motion->force[k], contact_normal(motion, s, k));
     }
 }

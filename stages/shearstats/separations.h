@@ -9,14 +9,18 @@
 
 enum zone { ZONE_OUTSIDE = 0, ZONE_INSIDE = 1, ZONES };
 
+// Pairs in all snapshots, and the sum of their normal forces, N; below 0: they pull.
+struct separation_class {
+    double count[ZONES], force[ZONES];
+};
+
 // Classes of equal width, class k from k WIDTH on; the first kept is LOWEST. It owns
-// its arrays; free with separations_free.
+// its array; free with separations_free.
 struct separations {
     double width; // m
     int64_t lowest;
     int n;
-    double (*count)[ZONES]; // (n) pairs in all snapshots
-    double (*force)[ZONES]; // (n) sum of their normal forces, N; below 0: they pull
+    struct separation_class *class; // (n)
 };
 
 // Adds the pairs of grains of snapshot S, one of which at least moves freely; INSIDE

@@ -21,7 +21,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const int symmetric[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+static const int SYMMETRIC[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 // ---- grains -------------------------------------------------------------------------
 
@@ -62,7 +62,7 @@ static void add_grains(const struct motion *motion, int s, const struct frame *f
             value[SUM_TURNING + a] = m * place.r * v[a];
         }
         for (int k = 0; k < 6; k++)
-            value[SUM_FLUX + k] = m * v[symmetric[k][0]] * v[symmetric[k][1]];
+            value[SUM_FLUX + k] = m * v[SYMMETRIC[k][0]] * v[SYMMETRIC[k][1]];
         value[SUM_TOUCHING] = neighbours[2 * (size_t)i];
         value[SUM_JOINED] = neighbours[2 * (size_t)i + 1];
         spread(grid, place.at, value, GRAIN_SUMS, sum, SUM_ALL);
@@ -127,7 +127,7 @@ static void add_point(const struct frame *frame, const struct grid *grid,
     const double touching = contact->touches ? weight : 0;
     for (int k = 0; k < 6; k++)
         value[SUM_FABRIC - SUM_CONTACT + k] =
-            touching * normal[symmetric[k][0]] * normal[symmetric[k][1]];
+            touching * normal[SYMMETRIC[k][0]] * normal[SYMMETRIC[k][1]];
     value[SUM_CONTACTS - SUM_CONTACT] = touching;
     spread(grid, place.at, value, CONTACT_SUMS, sum + SUM_CONTACT, SUM_ALL);
 }

@@ -19,7 +19,7 @@
 
 enum { POINTS = 40, DRAWS = 4000 };
 // Of DRAWS draws with a chance of 0.95: three standard deviations.
-static const double coverage_error = 3 * 0.00345;
+static const double COVERAGE_ERROR = 3 * 0.00345;
 
 static void profile(double centre, double width, double smoothing, double *r, double *y)
 {
@@ -72,8 +72,8 @@ static void test_band_errors(void **state)
         width += fabs(fit.width - 0.02) < t * fit.width_error;
     }
     gsl_rng_free(rng);
-    assert_float_equal((double)centre / DRAWS, 0.95, coverage_error);
-    assert_float_equal((double)width / DRAWS, 0.95, coverage_error);
+    assert_float_equal((double)centre / DRAWS, 0.95, COVERAGE_ERROR);
+    assert_float_equal((double)width / DRAWS, 0.95, COVERAGE_ERROR);
 }
 
 static void test_line_errors(void **state)
@@ -93,8 +93,8 @@ static void test_line_errors(void **state)
         cohesion += fabs(fit.cohesion - 1.3) < t * fit.cohesion_error;
     }
     gsl_rng_free(rng);
-    assert_float_equal((double)friction / DRAWS, 0.95, coverage_error);
-    assert_float_equal((double)cohesion / DRAWS, 0.95, coverage_error);
+    assert_float_equal((double)friction / DRAWS, 0.95, COVERAGE_ERROR);
+    assert_float_equal((double)cohesion / DRAWS, 0.95, COVERAGE_ERROR);
 }
 
 // The integral of the kernel's share up to U, an even function's tenth-degree integral:
