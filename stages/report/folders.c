@@ -144,7 +144,8 @@ char *link_to(const char *folder, const char *name, const char *output)
     const bool known = realpath(slash ? above : ".", from) && realpath(path, to);
     free(path);
     free(above);
-    if (!known || strlen(from) + 2 > sizeof from) return NULL;
-    strcat(from, "/");
+    const size_t length = strlen(from);
+    if (!known || length + 2 > sizeof from) return NULL;
+    memcpy(from + length, "/", 2);
     return way(from, to);
 }

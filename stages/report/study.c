@@ -213,7 +213,7 @@ static void shorten_names(struct study *study)
     for (int k = 0; k < study->n; k++) {
         char *name = study->row[k].name;
         memmove(name, name + same, strlen(name + same) + 1);
-        if (!*name) strcpy(name, ".");
+        if (!*name) memcpy(name, ".", 2);
     }
 }
 

@@ -144,7 +144,7 @@ static void record_walls(struct record *record, const struct scene *scene,
     }
     add_rows(record, "/history/wall_force", of, 1);
     add_rows(record, "/history/wall_moment", of + n, 1);
-    add_rows(record, "/history/wall_displacement", of + 2 * n, 1);
+    add_rows(record, "/history/wall_displacement", of + 2 * (size_t)n, 1);
     free(of);
 }
 
@@ -165,7 +165,7 @@ static void record_groups(struct record *record, const struct scene *scene,
     }
     add_rows(record, "/history/group_force", of, 1);
     add_rows(record, "/history/group_moment", of + n, 1);
-    add_rows(record, "/history/group_displacement", of + 2 * n, 1);
+    add_rows(record, "/history/group_displacement", of + 2 * (size_t)n, 1);
     add_rows(record, "/history/group_angle", angle, 1);
     free(angle);
     free(of);

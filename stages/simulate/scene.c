@@ -284,6 +284,26 @@ static void set_engine(const struct simulate_parameters *parameters,
     setup->balance_energy = parameters->record_energy;
 }
 
+// Bonds and driven groups do not follow a box that is strained.
+static enum status check_strain(const struct simulate_parameters *parameters,
+                                const struct scene *scene, struct reason *reason)
+{
+    const struct packing *packing = scene->setup.packing;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!(fabs(parameters->strain_rate[axis]) > 0)) continue;
+        if (!packing->periodic[axis])
+            return refuse(reason, STATUS_BAD_DATA,
+                          "simulate.box.strain_rate: the box does not repeat along %c: "
+                          "let walls move there",
+                          "xyz"[axis]);
+        if (packing->n_bond > 0 || scene->n_driven > 0)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "simulate.box.strain_rate: must be 0 with bonds (bond.kind) "
+                          "or driven groups");
+    }
+    return STATUS_OK;
+}
+
 enum status make_scene(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason)
@@ -297,7 +317,7 @@ enum status make_scene(const struct simulate_parameters *parameters,
     read_liquid(parameters, scene);
     read_bonds(parameters, &scene->setup);
     set_engine(parameters, packing, scene);
-    return STATUS_OK;
+    return check_strain(parameters, scene, reason);
 }
 
 void scene_free(struct scene *scene)

@@ -63,6 +63,8 @@ scene("a grain that is not there", {"groups": {"a": {"grains": [1e6]}}},
       r"simulate\.groups\.a\.grains: there is no grain 1e\+06 among \d+")
 scene("a wall through grains", {"walls": {"floor": {"point": [0, 0, 1e-6]}}},
       r"packing: simulate\.walls\.floor: grain \d+ begins in it, by \S+ of its radius, at \(.*\) m")
+scene("a box that is strained and does not repeat", {"box": {"strain_rate": [0, 0, 1]}},
+      r"simulate\.box\.strain_rate: the box does not repeat along z: let walls move there")
 scene("a time step past stability", {"time_step": 1e-3},
       r"packing: time step \S+ s is past the stability limit .*", UNSTABLE)
 scene("a wall that crushes grains",

@@ -2,6 +2,8 @@
 // The fits of shearstats to what has a closed form, and their standard errors:
 // intervals of 95 % over many draws of scatter must hold the truth in 95 % of them. And
 // the line integral of a contact beside its closed form.
+#include "../test.h"
+
 #include "basics/memory.h"
 #include "shearstats/band_fit.h"
 #include "shearstats/rheology.h"
@@ -10,12 +12,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 enum { POINTS = 40, DRAWS = 4000 };
 // Of DRAWS draws with a chance of 0.95: three standard deviations.
@@ -163,5 +160,6 @@ int main(void)
         cmocka_unit_test(test_band_is_found), cmocka_unit_test(test_no_band),
         cmocka_unit_test(test_band_errors), cmocka_unit_test(test_line_errors),
         cmocka_unit_test(test_line_integral)};
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

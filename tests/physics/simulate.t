@@ -95,6 +95,30 @@ column = 500 * 4e-6 * (3 / (1e4 / 2) + 2 / 1e4)
 near(-motion["history/wall_displacement"][-1, 5, 2], column, 2e-3, "the lid sinks as springs in series do")
 ok(np.abs(force[4] + force[5]).max() < 1e-3 * force[5, 2], "lid and floor carry the same", force)
 
+# A ball at the bottom of a cylinder swings as a pendulum, slower when it rolls: w^2 = 5/7 g / (R - r).
+for friction, share in [(0, 1), (0.5, 5 / 7)]:
+    glass = {"glass": dict(SOFT["glass"], friction=friction, restitution=0.2)}
+    reach, angle = 20e-3 - 1e-3, 0.02
+    motion = simulate(packing([reach * math.sin(angle), 0, -reach * math.cos(angle), 1e-3]),
+                      {"duration": 1, "materials": glass, "record": {"snapshots_every": 1e-3},
+                       "walls": {"pipe": {"shape": "cylinder", "point": [0, 0, 0], "normal": [0, 1, 0],
+                                          "radius": 20e-3}}})
+    x, time = motion["snapshots/position"][:, 0, 0], motion["snapshots/time"][()]
+    falls = [k for k in range(len(x) - 1) if x[k] > 0 >= x[k + 1]]
+    moments = [time[k] + (time[k + 1] - time[k]) * x[k] / (x[k] - x[k + 1]) for k in falls]
+    near((moments[-1] - moments[0]) / (len(moments) - 1), 2 * math.pi * math.sqrt(reach / (9.81 * share)), 1e-3,
+         f"a ball in a pipe with friction {friction} swings in the time of a pendulum")
+
+# A pipe that turns carries it up to where friction and weight balance: tan(angle) = friction, sliding.
+glass = {"glass": dict(SOFT["glass"], friction=0.3, restitution=0.2)}
+motion = simulate(packing([[0, 0, -reach, 1e-3]]),
+                  {"duration": 0.6, "materials": glass, "local_damping": 0.3,
+                   "groups": {"paddle": {"initial": {"spin": [0, 0, 0]}}},
+                   "walls": {"pipe": {"shape": "cylinder", "point": [0, 0, 0], "normal": [0, 1, 0],
+                                      "radius": 20e-3, "spin": [0, 5, 0]}}})
+spin = motion["snapshots/spin"][-1, 0, 1]
+near(spin, 5 * 20, 2e-2, "a pipe that turns makes a ball roll on the spot")
+
 # An oedometer of elastic spheres: Hertz, F = 4/3 E* sqrt(R) U^1.5 at a wall of the same material.
 press = {"lid": {"point": [0, 0, 2e-3], "normal": [0, 0, -1], "velocity": [0, 0, -1e-3], "material": "glass",
                  "motion": {"times": [0, 0.01, 0.01001], "factors": [1, 1, 0]}},

@@ -339,8 +339,8 @@ void set_equal_mobility(struct dem *dem); // sets equal_mobility
 // Liquid bridges [liquid.c]; all but the first two only in wet scenes.
 double bridge_cutoff(const struct dem *dem); // 0 in dry ones
 void free_liquid(struct liquid *liquid);     // or NULL
-// Scales LIQUID; before pairs are sought.
-enum status take_liquid(struct dem *dem, const struct dem_liquid *liquid,
+// Scales IS; before pairs are sought.
+enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
                         struct reason *reason);
 void set_bridge_radius(const struct dem *dem, int pair);
 void form_bridges(struct dem *dem);  // where grains touch as they lie

@@ -121,7 +121,7 @@ static void copy_rows(void *to, int to_pair, const void *from, int from_pair,
     double *a = (double *)((char *)to + there) + to_pair % PAIRS_IN_GROUP;
     const double *b =
         (const double *)((const char *)from + here) + from_pair % PAIRS_IN_GROUP;
-    for (int k = 0; k < rows; k++)
+    for (size_t k = 0; k < (size_t)rows; k++)
         a[k * PAIRS_IN_GROUP] = b[k * PAIRS_IN_GROUP];
 }
 

@@ -159,7 +159,8 @@ static void update_bridge_batch(const struct dem *dem, int begin, int end)
         const int p = pulling.pair[k], lane = p % PAIRS_IN_GROUP;
         struct liquid_group *group = &dem->pairs.liquid[p / PAIRS_IN_GROUP];
         group->pull[lane] =
-            dem->liquid->is.surface_tension * group->radius[lane] * pulling.force[k];
+            dem->liquid->is.surface_tension * group->radius[lane] *
+            pulling.force[k]; // NOLINT(clang-analyzer-core.*): find_forces set it
     }
 }
 

@@ -121,26 +121,31 @@ SIMD_INLINE doublew friction_normal_force(const struct dem *dem,
 }
 
 // A spring in the contact plane that slips: its stiffness now and at the overlap of the
-// step before, and the factor that its force keeps when a Hertz contact opens.
+// step before, the factor that its force keeps when a Hertz contact opens, the velocity
+// that stretches it, and the force at which it slips.
 struct slipping_spring {
     doublew stiffness, before, retained;
+    struct vectorw velocity;
+    doublew limit;
 };
 
-// One step of such a spring with its HISTORY, stretched at VELOCITY, which slips at
-// LIMIT [K 4.12-4.16, 4.25-4.26]; SLIPS says where.
-SIMD_INLINE struct vectorw
-advance_spring(const struct dem *dem, int k, int at, double (*history)[PAIRS_IN_GROUP],
-               const struct pair_motion *m, const struct slipping_spring *spring,
-               struct vectorw velocity, doublew limit, maskw touch, maskw bonded,
-               doublew time_step, unsigned features, maskw *slips)
+// One step of such a spring with its HISTORY [K 4.12-4.16, 4.25-4.26]; SLIPS says where
+// it does.
+SIMD_INLINE struct vectorw advance_spring(const struct dem *dem, int k, int at,
+                                          double (*history)[PAIRS_IN_GROUP],
+                                          const struct pair_motion *m,
+                                          const struct slipping_spring *spring,
+                                          maskw touch, maskw bonded, doublew time_step,
+                                          unsigned features, maskw *slips)
 {
+    const doublew limit = spring->limit;
     const maskw acts = features & FEATURE_CONTACT_BOND ? either(touch, bonded) : touch;
     const struct vectorw turned =
         rotate_history(m->rotation, load3(history, at), features);
     struct vectorw kept = dem->pairs.loss ? only_where3(acts, turned) : turned;
     if (features & FEATURE_HERTZ) kept = scale3(spring->retained, kept);
     const struct vectorw trial = only_where3(
-        acts, subtract_scaled3(kept, spring->stiffness * time_step, velocity));
+        acts, subtract_scaled3(kept, spring->stiffness * time_step, spring->velocity));
 
     const doublew square = dot3(trial, trial);
     *slips = above(square, limit * limit);
@@ -185,10 +190,11 @@ SIMD_INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
     maskw slips;
     const doublew limit = law->friction * friction_normal_force(dem, law, load.normal);
     const struct slipping_spring spring = {
-        law->shear_stiffness, law->shear_stiffness_before, law->shear_retained};
-    const struct vectorw shear = advance_spring(
-        dem, k, at, dem->pairs.shear[k].force, m, &spring, m->shear_velocity, limit,
-        touch, bonded, time_step, features, &slips);
+        law->shear_stiffness, law->shear_stiffness_before, law->shear_retained,
+        m->shear_velocity, limit};
+    const struct vectorw shear =
+        advance_spring(dem, k, at, dem->pairs.shear[k].force, m, &spring, touch, bonded,
+                       time_step, features, &slips);
     const maskw sticks = either(bonded, without(touch, slips));
     const doublew damping = only_where(sticks, law->shear_damping);
     load.shear = subtract_scaled3(shear, damping, m->shear_velocity);

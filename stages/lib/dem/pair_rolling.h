@@ -22,15 +22,14 @@ SIMD_INLINE struct vectorw rolling_moment(const struct dem *dem, int k, int at,
     const struct vectorw rolling =
         subtract_scaled3(m->relative_spin, dot3(m->relative_spin, n), n);
     const doublew arm = load(group->arm + at), factor = 2.25 * arm * arm;
-    const struct slipping_spring spring = {factor * law->normal_stiffness,
-                                           factor * law->normal_stiffness_before,
-                                           law->shear_retained};
-    const doublew limit = arm * friction_normal_force(dem, law, push);
+    const struct slipping_spring spring = {
+        factor * law->normal_stiffness, factor * law->normal_stiffness_before,
+        law->shear_retained, rolling, arm * friction_normal_force(dem, law, push)};
     const maskw none = above(splat(0), splat(0));
     maskw rolls_on;
     const struct vectorw moment =
-        advance_spring(dem, k, at, group->moment, m, &spring, rolling, limit, touch,
-                       none, time_step, features, &rolls_on);
+        advance_spring(dem, k, at, group->moment, m, &spring, touch, none, time_step,
+                       features, &rolls_on);
     const maskw damped = without(touch, rolls_on);
     doublew damping = only_where(damped, load(group->damping + at));
     if (features & FEATURE_HERTZ)

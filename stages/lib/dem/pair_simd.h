@@ -180,7 +180,7 @@ SIMD_INLINE void fetch_changes(const double *p, const uint32_t *i, const uint32_
 #define CHANGE(k) (load(record(p, 8, j[k])) - load(record(p, 8, i[k])))
     doublew xz[4], y[4]; // of each two, then for both vectors
 #pragma GCC unroll 4
-    for (int k = 0; k < 4; k++) {
+    for (size_t k = 0; k < 4; k++) {
         const doublew even = CHANGE(2 * k), odd = CHANGE(2 * k + 1);
         xz[k] = EVEN(even, odd);
         y[k] = ODD(even, odd);
