@@ -158,9 +158,9 @@ static void update_bridge_batch(const struct dem *dem, int begin, int end)
     for (int k = 0; k < pulling.count; k++) {
         const int p = pulling.pair[k], lane = p % PAIRS_IN_GROUP;
         struct liquid_group *group = &dem->pairs.liquid[p / PAIRS_IN_GROUP];
-        group->pull[lane] =
-            dem->liquid->is.surface_tension * group->radius[lane] *
-            pulling.force[k]; // NOLINT(clang-analyzer-core.*): find_forces set it
+        const double tension = dem->liquid->is.surface_tension;
+        // find_forces set it. NOLINTNEXTLINE(clang-analyzer-core.*)
+        group->pull[lane] = tension * group->radius[lane] * pulling.force[k];
     }
 }
 
