@@ -54,12 +54,12 @@ if (what eq "separations") {
     set terminal @svg "Helvetica,15" size 1260,440
     set multiplot layout 1,3
     @axes
-    set xlabel "separation, mm (below 0: overlap)"; set key top right; set offsets 0, 0, graph 0.3, 0
-    set ylabel "pairs in a snapshot, per mm"; set yrange [0:*]
+    set xlabel "separation, mm (below 0: overlap)"; set key top right; set xtics 0.1
+    set ylabel "pairs in a snapshot, per mm"; set logscale y; set format y "10^{%T}"
     plot for [k = 0:n - 1] tables . sprintf("/case%d", k) using 1:2 with steps linecolor rgb colour_of(k) title title_of(k)
-    set ylabel "mean normal force, N (below 0: pulls)"; set yrange [*:*]; unset key
+    set ylabel "mean normal force, N (below 0: pulls)"; unset logscale y; set format y "%g"; unset key
     plot for [k = 0:n - 1] tables . sprintf("/case%d", k) using 1:3 with points pointtype 7 pointsize 0.3 linecolor rgb colour_of(k)
-    set ylabel "pairs per mm and mm³"; set yrange [0:*]; set key top right
+    set ylabel "pairs per mm and mm³"; set logscale y; set format y "10^{%T}"; set key top right
     plot for [k = 0:n - 1] tables . sprintf("/case%d", k) using 1:5 with steps linewidth 1.6 linecolor rgb colour_of(k) title title_of(k) . ", in the band", \
         for [k = 0:n - 1] tables . sprintf("/case%d", k) using 1:4 with steps dashtype 3 linecolor rgb colour_of(k) title (k == n - 1 ? "outside it" : "")
 }
