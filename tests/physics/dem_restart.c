@@ -407,6 +407,7 @@ static void stirred_crowd(void **state)
 {
     (void)state;
     struct packing packing = cloud(17, 0.3, true);
+    free(packing.bond);
     packing.bond = neighbour_pairs(&packing, 0.12, &packing.n_bond);
     const struct vector middle = scale(0.5, packing.upper);
     const struct dem_wall wall = {
