@@ -10,6 +10,7 @@
 
 #include "basics/memory.h"
 #include "geometry/tetra_ball_volume.h"
+#include "network/throat_sides.h"
 
 #include <stdlib.h>
 
@@ -50,24 +51,19 @@ static double void_beside(const struct network *network, int face, struct vector
     return volume;
 }
 
-static enum status add_face(const struct network *network,
-                            const struct incidence *incidence, int face, double *volume,
-                            struct reason *reason)
+// The void of THROAT: over the faces around it, in their order.
+static double void_of_throat(const struct network *network,
+                             const struct throat_sides *sides,
+                             const struct vector *middle, int throat)
 {
-    const int64_t begin = network->face_offset[face];
-    const int count = (int)(network->face_offset[face + 1] - begin);
-    const struct vector middle = face_middle(network, face);
-    for (int k = 0; k < count; k++) {
-        const int64_t a = begin + k, b = begin + (k + 1) % count;
-        const int throat = face_throat(network, incidence, face, k);
-        if (throat < 0)
-            return refuse(reason, STATUS_BAD_DATA,
-                          "/faces/nodes: face %d: no throat between nodes %d and %d",
-                          face, network->face_nodes[a], network->face_nodes[b]);
-        volume[throat] += void_beside(network, face, middle, face_corner(network, a),
-                                      face_corner(network, b));
+    double volume = 0;
+    for (int64_t k = sides->offset[throat]; k < sides->offset[throat + 1]; k++) {
+        const struct throat_side side = throat_side(network, sides, throat, k);
+        volume += void_beside(network, sides->face[k], middle[sides->face[k]],
+                              side.forward ? side.first : side.second,
+                              side.forward ? side.second : side.first);
     }
-    return STATUS_OK;
+    return volume;
 }
 
 // Rounding may leave a throat between touching grains a little below nothing.
@@ -90,13 +86,20 @@ static enum status check_volumes(const struct network *network, double *volume,
 
 enum status find_void_volumes(struct network *network, struct reason *reason)
 {
-    struct incidence incidence = network_incidence(network);
+    struct throat_sides sides;
+    enum status status = throat_sides_init(network, &sides, reason);
+    if (status) return status;
     double *volume = NEW_ARRAY(double, network->n_throat);
-    enum status status = STATUS_OK;
-    for (int face = 0; face < network->n_face && !status; face++)
-        status = add_face(network, &incidence, face, volume, reason);
-    if (!status) status = check_volumes(network, volume, reason);
-    incidence_free(&incidence);
+    struct vector *middle = NEW_ARRAY(struct vector, network->n_face);
+#pragma omp parallel for schedule(static)
+    for (int face = 0; face < network->n_face; face++)
+        middle[face] = face_middle(network, face);
+#pragma omp parallel for schedule(static)
+    for (int t = 0; t < network->n_throat; t++)
+        volume[t] = void_of_throat(network, &sides, middle, t);
+    free(middle);
+    throat_sides_free(&sides);
+    status = check_volumes(network, volume, reason);
     if (status) {
         free(volume);
         return status;
