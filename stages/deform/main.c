@@ -266,6 +266,7 @@ static void move(struct scene *scene)
     enum status status =
         move_throats(before, (enum clearance)parameters->clearance, after, &reason);
     if (!status) status = move_volumes(before, changed > 0, after, &reason);
+    if (!status) status = move_shapes(before, changed > 0, after, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
     check_moved(after, scene->response->path);
 

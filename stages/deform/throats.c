@@ -9,6 +9,7 @@
 #include "basics/memory.h"
 #include "geometry/neighbours.h"
 #include "geometry/porosity.h"
+#include "network/throat_shapes.h"
 #include "network/void_volume.h"
 
 #include <stdlib.h>
@@ -190,6 +191,46 @@ enum status move_volumes(const struct network *before, bool changed,
     if (!changed && has_shares_of_void(*before))
         return find_void_volumes(after, reason);
     scale_volumes(before, after);
+    return STATUS_OK;
+}
+
+// ---- conductances -------------------------------------------------------------------
+
+// Whether the conductances of NETWORK are what find_throat_shapes gives.
+static bool has_shapes_of_void(struct network network)
+{
+    static const double same = 1e-9; // of the largest
+    const double *said = network.throat_diffusion;
+    network.throat_diffusion = network.throat_flow = NULL;
+    network.throat_hydraulic_radius = NULL;
+    struct reason reason;
+    if (!said || find_throat_shapes(&network, &reason)) return false;
+    double largest = 0, apart = 0;
+    for (int t = 0; t < network.n_throat; t++) {
+        largest = fmax(largest, said[t]);
+        apart = fmax(apart, fabs(said[t] - network.throat_diffusion[t]));
+    }
+    forget_throat_shapes(&network);
+    return apart <= same * largest;
+}
+
+enum status move_shapes(const struct network *before, bool changed,
+                        struct network *after, struct reason *reason)
+{
+    if (!changed && has_shapes_of_void(*before))
+        return find_throat_shapes(after, reason);
+    for (int t = 0; t < before->n_throat; t++) {
+        const double wider = before->throat_radius[t] > 0
+                                 ? after->throat_radius[t] / before->throat_radius[t]
+                                 : 1;
+        const double longer = before->throat_length[t] > 0
+                                  ? after->throat_length[t] / before->throat_length[t]
+                                  : 1;
+        const double section = wider * wider;
+        if (after->throat_diffusion) after->throat_diffusion[t] *= section / longer;
+        if (after->throat_flow) after->throat_flow[t] *= section * section / longer;
+        if (after->throat_hydraulic_radius) after->throat_hydraulic_radius[t] *= wider;
+    }
     return STATUS_OK;
 }
 

@@ -35,6 +35,12 @@ enum status move_throats(const struct network *before, enum clearance how,
 enum status move_volumes(const struct network *before, bool changed,
                          struct network *after, struct reason *reason);
 
+// If the network says what throats conduct: what the open section between their grains
+// gave, it gives again, unless the diagram has CHANGED; others change as the cylinders
+// of the throats do, radii and lengths of BEFORE and AFTER.
+enum status move_shapes(const struct network *before, bool changed,
+                        struct network *after, struct reason *reason);
+
 // Volume of the box, or of the body within it, without what is cut out, m3.
 double packing_domain_volume(const struct packing *packing);
 

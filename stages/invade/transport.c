@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Relative permeability and diffusivity of each phase, in states along the invasion.
 // Each is the conductance between inlet (potential 1) and outlet (0) of the throats
-// that the phase fills, pi r^4 / (8 L) or pi r^2 / L: node balances
+// that the phase fills, as network.h gives it: node balances
 //     sum_j conductance_ij (x_j - x_i) = 0
 // are solved by iterative refinement, and the conductance is the dissipation
 //     sum over links of conductance (x_a - x_b)^2,
@@ -9,8 +9,8 @@
 // as a random walk would, at inlet or outlet, so the sum of residuals bounds the error.
 // If that does not fall to TOLERANCE, the network is eliminated, which loses no digits.
 //
-// Numbers are scaled: lengths by the longest throat, radii by the widest, so that r^4
-// does not underflow; unit_of gives the scale back. States are recorded at the first
+// Numbers are scaled by the longest throat, so that fourth powers of radii do not
+// underflow; unit_of gives the scale back. States are recorded at the first
 // event at or below each tenth of saturation. For inlet and outlet on opposite sides of
 // one axis, with the box's length L and section A,
 //     material = conductance L / A.
@@ -33,7 +33,7 @@ struct phase_network {
     const struct network *network;
     struct incidence incidence;
     unsigned inlet, outlet;
-    double length, radius; // m, the largest: units
+    double length;         // m, of the longest throat: the unit
     double *conductance;   // (n_throat) scaled; 0: lets nothing through
     int *site;             // (n_node) balances, the outlet, the inlet; -1: not reached
     int n_balance, *queue; // (n_node)
@@ -198,16 +198,15 @@ static enum status find_conductance(struct phase_network *conductor,
 static double property_of(const struct phase_network *conductor, int throat,
                           enum property property)
 {
-    const double r = conductor->network->throat_radius[throat] / conductor->radius;
-    const double length = conductor->network->throat_length[throat] / conductor->length;
-    return property == PERMEABILITY ? M_PI * (r * r) * (r * r) / (8 * length)
-                                    : M_PI * (r * r) / length;
+    return property == PERMEABILITY
+               ? hydraulic_conductance(conductor->network, throat, conductor->length)
+               : diffusive_conductance(conductor->network, throat, conductor->length);
 }
 
 static double unit_of(const struct phase_network *conductor, enum property property)
 {
-    const double section = conductor->radius * conductor->radius;
-    return section / conductor->length * (property == PERMEABILITY ? section : 1);
+    const double length = conductor->length;
+    return property == PERMEABILITY ? length * length * length : length;
 }
 
 // Whether PHASE holds a throat or node of event NUMBER after EVENT events.
@@ -293,7 +292,6 @@ phase_network_init(const struct network *network,
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
         conductor.length = fmax(conductor.length, network->throat_length[t]);
-        conductor.radius = fmax(conductor.radius, network->throat_radius[t]);
     }
     return conductor;
 }

@@ -23,12 +23,12 @@ struct transport {
     double material[PROPERTIES];
 };
 
-// A throat of kind THROAT_NETWORK has the conductance pi r^4 / (8 L), or pi r^2 / L for
-// diffusion; nodes do not resist. A phase passes through the throats it fills and the
-// nodes it holds (gas has arrived there, or has not); those of inlet and outlet are
-// open to both. Balances are solved until their errors add up to at most 1e-10 of the
-// flow; if rounding prevents that, the network is eliminated. The caller frees
-// TRANSPORT with transport_free, also after a failure.
+// A throat of kind THROAT_NETWORK conducts as the network says (hydraulic_conductance,
+// diffusive_conductance); nodes do not resist. A phase passes through the throats it
+// fills and the nodes it holds (gas has arrived there, or has not); those of inlet and
+// outlet are open to both. Balances are solved until their errors add up to at most
+// 1e-10 of the flow; if rounding prevents that, the network is eliminated. The caller
+// frees TRANSPORT with transport_free, also after a failure.
 //
 // STATUS_BAD_DATA: nothing leads from inlet to outlet, or a node is on both, or a
 // throat has no length. STATUS_NOT_CONVERGED: conductances too far apart in a network

@@ -29,7 +29,7 @@ struct merge_report {
 // A merged node lies at the mean of the nodes it was made from, those on most walls
 // alone counting, and exactly on all their walls. Throats that become parallel (between
 // the same two nodes) are one: they were the same opening, seen twice; the wider radius
-// stays. Lengths follow the nodes; radii are those from before. Faces stay closed
+// stays, what they conduct adds up. Lengths follow the nodes; radii are those from before. Faces stay closed
 // loops; one left with fewer than three nodes is gone. Where the box repeats, throats
 // between the same nodes are parallel only if they lead to the same image.
 //

@@ -142,12 +142,27 @@ void merging_remove(struct merging *merging, int throat)
     merging->removed += merging->network->throat_kind[throat] != THROAT_BOUNDARY_LAYER;
 }
 
+// Parallel throats conduct side by side: their conductances add up, and walls count in
+// each for what diffuses through it.
+static void add_shapes(struct network *network, int kept, int removed)
+{
+    double *diffusion = network->throat_diffusion, *flow = network->throat_flow;
+    double *radius = network->throat_hydraulic_radius;
+    if (radius && diffusion && diffusion[kept] + diffusion[removed] > 0)
+        radius[kept] =
+            (diffusion[kept] * radius[kept] + diffusion[removed] * radius[removed]) /
+            (diffusion[kept] + diffusion[removed]);
+    if (diffusion) diffusion[kept] += diffusion[removed];
+    if (flow) flow[kept] += flow[removed];
+}
+
 static void fuse(struct merging *merging, int kept, int removed)
 {
     double *radius = merging->network->throat_radius;
     double *volume = merging->network->throat_volume;
     radius[kept] = fmax(radius[kept], radius[removed]);
     if (volume) volume[kept] += volume[removed];
+    add_shapes(merging->network, kept, removed);
     merging_remove(merging, removed);
 }
 
@@ -333,6 +348,7 @@ static void write_throats(struct merging *merging, const int *number)
         network->throat_radius[kept] = network->throat_radius[t];
         if (network->throat_volume)
             network->throat_volume[kept] = network->throat_volume[t];
+        copy_throat_shape(network, t, kept);
         network->throat_length[kept] = norm(along_throat(network, kept));
         network->throat_kind[kept++] = network->throat_kind[t];
     }

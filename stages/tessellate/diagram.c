@@ -10,6 +10,7 @@
 #include "assemble.h"
 #include "basics/memory.h"
 #include "cut.h"
+#include "network/throat_shapes.h"
 #include "remove_cells.h"
 #include "surface_marks.h"
 
@@ -210,6 +211,7 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     for (int k = 0; k < packing->n_body && !status; k++)
         status = cut_network(network, k, how->clearance, reason);
     report->n_cell = packing->n_particle - report->hidden;
+    if (!status && how->shapes) status = find_throat_shapes(network, reason);
     if (!status) mark_boundary_layer(network, how->layer);
     if (!status && how->boundary == BOUNDARY_ELIMINATE)
         report->n_cell = eliminate_cut_cells(network, how->layer);

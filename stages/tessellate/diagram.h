@@ -18,7 +18,8 @@ struct tessellation {
     bool power; // power diagram (K's Dirichlet); else Voronoi
     enum clearance clearance;
     enum boundary boundary;
-    bool layer; // the network of one layer of grains, in a plane [K 3.3.6]
+    bool shapes; // throats conduct as the void between their grains; else as cylinders
+    bool layer;  // the network of one layer of grains, in a plane [K 3.3.6]
 };
 
 // What the network left out or had to decide.

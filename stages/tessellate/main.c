@@ -15,9 +15,10 @@
 
 enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
 enum throat_volume { VOLUME_CYLINDER, VOLUME_VOID };
+enum conductance { CONDUCTANCE_SECTION, CONDUCTANCE_CYLINDER };
 
 struct tessellate_parameters {
-    int diagram, clearance, volume, boundary;
+    int diagram, clearance, volume, conductance, boundary;
     int64_t dimensions;
 };
 
@@ -38,6 +39,12 @@ static const struct parameter table[] = {
      .text = "what a throat holds: the cylinder of its radius and length [K 3.3.4], or "
              "its share of the void between the grains (/throats/volume); these shares "
              "sum exactly to the void"},
+    {"conductance", PARAMETER_CHOICE, "1", "\"section\"",
+     offsetof(struct tessellate_parameters, conductance), .choices = "section|cylinder",
+     .text = "what a throat conducts, to diffusion and to flow: as the open section "
+             "between its grains, slice by slice along it (/throats/"
+             "diffusive_conductance, ../hydraulic_conductance), or as the cylinder of "
+             "its radius and length [K 3.9]; throats of a layer are always cylinders"},
     {"boundary", PARAMETER_CHOICE, "1", "\"truncate\"",
      offsetof(struct tessellate_parameters, boundary), .choices = "truncate|eliminate",
      .text = "cells that cross the walls of the box or of a cylinder, ring or sphere: "
@@ -115,6 +122,9 @@ int main(int argc, char **argv)
     const struct tessellation how = {.power = parameters.diagram == DIAGRAM_POWER,
                                      .clearance = (enum clearance)parameters.clearance,
                                      .boundary = (enum boundary)parameters.boundary,
+                                     .shapes = parameters.conductance ==
+                                                   CONDUCTANCE_SECTION &&
+                                               parameters.dimensions == 3,
                                      .layer = parameters.dimensions == 2};
     enum status status = tessellate(&packing, &how, &network, &report, &reason);
     if (!status && parameters.volume == VOLUME_VOID)
@@ -126,6 +136,7 @@ int main(int argc, char **argv)
              "%s diagram%s, %s\n"
              "throat radius: least clearance from %s\n"
              "throat volume: %s\n"
+             "conductance: %s\n"
              "%d throats without clearance, %d grains without a cell\n"
              "left out: boundary layer\n",
              how.power ? "power" : "Voronoi",
@@ -133,6 +144,8 @@ int main(int argc, char **argv)
              bounding(&packing, how.boundary, bounded), radius_rule[how.clearance],
              parameters.volume == VOLUME_VOID ? "its share of the void"
                                               : "the cylinder of its radius and length",
+             how.shapes ? "the open section between the grains"
+                        : "the cylinder of radius and length",
              report.n_closed, packing.n_particle - report.n_cell);
     write_network(&network, &invocation, input, model);
 

@@ -89,6 +89,7 @@ static void compact_throats(struct network *network, const struct kept_parts *ke
         network->throat_radius[n] = network->throat_radius[t];
         network->throat_length[n] = network->throat_length[t];
         network->throat_kind[n] = network->throat_kind[t];
+        copy_throat_shape(network, t, n);
         if (network->throat_image) network->throat_image[n] = network->throat_image[t];
         n++;
     }

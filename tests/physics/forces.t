@@ -375,6 +375,8 @@ def refusals():
             del file[name]
             file[name] = old
         gone = ["throats/nodes", "throats/radius", "throats/length", "throats/kind",
+                "throats/diffusive_conductance", "throats/hydraulic_conductance",
+                "throats/hydraulic_radius",
                 "faces/nodes", "faces/particles", "events/time", "events/throat", "events/kind",
                 "changes/throat", "changes/saturation"]
         for name in gone:

@@ -20,9 +20,8 @@
 static double throat_conductance(const struct network *network, int throat,
                                  double length, double knudsen_radius)
 {
-    const double radius = network->throat_radius[throat] / length;
-    const double slowed = 1 + knudsen_radius / network->throat_radius[throat];
-    return M_PI * radius * radius / (network->throat_length[throat] / length) / slowed;
+    const double slowed = 1 + knudsen_radius / hydraulic_radius(network, throat);
+    return diffusive_conductance(network, throat, length) / slowed;
 }
 
 // --- the boundary layer ------------------------------------------------------------

@@ -41,10 +41,8 @@ struct liquid_flow liquid_flow_init(const struct occupancy *occupancy, double le
                                .pressure = NEW_ARRAY(double, network->n_node),
                                .solver = flow_solver_create(occupancy)};
     for (int t = 0; t < network->n_throat; t++) {
-        const double r = network->throat_radius[t] / length;
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
-        flow.conductance[t] =
-            M_PI * (r * r) * (r * r) / (8 * (network->throat_length[t] / length));
+        flow.conductance[t] = hydraulic_conductance(network, t, length);
         flow.resistance[t] = 1 / flow.conductance[t];
     }
     return flow;

@@ -308,6 +308,19 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     return packing;
 }
 
+static void get_throat_shapes(const struct artifact *artifact, struct network *network)
+{
+    if (artifact_has_dataset(artifact, "/throats/diffusive_conductance"))
+        network->throat_diffusion =
+            artifact_get(artifact, "/throats/diffusive_conductance", NULL);
+    if (artifact_has_dataset(artifact, "/throats/hydraulic_conductance"))
+        network->throat_flow =
+            artifact_get(artifact, "/throats/hydraulic_conductance", NULL);
+    if (artifact_has_dataset(artifact, "/throats/hydraulic_radius"))
+        network->throat_hydraulic_radius =
+            artifact_get(artifact, "/throats/hydraulic_radius", NULL);
+}
+
 struct network artifact_get_network(const struct artifact *artifact)
 {
     if (artifact_has_dataset(artifact, "/throats/image"))
@@ -372,6 +385,7 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     check_walls(artifact, &network);
     if (artifact_has_dataset(artifact, "/throats/volume"))
         network.throat_volume = artifact_get(artifact, "/throats/volume", NULL);
+    get_throat_shapes(artifact, &network);
     if (artifact_has(artifact, schema_attribute(schema, "/summary/unmerged_throats"))) {
         network.unmerged_throats =
             (int)artifact_get_number(artifact, "/summary/unmerged_throats");

@@ -186,6 +186,20 @@ void artifact_put_packing(struct artifact *artifact, const struct packing *packi
     artifact_put(artifact, "/bonds/particles", packing->bond, packing->n_bond);
 }
 
+static void put_throat_shapes(struct artifact *artifact, const struct network *network)
+{
+    const int n = network->n_throat;
+    if (network->throat_diffusion)
+        artifact_put(artifact, "/throats/diffusive_conductance",
+                     network->throat_diffusion, n);
+    if (network->throat_flow)
+        artifact_put(artifact, "/throats/hydraulic_conductance", network->throat_flow,
+                     n);
+    if (network->throat_hydraulic_radius)
+        artifact_put(artifact, "/throats/hydraulic_radius",
+                     network->throat_hydraulic_radius, n);
+}
+
 void artifact_put_network(struct artifact *artifact, const struct network *network)
 {
     const int n_face_node = (int)network->face_offset[network->n_face];
@@ -201,6 +215,7 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
     if (network->throat_volume)
         artifact_put(artifact, "/throats/volume", network->throat_volume,
                      network->n_throat);
+    put_throat_shapes(artifact, network);
     artifact_put(artifact, "/faces/offset", network->face_offset, network->n_face + 1);
     artifact_put(artifact, "/faces/nodes", network->face_nodes, n_face_node);
     artifact_put(artifact, "/faces/particles", network->face_particles,

@@ -52,20 +52,40 @@ static json_t *nodes_json(const struct network *network)
     return nodes;
 }
 
+// What throats conduct, under OpenPNM's names (throat.diffusive_size_factors ...).
+enum { SHAPES = 3 };
+static const char *const shape_name[SHAPES] = {"link_diffusive_size_factor",
+                                               "link_hydraulic_size_factor",
+                                               "link_hydraulic_radius"};
+
+static double **shape_array(struct network *network, int k)
+{
+    return (double **[SHAPES]){&network->throat_diffusion, &network->throat_flow,
+                               &network->throat_hydraulic_radius}[k];
+}
+
+static json_t *edge_json(const struct network *network, int t)
+{
+    struct network shapes = *network;
+    const double radius = network->throat_radius[t];
+    json_t *metadata = json_pack(
+        "{s:f,s:f,s:f,s:f,s:i}", "link_length", network->throat_length[t],
+        "link_squared_radius", radius * radius, "link_radius", radius, "link_volume",
+        throat_volume(network, t), "link_kind", (int)network->throat_kind[t]);
+    for (int k = 0; k < SHAPES; k++) {
+        const double *shape = *shape_array(&shapes, k);
+        if (shape) json_object_set_new(metadata, shape_name[k], json_real(shape[t]));
+    }
+    return json_pack("{s:o,s:o,s:o,s:o}", "id", id_of(t), "source",
+                     id_of(network->throat_nodes[t][0]), "target",
+                     id_of(network->throat_nodes[t][1]), "metadata", metadata);
+}
+
 static json_t *edges_json(const struct network *network)
 {
     json_t *edges = json_array();
-    for (int t = 0; t < network->n_throat; t++) {
-        const double radius = network->throat_radius[t];
-        json_array_append_new(
-            edges,
-            json_pack("{s:o,s:o,s:o,s:{s:f,s:f,s:f,s:f,s:i}}", "id", id_of(t), "source",
-                      id_of(network->throat_nodes[t][0]), "target",
-                      id_of(network->throat_nodes[t][1]), "metadata", "link_length",
-                      network->throat_length[t], "link_squared_radius", radius * radius,
-                      "link_radius", radius, "link_volume", throat_volume(network, t),
-                      "link_kind", (int)network->throat_kind[t]));
-    }
+    for (int t = 0; t < network->n_throat; t++)
+        json_array_append_new(edges, edge_json(network, t));
     return edges;
 }
 
@@ -161,6 +181,26 @@ static enum status read_node(json_t *node, int k, struct network *network,
     return STATUS_OK;
 }
 
+// Edges conduct as the file says, all of them or none.
+static enum status read_shapes(const json_t *metadata, int k, int t,
+                               struct network *network, struct reason *reason)
+{
+    for (int shape = 0; shape < SHAPES; shape++) {
+        double **array = shape_array(network, shape);
+        const json_t *number = json_object_get(metadata, shape_name[shape]);
+        if (!number && !*array) continue;
+        if (!*array && k == 0) *array = NEW_ARRAY(double, network->n_throat);
+        const double value = json_number_value(number);
+        if (!*array || !json_is_number(number) || !(value >= 0 && value <= 1e150))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "graph.edges[%d].metadata.%s: must be a number from 0 to "
+                          "1e150 in all edges, or in none",
+                          k, shape_name[shape]);
+        (*array)[t] = value;
+    }
+    return STATUS_OK;
+}
+
 static enum status read_edge(json_t *edge, int k, struct network *network,
                              struct reason *reason)
 {
@@ -185,7 +225,7 @@ static enum status read_edge(json_t *edge, int k, struct network *network,
         volume >= 0 ? volume : M_PI * section * network->throat_length[t];
     network->throat_kind[t] =
         (uint8_t)(kind >= 0 && kind <= THROAT_IMPOSED_EMPTY ? kind : THROAT_NETWORK);
-    return STATUS_OK;
+    return read_shapes(json_object_get(edge, "metadata"), k, t, network, reason);
 }
 
 static int32_t (*read_pairs(json_t *list, int *count))[2]

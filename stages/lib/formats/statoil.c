@@ -18,8 +18,7 @@ const char *const statoil_endings[STATOIL_FILES] = {"_node1.dat", "_node2.dat",
 
 // ---- out ----------------------------------------------------------------------------
 
-static const double CIRCLE_SHAPE =
-    1 / (4 * M_PI); // shape factor, area over perimeter^2
+#define CIRCLE_SHAPE (1 / (4 * M_PI)) // shape factor, area over perimeter^2
 
 // Reservoir 0 at the inlet, 1 at the outlet: as a node, -1 and 0.
 static bool at_reservoir(const struct network *network, int node, int reservoir)
@@ -36,12 +35,31 @@ static double widest(const struct network *network, const struct incidence *inci
     return radius;
 }
 
-static void put_link(FILE *link[2], int number, int a, int b, double radius,
-                     double length, double volume)
+// The shape factor G of the duct of the throat's radius that conducts as the throat
+// does, flow = k A^2 G / length with A = radius^2 / (4 G): a triangle, k = 3/5, up to
+// G = sqrt(3) / 36; a square, k = 0.5623, up to 0.07; else a circle, k = 1/2 [Patzek &
+// Silin 2001]. The circle's own where the throat is a cylinder, or conducts less.
+static double shape_factor(const struct network *network, int t)
 {
-    fprintf(link[0], "%d %d %d %.17g %.17g %.17g\n", number, a, b, radius, CIRCLE_SHAPE,
+    static const struct {
+        double k, largest;
+    } duct[] = {{0.6, 0.04811252243246881}, {0.5623, 0.07}, {0.5, CIRCLE_SHAPE}};
+    if (!network->throat_flow || !(network->throat_flow[t] > 0)) return CIRCLE_SHAPE;
+    const double square = network->throat_radius[t] * network->throat_radius[t];
+    const double shape =
+        square * square / (16 * network->throat_flow[t] * network->throat_length[t]);
+    for (int k = 0; k < 3; k++)
+        if (duct[k].k * shape <= duct[k].largest)
+            return fmax(duct[k].k * shape, k ? duct[k - 1].largest * (1 + 1e-9) : 0);
+    return CIRCLE_SHAPE;
+}
+
+static void put_link(FILE *link[2], int number, int a, int b, const double column[4])
+{
+    const double radius = column[0], shape = column[1], length = column[2];
+    fprintf(link[0], "%d %d %d %.17g %.17g %.17g\n", number, a, b, radius, shape,
             length);
-    fprintf(link[1], "%d %d %d 0 0 %.17g %.17g 0\n", number, a, b, length, volume);
+    fprintf(link[1], "%d %d %d 0 0 %.17g %.17g 0\n", number, a, b, length, column[3]);
 }
 
 // Throats to reservoirs are numbered after the others, by reservoir and node.
@@ -56,13 +74,15 @@ static void put_links(const struct network *network, const struct incidence *inc
     fprintf(link[0], "%d\n", number);
     for (int t = 0; t < network->n_throat; t++)
         put_link(link, t + 1, network->throat_nodes[t][0] + 1,
-                 network->throat_nodes[t][1] + 1, network->throat_radius[t],
-                 network->throat_length[t], throat_volume(network, t));
+                 network->throat_nodes[t][1] + 1,
+                 (double[4]){network->throat_radius[t], shape_factor(network, t),
+                             network->throat_length[t], throat_volume(network, t)});
     for (int reservoir = 0; reservoir < 2; reservoir++)
         for (int i = 0; i < network->n_node; i++)
             if (to_reservoir[reservoir][i])
-                put_link(link, to_reservoir[reservoir][i], reservoir - 1, i + 1,
-                         widest(network, incidence, i), 0, 0);
+                put_link(
+                    link, to_reservoir[reservoir][i], reservoir - 1, i + 1,
+                    (double[4]){widest(network, incidence, i), CIRCLE_SHAPE, 0, 0});
 }
 
 static void put_node(const struct network *network, const struct incidence *incidence,

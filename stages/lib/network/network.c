@@ -19,6 +19,7 @@ void network_free(struct network *network)
     free(network->throat_length);
     free(network->throat_kind);
     free(network->throat_volume);
+    forget_throat_shapes(network);
     free(network->face_offset);
     free(network->face_nodes);
     free(network->face_particles);
@@ -142,8 +143,10 @@ int shut_closed_throats(struct network *network)
 {
     int n = 0;
     for (int t = 0; t < network->n_throat; t++) {
-        if (network->throat_kind[t] != THROAT_NETWORK || network->throat_radius[t] != 0)
-            continue;
+        const bool open =
+            network->throat_radius[t] > 0 &&
+            !(network->throat_diffusion && network->throat_diffusion[t] == 0);
+        if (network->throat_kind[t] != THROAT_NETWORK || open) continue;
         network->throat_kind[t] = THROAT_IMPOSED_EMPTY;
         n++;
     }
@@ -155,4 +158,43 @@ double throat_volume(const struct network *network, int throat)
     if (network->throat_volume) return network->throat_volume[throat];
     const double radius = network->throat_radius[throat];
     return M_PI * radius * radius * network->throat_length[throat];
+}
+
+double diffusive_conductance(const struct network *network, int throat, double length)
+{
+    if (network->throat_diffusion) return network->throat_diffusion[throat] / length;
+    const double radius = network->throat_radius[throat] / length;
+    return M_PI * radius * radius / (network->throat_length[throat] / length);
+}
+
+double hydraulic_conductance(const struct network *network, int throat, double length)
+{
+    if (network->throat_flow)
+        return network->throat_flow[throat] / (length * length * length);
+    const double r = network->throat_radius[throat] / length;
+    return M_PI * (r * r) * (r * r) / (8 * (network->throat_length[throat] / length));
+}
+
+double hydraulic_radius(const struct network *network, int throat)
+{
+    return network->throat_hydraulic_radius ? network->throat_hydraulic_radius[throat]
+                                            : network->throat_radius[throat];
+}
+
+void copy_throat_shape(struct network *network, int from, int to)
+{
+    if (network->throat_diffusion)
+        network->throat_diffusion[to] = network->throat_diffusion[from];
+    if (network->throat_flow) network->throat_flow[to] = network->throat_flow[from];
+    if (network->throat_hydraulic_radius)
+        network->throat_hydraulic_radius[to] = network->throat_hydraulic_radius[from];
+}
+
+void forget_throat_shapes(struct network *network)
+{
+    free(network->throat_diffusion);
+    free(network->throat_flow);
+    free(network->throat_hydraulic_radius);
+    network->throat_diffusion = network->throat_flow = NULL;
+    network->throat_hydraulic_radius = NULL;
 }

@@ -29,10 +29,14 @@ struct network {
     int n_throat;
     // (n_throat) Lower node first; one node twice only around a box that repeats.
     int32_t (*throat_nodes)[2];
-    double *throat_radius;      // (n_throat) m
-    double *throat_length;      // (n_throat) m
-    uint8_t *throat_kind;       // (n_throat) enum throat_kind
-    double *throat_volume;      // (n_throat) m3; NULL: the throats are cylinders
+    double *throat_radius; // (n_throat) m
+    double *throat_length; // (n_throat) m
+    uint8_t *throat_kind;  // (n_throat) enum throat_kind
+    double *throat_volume; // (n_throat) m3; NULL: the throats are cylinders
+    // What throats conduct [network/open_section.h]; each NULL: as cylinders do.
+    double *throat_diffusion;        // (n_throat) m
+    double *throat_flow;             // (n_throat) m3
+    double *throat_hydraulic_radius; // (n_throat) m
     struct image *throat_image; // (n_throat) of the second node, seen from the first
 
     int n_face;
@@ -92,12 +96,26 @@ int face_throat(const struct network *network, const struct incidence *incidence
 // all.
 int impose_empty_throats(struct network *network, unsigned walls);
 
-// The same for throats without a radius, which grains close: no liquid, no vapour and
-// no gas. Returns how many of kind THROAT_NETWORK there were.
+// The same for throats without a radius or an open section, which grains close: no
+// liquid, no vapour and no gas. Returns how many of kind THROAT_NETWORK there were.
 int shut_closed_throats(struct network *network);
 
 // Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L
 // [K 3.3.4].
 double throat_volume(const struct network *network, int throat);
+
+// Conductance of a throat to diffusion, in units of LENGTH, and to flow, in units of
+// LENGTH^3: flux over (diffusivity x difference of concentration), and over
+// (difference of pressure / dynamic viscosity). What the network says, else those of
+// the cylinder, pi r^2 / L and pi r^4 / (8 L).
+double diffusive_conductance(const struct network *network, int throat, double length);
+double hydraulic_conductance(const struct network *network, int throat, double length);
+// What collisions with walls see, m: what the network says, else the throat's radius.
+double hydraulic_radius(const struct network *network, int throat);
+
+// Gives throat TO what throat FROM conducts, where the network says it.
+void copy_throat_shape(struct network *network, int from, int to);
+// Forgets what the throats conduct: they are cylinders.
+void forget_throat_shapes(struct network *network);
 
 #endif

@@ -163,5 +163,6 @@ enum status draw_radii(struct network *network,
     gsl_rng_free(generator);
     free(network->throat_volume); // of other radii
     network->throat_volume = NULL;
+    forget_throat_shapes(network);
     return STATUS_OK;
 }
