@@ -212,6 +212,8 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
         status = cut_network(network, k, how->clearance, reason);
     report->n_cell = packing->n_particle - report->hidden;
     if (!status && how->shapes) status = find_throat_shapes(network, reason);
+    if (!status && how->entry)
+        status = find_entry_radii(network, how->contact_angle, reason);
     if (!status) mark_boundary_layer(network, how->layer);
     if (!status && how->boundary == BOUNDARY_ELIMINATE)
         report->n_cell = eliminate_cut_cells(network, how->layer);

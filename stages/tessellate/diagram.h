@@ -19,7 +19,9 @@ struct tessellation {
     enum clearance clearance;
     enum boundary boundary;
     bool shapes; // throats conduct as the void between their grains; else as cylinders
-    bool layer;  // the network of one layer of grains, in a plane [K 3.3.6]
+    bool entry;  // radii are those at which gas enters, for the contact angle
+    double contact_angle; // rad
+    bool layer;           // the network of one layer of grains, in a plane [K 3.3.6]
 };
 
 // What the network left out or had to decide.

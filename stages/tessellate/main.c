@@ -15,10 +15,12 @@
 
 enum diagram { DIAGRAM_POWER, DIAGRAM_VORONOI };
 enum throat_volume { VOLUME_CYLINDER, VOLUME_VOID };
+enum { RADIUS_ENTRY = CLEARANCE_BESIDE + 1 };
 enum conductance { CONDUCTANCE_SECTION, CONDUCTANCE_CYLINDER };
 
 struct tessellate_parameters {
     int diagram, clearance, volume, conductance, boundary;
+    double contact_angle;
     int64_t dimensions;
 };
 
@@ -29,11 +31,19 @@ static const struct parameter table[] = {
              "one size"},
     {"throat_radius", PARAMETER_CHOICE, "1", "\"segment\"",
      offsetof(struct tessellate_parameters, clearance),
-     .choices = "segment|line|beside",
-     .text = "least clearance between throat and grains: from the throat itself to any "
-             "grain, from the infinite line through it to the grains beside it [K "
-             "3.7], or from the throat to the grains beside it (for grains of one size "
-             "all but line agree)"},
+     .choices = "segment|line|beside|entry",
+     .text =
+         "least clearance between throat and grains: from the throat itself to any "
+         "grain, from the infinite line through it to the grains beside it [K "
+         "3.7], or from the throat to the grains beside it (for grains of one size "
+         "these agree but line); entry: the radius whose capillary pressure is that "
+         "at which gas enters between the grains, liquid staying in their gaps "
+         "(Mayer, Stowe and Princen)"},
+    {"contact_angle", PARAMETER_NUMBER, "degree", "0",
+     offsetof(struct tessellate_parameters, contact_angle), BETWEEN(0, 89.999),
+     .text =
+         "of the liquid on the grains, for throat_radius=entry: the one that dry or "
+         "invade has"},
     {"throat_volume", PARAMETER_CHOICE, "1", "\"cylinder\"",
      offsetof(struct tessellate_parameters, volume), .choices = "cylinder|void",
      .text = "what a throat holds: the cylinder of its radius and length [K 3.3.4], or "
@@ -119,13 +129,17 @@ int main(int argc, char **argv)
     struct network network;
     struct tessellation_report report;
     struct reason reason;
-    const struct tessellation how = {.power = parameters.diagram == DIAGRAM_POWER,
-                                     .clearance = (enum clearance)parameters.clearance,
-                                     .boundary = (enum boundary)parameters.boundary,
-                                     .shapes = parameters.conductance ==
-                                                   CONDUCTANCE_SECTION &&
-                                               parameters.dimensions == 3,
-                                     .layer = parameters.dimensions == 2};
+    const struct tessellation how = {
+        .power = parameters.diagram == DIAGRAM_POWER,
+        .clearance = parameters.clearance == RADIUS_ENTRY
+                         ? CLEARANCE_SEGMENT
+                         : (enum clearance)parameters.clearance,
+        .entry = parameters.clearance == RADIUS_ENTRY && parameters.dimensions == 3,
+        .contact_angle = parameters.contact_angle * (M_PI / 180),
+        .boundary = (enum boundary)parameters.boundary,
+        .shapes =
+            parameters.conductance == CONDUCTANCE_SECTION && parameters.dimensions == 3,
+        .layer = parameters.dimensions == 2};
     enum status status = tessellate(&packing, &how, &network, &report, &reason);
     if (!status && parameters.volume == VOLUME_VOID)
         status = give_void_volumes(&how, &network, &reason);
@@ -134,14 +148,17 @@ int main(int argc, char **argv)
     char model[700], bounded[300];
     snprintf(model, sizeof model,
              "%s diagram%s, %s\n"
-             "throat radius: least clearance from %s\n"
+             "throat radius: %s%s\n"
              "throat volume: %s\n"
              "conductance: %s\n"
              "%d throats without clearance, %d grains without a cell\n"
              "left out: boundary layer\n",
              how.power ? "power" : "Voronoi",
              how.layer ? " of a layer, staggered against its grains" : "",
-             bounding(&packing, how.boundary, bounded), radius_rule[how.clearance],
+             bounding(&packing, how.boundary, bounded),
+             how.entry ? "" : "least clearance from ",
+             how.entry ? "that of the pressure at which gas enters"
+                       : radius_rule[how.clearance],
              parameters.volume == VOLUME_VOID ? "its share of the void"
                                               : "the cylinder of its radius and length",
              how.shapes ? "the open section between the grains"

@@ -215,8 +215,7 @@ static void add_slices(const struct open_section *section, double from, double t
     }
 }
 
-// Where the section is narrowest: the mean plane of the centres, within the throat.
-static double narrowest(const struct open_section *section)
+double narrowest_place(const struct open_section *section)
 {
     double sum = 0;
     for (int k = 0; k < section->n_grain; k++)
@@ -252,7 +251,7 @@ struct throat_shape section_shape(const struct open_section *given)
     if (!lenses) section.n_overlap = 0;
 
     struct integrals sum = {0};
-    const double middle = narrowest(&section);
+    const double middle = narrowest_place(&section);
     if (lenses && !(open_area(&section, middle) > 0)) sum = closed;
     if (middle > 0) add_slices(&section, 0, middle, &sum);
     if (middle < section.length) add_slices(&section, middle, section.length, &sum);

@@ -26,13 +26,21 @@ struct section_overlap {
     double height;    // m
 };
 
+// A side of the polygon: the gap between two grains, or between a grain and its own
+// half of a face with a wall.
+struct section_gap {
+    int grain[2]; // numbers in section_grain; second below 0: a wall
+    double apart; // m, of the centres; of a centre from the wall
+};
+
 struct open_section {
     double area;   // m2, of the polygon
     double length; // m, of the throat
     double wall;   // m, of the section's rim that lies in walls
-    int n_grain, n_overlap;
+    int n_grain, n_overlap, n_gap;
     struct section_grain *grain;     // (n_grain)
     struct section_overlap *overlap; // (n_overlap)
+    struct section_gap *gap;         // (n_gap)
 };
 
 // What a throat conducts.
@@ -53,5 +61,9 @@ double open_rim(const struct open_section *section, double z);
 // A section that is closed anywhere conducts nothing: all 0 but the radius. A throat
 // without length conducts as one of 1e-12 of its grains' size would.
 struct throat_shape section_shape(const struct open_section *section);
+
+// Where the section is narrowest, m from the first node: at the mean plane of the
+// centres, within the throat.
+double narrowest_place(const struct open_section *section);
 
 #endif
