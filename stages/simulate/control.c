@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table of time scales velocity, spin and servo by one factor f(t), linear between
-// its rows and constant outside. CONTROL_EVERY cycles get the mean of f over them, so
-// that a wall goes as far as the table says. A servo with a pressure p gets the force p
-// A, A the rectangle between the planes across the two other axes (the box where there
-// is none). A box strained at the rate e grows by exp(e dt n) in n cycles, so that the
-// strain is the sum of the rates whatever n.
+// Unknowns: the factor f(t) on velocity, spin and servo of a wall or driven group, the
+// area A of a servo, the stretch of the box.
+//
+// A table of time gives f, linear between its rows and constant outside. The engine
+// takes constants, so `control` sets them anew every CONTROL_EVERY = n cycles of dt, to
+// the mean of f over them,
+//
+//     factor = (F(t + n dt) - F(t)) / (n dt),    F = integral_to.
+//
+// The integral telescopes: a wall goes exactly as far as the table says, with f at t it
+// would be off by half a span times the change of f. Only where the engine shortens dt
+// within a span is the mean of that span a little off.
+//
+// A servo with a pressure p gets the force p A, with A the rectangle between the planes
+// across the two other axes (the box where there is none), as these planes lie now.
+//
+// A box strained at the rate e grows by exp(e n dt) in n cycles. Growth by 1 + e n dt
+// would depend on n. With the exponential, ln(edge / first edge) = e t: e is a rate of
+// true (logarithmic) strain.
 #include "control.h"
 
 #include <math.h>
 
-// Integral of the factor from the first time of the table to TIME.
+// Integral of the factor from the first time of the table to TIME. Before the first
+// time f is constant too, so the integral is negative there. `share` is the part of the
+// segment that lies before TIME; the mean of f over it is f at its middle.
 static double integral_to(const struct time_table *table, double time)
 {
     const int n = table->times.count;
@@ -42,6 +57,8 @@ static bool has_table(const struct time_table *table)
     return table && table->times.count > 0;
 }
 
+// A servo with a pressure counts even without a table: its area changes as other walls
+// move. A servo with a force does not, because the engine keeps it.
 bool is_controlled(const struct simulate_parameters *parameters,
                    const struct scene *scene)
 {
@@ -58,6 +75,9 @@ bool is_controlled(const struct simulate_parameters *parameters,
 // ---- servos -------------------------------------------------------------------------
 
 // The axis that N points along, 0 to 2, or -1.
+//
+// Within 1e-9 only, some digits above rounding: a rectangle between planes has an area
+// by axes only if the planes are square to each other.
 static int axis_of(struct vector n)
 {
     const double length = norm(n);
@@ -67,6 +87,10 @@ static int axis_of(struct vector n)
 }
 
 // The room along AXIS between the planes that face each other across it.
+//
+// Of several planes on one side the innermost bounds it. A plane that looks up along
+// the axis is a lower bound, whatever its position: grains stay on the side of its
+// normal.
 static double room_along(const struct scene *scene, const struct dem *dem, int axis)
 {
     struct vector lower, upper;
@@ -88,6 +112,8 @@ static double room_along(const struct scene *scene, const struct dem *dem, int a
     return fmax(to - from, 0);
 }
 
+// The two axes across the normal span the rectangle. An area that the user gave wins,
+// also for planes that are not along two axes.
 double servo_area(const struct scene *scene, const struct dem *dem, int w)
 {
     if (!isnan(scene->wall_more[w].servo_area)) return scene->wall_more[w].servo_area;
@@ -105,6 +131,8 @@ double room(const struct scene *scene, const struct dem *dem)
 
 // ---- all of it ----------------------------------------------------------------------
 
+// The scene keeps the velocity, spin and force at the factor 1, so that factors do not
+// multiply up over the calls.
 static void move_wall(const struct scene *scene, double time, struct dem *dem, int w)
 {
     const struct dem_wall *wall = &scene->wall[w];
@@ -121,6 +149,8 @@ static void move_wall(const struct scene *scene, double time, struct dem *dem, i
         dem_set_servo(dem, w, factor * wall->servo_force);
 }
 
+// The return value is dropped: make_scene refused bonds and driven groups, and radii do
+// not grow, so there is nothing left to refuse.
 static void strain_box(const struct simulate_parameters *parameters, struct dem *dem)
 {
     const double span = CONTROL_EVERY * dem_time_step(dem);
@@ -130,6 +160,8 @@ static void strain_box(const struct simulate_parameters *parameters, struct dem 
     dem_rescale(dem, stretch, 1);
 }
 
+// A driven group turns about its axis at a signed rate. So a factor below 0 turns it
+// back without a new axis.
 void control(const struct simulate_parameters *parameters, const struct scene *scene,
              double time, struct dem *dem)
 {

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A grain is of a group when its centre lies in the group's box and ring, or when the
-// group lists it. A group that only lists grains has no others.
+// Who belongs to a group: for grain i with centre x,
+//
+//     in_box:    lower <= x <= upper, component by component
+//     in_ring:   along = (x - centre) . axis / |axis|,
+//                inner <= sqrt(|x - centre|^2 - along^2) < outer
+//     listed:    i is in the group's list
+//
+// A grain is a member when it is listed, or lies in both box and ring. A group that
+// only lists grains has no others: its box and ring have no bounds, and would hold
+// every grain.
+//
+// The trap: bounds that are not given are NAN, and each comparison is written so that
+// NAN excludes no grain. `at >= lower` in place of `!(at < lower)` would empty the
+// group.
 #include "groups.h"
 
 #include "basics/memory.h"
@@ -19,6 +31,8 @@ static bool in_box(const struct group_parameters *group, struct vector x)
     return true;
 }
 
+// Rounding can leave a small negative square for a grain on the axis. Half open, inner
+// to outer, so that nested rings share no grain.
 static bool in_ring(const struct group_parameters *group, struct vector x)
 {
     const struct vector axis = to_vector(group->ring_axis);
@@ -34,6 +48,8 @@ static bool is_by_place(const struct group_parameters *group)
            group->ring_inner > 0 || !isnan(group->ring_outer);
 }
 
+// Two groups that want one grain would each set its material and motion; which of them
+// wins would depend on their names. So that is refused, not resolved.
 static enum status claim(const struct simulate_parameters *parameters, int group,
                          int grain, struct scene *scene, struct reason *reason)
 {
@@ -47,6 +63,7 @@ static enum status claim(const struct simulate_parameters *parameters, int group
     return STATUS_OK;
 }
 
+// Numbers come as doubles from JSON. They are at least 0 (the parameter's bound).
 static enum status claim_listed(const struct simulate_parameters *parameters, int group,
                                 const struct packing *packing, struct scene *scene,
                                 struct reason *reason)
@@ -87,6 +104,9 @@ static enum status find_members(const struct simulate_parameters *parameters, in
     return STATUS_OK;
 }
 
+// The spin is a vector to the user and an axis with a signed rate to the engine, so
+// that a table of time scales one number. Axis and rate of a group that does not turn
+// are 0.
 static void add_driven(const struct group_parameters *row, int group,
                        struct scene *scene)
 {
@@ -100,6 +120,7 @@ static void add_driven(const struct group_parameters *row, int group,
                            .spin = norm(spin)};
 }
 
+// Spins are not in a packing, so grains without a group begin without.
 static void set_start(const struct simulate_parameters *parameters,
                       const struct packing *packing, const struct vector *velocity,
                       struct scene *scene)
@@ -120,6 +141,7 @@ static void set_start(const struct simulate_parameters *parameters,
     }
 }
 
+// Group numbers are bytes, and 0 is no group.
 enum status read_groups(const struct simulate_parameters *parameters,
                         const struct packing *packing, const struct vector *velocity,
                         struct scene *scene, struct reason *reason)

@@ -31,6 +31,7 @@ static const struct stage stage = {
         "write=packing the output is a packing.",
     .checkpoints = true};
 
+// Auxiliary grains have no material, and would take part as real ones.
 static struct packing read_packing(const struct artifact *input)
 {
     struct packing packing = artifact_get_packing(input);
@@ -45,6 +46,9 @@ static struct packing read_packing(const struct artifact *input)
 
 // Forces on the grains, N, by forces.row and forces.factor; NULL without a second
 // input.
+//
+// Only the number of grains is compared: a forces artifact of a deformed packing has
+// other positions, and is meant to be usable. FORCES.ROW below 0 counts from the end.
 static struct vector *read_forces(const struct invocation *invocation,
                                   const struct simulate_parameters *parameters,
                                   const struct packing *packing, json_t *inputs)
@@ -74,6 +78,8 @@ static struct vector *read_forces(const struct invocation *invocation,
 }
 
 // In place: the setup of SCENE points into it.
+//
+// Dies on refusal. Velocities are copied into the scene.
 static void read_scene(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct artifact *input,
                        struct scene *scene)
@@ -90,6 +96,9 @@ static void read_scene(const struct simulate_parameters *parameters,
 
 // A servo whose force is further than this share from what it should be was too slow,
 // or nothing pushed back.
+//
+// A wall whose servo has a table of time is left out: what its force should be changes
+// with time. The load of the grains on a wall is against its normal, hence the sign.
 static void warn_of_servos(const struct scene *scene, const struct outcome *outcome)
 {
     static const double near = 0.05;
@@ -112,6 +121,7 @@ static void warn_of_servos(const struct scene *scene, const struct outcome *outc
     }
 }
 
+// What the model has and what it leaves out, for the provenance of the artifact.
 static void describe(const struct simulate_parameters *parameters,
                      const struct scene *scene, const char *model, char *text,
                      size_t size)
@@ -167,6 +177,7 @@ static void show(void *bar, double fraction)
     progress_update(bar, fraction);
 }
 
+// A state that does not fit is the checkpoint's fault, any other failure the input's.
 static void run(const struct simulate_parameters *parameters, struct scene *scene,
                 const struct vector *force, const struct invocation *invocation,
                 const struct keeper *keeper, struct outcome *outcome)
@@ -183,6 +194,8 @@ static void run(const struct simulate_parameters *parameters, struct scene *scen
             reason.text);
 }
 
+// Without bond.kind the bonds of the packing are dropped here, so that nothing behind
+// this line sees them.
 int main(int argc, char **argv)
 {
     struct simulate_parameters parameters;

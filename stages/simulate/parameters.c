@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables of parameters: of the scene, and of its named materials, pairs of
-// materials, walls and groups of grains.
+// materials, walls and groups of grains. Command line, help, JSON Schema and
+// docs/reference.md all come from them.
+//
+// A number that may be left out has the default null and becomes NAN. So "not given"
+// differs from every value, and each reader decides what stands in for it. Checks that
+// need more than one number are check_parameters' below; those that need the packing
+// are in scene.c and groups.c.
 #include "parameters.h"
 
 #include "basics/status.h"
@@ -287,6 +293,8 @@ const struct parameter simulate_table[] = {
          "for any stage that takes a packing"},
     {0}};
 
+// Equal times would be a jump, which has no slope to interpolate; a steep ramp says the
+// same without doubt about the value at the jump.
 static void check_time_table(const char *kind, const char *name,
                              const struct time_table *table)
 {
@@ -302,6 +310,8 @@ static void check_time_table(const char *kind, const char *name,
                 table->times.value[k], table->times.value[k - 1]);
 }
 
+// The largest speed has no default: before grains touch the wall nothing else bounds
+// its speed, and what is slow depends on the scene.
 static void check_servo(const char *name, const struct wall_parameters *wall)
 {
     const bool force = !isnan(wall->servo_force),

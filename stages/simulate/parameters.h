@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parameters of simulate: what the grains are made of, what bounds and drives them,
-// for how long, and what is recorded.
+// for how long, and what is recorded. Members are in the units of the table in
+// parameters.c, the user's: SI, but angles of contact in degrees. NAN or NULL stands
+// for null, "not given". Rows of named tables are in the order of their names.
+//
+// stage_begin fills the struct; the caller frees the four named_rows with
+// named_rows_free.
 #ifndef CRAQUELURE_SIMULATE_PARAMETERS_H
 #define CRAQUELURE_SIMULATE_PARAMETERS_H
 
@@ -12,6 +17,9 @@
 #include <stdint.h>
 
 // A row of "materials". NAN: not given.
+//
+// Which members must be given depends on the law (check_parameters). Units: kg/m3, Pa
+// for young_modulus, N/m of a grain for both stiffnesses; the others are numbers.
 struct material_parameters {
     double density, friction, restitution;
     double young_modulus, poisson_ratio;
@@ -20,17 +28,25 @@ struct material_parameters {
 };
 
 // A row of "pairs": what two materials do to each other. NAN: the smaller of the two.
+//
+// It holds in both orders. Damping of the linear law is not among them: there each
+// material has its damping ratio, and a contact the mean of two.
 struct pair_parameters {
     const char *first, *second;
     double friction, restitution, rolling_friction;
 };
 
 // Factor on a motion at these times (s), linear between them; none: always 1.
+//
+// Times rise strictly, and both lists are equally long (check_parameters).
 struct time_table {
     struct number_list times, factors;
 };
 
 // A row of "walls". NAN: not given.
+//
+// m, m/s, rad/s, N, Pa, m2. NORMAL is a plane's side of the grains and an axis of the
+// round shapes. Velocity, spin and servo are those at the factor 1 of MOTION.
 struct wall_parameters {
     int shape; // enum dem_wall_shape
     double point[3], normal[3], half_edge[3];
@@ -44,6 +60,9 @@ struct wall_parameters {
 };
 
 // A row of "groups". NAN: not given.
+//
+// LOWER to UPPER is a box, RING a hollow cylinder about an axis; members lie in both.
+// VELOCITY, SPIN and POINT count only if DRIVEN, the initial ones only if not.
 struct group_parameters {
     double lower[3], upper[3];
     double ring_inner, ring_outer, ring_centre[3], ring_axis[3];
@@ -55,6 +74,7 @@ struct group_parameters {
     struct time_table motion;
 };
 
+// The choices in the order of their texts in the table: the index is stored.
 enum contact_law { LAW_HERTZ, LAW_LINEAR, LAW_TIMED };
 enum bond_choice { BOND_NONE, BOND_PARALLEL, BOND_CONTACT };
 enum written { WRITE_MOTION, WRITE_PACKING };
@@ -92,7 +112,10 @@ struct simulate_parameters {
 
 extern const struct parameter simulate_table[];
 
-// Checks what no single row can say. Exits 65.
+// Checks what no single row can say. Exits 65. What depends on two parameters at once:
+// lists of one length, times that rise, servos, the elastic constants that the law
+// needs. What depends on the packing or on names is make_scene's. On the first fault it
+// writes one line with the key to stderr.
 void check_parameters(const struct simulate_parameters *parameters);
 
 #endif

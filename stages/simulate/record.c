@@ -1,7 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every column is declared once, in make_record, and filled by name. Sums are those of
-// the last cycle; positions are those behind it, and velocities belong to half a step
-// before the positions, as leapfrog has them (dem/dem.c).
+// Every column is declared once, in make_record, and filled by name; a name that is not
+// declared is not recorded. So the choice of what to record stands in one place, and a
+// new column is a line there and a line where its numbers are known.
+//
+// When a row's numbers belong to, for a row at the time t of cycle n:
+//
+//     positions, box, displacements    t
+//     velocities, spins, momentum      t - dt/2, as leapfrog has them [K 4.1-4.6]
+//     forces, stress, contacts         the last cycle, so positions at t - dt
+//
+// Stress is that of the census times box / room: the engine divides by its box, which
+// does not follow walls that close in.
+//
+// Forces of groups that are not driven, and angles of theirs, are 0: such a group has
+// no load as one.
 #include "record.h"
 
 #include "basics/memory.h"
@@ -97,6 +109,7 @@ const struct recorded_column *recorded(const struct record *record, const char *
     return column((struct record *)(uintptr_t)record, dataset); // only read
 }
 
+// Doubled, so that n rows cost O(n) copies.
 static void make_room(struct recorded_column *c, int64_t rows)
 {
     if (c->rows + rows <= c->capacity) return;
@@ -131,6 +144,7 @@ static void add_count(struct record *record, const char *dataset, int64_t value)
 
 // ---- sums ---------------------------------------------------------------------------
 
+// One array for three columns: forces, moments, displacements, n of each.
 static void record_walls(struct record *record, const struct scene *scene,
                          const struct dem *dem)
 {
@@ -148,6 +162,7 @@ static void record_walls(struct record *record, const struct scene *scene,
     free(of);
 }
 
+// NEW_ARRAY gives zeros, which stay for the groups that are not driven.
 static void record_groups(struct record *record, const struct scene *scene,
                           const struct dem *dem)
 {
@@ -183,6 +198,8 @@ static void record_energy(struct record *record, const struct dem *dem)
 }
 
 // The unbalanced ratio is infinite where forces act and no contact carries any.
+//
+// HDF5 would keep an infinity, but JSON and most plotting programs would not.
 static double finite_ratio(double ratio)
 {
     static const double most = 1e150;
@@ -190,6 +207,9 @@ static double finite_ratio(double ratio)
 }
 
 // Over the room between planes, which follows walls as they close in.
+//
+// No room is left where planes have passed each other; there is no stress to speak of
+// then.
 static void record_stress(struct record *record, const struct scene *scene,
                           const struct dem *dem, const struct dem_census *census)
 {
@@ -234,6 +254,8 @@ void record_sums(struct record *record, const struct scene *scene,
 
 // ---- snapshots ----------------------------------------------------------------------
 
+// In the engine's order, by first, then second grain, which is the same for any number
+// of threads.
 static void record_contacts(struct record *record, const struct dem *dem)
 {
     int n;
@@ -276,6 +298,8 @@ void record_snapshot(struct record *record,
 
 // ---- checkpoint ---------------------------------------------------------------------
 
+// 64-bit counts go one by one: the stream bounds them to 2^53, because it keeps
+// integers as doubles where they may exceed 32 bits.
 static void stream_column(struct recorded_column *c, struct checkpoint_stream *stream)
 {
     if (c->width == 0) { // nothing but how many
@@ -293,6 +317,7 @@ static void stream_column(struct recorded_column *c, struct checkpoint_stream *s
         stream_long(stream, (int64_t *)c->data + k);
 }
 
+// In the order of declaration, which the scene fixes: values in a stream have no names.
 void record_state(struct record *record, struct checkpoint_stream *stream)
 {
     stream_numbers(stream, &record->largest_overlap, 1);

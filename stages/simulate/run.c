@@ -7,6 +7,10 @@
 // In this order: control (walls, servos, strain) every CONTROL_EVERY cycles, cycles up
 // to the next of these moments, then what is due there. Cycles between looks at the
 // checkpoint's clock change no result.
+//
+// The state that is kept is the engine's and the record; everything else follows from
+// both. The next moment follows from the number of rows there are, not from a clock of
+// its own, so that a run that goes on cannot count differently.
 #include "run.h"
 
 #include "basics/memory.h"
@@ -49,12 +53,16 @@ static int64_t rows(const struct run *run, const char *dataset)
     return recorded(&run->outcome->record, dataset)->rows;
 }
 
+// The last moment is the end of the run, whatever the interval: rows * every may pass
+// it.
 static double next_sums(const struct run *run)
 {
     return fmin((double)rows(run, "/history/time") * run->record_every,
                 run->parameters->duration);
 }
 
+// Snapshots may begin after the end of the run: then none is due, and record_end takes
+// the only one.
 static double next_snapshot(const struct run *run)
 {
     const double from = run->parameters->snapshots_from;
@@ -62,6 +70,8 @@ static double next_snapshot(const struct run *run)
                 fmax(run->parameters->duration, from));
 }
 
+// Compared with half a step, not with equality: sums of time steps do not meet round
+// numbers.
 static bool has_come(const struct run *run, double moment)
 {
     return dem_time(dem_of(run)) >= moment - 0.5 * dem_time_step(dem_of(run));
@@ -74,6 +84,8 @@ static double last_time(const struct run *run, const char *dataset)
     return c->rows > 0 ? ((const double *)c->data)[c->rows - 1] : -INFINITY;
 }
 
+// Without this the end could be recorded twice, and so could the moment at which a run
+// goes on, if the interval is shorter than a time step.
 static bool is_new(const struct run *run, const char *dataset)
 {
     return dem_time(dem_of(run)) > last_time(run, dataset);
@@ -105,6 +117,9 @@ static void record_end(struct run *run)
     if (is_new(run, "/snapshots/time")) take_snapshot(run);
 }
 
+// Only at multiples of CONTROL_EVERY, since the ratio costs O(pairs); these cycles are
+// the same after a restart. Before the first cycle no force is known, and the ratio
+// would be 0.
 static bool is_at_rest(const struct run *run)
 {
     const struct dem *dem = dem_of(run);
@@ -121,6 +136,8 @@ static int64_t least(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
+// At least 1, so that a moment already passed by rounding cannot stall the run. 2^53
+// keeps the conversion from a double defined.
 static int64_t cycles_to(const struct run *run, double moment)
 {
     const struct dem *dem = dem_of(run);
@@ -128,6 +145,7 @@ static int64_t cycles_to(const struct run *run, double moment)
     return left > 0x1p53 ? (int64_t)1 << 53 : left > 1 ? (int64_t)rint(left) : 1;
 }
 
+// From 1 to OF, never 0: at a multiple the next one counts.
 static int64_t cycles_to_multiple(const struct run *run, int64_t of)
 {
     return of - dem_cycle(dem_of(run)) % of;
@@ -181,6 +199,8 @@ static void keep(const struct run *run, const struct keeper *keeper)
     stream_free(&stream);
 }
 
+// The engine first: it checks that the arrays are of this scene before anything else is
+// read.
 static enum status go_on(struct run *run, const struct kept_state *kept,
                          struct reason *reason)
 {
@@ -203,6 +223,9 @@ static double interval(double given, double duration, double count)
 }
 
 // A grain that begins deep in a wall would be shot out of it.
+//
+// Only where the run begins: one that goes on has passed it, and grains may lie deeper
+// under load by then.
 static enum status check_walls(const struct run *run, struct reason *reason)
 {
     for (int w = 0; w < run->scene->setup.n_wall; w++) {
@@ -247,6 +270,7 @@ static enum status begin(struct run *run, const struct vector *force, int thread
     return check_walls(run, reason);
 }
 
+// `duration` may be 0: then the state at the start is recorded and written.
 enum status run_scene(const struct simulate_parameters *parameters, struct scene *scene,
                       const struct vector *force, int threads,
                       void (*tell)(void *context, double fraction), void *context,

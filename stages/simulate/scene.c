@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Names become numbers: that of a material is its place among the sorted names, that of
-// a wall its place behind the walls of the box, that of a group its place from 1.
+// a wall its place behind the walls of the box, that of a group its place from 1. So
+// results do not depend on the order in which a scene lists them.
+//
+// Numbers that the user may leave out, for a material of restitution e and normal
+// stiffness k_n:
+//
+//     zeta = -ln e / sqrt(pi^2 + ln^2 e)        damping ratio [K 4.28]
+//     k_s  = 2/7 k_n                            shear stiffness [G 2]
+//
+// The first makes a linear contact rebound at e: half a period of a damped oscillator
+// leaves exp(-pi zeta / sqrt(1 - zeta^2)) of its speed. The second gives a solid sphere
+// (inertia 2/5 m R^2, so an effective mass of 2/7 m at its surface) one period along
+// and across the contact.
+//
+// Friction, restitution and rolling friction of two materials are the smaller of theirs
+// [K 4.25], unless `pairs` says otherwise.
 #include "scene.h"
 
 #include "basics/memory.h"
@@ -26,6 +41,8 @@ static double given_or(double given, double otherwise)
     return isnan(given) ? otherwise : given;
 }
 
+// Members that the law does not use are passed on as they are, a modulus that was not
+// given as NAN.
 static struct dem_material make_material(const struct material_parameters *row,
                                          const struct simulate_parameters *parameters)
 {
@@ -56,6 +73,8 @@ static int find_material(const struct simulate_parameters *parameters, const cha
     return k;
 }
 
+// Every pair first by the rule of the smaller one; read_pairs then replaces what was
+// given.
 static void make_pair_tables(struct scene *scene)
 {
     const int n = scene->n_material;
@@ -74,6 +93,8 @@ static void make_pair_tables(struct scene *scene)
         }
 }
 
+// Both halves of the symmetric tables are set. A pair of names that occurs twice: the
+// later row, by name, wins.
 static enum status read_pairs(const struct simulate_parameters *parameters,
                               struct scene *scene, struct reason *reason)
 {
@@ -99,6 +120,7 @@ static enum status read_pairs(const struct simulate_parameters *parameters,
     return STATUS_OK;
 }
 
+// Materials of grains are bytes.
 static enum status read_materials(const struct simulate_parameters *parameters,
                                   struct scene *scene, struct reason *reason)
 {
@@ -115,6 +137,8 @@ static enum status read_materials(const struct simulate_parameters *parameters,
     return read_pairs(parameters, scene, reason);
 }
 
+// The material of its group, else that of the scene, else the only one. A guess among
+// several would change densities silently.
 static enum status give_materials(const struct simulate_parameters *parameters,
                                   const struct packing *packing, struct scene *scene,
                                   struct reason *reason)
@@ -145,6 +169,7 @@ static enum status give_materials(const struct simulate_parameters *parameters,
 
 // ---- walls --------------------------------------------------------------------------
 
+// A wall without one is rigid: a grain feels its own stiffness alone.
 static enum status set_wall_material(const struct simulate_parameters *parameters,
                                      const char *material, const char *key,
                                      struct dem_wall *wall, struct reason *reason)
@@ -155,6 +180,7 @@ static enum status set_wall_material(const struct simulate_parameters *parameter
     return wall->material < 0 ? STATUS_BAD_DATA : STATUS_OK;
 }
 
+// The normal points into the box, where the grains are.
 static enum status add_box_walls(const struct simulate_parameters *parameters,
                                  const struct packing *packing, struct scene *scene,
                                  struct reason *reason)
@@ -183,6 +209,8 @@ static enum status add_box_walls(const struct simulate_parameters *parameters,
     return STATUS_OK;
 }
 
+// A friction that was not given is that of the materials in contact; 0 would be a
+// smooth wall. So it needs a flag of its own.
 static struct dem_wall make_wall(const struct wall_parameters *row)
 {
     return (struct dem_wall){
@@ -230,6 +258,7 @@ static enum status read_walls(const struct simulate_parameters *parameters,
 
 // ---- the rest -----------------------------------------------------------------------
 
+// A scene has no temperature or pressure of its own: 20 degrees Celsius and 1 bar.
 static void read_liquid(const struct simulate_parameters *parameters,
                         struct scene *scene)
 {
@@ -243,6 +272,7 @@ static void read_liquid(const struct simulate_parameters *parameters,
     scene->setup.liquid = &scene->liquid;
 }
 
+// A contact bond has one strength, in tension and in shear [K 4.2].
 static void read_bonds(const struct simulate_parameters *parameters,
                        struct dem_setup *setup)
 {
@@ -254,6 +284,9 @@ static void read_bonds(const struct simulate_parameters *parameters,
         given_or(parameters->bond_contact_strength, INFINITY);
 }
 
+// NAN for the safety leaves the step to the engine's stability limit, unless time_step
+// is given. That limit knows rotation, dashpots and several contacts a grain; [K 4.47]
+// does not.
 static void set_engine(const struct simulate_parameters *parameters,
                        const struct packing *packing, struct scene *scene)
 {
@@ -285,6 +318,10 @@ static void set_engine(const struct simulate_parameters *parameters,
 }
 
 // Bonds and driven groups do not follow a box that is strained.
+//
+// The engine rescales neither of them (dem_rescale): a bond accumulates its load from
+// velocities, of which a rescaling has none. And in a direction that does not repeat
+// the strain would move no wall.
 static enum status check_strain(const struct simulate_parameters *parameters,
                                 const struct scene *scene, struct reason *reason)
 {
@@ -304,6 +341,8 @@ static enum status check_strain(const struct simulate_parameters *parameters,
     return STATUS_OK;
 }
 
+// In this order because each needs the one before: groups name materials, grains take
+// them from groups.
 enum status make_scene(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason)

@@ -2,6 +2,10 @@
 // From the parameters, which go by names, to the setup of the engine, which goes by
 // numbers: materials, walls and groups in the order of their names, walls of the box
 // before those.
+//
+// Units stay SI. Defaults that depend on another parameter are filled in here (a
+// stiffness in shear from the normal one, damping from the restitution, water as the
+// liquid); the engine gets numbers only.
 #ifndef CRAQUELURE_SIMULATE_SCENE_H
 #define CRAQUELURE_SIMULATE_SCENE_H
 
@@ -9,6 +13,8 @@
 #include "parameters.h"
 
 // A wall with what its motion is scaled by, and the servo it was given.
+//
+// The engine has the values at the factor 1; `control` multiplies them.
 struct scene_wall {
     const char *name;                  // not owned
     const struct time_table *motion;   // NULL: constant; of the parameters
@@ -17,6 +23,9 @@ struct scene_wall {
 
 // It owns its arrays. SETUP points into them, into the struct itself, which must not be
 // copied, into the packing and the parameters. Free with scene_free.
+//
+// PAIR_* are (n_material, n_material), symmetric. GROUP_OF counts all groups in the
+// order of their names, DRIVEN_OF only those that the engine moves.
 struct scene {
     struct dem_setup setup;
     struct dem_material *material; // (n_material)
@@ -36,6 +45,9 @@ struct scene {
 // PACKING must last as long. VELOCITY (n_particle) m/s, may be NULL. STATUS_BAD_DATA,
 // with the key: a name that is not there, a group that overlaps another, a wall that
 // grains stand in.
+//
+// SCENE is to be freed with scene_free also after a failure. That a wall stands in
+// grains is found later, by run_scene, when the engine knows the overlaps.
 enum status make_scene(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason);

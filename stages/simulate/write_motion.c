@@ -2,6 +2,10 @@
 // Recorded columns go to the datasets of their names. The symbols among the extents of
 // a dataset (n_particle, n_wall, n_group) are the width of its column over the fixed
 // extents.
+//
+// Masses are those of the material, 4/3 pi R^3 rho, also with density_scaling, which
+// gives grains another inertia: they are for those who average momentum or density over
+// the grains.
 #include "write_motion.h"
 
 #include "basics/memory.h"
@@ -31,6 +35,7 @@ static void put_particles(struct artifact *artifact, const struct scene *scene)
     free(mass);
 }
 
+// Spheres and blocks need none, and keep the zero they may have.
 static struct vector unit_normal(const struct dem_wall *wall)
 {
     const double length = norm(wall->normal);
@@ -94,6 +99,8 @@ static void put_cracks(struct artifact *artifact, const struct dem *dem)
     free(position);
 }
 
+// The limit is infinite where nothing touches; 0 says so in a number that every reader
+// takes.
 static void put_summary(struct artifact *artifact, const struct outcome *outcome)
 {
     const struct dem *dem = outcome->dem;
@@ -131,6 +138,7 @@ void put_motion(struct artifact *artifact, const struct scene *scene,
     }
 }
 
+// In place, in order; memmove because a row may be copied onto itself.
 static void keep_intact_bonds(const struct dem *dem, struct packing *packing)
 {
     uint8_t *intact = NEW_ARRAY(uint8_t, packing->n_bond);
@@ -144,6 +152,9 @@ static void keep_intact_bonds(const struct dem *dem, struct packing *packing)
 }
 
 // Porosity over the box, overlaps counted twice, and the contacts of grains.
+//
+// The same numbers as those of `pack`, by the same names, so that what reads a packing
+// finds them. Pairs across a gap (bonds, bridges) are no contacts.
 static void put_packing_summary(struct artifact *artifact,
                                 const struct packing *packing, const struct dem *dem)
 {
