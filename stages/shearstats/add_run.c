@@ -3,6 +3,17 @@
 // by itself, by one thread; the run is the sum of its blocks in their order. Whatever
 // is fitted to the run is fitted to each block, too, and
 //     block error = deviation of the blocks / sqrt(their number).
+//
+// With n snapshots in the window, block b of B has those from n b / B to n (b + 1) / B,
+// rounded down, so that no two blocks differ by more than one snapshot. The order of
+// the additions does not depend on the number of threads.
+//
+// The smoothing that fit_band takes off again is that of the kernel and that of the
+// cells along r: a mean over an interval of length `spacing` adds the variance
+// spacing^2 / 12 of a uniform distribution.
+//
+// The trap: snapshots that follow each other closely are correlated, and so are short
+// blocks; the block error is then too small (docs/shearstats.md).
 #include "basics/memory.h"
 #include "statistics/sample.h"
 #include "study.h"
@@ -18,6 +29,7 @@ struct block_sums {
     double *sum;
 };
 
+// At most one block a snapshot: MOST is what the user asked for.
 static struct block_sums sum_blocks(const struct study *study,
                                     const struct motion *motion, int most, int threads)
 {
@@ -60,6 +72,8 @@ static double smoothing_along_r(const struct study *study)
     return sqrt(study->smoothing * study->smoothing + spacing * spacing / 12);
 }
 
+// Blocks in which a level does not converge are left out of its block error, not
+// counted as 0. The profile is kept for the run alone.
 static void fit_run_levels(const struct study *study, const struct block_sums *blocks,
                            const double *sum, struct run_result *run)
 {
@@ -97,6 +111,8 @@ static void fit_run_levels(const struct study *study, const struct block_sums *b
     free(width);
 }
 
+// A block has fewer snapshots, hence noisier fields, and other cells may flow in it:
+// that is part of the scatter which the error measures.
 static void fit_run_rheology(const struct study *study, const struct block_sums *blocks,
                              struct run_result *run)
 {
@@ -121,6 +137,8 @@ static void fit_run_rheology(const struct study *study, const struct block_sums 
     free(cohesion);
 }
 
+// Needs the fits of the run, because they say where the band is. The volume of each
+// zone counts cells by their centres, so that counts can be turned into densities.
 static void count_separations(const struct study *study, const struct motion *motion,
                               struct run_result *run)
 {
@@ -140,6 +158,7 @@ static void count_separations(const struct study *study, const struct motion *mo
     }
 }
 
+// 1 but for rounding if the grid holds all that the kernel spreads.
 static double share_inside(const struct study *study, const struct motion *motion,
                            const double *sum, int snapshots)
 {
@@ -151,6 +170,7 @@ static double share_inside(const struct study *study, const struct motion *motio
     return inside / (all * snapshots);
 }
 
+// The only refusal, of names that are not there, comes before anything is allocated.
 enum status add_run(struct study *study, const struct motion *motion,
                     const struct shearstats_parameters *parameters, int threads,
                     struct reason *reason)

@@ -2,6 +2,13 @@
 // At the height z between the middles of two layers of cells, sums are interpolated,
 //     turned = sum m r v_angle / (sum m r^2 rate),
 // or 1 minus that where the inner part turns, so that it rises outwards as [G 13].
+//
+// Both sums are interpolated before the quotient is taken. The quotient of each layer,
+// interpolated, would give a layer with one grain the weight of a full one.
+//
+// Angular velocities, not velocities over r: in a rigid rotation m r v_angle and m r^2
+// rate are proportional grain by grain, so that `turned` is 1 however wide cells and
+// kernel are.
 #include "band.h"
 
 #include "basics/memory.h"
@@ -10,7 +17,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The two layers beside HEIGHT, and the share of the upper one.
+// The two layers beside HEIGHT, and the share of the upper one. Below the middle of the
+// lowest layer, and above that of the highest, the profile is that of the layer.
 static double layers_beside(const struct grid_axis *axis, double height, int layer[2])
 {
     const double place = (height - axis->lower) / axis->spacing - 0.5;
@@ -20,6 +28,8 @@ static double layers_beside(const struct grid_axis *axis, double height, int lay
     return inside - layer[0];
 }
 
+// Cells are numbered with z fastest, so cell k n_z is the lowest one of ring k. All
+// cells of a ring have one volume.
 void level_profile(const struct grid *grid, const double *sum, int snapshots,
                    const struct split_cell *cell, double height, double *turned,
                    bool *counts)
@@ -46,6 +56,7 @@ void level_profile(const struct grid *grid, const double *sum, int snapshots,
     }
 }
 
+// In place: `n` never overtakes k.
 void fit_levels(const struct grid *grid, const double *sum, int snapshots,
                 const struct split_cell *cell, double smoothing, struct band_fit *fit)
 {
@@ -67,6 +78,7 @@ void fit_levels(const struct grid *grid, const double *sum, int snapshots,
     free(counts);
 }
 
+// A level at HEIGHT itself is `below`.
 bool band_at(const struct split_cell *cell, const struct band_fit *fit, double height,
              double *centre, double *width)
 {

@@ -7,6 +7,11 @@
 // (exact for a Gaussian), so that width is that of the flow, and
 //     width error = spread error * spread / width.
 // Errors are from the covariance (J^T J)^-1 times the mean square residual.
+//
+// The spread may come out below 0 (the curve is odd in it), so its absolute value
+// counts. The fit is accepted if the centre lies within the profile and the spread is
+// below twice its length: beyond that an error function through the data is a straight
+// line, and centre and spread are not separate numbers.
 #include "band_fit.h"
 
 #include "basics/memory.h"
@@ -33,6 +38,8 @@ static int residuals(const gsl_vector *p, void *data, gsl_vector *f)
     return GSL_SUCCESS;
 }
 
+// d turned / d centre = -exp(-u^2) / (sqrt(pi) spread), and d turned / d spread is u
+// times that.
 static int jacobian(const gsl_vector *p, void *data, gsl_matrix *j)
 {
     const struct profile *profile = data;
@@ -46,7 +53,10 @@ static int jacobian(const gsl_vector *p, void *data, gsl_matrix *j)
     return GSL_SUCCESS;
 }
 
-// Where the profile first crosses a half, and the spread of its steepest rise.
+// Where the profile first crosses a half, and the spread of its steepest rise. The
+// slope at the centre of an error function is 1 / (sqrt(pi) spread). Backwards, so that
+// the crossing nearest to the inner side wins; within 1e-3 and 1 of the profile's
+// length.
 static void guess(const struct profile *profile, double start[2])
 {
     double steepest = 0;
@@ -61,6 +71,8 @@ static void guess(const struct profile *profile, double start[2])
     start[1] = steepest > 0 ? fmin(fmax(1 / (sqrt(M_PI) * steepest), 1e-3), 1) : 0.2;
 }
 
+// GSL's covariance is (J^T J)^-1, without the scatter. Of a width below the smoothing
+// only the error of the spread is known.
 static void read_fit(const gsl_multifit_nlinear_workspace *work, int n, double unit,
                      double from, double smoothing, struct band_fit *fit)
 {
@@ -85,6 +97,8 @@ static void read_fit(const gsl_multifit_nlinear_workspace *work, int n, double u
     gsl_matrix_free(covariance);
 }
 
+// With the length of the profile as unit, tolerances and bounds are numbers without a
+// scale.
 struct band_fit fit_band(const double *r, const double *turned, int n, double smoothing)
 {
     enum { MIN_POINTS = 4, MOST_STEPS = 200 };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names are those of the datasets below /fields.
+// Names are those of the datasets below /fields. The order is that of `enum field`.
+// Tensors have nine numbers also where they are symmetric, so that readers need no
+// table of places.
 #include "field_kinds.h"
 
 const struct field_kind field_kinds[FIELD_KINDS] = {

@@ -34,6 +34,8 @@ static void set_symmetric(double *tensor, int k, double value)
     tensor[PLACE_IN_TENSOR[k][0]] = tensor[PLACE_IN_TENSOR[k][1]] = value;
 }
 
+// The mass in the denominator is spread by the same kernel as the momentum: a velocity
+// needs no volume, and is right at the edge of the bed.
 static void set_velocity(const double *sum, bool cylindrical, double r, double *value)
 {
     double *velocity = value + field_column(FIELD_VELOCITY);
@@ -47,7 +49,9 @@ static void set_velocity(const double *sum, bool cylindrical, double r, double *
 
 // Fluctuations are small beside the mean where the flow is slow: the difference then
 // has errors of 1e-16 of the flux of the mean, which does not matter beside other
-// stresses.
+// stresses. Beside the angle the mean that is taken off is omega r of each grain, whose
+// sums are SUM_TURNING: r varies over a cell, and with the mean velocity a rigid
+// rotation would show a stress.
 static void set_kinetic(const double *sum, bool cylindrical, double per_volume,
                         const double *value, double *kinetic)
 {
@@ -63,6 +67,8 @@ static void set_kinetic(const double *sum, bool cylindrical, double per_volume,
     }
 }
 
+// Contact stress is symmetrised: its antisymmetric part belongs to couples, which are
+// left out.
 static void set_invariants(bool cylindrical, double *value)
 {
     const double *part[3] = {value + field_column(FIELD_CONTACT_STRESS),
@@ -92,6 +98,7 @@ static void set_invariants(bool cylindrical, double *value)
     value[field_column(FIELD_SHEAR_RATE)] = sqrt(strain);
 }
 
+// Volumes first, then what is per mass or per grain, which an empty cell has not.
 static void set_cell(const struct grid *grid, int cell, const double *sum,
                      int snapshots, double *value)
 {
@@ -121,6 +128,7 @@ static void set_cell(const struct grid *grid, int cell, const double *sum,
     value[field_column(FIELD_BRIDGES)] = sum[SUM_JOINED] / sum[SUM_COUNT];
 }
 
+// Two passes: the strain rate of a cell needs the velocities of the cells beside it.
 struct fields make_fields(const struct grid *grid, const double *sum, int snapshots)
 {
     const int n = grid_cells(grid);

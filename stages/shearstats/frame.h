@@ -9,17 +9,21 @@
 
 #include <stdbool.h>
 
+// POINT and AXIS count only if cylindrical.
 struct frame {
     bool cylindrical;
     struct vector point, axis; // a point on the axis, m; its unit vector
 };
 
+// Row k of DIRECTION gives component k; they are right-handed.
 struct place {
     double at[3];               // coordinates: m, or m, 0, m
     struct vector direction[3]; // unit vectors of the components
     double r;                   // distance from the axis; 0 in Cartesian coordinates
 };
 
+// On the axis, where r has no direction, any direction across it serves: what is spread
+// there has r = 0.
 static inline struct place place_of(const struct frame *frame, struct vector x)
 {
     if (!frame->cylindrical)
@@ -35,6 +39,7 @@ static inline struct place place_of(const struct frame *frame, struct vector x)
     return (struct place){{r, 0, z}, {radial, cross(up, radial), up}, r};
 }
 
+// COMPONENT_OF[k] = direction k . V. A tensor f l is turned by turning both vectors.
 static inline void local_components(const struct place *place, struct vector v,
                                     double component_of[3])
 {

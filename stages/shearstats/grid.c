@@ -31,6 +31,7 @@ int cell_place(const struct grid *grid, int cell, int axis)
     return cell / stride_of(grid, axis) % grid->axis[axis].n;
 }
 
+// STEP is 1 or -1.
 int cell_beside(const struct grid *grid, int cell, int axis, int step)
 {
     const struct grid_axis *along = &grid->axis[axis];
@@ -53,6 +54,8 @@ double cell_centre(const struct grid *grid, int cell, int axis)
     return 0.5 * (edge(along, place) + edge(along, place + 1));
 }
 
+// The angle's interval is all of it, 2 pi long, so that spacing_r 2 pi spacing_z r is
+// pi (b^2 - a^2) dz: r is the middle of a and b.
 double cell_volume(const struct grid *grid, int cell)
 {
     double volume = 1;
@@ -61,6 +64,8 @@ double cell_volume(const struct grid *grid, int cell)
     return grid->cylindrical ? volume * cell_centre(grid, cell, 0) : volume;
 }
 
+// -1 is the mirror of 0, not of 1: interval k of a reflected axis begins at k spacing.
+// Modulo twice, because C's remainder of a negative number is not positive.
 static void add_share(const struct grid_axis *axis, int interval, double share,
                       struct shares *shares)
 {
@@ -71,6 +76,8 @@ static void add_share(const struct grid_axis *axis, int interval, double share,
     shares->share[shares->n++] = share;
 }
 
+// The last interval gets what is left up to 1, so that rounding of the kernel's
+// integral cannot lose mass.
 void find_shares(const struct grid_axis *axis, double at, struct shares *shares)
 {
     shares->n = 0;

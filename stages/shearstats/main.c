@@ -3,7 +3,8 @@
 //
 // It reads motions one after the other, each a realisation: averages it over its
 // snapshots (add_run.c), fits what is asked for, and frees it. The first one sets the
-// grid. In the end means over the realisations are written, with their errors.
+// grid. In the end means over the realisations are written, with their errors. Only one
+// motion is in memory at a time: thousands of realisations need no more than one.
 #include "artifacts/artifact.h"
 #include "basics/status.h"
 #include "write_shearstats.h"
@@ -36,6 +37,7 @@ static void warn_of_repeated(json_t *seen, const struct artifact *input)
         json_object_set_new(seen, input->sha256, json_string(input_name(input->path)));
 }
 
+// More than rounding: grains beyond the grid count in no field.
 static void warn_of_lost(const struct study *study, const char *path)
 {
     static const double little = 1e-9;
@@ -45,6 +47,7 @@ static void warn_of_lost(const struct study *study, const char *path)
                input_name(path), lost);
 }
 
+// The digest of each input goes into the provenance.
 static void read_runs(struct study *study, const struct invocation *invocation,
                       const struct shearstats_parameters *parameters, json_t *digests)
 {

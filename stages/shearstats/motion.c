@@ -2,6 +2,10 @@
 // Reads a motion. A moment M about a point p that has moved by u, of a force F, is
 // about an axis a through the point o
 //     (M + (p + u - o) x F) . a.
+//
+// All that is read is checked where it is read: contacts that name walls that are not
+// there, rows of contacts that do not add up, a box that changes. So nothing behind
+// needs a check of its own.
 #include "motion.h"
 
 #include "basics/memory.h"
@@ -10,6 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+// NAN bounds nothing: comparisons with it are false.
 static void find_window(struct motion *motion, double from, double to, const char *path)
 {
     const double *time = motion->snapshot_time;
@@ -26,6 +31,7 @@ static void find_window(struct motion *motion, double from, double to, const cha
             input_name(path), motion->n_snapshot);
 }
 
+// A running sum of the rows of each snapshot: contact_first[s].
 static void read_contacts(struct motion *motion, const struct artifact *input)
 {
     int rows, n_contact;
@@ -57,6 +63,8 @@ static void read_contacts(struct motion *motion, const struct artifact *input)
     }
 }
 
+// The number of groups is that of the dataset, which also counts groups that are not
+// driven.
 static void read_sums(struct motion *motion, const struct artifact *input)
 {
     motion->time = artifact_get(input, "/history/time", &motion->n_time);
@@ -74,6 +82,8 @@ static void read_sums(struct motion *motion, const struct artifact *input)
 }
 
 // The box at the first snapshot of the window; one that repeats must stay.
+//
+// Along other axes the box may follow walls: it is used for nothing there.
 static void read_box(struct motion *motion, const struct artifact *input)
 {
     struct vector *lower = artifact_get(input, "/snapshots/box_lower", NULL);
@@ -95,6 +105,8 @@ static void read_box(struct motion *motion, const struct artifact *input)
     free(upper);
 }
 
+// Parameters of the run that made the motion, for the names of its walls and groups. A
+// motion of another program has none; names are numbers then.
 struct motion read_motion(const struct artifact *input, double from, double to)
 {
     struct motion motion = {0};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mean of a number over the runs that have it.
+// The mean of a number over the runs that have it. Runs are independent realisations,
+// so Student's interval is honest, unlike one from snapshots of a single run.
 #ifndef CRAQUELURE_SHEARSTATS_OVER_RUNS_H
 #define CRAQUELURE_SHEARSTATS_OVER_RUNS_H
 
@@ -11,6 +12,8 @@ struct over_runs {
 };
 
 // Over the values (N) that are not NAN.
+//
+// CONFIDENCE in (0, 1), say 0.95.
 struct over_runs over_runs(const double *value, int n, double confidence);
 
 #endif

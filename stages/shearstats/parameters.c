@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table, and what no row of it can say by itself.
+// The table, and what no row of it can say by itself. What needs a motion (whether the
+// bed is high enough, how many cells there are) is checked by begin_study.
 #include "parameters.h"
 
 #include "basics/status.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameters of shearstats.
+// The parameters of shearstats. Members are in the order and the units of the table in
+// parameters.c: lengths in m, times in s, rates in 1/s; the texts of `--help` say what
+// each does. NAN and NULL: not given, then begin_study chooses from the first motion.
 #ifndef CRAQUELURE_SHEARSTATS_PARAMETERS_H
 #define CRAQUELURE_SHEARSTATS_PARAMETERS_H
 
@@ -7,9 +9,13 @@
 
 #include <stdint.h>
 
+// Choices are stored as the place of their text in the table.
 enum coordinates { COORDINATES_CARTESIAN, COORDINATES_CYLINDRICAL };
+// Which part of a split-bottom cell turns.
 enum turning { TURNING_OUTER, TURNING_INNER };
 
+// RATE decides whether there is a cell at all: without it LEVELS, the radii and the
+// parts are not used.
 struct shearstats_parameters {
     int coordinates;
     double axis_point[3], axis_direction[3];
@@ -31,6 +37,9 @@ struct shearstats_parameters {
 extern const struct parameter shearstats_table[];
 
 // Exits 65 at values that do not go together.
+//
+// Bounds against each other, an axis of no length, a window that ends before it begins,
+// and a cell that has no rotation or no axis.
 void check_shearstats_parameters(const struct shearstats_parameters *parameters);
 
 #endif

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fields are means over the runs; those of the grains, over the runs that have any in
 // the cell. Standard errors are those of these means.
+//
+// What a field is a mean over decides which runs have it (enum field_basis): a density
+// of 0 in an empty cell is a value, a velocity there is none. `filled` and `flowing`
+// say how many runs have grains, or flow, in a cell.
 #include "basics/memory.h"
 #include "over_runs.h"
 #include "write_shearstats.h"
@@ -41,7 +45,8 @@ static bool is_known(const struct fields *fields, int cell, enum field_basis bas
                                 : *field_at(fields, cell, FIELD_CONTACTS) > 0;
 }
 
-// The numbers of FIELD over the runs, (n_cell, its width).
+// The numbers of FIELD over the runs, (n_cell, its width). With one run there is no
+// standard error, and its dataset is left out.
 static void put_field(struct artifact *artifact, const struct study *study,
                       enum field field, double confidence)
 {
@@ -69,6 +74,7 @@ static void put_field(struct artifact *artifact, const struct study *study,
     free(value);
 }
 
+// Counted over runs, so that a reader can require a cell to be filled in all.
 static void put_filled(struct artifact *artifact, const struct study *study)
 {
     const int n = grid_cells(&study->grid);

@@ -2,6 +2,10 @@
 // For each fitted number: that of each run with its two errors, and the mean over the
 // runs with half its interval. What a run does not have is 0 in the tables of the runs,
 // where /levels/fitted and /rheology/points say so, and left out of the means.
+//
+// The two errors of a run answer two questions: the fit's, how well the curve is known
+// if its points scatter independently; the blocks', how much the result changes from
+// one part of the run to the next. The interval over the runs needs neither.
 #include "basics/memory.h"
 #include "over_runs.h"
 #include "write_shearstats.h"
@@ -11,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+// NAN is for inside: artifacts hold finite numbers only.
 static double or_zero(double value)
 {
     return isnan(value) ? 0 : value;
@@ -70,6 +75,7 @@ static void put_level_number(struct artifact *artifact, const struct study *stud
     free(value);
 }
 
+// The mean of a ring over the runs that have enough solid there.
 static void put_profiles(struct artifact *artifact, const struct study *study,
                          double confidence)
 {
@@ -121,6 +127,7 @@ static void put_levels(struct artifact *artifact, const struct study *study,
 
 enum run_number { NUMBER_FRICTION, NUMBER_COHESION, NUMBER_TORQUE };
 
+// A torque has no fit, so no error of one.
 static double run_number(const struct run_result *run, enum run_number which, int part)
 {
     const struct line_fit *line = &run->line;
@@ -134,7 +141,8 @@ static double run_number(const struct run_result *run, enum run_number which, in
 }
 
 // DATASETS: its value, and its fit and block errors (NULL: none), in each run; SUMMARY:
-// the attribute with the mean.
+// the attribute with the mean. or_zero hides which runs have none, so the mean takes
+// the numbers anew.
 static void put_run_number(struct artifact *artifact, const struct study *study,
                            enum run_number which, const char *const datasets[3],
                            const char *summary, double confidence)
@@ -179,7 +187,8 @@ static void put_rheology(struct artifact *artifact, const struct study *study,
 
 // ---- separations --------------------------------------------------------------------
 
-// Classes that any run has: the first and how many.
+// Classes that any run has: the first and how many. Runs begin and end at different
+// separations; classes have one width, so they match.
 static int common_classes(const struct study *study, int64_t *lowest)
 {
     int64_t first = INT64_MAX, past = INT64_MIN;
@@ -194,6 +203,7 @@ static int common_classes(const struct study *study, int64_t *lowest)
 }
 
 // Count per snapshot in class K (global number) of ZONE; the sum of forces in FORCE.
+// Per snapshot, so that runs of different length count alike.
 static double count_in(const struct run_result *run, int64_t k, int zone, double *force)
 {
     const struct separations *of = &run->separations;
@@ -203,6 +213,9 @@ static double count_in(const struct run_result *run, int64_t k, int zone, double
     return of->class[k - of->lowest].count[zone] / run->snapshots;
 }
 
+// The force is the mean of the sums over the mean of the counts, [G 15] with all pairs
+// of all runs: a mean of the runs' means would give a run with few pairs too much
+// weight.
 static void put_separations(struct artifact *artifact, const struct study *study,
                             double confidence)
 {

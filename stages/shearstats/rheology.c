@@ -2,6 +2,11 @@
 // Least squares for [G 14] over the cells that flow, each counting once,
 //     shear stress = friction pressure + cohesion,
 // with errors from the mean square residual over n - 2.
+//
+// Pressure and shear stress are invariants (fields.c). The errors take pressures as
+// exact and cells as independent; neighbours within the kernel are not, which makes
+// these errors too small. Block errors and the interval over runs do not suffer from
+// that.
 #include "rheology.h"
 
 #include "basics/memory.h"
@@ -25,6 +30,7 @@ bool is_flowing(const struct grid *grid, const struct fields *fields, int cell,
     return true;
 }
 
+// A line needs two points, its errors a third.
 struct line_fit fit_line(const double *pressure, const double *stress, int n)
 {
     struct line_fit fit = {.n = n};

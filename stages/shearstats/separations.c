@@ -3,6 +3,10 @@
 //     count = number of pairs,   force = sum of f . n,
 // n from the first grain to the second, on which f acts. The mean force of a class is
 // the quotient, as [G 15].
+//
+// The first class may be negative (overlaps), so classes have numbers of 64 bits and
+// the array grows at both ends. A class is far narrower than a grain: a thousandth of a
+// diameter, by default.
 #include "separations.h"
 
 #include "basics/memory.h"
@@ -25,7 +29,8 @@ void separations_free(struct separations *separations)
     *separations = (struct separations){0};
 }
 
-// Room for class K, with the classes between.
+// Room for class K, with the classes between. memmove: the old classes shift up inside
+// the grown array, over themselves.
 static void include_class(struct separations *separations, int64_t k)
 {
     const int64_t lowest = separations->lowest, n = separations->n;
@@ -43,6 +48,8 @@ static void include_class(struct separations *separations, int64_t k)
     separations->n = (int)all;
 }
 
+// Contacts with walls have no second grain, and do not count. What lies beyond MOST
+// goes to the outermost class, so that one absurd separation cannot exhaust the memory.
 void add_separations(struct separations *separations, const struct motion *motion,
                      int s, const struct frame *frame, const struct split_cell *cell,
                      const struct band_fit *fit)

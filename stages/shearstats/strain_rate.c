@@ -10,7 +10,8 @@
 // (error: spacing); along an axis of one cell they are 0.
 #include "strain_rate.h"
 
-// Derivative along AXIS of column COLUMN.
+// Derivative along AXIS of column COLUMN. `steps` is 2 with a neighbour on both sides,
+// 1 at an edge; a missing side is replaced by the cell itself.
 static double derivative(const struct grid *grid, const struct fields *fields, int cell,
                          int axis, int column)
 {
@@ -29,6 +30,8 @@ static double derivative(const struct grid *grid, const struct fields *fields, i
     return rise / (steps * grid->axis[axis].spacing);
 }
 
+// The angular component of the gradient is r dw/dr, not dv/dr: that is what makes a
+// rigid rotation cancel to the last digit. cell_centre is never 0.
 void strain_rate(const struct grid *grid, const struct fields *fields, int cell,
                  double rate[9])
 {

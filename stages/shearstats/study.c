@@ -2,6 +2,14 @@
 // The grid spans all grains in the window of the first motion, and what the kernel
 // reaches beyond them, unless told otherwise; along axes that are not divided,
 // and along those that repeat, the box.
+//
+// Defaults, with d the mean diameter of the free grains: smoothing length d/2, spacing
+// of cells the smoothing length, width of separation classes d/1000, levels from one d
+// above the lowest centre to one d below the surface, margin of the flowing cells the
+// reach of the kernel.
+//
+// The surface is the height below which 99 % of the centres lie in the last snapshot: a
+// grain that flies above the bed must not lift the highest level out of it.
 #include "study.h"
 
 #include "basics/memory.h"
@@ -20,6 +28,8 @@ struct extent {
     double bottom, top;        // along the last axis, without the highest hundredth
 };
 
+// Over all snapshots of the window for the grid, which must hold them all; the surface
+// of the last one alone.
 static struct extent find_extent(const struct motion *motion, const struct frame *frame)
 {
     struct extent extent = {.lower = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
@@ -56,6 +66,9 @@ static double choose(double told, double otherwise)
     return isnan(told) ? otherwise : told;
 }
 
+// An axis that repeats must hold a whole number of cells, so their size gives way;
+// otherwise the last cell may stick out. 1e-9 keeps an extent that is a multiple of the
+// spacing from having one cell more.
 static struct grid_axis divided(double lower, double upper, double spacing,
                                 double half_width, bool repeats)
 {
@@ -96,6 +109,7 @@ static struct grid_axis make_axis(const struct motion *motion,
     return axis;
 }
 
+// Finer cells would only interpolate the kernel, and would overflow MOST_SHARES.
 static enum status make_grid(struct study *study, const struct motion *motion,
                              const struct shearstats_parameters *parameters,
                              const struct extent *extent, struct reason *reason)
@@ -126,6 +140,7 @@ static enum status make_grid(struct study *study, const struct motion *motion,
 
 // ---- the whole ----------------------------------------------------------------------
 
+// Driven grains are boundary: glued layers may have sizes of their own.
 static double mean_diameter(const struct motion *motion)
 {
     double sum = 0;
@@ -138,6 +153,7 @@ static double mean_diameter(const struct motion *motion)
     return n > 0 ? sum / n : 0;
 }
 
+// Without a rate nothing is a cell, and n_level stays 0.
 static enum status make_cell(struct study *study,
                              const struct shearstats_parameters *parameters,
                              const struct extent *extent, struct reason *reason)
@@ -169,6 +185,7 @@ static enum status make_cell(struct study *study,
     return STATUS_OK;
 }
 
+// Ends that repeat have no wall, and the axis of a cylinder is none either.
 static void make_flowing(struct study *study,
                          const struct shearstats_parameters *parameters,
                          const struct extent *extent)

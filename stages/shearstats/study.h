@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One or several realisations of the same, each averaged and fitted by itself.
+// begin_study looks at the first motion for whatever the user left open: smoothing from
+// its mean diameter, the grid from what its grains span, levels from the height of the
+// bed. Later motions are measured with the same.
 #ifndef CRAQUELURE_SHEARSTATS_STUDY_H
 #define CRAQUELURE_SHEARSTATS_STUDY_H
 
@@ -12,6 +15,9 @@
 #include "torque.h"
 
 // What one motion gives. It owns its arrays.
+//
+// SNAPSHOTS counts those of the window. Block errors are NAN where fewer than two
+// blocks gave a value.
 struct run_result {
     int snapshots;
     double mass_inside; // share of the mass of free grains that is in the grid
@@ -28,6 +34,8 @@ struct run_result {
 };
 
 // What is the same for all: made from the first motion.
+//
+// Free with study_free, also after a failure of begin_study.
 struct study {
     struct frame frame;
     struct grid grid;
@@ -43,12 +51,18 @@ struct study {
 
 // Sets up STUDY for up to MOST_RUNS runs of which MOTION is the first. STATUS_BAD_DATA
 // where the grid would not do.
+//
+// Or cylindrical coordinates in a box that repeats, no free grain, or levels in a bed
+// too low for them.
 enum status begin_study(struct study *study, const struct motion *motion,
                         const struct shearstats_parameters *parameters, int most_runs,
                         struct reason *reason);
 void study_free(struct study *study);
 
 // Adds a run; parts of it go to THREADS threads, and the result is the same for any.
+//
+// begin_study must have come first, with at least as many MOST_RUNS. STATUS_BAD_DATA: a
+// wall or group of the part is not in this motion.
 enum status add_run(struct study *study, const struct motion *motion,
                     const struct shearstats_parameters *parameters, int threads,
                     struct reason *reason);

@@ -14,6 +14,9 @@
 // of f l over the grid keeps all of its digits. Force and branch are turned to the
 // local directions of each point. In a cylinder r v_angle stands beside v_angle, for
 // the angular velocity.
+//
+// The branch may leave the box on one side: its points are spread where they are, and
+// the grid brings them back if its axis repeats.
 #include "sums.h"
 
 #include "basics/memory.h"
@@ -25,6 +28,9 @@ static const int SYMMETRIC[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 
 
 // ---- grains -------------------------------------------------------------------------
 
+// (n_particle, 2): contacts, bridges. Both ends count, so that their mean over the
+// grains is a coordination number. Walls and driven grains count as neighbours, not as
+// grains.
 static double *count_neighbours(const struct motion *motion, int s)
 {
     double *count = NEW_ARRAY(double, 2 * (size_t)motion->n_particle);
@@ -42,6 +48,7 @@ static double *count_neighbours(const struct motion *motion, int s)
     return count;
 }
 
+// m r v beside m v, because means of r v and of v over a cell are two numbers.
 static void add_grains(const struct motion *motion, int s, const struct frame *frame,
                        const struct grid *grid, double *sum)
 {
@@ -107,6 +114,7 @@ struct contact {
     bool touches;
 };
 
+// At S along the branch, from 0 to 1, with the share WEIGHT of the contact.
 static void add_point(const struct frame *frame, const struct grid *grid,
                       const struct contact *contact, double s, double weight,
                       double *sum)
@@ -132,6 +140,9 @@ static void add_point(const struct frame *frame, const struct grid *grid,
     spread(grid, place.at, value, CONTACT_SUMS, sum + SUM_CONTACT, SUM_ALL);
 }
 
+// Weights 5, 8, 5 over 18 are Gauss's for an interval of length 1: exact for
+// polynomials of degree 5 on each piece. A branch that is absurdly long (a bad image)
+// is cut into 1000 at most.
 static void add_branch(const struct frame *frame, const struct grid *grid, double piece,
                        const struct contact *contact, double *sum)
 {
@@ -145,6 +156,8 @@ static void add_branch(const struct frame *frame, const struct grid *grid, doubl
 }
 
 // A quarter of the half width of the kernel; unspread, of a cell.
+//
+// HUGE_VAL, a single piece, where no axis is divided: shares are all 1 then.
 static double longest_piece(const struct grid *grid)
 {
     double piece = HUGE_VAL;
@@ -171,6 +184,7 @@ static void add_traction(const struct motion *motion, int64_t k,
     spread(grid, place.at, value, 3, sum + SUM_TRACTION, SUM_ALL);
 }
 
+// A bridge pulls: its force on the second points back along the normal, hence the sign.
 static void add_contacts(const struct motion *motion, int s, const struct frame *frame,
                          const struct grid *grid, double *sum)
 {

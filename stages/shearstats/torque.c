@@ -20,7 +20,8 @@ static int by_text(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-// Walls of the box come first, in this order (simulate).
+// Walls of the box come first, in this order (simulate). COUNT gets how many walls the
+// box has: the others are numbered from there.
 static int box_walls(const struct motion *motion, const char *name, int *count)
 {
     static const char *const sides[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
@@ -41,7 +42,9 @@ static int box_walls(const struct motion *motion, const char *name, int *count)
     return found;
 }
 
-// The place of NAME among the sorted keys of OBJECT, or -1.
+// The place of NAME among the sorted keys of OBJECT, or -1. `simulate` numbers walls
+// and groups in the order of their names, by strcmp. Here too, because JSON objects
+// have no order to go by.
 static int place_of_name(const json_t *object, const char *name)
 {
     const size_t n = json_object_size(object);
@@ -67,6 +70,7 @@ static int find_wall(const struct motion *motion, const char *name)
     return place < 0 ? -1 : of_box + place;
 }
 
+// A whole, non-negative number below N and nothing behind it, else -1.
 static int find_number(const char *name, int n)
 {
     char *end;
@@ -74,6 +78,7 @@ static int find_number(const char *name, int n)
     return *name && !*end && number >= 0 && number < n ? (int)number : -1;
 }
 
+// Moments of a group are about the `point` of its parameters, 0 unless given.
 static struct vector point_of_group(const struct motion *motion, const char *name)
 {
     const json_t *group =
@@ -132,6 +137,8 @@ enum status find_part(const struct motion *motion, const char *walls,
 
 // ---- torque -------------------------------------------------------------------------
 
+// Minus: the sums are the loads of the grains on the part, and the drive is what
+// balances them.
 static double torque_at(const struct motion *motion, int t, const struct part *part,
                         struct vector point, struct vector axis)
 {
@@ -144,6 +151,7 @@ static double torque_at(const struct motion *motion, int t, const struct part *p
     return torque;
 }
 
+// NAN bounds leave all rows in; fewer rows than blocks make as many blocks as rows.
 struct torque mean_torque(const struct motion *motion, const struct part *part,
                           struct vector point, struct vector axis, double rate,
                           double from, double to, int blocks)
