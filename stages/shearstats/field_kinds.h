@@ -34,9 +34,8 @@ enum field {
     FIELD_KINDS
 };
 
-// What a field is a mean over: it is 0 in a cell that has none.
-//
-// A mean over runs leaves those runs out that have none.
+// What a field is a mean over: it is 0 in a cell that has none. A mean over runs leaves
+// those runs out that have none.
 enum field_basis { OF_VOLUME, OF_GRAINS, OF_CONTACTS };
 
 // One dataset each: its name, and its numbers in a cell (1, 3 or 9).
@@ -48,17 +47,14 @@ struct field_kind {
 extern const struct field_kind field_kinds[FIELD_KINDS];
 
 // All fields of a cell stand in a row of fields_width numbers, a field from
-// field_column on.
-//
-// Both add up the widths of the table: O(FIELD_KINDS), small beside what a cell costs.
+// field_column on. Both add up the widths of the table: O(FIELD_KINDS), small beside
+// what a cell costs.
 int field_column(enum field field);
 int fields_width(void);
 
 // VALUE (n_cell, fields_width); FILLED (n_cell) is 1 where there is mass; elsewhere
 // what is per mass or per grain is 0, but not stresses, because contacts reach into
-// such cells.
-//
-// Cells are numbered as in grid.h. Free with fields_free.
+// such cells. Cells are numbered as in grid.h. Free with fields_free.
 struct fields {
     double *value;
     uint8_t *filled;

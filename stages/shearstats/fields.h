@@ -7,9 +7,8 @@
 #include "sums.h"
 
 // From SUM over SNAPSHOTS snapshots. In a cylinder the components are r, angle, z. The
-// caller frees them with fields_free.
-//
-// SUM (n_cell, SUM_ALL) as add_snapshot leaves it, SNAPSHOTS >= 1.
+// caller frees them with fields_free. SUM (n_cell, SUM_ALL) as add_snapshot leaves it,
+// SNAPSHOTS >= 1.
 struct fields make_fields(const struct grid *grid, const double *sum, int snapshots);
 void fields_free(struct fields *fields);
 

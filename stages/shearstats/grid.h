@@ -22,18 +22,16 @@ struct grid_axis {
 };
 
 // Cells are numbered with the last axis fastest. In a cylinder the axes are r, the
-// angle (everywhere), z.
-//
-// All its cells fill a box, or a cylinder about the axis of the frame.
+// angle (everywhere), z. All its cells fill a box, or a cylinder about the axis of the
+// frame.
 struct grid {
     struct grid_axis axis[3];
     bool cylindrical;
 };
 
-// The intervals that a point reaches, and its share in each.
-//
-// One interval may occur twice, if the kernel is wider than a box that repeats or is
-// reflected at the axis: shares of one interval add up.
+// The intervals that a point reaches, and its share in each. One interval may occur
+// twice, if the kernel is wider than a box that repeats or is reflected at the axis:
+// shares of one interval add up.
 struct shares {
     int n;
     int interval[MOST_SHARES];
@@ -48,17 +46,14 @@ double cell_volume(const struct grid *grid, int cell);           // m3
 int cell_place(const struct grid *grid, int cell, int axis);
 int cell_beside(const struct grid *grid, int cell, int axis, int step);
 
-// Shares sum to 1 to rounding where the kernel lies within the axis, or it repeats.
-//
-// AT in m. A point whose kernel sticks out of the axis loses what falls outside; one
-// far outside has no shares. No allocation.
+// Shares sum to 1 to rounding where the kernel lies within the axis, or it repeats. AT
+// in m. A point whose kernel sticks out of the axis loses what falls outside; one far
+// outside has no shares. No allocation.
 void find_shares(const struct grid_axis *axis, double at, struct shares *shares);
 
 // Adds VALUE (COUNT) times the share of the point AT to SUM (n_cell, STRIDE), from
-// column 0 on.
-//
-// The share of a cell is the product of those along the axes. Cost: the number of cells
-// reached times COUNT.
+// column 0 on. The share of a cell is the product of those along the axes. Cost: the
+// number of cells reached times COUNT.
 void spread(const struct grid *grid, const double at[3], const double *value,
             size_t count, double *sum, size_t stride);
 

@@ -12,9 +12,8 @@
 // The variance of phi is 1/9.
 enum { KERNEL_REACH = 3 }; // half width over smoothing length (standard deviation)
 
-// The integral of phi up to U: 0 below -1, 1 above 1.
-//
-// It rises from 0 to 1; without a unit.
+// The integral of phi up to U: 0 below -1, 1 above 1. It rises from 0 to 1; without a
+// unit.
 static inline double kernel_share(double u)
 {
     if (u <= -1) return 0;

@@ -81,9 +81,8 @@ static void read_sums(struct motion *motion, const struct artifact *input)
         artifact_get(input, "/history/group_displacement", NULL);
 }
 
-// The box at the first snapshot of the window; one that repeats must stay.
-//
-// Along other axes the box may follow walls: it is used for nothing there.
+// The box at the first snapshot of the window; one that repeats must stay. Along other
+// axes the box may follow walls: it is used for nothing there.
 static void read_box(struct motion *motion, const struct artifact *input)
 {
     struct vector *lower = artifact_get(input, "/snapshots/box_lower", NULL);

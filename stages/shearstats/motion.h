@@ -11,11 +11,10 @@
 #include <stdint.h>
 
 // It owns its arrays; free with motion_free. Rows of snapshots outside the window are
-// there, but FIRST and LAST leave them out.
-//
-// FORCE is that on the second of PAIR, bridge included; the force on the first is its
-// opposite. Rows of the contacts of snapshot s are contact_first[s] to contact_first[s
-// + 1] - 1. Positions may lie outside of a box that repeats.
+// there, but FIRST and LAST leave them out. FORCE is that on the second of PAIR, bridge
+// included; the force on the first is its opposite. Rows of the contacts of snapshot s
+// are contact_first[s] to contact_first[s + 1] - 1. Positions may lie outside of a box
+// that repeats.
 struct motion {
     int n_particle, n_snapshot, n_wall, n_group, n_time;
     double *radius, *mass; // (n_particle) m, kg
@@ -38,24 +37,19 @@ struct motion {
 };
 
 // Snapshots from FROM to TO, s; NAN: no bound. Exits 65 when there is none, when rows
-// of contacts and their numbers do not fit, or a box that repeats changes.
-//
-// The first snapshots may be equilibration: FROM leaves them out. All rows are read
-// into memory.
+// of contacts and their numbers do not fit, or a box that repeats changes. The first
+// snapshots may be equilibration: FROM leaves them out. All rows are read into memory.
 struct motion read_motion(const struct artifact *input, double from, double to);
 void motion_free(struct motion *motion);
 
-// The nearest image of the vector from one point to another.
-//
-// By the box of the window, along axes that repeat only. It is right for vectors of
-// less than half a box.
+// The nearest image of the vector from one point to another. By the box of the window,
+// along axes that repeat only. It is right for vectors of less than half a box.
 struct vector shortest_image(const struct motion *motion, struct vector between);
 
 // The moment of the grains on wall W, or on driven group G, about the axis through
-// POINT along the unit vector AXIS, at row T of the sums; N m.
-//
-// Moments in a motion are about the point of the wall or group as it lies then; ABOUT
-// is that point of the group at the start, m.
+// POINT along the unit vector AXIS, at row T of the sums; N m. Moments in a motion are
+// about the point of the wall or group as it lies then; ABOUT is that point of the
+// group at the start, m.
 double wall_torque(const struct motion *motion, int t, int w, struct vector point,
                    struct vector axis);
 double group_torque(const struct motion *motion, int t, int g, struct vector about,

@@ -36,10 +36,9 @@ struct shearstats_parameters {
 
 extern const struct parameter shearstats_table[];
 
-// Exits 65 at values that do not go together.
-//
-// Bounds against each other, an axis of no length, a window that ends before it begins,
-// and a cell that has no rotation or no axis.
+// Exits 65 at values that do not go together. Bounds against each other, an axis of no
+// length, a window that ends before it begins, and a cell that has no rotation or no
+// axis.
 void check_shearstats_parameters(const struct shearstats_parameters *parameters);
 
 #endif

@@ -10,10 +10,8 @@
 
 #include <stdbool.h>
 
-// Which cells count.
-//
-// LOWER and UPPER keep cells away from the walls, where the kernel sees only part of
-// the contacts; axes of one interval are not bounded.
+// Which cells count. LOWER and UPPER keep cells away from the walls, where the kernel
+// sees only part of the contacts; axes of one interval are not bounded.
 struct flowing {
     double least_rate;         // shear rate must be above this, 1/s
     double least_fraction;     // of solid

@@ -7,7 +7,6 @@
 #include "grid.h"
 
 // RATE (3, 3), 1/s, in a filled CELL, from velocities and angular velocities of FIELDS.
-//
 // The symmetric part of the gradient, row-major, in the components of the grid.
 // Elongation is positive, unlike stress. FIELDS must have its velocities in the cells
 // beside CELL, too.

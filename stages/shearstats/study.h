@@ -14,10 +14,8 @@
 #include "separations.h"
 #include "torque.h"
 
-// What one motion gives. It owns its arrays.
-//
-// SNAPSHOTS counts those of the window. Block errors are NAN where fewer than two
-// blocks gave a value.
+// What one motion gives. It owns its arrays. SNAPSHOTS counts those of the window.
+// Block errors are NAN where fewer than two blocks gave a value.
 struct run_result {
     int snapshots;
     double mass_inside; // share of the mass of free grains that is in the grid
@@ -33,9 +31,8 @@ struct run_result {
     double zone_volume[ZONES]; // of cells with grains, m3
 };
 
-// What is the same for all: made from the first motion.
-//
-// Free with study_free, also after a failure of begin_study.
+// What is the same for all: made from the first motion. Free with study_free, also
+// after a failure of begin_study.
 struct study {
     struct frame frame;
     struct grid grid;
@@ -50,17 +47,14 @@ struct study {
 };
 
 // Sets up STUDY for up to MOST_RUNS runs of which MOTION is the first. STATUS_BAD_DATA
-// where the grid would not do.
-//
-// Or cylindrical coordinates in a box that repeats, no free grain, or levels in a bed
-// too low for them.
+// where the grid would not do. Or cylindrical coordinates in a box that repeats, no
+// free grain, or levels in a bed too low for them.
 enum status begin_study(struct study *study, const struct motion *motion,
                         const struct shearstats_parameters *parameters, int most_runs,
                         struct reason *reason);
 void study_free(struct study *study);
 
 // Adds a run; parts of it go to THREADS threads, and the result is the same for any.
-//
 // begin_study must have come first, with at least as many MOST_RUNS. STATUS_BAD_DATA: a
 // wall or group of the part is not in this motion.
 enum status add_run(struct study *study, const struct motion *motion,

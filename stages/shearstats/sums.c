@@ -155,9 +155,8 @@ static void add_branch(const struct frame *frame, const struct grid *grid, doubl
                       weight[k] / pieces, sum);
 }
 
-// A quarter of the half width of the kernel; unspread, of a cell.
-//
-// HUGE_VAL, a single piece, where no axis is divided: shares are all 1 then.
+// A quarter of the half width of the kernel; unspread, of a cell. HUGE_VAL, a single
+// piece, where no axis is divided: shares are all 1 then.
 static double longest_piece(const struct grid *grid)
 {
     double piece = HUGE_VAL;

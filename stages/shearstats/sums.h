@@ -11,9 +11,7 @@
 
 // Columns. Vectors and tensors have the local components; symmetric tensors in the
 // order 00, 11, 22, 01, 02, 12. m mass, v velocity, r distance from the axis of a
-// cylinder.
-//
-// SI: kg, m3, kg m/s, J, kg m2, kg m2/s, N m, N.
+// cylinder. SI: kg, m3, kg m/s, J, kg m2, kg m2/s, N m, N.
 enum sum {
     SUM_MASS = 0,     // m
     SUM_VOLUME = 1,   // of the grains
@@ -36,22 +34,19 @@ enum sum {
 
 // Adds snapshot S of MOTION to SUM (n_cell, SUM_ALL). Driven grains and walls are the
 // boundary: they have no mass here, and a contact with them reaches from the grain's
-// centre to the contact.
-//
-// Other snapshots add to the same SUM, which begins as zeros. Threads need a SUM each.
+// centre to the contact. Other snapshots add to the same SUM, which begins as zeros.
+// Threads need a SUM each.
 void add_snapshot(const struct motion *motion, int s, const struct frame *frame,
                   const struct grid *grid, double *sum);
 
 // The branch of contact K of snapshot S, of which POINT is one end and the other is
-// further by the result; false where neither end is a grain that moves freely.
-//
-// S must be in the window. In m; the nearest image in a box that repeats.
+// further by the result; false where neither end is a grain that moves freely. S must
+// be in the window. In m; the nearest image in a box that repeats.
 bool branch_of(const struct motion *motion, int s, int64_t k, struct vector *from,
                struct vector *along);
 
-// Unit vector from the first grain of contact K to what it touches.
-//
-// Of a wall: to the contact point. 0 if both lie in one place.
+// Unit vector from the first grain of contact K to what it touches. Of a wall: to the
+// contact point. 0 if both lie in one place.
 struct vector contact_normal(const struct motion *motion, int s, int64_t k);
 
 #endif

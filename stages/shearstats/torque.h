@@ -17,10 +17,9 @@ struct part {
 };
 
 // Finds WALLS and GROUPS, each a list of names or numbers between commas or NULL, in
-// the scene of MOTION. STATUS_BAD_DATA with the name that is not there.
-//
-// Numbers count from 0: walls in the order of the scene, those of the box first. A name
-// comes before a number. In a motion without a scene only numbers are found.
+// the scene of MOTION. STATUS_BAD_DATA with the name that is not there. Numbers count
+// from 0: walls in the order of the scene, those of the box first. A name comes before
+// a number. In a motion without a scene only numbers are found.
 enum status find_part(const struct motion *motion, const char *walls,
                       const char *groups, struct part *part, struct reason *reason);
 

@@ -12,9 +12,8 @@
 void put_fields(struct artifact *artifact, const struct study *study,
                 double confidence);
 
-// Levels, profiles and torque of a split-bottom cell, the lines, separations.
-//
-// What STUDY has not (a cell, a part whose torque is asked for) is left out.
+// Levels, profiles and torque of a split-bottom cell, the lines, separations. What
+// STUDY has not (a cell, a part whose torque is asked for) is left out.
 void put_statistics(struct artifact *artifact, const struct study *study,
                     double confidence);
 

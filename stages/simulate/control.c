@@ -74,10 +74,9 @@ bool is_controlled(const struct simulate_parameters *parameters,
 
 // ---- servos -------------------------------------------------------------------------
 
-// The axis that N points along, 0 to 2, or -1.
-//
-// Within 1e-9 only, some digits above rounding: a rectangle between planes has an area
-// by axes only if the planes are square to each other.
+// The axis that N points along, 0 to 2, or -1. Within 1e-9 only, some digits above
+// rounding: a rectangle between planes has an area by axes only if the planes are
+// square to each other.
 static int axis_of(struct vector n)
 {
     const double length = norm(n);
@@ -86,11 +85,9 @@ static int axis_of(struct vector n)
     return -1;
 }
 
-// The room along AXIS between the planes that face each other across it.
-//
-// Of several planes on one side the innermost bounds it. A plane that looks up along
-// the axis is a lower bound, whatever its position: grains stay on the side of its
-// normal.
+// The room along AXIS between the planes that face each other across it. Of several
+// planes on one side the innermost bounds it. A plane that looks up along the axis is a
+// lower bound, whatever its position: grains stay on the side of its normal.
 static double room_along(const struct scene *scene, const struct dem *dem, int axis)
 {
     struct vector lower, upper;

@@ -11,14 +11,12 @@
 bool is_controlled(const struct simulate_parameters *parameters,
                    const struct scene *scene);
 
-// Cycles between two calls of `control`: what it sets holds for so long.
-//
-// It also fixes at which cycles a run may stop (run.c): a run that was kept and goes on
-// must call at the same cycles to give the same bytes.
+// Cycles between two calls of `control`: what it sets holds for so long. It also fixes
+// at which cycles a run may stop (run.c): a run that was kept and goes on must call at
+// the same cycles to give the same bytes.
 enum { CONTROL_EVERY = 16 };
 
 // Sets motions and servos for TIME, s, and strains the box for CONTROL_EVERY cycles.
-//
 // Call it when dem_cycle is a multiple of CONTROL_EVERY, before these cycles run. TIME
 // is that of the beginning of the span, dem_time(DEM). It cannot fail: make_scene has
 // refused all scenes that DEM would refuse to strain.
@@ -30,10 +28,8 @@ void control(const struct simulate_parameters *parameters, const struct scene *s
 double servo_area(const struct scene *scene, const struct dem *dem, int w);
 
 // The room between the planes that face each other along x, y and z, m3; the box where
-// there are none.
-//
-// 0 where planes have passed each other. Round walls, rings and blocks do not bound it:
-// of a drum it is the box.
+// there are none. 0 where planes have passed each other. Round walls, rings and blocks
+// do not bound it: of a drum it is the box.
 double room(const struct scene *scene, const struct dem *dem);
 
 #endif

@@ -13,10 +13,8 @@
 
 // Fills group_of, driven_of, driven, and the initial velocity and spin of SCENE.
 // STATUS_BAD_DATA: two groups want one grain, a group has none, or a grain that is not
-// there.
-//
-// VELOCITY (n_particle) m/s, from the packing; NULL: grains begin at rest. A group's
-// own initial velocity, if given, replaces it. The arrays are SCENE's, freed by
+// there. VELOCITY (n_particle) m/s, from the packing; NULL: grains begin at rest. A
+// group's own initial velocity, if given, replaces it. The arrays are SCENE's, freed by
 // scene_free also after a failure. The key of the offending group stands first in
 // REASON.
 enum status read_groups(const struct simulate_parameters *parameters,

@@ -45,10 +45,9 @@ static struct packing read_packing(const struct artifact *input)
 }
 
 // Forces on the grains, N, by forces.row and forces.factor; NULL without a second
-// input.
-//
-// Only the number of grains is compared: a forces artifact of a deformed packing has
-// other positions, and is meant to be usable. FORCES.ROW below 0 counts from the end.
+// input. Only the number of grains is compared: a forces artifact of a deformed packing
+// has other positions, and is meant to be usable. FORCES.ROW below 0 counts from the
+// end.
 static struct vector *read_forces(const struct invocation *invocation,
                                   const struct simulate_parameters *parameters,
                                   const struct packing *packing, json_t *inputs)
@@ -77,9 +76,8 @@ static struct vector *read_forces(const struct invocation *invocation,
     return force;
 }
 
-// In place: the setup of SCENE points into it.
-//
-// Dies on refusal. Velocities are copied into the scene.
+// In place: the setup of SCENE points into it. Dies on refusal. Velocities are copied
+// into the scene.
 static void read_scene(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct artifact *input,
                        struct scene *scene)
@@ -95,10 +93,9 @@ static void read_scene(const struct simulate_parameters *parameters,
 }
 
 // A servo whose force is further than this share from what it should be was too slow,
-// or nothing pushed back.
-//
-// A wall whose servo has a table of time is left out: what its force should be changes
-// with time. The load of the grains on a wall is against its normal, hence the sign.
+// or nothing pushed back. A wall whose servo has a table of time is left out: what its
+// force should be changes with time. The load of the grains on a wall is against its
+// normal, hence the sign.
 static void warn_of_servos(const struct scene *scene, const struct outcome *outcome)
 {
     static const double near = 0.05;

@@ -16,10 +16,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// A row of "materials". NAN: not given.
-//
-// Which members must be given depends on the law (check_parameters). Units: kg/m3, Pa
-// for young_modulus, N/m of a grain for both stiffnesses; the others are numbers.
+// A row of "materials". NAN: not given. Which members must be given depends on the law
+// (check_parameters). Units: kg/m3, Pa for young_modulus, N/m of a grain for both
+// stiffnesses; the others are numbers.
 struct material_parameters {
     double density, friction, restitution;
     double young_modulus, poisson_ratio;
@@ -28,7 +27,6 @@ struct material_parameters {
 };
 
 // A row of "pairs": what two materials do to each other. NAN: the smaller of the two.
-//
 // It holds in both orders. Damping of the linear law is not among them: there each
 // material has its damping ratio, and a contact the mean of two.
 struct pair_parameters {
@@ -36,17 +34,15 @@ struct pair_parameters {
     double friction, restitution, rolling_friction;
 };
 
-// Factor on a motion at these times (s), linear between them; none: always 1.
-//
-// Times rise strictly, and both lists are equally long (check_parameters).
+// Factor on a motion at these times (s), linear between them; none: always 1. Times
+// rise strictly, and both lists are equally long (check_parameters).
 struct time_table {
     struct number_list times, factors;
 };
 
-// A row of "walls". NAN: not given.
-//
-// m, m/s, rad/s, N, Pa, m2. NORMAL is a plane's side of the grains and an axis of the
-// round shapes. Velocity, spin and servo are those at the factor 1 of MOTION.
+// A row of "walls". NAN: not given. m, m/s, rad/s, N, Pa, m2. NORMAL is a plane's side
+// of the grains and an axis of the round shapes. Velocity, spin and servo are those at
+// the factor 1 of MOTION.
 struct wall_parameters {
     int shape; // enum dem_wall_shape
     double point[3], normal[3], half_edge[3];
@@ -59,10 +55,9 @@ struct wall_parameters {
     struct time_table motion;
 };
 
-// A row of "groups". NAN: not given.
-//
-// LOWER to UPPER is a box, RING a hollow cylinder about an axis; members lie in both.
-// VELOCITY, SPIN and POINT count only if DRIVEN, the initial ones only if not.
+// A row of "groups". NAN: not given. LOWER to UPPER is a box, RING a hollow cylinder
+// about an axis; members lie in both. VELOCITY, SPIN and POINT count only if DRIVEN,
+// the initial ones only if not.
 struct group_parameters {
     double lower[3], upper[3];
     double ring_inner, ring_outer, ring_centre[3], ring_axis[3];

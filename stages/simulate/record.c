@@ -197,19 +197,16 @@ static void record_energy(struct record *record, const struct dem *dem)
     add_rows(record, "/history/dissipation", lost, 1);
 }
 
-// The unbalanced ratio is infinite where forces act and no contact carries any.
-//
-// HDF5 would keep an infinity, but JSON and most plotting programs would not.
+// The unbalanced ratio is infinite where forces act and no contact carries any. HDF5
+// would keep an infinity, but JSON and most plotting programs would not.
 static double finite_ratio(double ratio)
 {
     static const double most = 1e150;
     return ratio < most ? ratio : most;
 }
 
-// Over the room between planes, which follows walls as they close in.
-//
-// No room is left where planes have passed each other; there is no stress to speak of
-// then.
+// Over the room between planes, which follows walls as they close in. No room is left
+// where planes have passed each other; there is no stress to speak of then.
 static void record_stress(struct record *record, const struct scene *scene,
                           const struct dem *dem, const struct dem_census *census)
 {

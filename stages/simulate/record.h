@@ -13,10 +13,8 @@
 #include "checkpoint/stream.h"
 #include "scene.h"
 
-// WIDTH numbers of TYPE in each of ROWS rows; owned.
-//
-// A row may have no numbers (walls, in a scene without walls): then DATA stays NULL and
-// only ROWS counts.
+// WIDTH numbers of TYPE in each of ROWS rows; owned. A row may have no numbers (walls,
+// in a scene without walls): then DATA stays NULL and only ROWS counts.
 struct recorded_column {
     const char *dataset; // "/history/time"
     enum array_type type;
@@ -43,25 +41,20 @@ void record_free(struct record *record);
 const struct recorded_column *recorded(const struct record *record,
                                        const char *dataset);
 
-// Adds a row to /history, as of TIME, s.
-//
-// O(pairs), for stress, energies and the unbalanced ratio. Forces are those of the last
-// cycle.
+// Adds a row to /history, as of TIME, s. O(pairs), for stress, energies and the
+// unbalanced ratio. Forces are those of the last cycle.
 void record_sums(struct record *record, const struct scene *scene,
                  const struct dem *dem, double time);
 
-// Adds a snapshot, as of TIME, s.
-//
-// Contacts too if record_contacts. O(pairs + n_particle); 72 bytes a grain and 68 a
-// contact (with liquid 84) are kept until the artifact is written.
+// Adds a snapshot, as of TIME, s. Contacts too if record_contacts. O(pairs +
+// n_particle); 72 bytes a grain and 68 a contact (with liquid 84) are kept until the
+// artifact is written.
 void record_snapshot(struct record *record,
                      const struct simulate_parameters *parameters,
                      const struct scene *scene, const struct dem *dem, double time);
 
-// Writes all columns to STREAM, or reads them.
-//
-// Reading replaces what the record holds. The stream knows by itself which of both it
-// does, and whether it failed.
+// Writes all columns to STREAM, or reads them. Reading replaces what the record holds.
+// The stream knows by itself which of both it does, and whether it failed.
 void record_state(struct record *record, struct checkpoint_stream *stream);
 
 #endif

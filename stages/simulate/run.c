@@ -222,10 +222,8 @@ static double interval(double given, double duration, double count)
     return duration > 0 ? duration / count : 1;
 }
 
-// A grain that begins deep in a wall would be shot out of it.
-//
-// Only where the run begins: one that goes on has passed it, and grains may lie deeper
-// under load by then.
+// A grain that begins deep in a wall would be shot out of it. Only where the run
+// begins: one that goes on has passed it, and grains may lie deeper under load by then.
 static enum status check_walls(const struct run *run, struct reason *reason)
 {
     for (int w = 0; w < run->scene->setup.n_wall; w++) {

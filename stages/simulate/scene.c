@@ -317,11 +317,10 @@ static void set_engine(const struct simulate_parameters *parameters,
     setup->balance_energy = parameters->record_energy;
 }
 
-// Bonds and driven groups do not follow a box that is strained.
-//
-// The engine rescales neither of them (dem_rescale): a bond accumulates its load from
-// velocities, of which a rescaling has none. And in a direction that does not repeat
-// the strain would move no wall.
+// Bonds and driven groups do not follow a box that is strained. The engine rescales
+// neither of them (dem_rescale): a bond accumulates its load from velocities, of which
+// a rescaling has none. And in a direction that does not repeat the strain would move
+// no wall.
 static enum status check_strain(const struct simulate_parameters *parameters,
                                 const struct scene *scene, struct reason *reason)
 {

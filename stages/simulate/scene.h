@@ -12,9 +12,8 @@
 #include "basics/status.h"
 #include "parameters.h"
 
-// A wall with what its motion is scaled by, and the servo it was given.
-//
-// The engine has the values at the factor 1; `control` multiplies them.
+// A wall with what its motion is scaled by, and the servo it was given. The engine has
+// the values at the factor 1; `control` multiplies them.
 struct scene_wall {
     const char *name;                  // not owned
     const struct time_table *motion;   // NULL: constant; of the parameters
@@ -22,10 +21,9 @@ struct scene_wall {
 };
 
 // It owns its arrays. SETUP points into them, into the struct itself, which must not be
-// copied, into the packing and the parameters. Free with scene_free.
-//
-// PAIR_* are (n_material, n_material), symmetric. GROUP_OF counts all groups in the
-// order of their names, DRIVEN_OF only those that the engine moves.
+// copied, into the packing and the parameters. Free with scene_free. PAIR_* are
+// (n_material, n_material), symmetric. GROUP_OF counts all groups in the order of their
+// names, DRIVEN_OF only those that the engine moves.
 struct scene {
     struct dem_setup setup;
     struct dem_material *material; // (n_material)
@@ -44,10 +42,9 @@ struct scene {
 
 // PACKING must last as long. VELOCITY (n_particle) m/s, may be NULL. STATUS_BAD_DATA,
 // with the key: a name that is not there, a group that overlaps another, a wall that
-// grains stand in.
-//
-// SCENE is to be freed with scene_free also after a failure. That a wall stands in
-// grains is found later, by run_scene, when the engine knows the overlaps.
+// grains stand in. SCENE is to be freed with scene_free also after a failure. That a
+// wall stands in grains is found later, by run_scene, when the engine knows the
+// overlaps.
 enum status make_scene(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason);

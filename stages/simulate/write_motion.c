@@ -151,10 +151,9 @@ static void keep_intact_bonds(const struct dem *dem, struct packing *packing)
     free(intact);
 }
 
-// Porosity over the box, overlaps counted twice, and the contacts of grains.
-//
-// The same numbers as those of `pack`, by the same names, so that what reads a packing
-// finds them. Pairs across a gap (bonds, bridges) are no contacts.
+// Porosity over the box, overlaps counted twice, and the contacts of grains. The same
+// numbers as those of `pack`, by the same names, so that what reads a packing finds
+// them. Pairs across a gap (bonds, bridges) are no contacts.
 static void put_packing_summary(struct artifact *artifact,
                                 const struct packing *packing, const struct dem *dem)
 {
