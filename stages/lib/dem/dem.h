@@ -12,7 +12,14 @@
 //
 // Only what the scene needs is computed: without friction and bonds grains do not
 // rotate and keep no shear history, and with one radius and one material all pairs
-// share their coefficients (pair_kernel.h).
+// share their coefficients (pair_kernel.h). How to use it: fill a dem_setup (zeros are
+// sensible where a member says so), dem_create, set forces or velocities, dem_run as
+// often as needed, look at the state between runs, dem_free. Every function that looks
+// takes O(n_particle) or O(pairs) and changes nothing. Arrays of grains are in the
+// order of the packing, whatever order the engine keeps inside.
+//
+// One engine belongs to one thread of the caller; it uses setup.threads itself. There
+// are no globals, so several engines may run side by side.
 #ifndef CRAQUELURE_DEM_H
 #define CRAQUELURE_DEM_H
 
@@ -25,6 +32,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// How the force between two grains follows from overlap and velocity. One law for all
+// pairs.
 enum dem_law {
     DEM_LINEAR, // stiffness and damping ratio [K 4.22, 4.27-4.30]
     DEM_TIMED,  // linear, by contact time and restitution [G 2], for any two grains
@@ -62,6 +71,7 @@ enum dem_bond_kind {
                        // slip, until one strength is reached [K 4.2]; linear laws only
 };
 
+// A contact bond uses normal_strength and shear_strength only.
 struct dem_bond_material {
     double normal_stiffness; // parallel: N/m3, >= 0
     double shear_stiffness;  // parallel: N/m3, >= 0
@@ -98,7 +108,9 @@ enum dem_wall_shape {
 };
 
 // A rigid wall. A grain touches it with its own stiffness (in series with an infinite
-// one) and the friction of the grains, unless the wall says otherwise.
+// one) and the friction of the grains, unless the wall says otherwise. Walls push
+// grains and are not pushed, but for servos. Grains may overlap several; each counts by
+// itself.
 struct dem_wall {
     struct vector point;  // m
     struct vector normal; // any length but zero; not for spheres and blocks
@@ -130,7 +142,9 @@ struct dem_group {
     double spin;            // rad/s, counter-clockwise seen against the axis
 };
 
-// Setup of dem_create. It is copied: the caller may free it afterwards.
+// Setup of dem_create. It is copied: the caller may free it afterwards. Members that
+// are not set are 0 or NULL, which is the usual choice of most; time_step_safety must
+// be NAN or above 0, unless time_step is given.
 struct dem_setup {
     const struct packing *packing; // with the bonds listed in it
     enum dem_law law;
@@ -175,8 +189,11 @@ struct dem_setup {
     int threads;         // >= 1; used where there is enough to share
 };
 
+// Which strength of a bond was reached first: tension and bending, or shear and twist
+// [K 4.41, 4.42].
 enum dem_crack_mode { DEM_CRACK_NORMAL = 0, DEM_CRACK_SHEAR = 1 };
 
+// A bond that broke. Its grains may touch later, as others do; it does not heal.
 struct dem_crack {
     int32_t bond;           // as numbered in the packing
     uint8_t mode;           // enum dem_crack_mode
@@ -227,10 +244,11 @@ struct dem;
 // limit.
 enum status dem_create(struct dem **result, const struct dem_setup *setup,
                        struct reason *reason);
+// NULL is allowed.
 void dem_free(struct dem *dem);
 
 // External force on every grain from the next cycle on, (n_particle) N; gravity comes
-// on top.
+// on top. FORCE is copied. Driven groups do not feel it.
 void dem_set_force(struct dem *dem, const struct vector *force);
 
 // Velocities (n_particle) m/s and angular velocities (n_particle) rad/s, of half a step
@@ -238,10 +256,12 @@ void dem_set_force(struct dem *dem, const struct vector *force);
 void dem_set_velocity(struct dem *dem, const struct vector *velocity,
                       const struct vector *spin);
 
-// Takes all motion from the grains that WHICH (n_particle) marks.
+// Takes all motion from the grains that WHICH (n_particle) marks. Their shear histories
+// stay: contacts keep the force that they carry.
 void dem_stop(struct dem *dem, const bool *which);
 
-// These count from the next cycle on.
+// These count from the next cycle on: m/s2 of gravity, m/s and rad/s of walls and
+// groups. WALL and GROUP count as in the setup.
 void dem_set_gravity(struct dem *dem, struct vector gravity);
 void dem_set_wall_motion(struct dem *dem, int wall, struct vector velocity,
                          struct vector spin);
@@ -250,6 +270,8 @@ void dem_set_servo(struct dem *dem, int wall, double force); // N; 0 stops it
 void dem_set_group_motion(struct dem *dem, int group, struct vector velocity,
                           double spin);
 // Friction of material 0, and so of all grains when pairs share their coefficients.
+// FRICTION >= 0; shear forces above the new limit slip in the next cycle. SHARE is in
+// [0,1).
 void dem_set_friction(struct dem *dem, double friction);
 void dem_set_local_damping(struct dem *dem, double share);
 
@@ -262,11 +284,14 @@ enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
 
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
 // move a tenth of the mean radius in one step, or a number is not finite); what is
-// asked for later is finite but has no meaning.
+// asked for later is finite but has no meaning. O(CYCLES pairs); pairs are sought again
+// only after a grain has moved by half a skin. One call of n cycles and n calls of one
+// give the same bytes.
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason);
 
 // Runs until dem_unbalanced_ratio is below TOLERANCE, which is looked at every 16
-// cycles. STATUS_NOT_CONVERGED: diverged, or MAX_CYCLES were not enough.
+// cycles. STATUS_NOT_CONVERGED: diverged, or MAX_CYCLES were not enough. DEM has the
+// state at which it stopped, in either case.
 enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,
                           struct reason *reason);
 
@@ -283,6 +308,7 @@ double dem_time_step_limit_now(const struct dem *dem);
 // |F_ij| over the contacts; 0 when no net force acts, infinite when no contact carries
 // any. O(pairs).
 double dem_unbalanced_ratio(const struct dem *dem);
+// J. O(pairs).
 struct dem_energy dem_energy(const struct dem *dem);
 
 // A liquid bridge as it was in the last cycle.
@@ -295,6 +321,7 @@ struct dem_bridge {
 // All bridges, by first, then second grain, walls before grains; a new array of *COUNT
 // that the caller frees.
 struct dem_bridge *dem_bridges(const struct dem *dem, int *count);
+// Velocities half a step before now. O(n_particle).
 struct dem_momentum dem_momentum(const struct dem *dem);
 
 // Contacts in the last cycle, and the stress that grains and walls put on each other.
@@ -309,7 +336,8 @@ struct dem_census dem_census(const struct dem *dem);
 
 // Load of the grains on a wall in the last cycle: force and moment about its POINT; and
 // the displacement of its POINT, m; and its work on the grains since the start, J, 0
-// unless balance_energy.
+// unless balance_energy. SI: N, N m, m, J. The load of the wall on the grains is the
+// opposite.
 struct dem_wall_state {
     struct vector force, moment, displacement;
     double work;
@@ -318,7 +346,8 @@ struct dem_wall_state dem_wall_state(const struct dem *dem, int wall);
 
 // Load of all that is not of the group (grains, walls, bridges) on a group in the last
 // cycle: force and moment about its point; and how far it has moved, m, and turned,
-// rad; and its work as that of walls. O(n_particle).
+// rad; and its work as that of walls. O(n_particle). GROUP counts as in the setup, from
+// 0.
 struct dem_group_state {
     struct vector force, moment, displacement;
     double angle, work;
@@ -331,6 +360,7 @@ int dem_deepest_in_wall(const struct dem *dem, int wall, double *overlap);
 
 // The state, written into arrays of n_particle vectors: m, m, m/s, rad/s. Positions are
 // not brought back into a box that repeats. Displacements are from the last rescaling.
+// Velocities and spins are those of half a step before the positions.
 void dem_positions(const struct dem *dem, struct vector *position);
 void dem_displacements(const struct dem *dem, struct vector *displacement);
 void dem_velocities(const struct dem *dem, struct vector *velocity);
@@ -343,7 +373,7 @@ void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper);
 void dem_loads(const struct dem *dem, struct vector *force, struct vector *moment);
 
 // The contacts by first, then second grain, then those with walls; a new array of
-// *COUNT that the caller frees.
+// *COUNT that the caller frees. Never NULL, also for none.
 struct dem_contact *dem_contacts(const struct dem *dem, int *count);
 
 // Into an array of n_bond: 1 intact, 0 broken.
@@ -354,8 +384,9 @@ const struct dem_crack *dem_cracks(const struct dem *dem, int *count);
 
 // ---- restart ------------------------------------------------------------------------
 // The whole state as named arrays, so that an engine created from the same setup and
-// given them goes on to the same bytes as one that never stopped [restart.c].
-// A new list of *COUNT arrays, to be freed with free_arrays.
+// given them goes on to the same bytes as one that never stopped [restart.c]. A new
+// list of *COUNT arrays, to be freed with free_arrays. Numbers in scaled units: they
+// are for dem_restore, not for reading.
 struct named_array *dem_save(const struct dem *dem, int *count);
 // STATUS_BAD_DATA: arrays that are not those of such an engine; the engine must then be
 // freed.

@@ -85,7 +85,8 @@ struct liquid {
     int changed;
 };
 
-// A grain that is near a wall.
+// A grain that is near a wall. Few beside the pairs of grains, so they are structs, one
+// after the other, and not in lanes.
 struct wall_pair {
     int32_t particle, wall;
     struct contact_law law;
@@ -103,6 +104,8 @@ struct wall_pair {
     double bridge_radius, bridge_volume, bridge_rupture, bridge_pull;
 };
 
+// Scaled. What was asked for and what is differ for a servo, which sets its own
+// velocity along the normal.
 struct rigid_wall {
     struct dem_wall is;         // scaled, unit normal; velocity and spin as asked for
     struct vector displacement; // of its point
@@ -113,6 +116,7 @@ struct rigid_wall {
     double work;       // on the grains, if the balance is wanted
 };
 
+// Compensated sums, because a million steps of one length would drift.
 struct driven_group {
     struct dem_group is; // scaled, unit axis or 0; velocity and spin as asked for
     struct compensated translation[3], angle; // of all steps so far
@@ -122,12 +126,14 @@ struct driven_group {
     double spin;
 };
 
-// What 1 is in scaled units: m, kg, N/m and s.
+// What 1 is in scaled units: m, kg, N/m and s. Time follows from the others: sqrt(mass
+// / stiffness).
 struct units {
     double length, mass, stiffness, time;
 };
 
-// The pair sweep over groups BEGIN..END-1; returns how many bonds broke.
+// The pair sweep over groups BEGIN..END-1; returns how many bonds broke. One compiled
+// function a set of features and instruction set; create.c takes one of them.
 typedef int pair_sweep(const struct dem *dem, int begin, int end);
 // The sets of features that can occur: bonds always turn, contact bonds are linear, and
 // bonded grains do not resist rolling but by their bonds.
@@ -147,7 +153,9 @@ extern pair_sweep *const pair_sweeps_avx2[FEATURE_SETS];
 extern pair_sweep *const pair_sweeps_avx512[FEATURE_SETS];
 
 // It owns all its arrays. Grains are in the order of `id`, not of the packing; results
-// are put back into that order before they leave the engine.
+// are put back into that order before they leave the engine. In blocks: laws and time;
+// grains; bonds; pairs and walls; how loads are added up; when pairs are sought; the
+// balance; cracks. What a checkpoint holds of it is listed in state_columns.c.
 struct dem {
     struct units unit;
     enum dem_law kind;
@@ -253,32 +261,36 @@ struct dem {
 // Refuses a setup that cannot be [check_setup.c].
 enum status check_setup(const struct dem_setup *setup, struct reason *reason);
 
-// Material KIND of the setup, 0 the first.
+// Material KIND of the setup, 0 the first. In SI, as the user gave it.
 static inline const struct dem_material *material(const struct dem_setup *setup,
                                                   int kind)
 {
     return kind == 0 ? &setup->material : &setup->other[kind - 1];
 }
 
+// Whether NORMAL of such a wall means anything.
 static inline bool has_direction(enum dem_wall_shape shape)
 {
     return shape == DEM_PLANE || shape == DEM_CYLINDER || shape == DEM_RING;
 }
 
 // Finds the pairs; those that were there keep their history [neighbours.c].
+// O(n_particle) for grains of similar size.
 void find_pairs(struct dem *dem);
 // Makes these the pairs, sorted, and all that depends on them; takes over both arrays.
-// Those that were there before keep their history [pairs.c].
+// Those that were there before keep their history [pairs.c]. Both arrays have N_PAIR
+// rows; first < second in each. BOND is -1 for none.
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
 // Whether pairs must be found again, as a grain may have moved further than half the
-// skin.
+// skin. Renewing finds and takes them, and numbers grains anew from time to time.
 bool pairs_are_due(struct dem *dem);
 void renew_pairs(struct dem *dem);
 // Lays out the rows of `sum` for the pairs that are swept [sums.c].
 void arrange_sums(struct dem *dem);
 // Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them back
 // before they can, and for the last cycle; BEGINS at the start of a run
-// [inactive_pairs.c].
+// [inactive_pairs.c]. Results do not depend on which pairs rest: those that rest could
+// not touch.
 void update_inactive_pairs(struct dem *dem, int64_t left, bool begins);
 void reactivate_pairs(struct dem *dem);
 // Adds the losses of all pairs to the energy ledger and clears them.
@@ -290,7 +302,8 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);
 // Makes lane PAIR a pair of the dummy grain, which does nothing.
 void set_dummy_pair(struct dem *dem, int pair);
-// Sets the coefficients of pair PAIR where pairs differ.
+// Sets the coefficients of pair PAIR where pairs differ. From materials, radii and
+// inertia of its two grains.
 void set_pair_law(struct dem *dem, int pair);
 
 // Numbers grains along a curve, and pairs and bonds with them [space_filling_order.c].
@@ -299,7 +312,8 @@ void renumber_grains(struct dem *dem);
 // pairs point to is left to whoever makes them again.
 void set_grain_order(struct dem *dem, const int32_t *id);
 
-// Coefficients of the contact of two grains, or of a grain and a wall [materials.c].
+// Coefficients of the contact of two grains, or of a grain and a wall [materials.c]. I
+// and J are indices of the engine.
 struct contact_law pair_law(const struct dem *dem, int i, int j);
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall);
 // Rolling resistance [rolling.c]; nothing without FEATURE_ROLLING. Of a pair with the
@@ -330,23 +344,26 @@ struct vector advance_wall_rolling(struct wall_pair *pair,
                                    double *dashpots);
 
 // Sets masses, mobilities and the common law from radii and materials. FIXED is as in
-// the setup, by index in the packing; NULL keeps those that are fixed.
+// the setup, by index in the packing; NULL keeps those that are fixed. With
+// density_scaling every grain gets the mean inertia, but keeps its weight.
 void set_masses(struct dem *dem, const uint8_t *fixed);
 // Sets external forces from what is applied and gravity.
 void set_external(struct dem *dem);
 void set_equal_mobility(struct dem *dem); // sets equal_mobility
 
-// Liquid bridges [liquid.c]; all but the first two only in wet scenes.
+// Liquid bridges [liquid.c]; all but the first two only in wet scenes. The longest gap,
+// scaled, at which pairs must still be listed.
 double bridge_cutoff(const struct dem *dem); // 0 in dry ones
 void free_liquid(struct liquid *liquid);     // or NULL
-// Scales IS; before pairs are sought.
+// Scales IS; before pairs are sought. BRIDGE_TABLE is made here, which can fail.
 enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
                         struct reason *reason);
 void set_bridge_radius(const struct dem *dem, int pair);
 void form_bridges(struct dem *dem);  // where grains touch as they lie
 void count_bridges(struct dem *dem); // of each grain, from the pairs
 // Forms, keeps and ruptures the bridges of groups BEGIN..END-1 and finds how they pull;
-// before the pair sweep.
+// before the pair sweep. Safe for several threads at once with disjoint groups: counts
+// are changed atomically.
 void update_bridges(const struct dem *dem, int begin, int end);
 void publish_bridge_counts(struct dem *dem); // at the end of a cycle
 struct dem_bridge bridge_of_pair(const struct dem *dem, int pair); // no volume: none
@@ -357,6 +374,7 @@ void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double ov
 struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
                                       const struct wall_pair *pair);
 
+// Scaled. O(pairs).
 double elastic_energy(const struct dem *dem); // of all pairs and walls [energy.c]
 // What grain I has booked as gained of the step after the other energies, as
 // displacements are one step ahead.
@@ -365,7 +383,8 @@ double booked_ahead(const struct dem *dem, int i);
 // Walls [walls.c].
 void find_wall_pairs(struct dem *dem);
 void list_walls_of_grains(struct dem *dem); // sets wall_offset
-// In a cycle: before the forces of its pairs are found, and after.
+// In a cycle: before the forces of its pairs are found, and after. add_up_walls sums
+// the loads in the order of pairs, so that threads do not matter.
 void begin_walls(struct dem *dem);
 void add_up_walls(struct dem *dem);
 void move_walls(struct dem *dem);
@@ -389,6 +408,7 @@ struct wall_geometry {
     double arm;          // from the centre to the contact point
     struct vector lever; // from the wall's point to the contact point
 };
+// OVERLAP < 0 apart.
 struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back);
 
 // The largest squared speed, or an upper bound with that of a largest grain's surface
@@ -414,7 +434,8 @@ struct vector driven_lever(const struct dem *dem, int i, double angle);
 double group_power(const struct dem *dem, int i, const struct motion *load);
 
 // Moves the grains BEGIN..END-1 that are not shared, or entries BEGIN..END-1 of the
-// list of shared ones [grains.c].
+// list of shared ones [grains.c]. Leapfrog [K 4.1-4.6]: v += dt F/m, then u += dt v;
+// rotations likewise. Clears the sums that it has used.
 struct max_speed move_grains(struct dem *dem, int begin, int end);
 struct max_speed move_shared_grains(struct dem *dem, int begin, int end);
 
@@ -422,7 +443,7 @@ struct max_speed move_shared_grains(struct dem *dem, int begin, int end);
 struct motion load_on_grain(const struct dem *dem, int particle);
 
 // The largest stable time step [stability.c]: of all pairs in the list, or if NOW only
-// of those that touch, at the overlaps they have.
+// of those that touch, at the overlaps they have. Scaled.
 double stability_limit(const struct dem *dem, bool now);
 // AUTOMATIC_SHARE of it, or of that of two equal grains that meet, if that is less.
 double automatic_time_step(const struct dem *dem);
@@ -458,7 +479,8 @@ static inline bool is_driven(const struct dem *dem, int i)
     return dem->group_of && dem->group_of[i];
 }
 
-// How many time steps the places are ahead of the forces.
+// How many time steps the places are ahead of the forces. Results speak of the last
+// forces; geometry at BACK = places_ahead is that of these forces.
 static inline double places_ahead(const struct dem *dem)
 {
     return dem->cycle > 0 ? 1 : 0;
@@ -511,6 +533,7 @@ struct pair_geometry {
     double overlap;
     struct vector position; // the contact point
 };
+// In plain C and scaled; for whatever looks at pairs outside of the sweep.
 struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back);
 
 #endif

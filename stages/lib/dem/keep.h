@@ -6,7 +6,8 @@
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
 
-// Gives KEEPER, whose time it is, the state of DEM and of the stage. Frees STAGE.
+// Gives KEEPER, whose time it is, the state of DEM and of the stage. Frees STAGE. It
+// may not return: a keeper may end the program once the state is on disk.
 void keep_state(const struct keeper *keeper, const struct dem *dem,
                 struct array_list stage);
 

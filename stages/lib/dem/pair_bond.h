@@ -11,12 +11,18 @@
 // One pair a lane, as in pair_contact.h. The state of a bond lies in bond_group: R,
 // F^s, M^s, M^n along n, and both strengths, for parallel bonds times A R. A broken one
 // has R = 0 and strengths of -1. beta is dem->moment_contribution.
+//
+// The stiffness of a bond is per area, so the increments need R^2 and R^4 only; the
+// constants with pi are made once for all bonds (bond_law). Twist has k^s and bending
+// k^n, because the fibres of a cylinder are sheared by the one and stretched by the
+// other.
 #include "dem/pair_rolling.h"
 
 #include <math.h>
 
 // Factors of the increments above, the same for all bonds: times R^2 for forces, times
-// R^4 for moments.
+// R^4 for moments. With the time step in them, but for TENSION, which is not an
+// increment.
 struct bond_law {
     doublew tension, shear, twist, bending;
 };
@@ -31,7 +37,8 @@ SIMD_INLINE struct bond_law bond_law(const struct dem *dem, doublew time_step)
 }
 
 // Breaks the bond in lane LANE (rare). Of two modes in one step, the one further past
-// its strength counts.
+// its strength counts. By cross multiplication, because a strength may be 0. noinline
+// keeps it out of the registers of the sweep.
 static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
                                                  bool by_normal, bool by_shear,
                                                  double normal, double shear)
@@ -45,7 +52,8 @@ static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
     b->shear_strength[lane] = -1;
 }
 
-// Breaks the bonds of the lanes BY_NORMAL or BY_SHEAR; returns how many.
+// Breaks the bonds of the lanes BY_NORMAL or BY_SHEAR; returns how many. NORMAL_LOAD
+// and SHEAR_LOAD in the units of the strengths in B.
 SIMD_INLINE int break_bonds(struct bond_group *b, int at, maskw by_normal,
                             maskw by_shear, doublew normal_load, doublew shear_load)
 {
@@ -59,7 +67,8 @@ SIMD_INLINE int break_bonds(struct bond_group *b, int at, maskw by_normal,
     return count;
 }
 
-// Forces of parallel bonds: tension and twist along n, the others across it.
+// Forces of parallel bonds: tension and twist along n, the others across it. On the
+// second grain.
 struct bond_forces {
     doublew tension, twist;
     struct vectorw shear, bending;
@@ -97,7 +106,9 @@ SIMD_INLINE void keep_intact(struct bond_forces *c, maskw whole)
 
 // Breaks the bonds of the lanes BONDED that carry more than they can; returns how many.
 // Stresses are compared times A R: sigma A R = tension R + 4 beta |M^s|, as A R^2 = 4
-// I, and tau A R = |F^s| R + 2 beta |M^n|, as A R^2 = 2 J. Squares spare the roots.
+// I, and tau A R = |F^s| R + 2 beta |M^n|, as A R^2 = 2 J. Squares spare the roots. x
+// |x| keeps the sign of x: where tension alone is past the strength, left is negative,
+// and any bending is at least that.
 SIMD_INLINE int break_overloaded(struct bond_forces *c, const struct dem *dem, int k,
                                  int at, maskw bonded, doublew radius)
 {
@@ -129,7 +140,9 @@ SIMD_INLINE int break_overloaded(struct bond_forces *c, const struct dem *dem, i
     return count;
 }
 
-// Adds the bonds of the lanes BONDED to TOTAL, and breaks them [K 4.31-4.44].
+// Adds the bonds of the lanes BONDED to TOTAL, and breaks them [K 4.31-4.44]. Lanes
+// without a bond have R = 0, so all they add is 0. Tension is subtracted because a
+// normal force is positive when it pushes.
 SIMD_INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, int k,
                               int at, const struct pair_motion *m, maskw bonded,
                               const struct bond_law *law)
@@ -166,7 +179,9 @@ SIMD_INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, in
 //     spring = k^n U, negative in tension;  F^s = rotated F^s - k^s dt V^s;
 //     breaks when -spring >= normal_strength or |F^s| >= shear_strength.
 // BONDED loses the lanes that broke, LAW gets the spring also in tension. Returns how
-// many broke.
+// many broke. The trial shear force is found here once more, before contact_load does
+// it, because a bond must break before friction is applied to it. The strengths are
+// forces.
 SIMD_INLINE int break_contact_bonds(struct lane_law *law, const struct dem *dem, int k,
                                     int at, const struct pair_motion *m, maskw touch,
                                     maskw *bonded, doublew time_step, unsigned features)

@@ -28,7 +28,8 @@
 // energy out of nothing (Elata & Berryman 1996). U_old = U + V^n dt, by leapfrog.
 #include "dem/pair_kinematics.h"
 
-// Coefficients of a contact at its overlap.
+// Coefficients of a contact at its overlap. The two secant stiffnesses serve rolling
+// springs, whose stiffness follows that of the contact.
 struct lane_law {
     doublew spring; // normal force
     doublew shear_stiffness, normal_damping, shear_damping, friction;
@@ -40,7 +41,8 @@ struct lane_law {
 
 // The law of the lanes: spring, stiffness and damping at the overlaps that M has; the
 // spring is 0 where grains do not TOUCH. From pairs.laws where pairs differ, else from
-// dem->law.
+// dem->law. Overlaps of grains that do not touch are cleared before the roots: that of
+// a negative number is NAN.
 SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
                                    const struct pair_motion *m, maskw touch,
                                    doublew time_step, unsigned features)
@@ -83,7 +85,7 @@ SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
 }
 
 // Load of a pair on its second grain: along n (positive pushes), in the contact plane,
-// and moments carried by the bond.
+// and moments carried by the bond. MOMENT is set only with FEATURE_MOMENT.
 struct pair_load {
     doublew normal;
     struct vectorw shear;
@@ -91,14 +93,17 @@ struct pair_load {
 };
 
 // ENTRY grows by AMOUNT, an energy, in the lanes WHERE; only if the balance is wanted
-// (pairs.loss).
+// (pairs.loss). Each pair has its entry: sums over pairs are made later in one order,
+// for any number of threads.
 SIMD_INLINE void add_to_ledger(double *entry, maskw where, doublew amount)
 {
     store(entry, load(entry) + only_where(where, amount));
 }
 
 // Energy that the shear spring loses when its force and stiffness go from BEFORE and
-// STIFFNESS_BEFORE to AFTER and STIFFNESS; a stiffness of 0 holds none.
+// STIFFNESS_BEFORE to AFTER and STIFFNESS; a stiffness of 0 holds none. Its energy is
+// F^2 / (2 k). A Hertz contact that opens goes to a stiffness of 0, and what it still
+// held is lost.
 SIMD_INLINE doublew spring_loss(struct vectorw before, doublew stiffness_before,
                                 struct vectorw after, doublew stiffness)
 {
@@ -112,7 +117,8 @@ SIMD_INLINE doublew spring_loss(struct vectorw before, doublew stiffness_before,
     return 0.5 * (had - has);
 }
 
-// The normal force that limits friction; PUSH is that of spring and dashpot.
+// The normal force that limits friction; PUSH is that of spring and dashpot. Not below
+// 0: a dashpot that pulls must not turn the limit round.
 SIMD_INLINE doublew friction_normal_force(const struct dem *dem,
                                           const struct lane_law *law, doublew push)
 {
@@ -122,7 +128,8 @@ SIMD_INLINE doublew friction_normal_force(const struct dem *dem,
 
 // A spring in the contact plane that slips: its stiffness now and at the overlap of the
 // step before, the factor that its force keeps when a Hertz contact opens, the velocity
-// that stretches it, and the force at which it slips.
+// that stretches it, and the force at which it slips. Shear and rolling use the same
+// one, with forces or moments.
 struct slipping_spring {
     doublew stiffness, before, retained;
     struct vectorw velocity;
@@ -130,7 +137,9 @@ struct slipping_spring {
 };
 
 // One step of such a spring with its HISTORY [K 4.12-4.16, 4.25-4.26]; SLIPS says where
-// it does.
+// it does. Compared by squares, so that the root is taken only where some lane slips.
+// Radial return: the force keeps the direction of the trial. What slip takes is (trial
+// - force) / k, the slip, times the mean of the force before and after.
 SIMD_INLINE struct vectorw advance_spring(const struct dem *dem, int k, int at,
                                           double (*history)[PAIRS_IN_GROUP],
                                           const struct pair_motion *m,
@@ -170,7 +179,8 @@ SIMD_INLINE struct vectorw advance_spring(const struct dem *dem, int k, int at,
 }
 
 // Contact and dashpots [K 4.11-4.16, 4.25-4.30]; TOUCH and BONDED (by a bond) are
-// masks.
+// masks. V^n > 0 where they part, so a dashpot that resists parting lowers the force.
+// Without FEATURE_ROTATION there is neither friction nor shear.
 SIMD_INLINE struct pair_load contact_load(const struct dem *dem, int k, int at,
                                           const struct pair_motion *m, maskw touch,
                                           maskw bonded, const struct lane_law *law,

@@ -15,7 +15,8 @@
 #include "dem/pair_bond.h"
 
 // Subtracts ON_FIRST from the sums of the first grains and adds ON_SECOND to those of
-// the second. One pair after the other, as pairs may have grains in common.
+// the second. One pair after the other, as pairs may have grains in common. Four
+// doubles a row: force only, for scenes in which grains do not turn.
 SIMD_INLINE void add_four(double *sum, const uint32_t *first, const uint32_t *second,
                           struct rows on_first, struct rows on_second)
 {
@@ -27,7 +28,8 @@ SIMD_INLINE void add_four(double *sum, const uint32_t *first, const uint32_t *se
 }
 
 // The same with forces, opposite ones, and moments. A sum is one cache line: with 8
-// lanes it is one vector.
+// lanes it is one vector. ON_FIRST is subtracted, too: callers give it the sign for
+// that.
 SIMD_INLINE void add_eight(double *sum, const uint32_t *first, const uint32_t *second,
                            struct rows force, struct rows on_first,
                            struct rows on_second)
@@ -48,7 +50,9 @@ SIMD_INLINE void add_eight(double *sum, const uint32_t *first, const uint32_t *s
     }
 }
 
-// The same with the same moment on both.
+// The same with the same moment on both. With equal arms both grains are turned by the
+// same moment, so one set of rows serves: subtracted as a whole from the first, added
+// with the sign of its moment reversed to the second.
 SIMD_INLINE void add_opposite(double *sum, const uint32_t *first,
                               const uint32_t *second, struct rows force,
                               struct rows moment)
@@ -71,7 +75,10 @@ SIMD_INLINE void add_opposite(double *sum, const uint32_t *first,
 }
 
 // Minus F_ij and minus what it turns for the first grain, the opposite force for the
-// second [K 4.18, 4.21, 4.43, 4.44].
+// second [K 4.18, 4.21, 4.43, 4.44]. The moment about a centre is arm n x F^s: for the
+// first grain the lever is arm_i n with the force -F^s, for the second -arm_j n with
+// F^s; both give minus arm n x F^s. KEEP stores the loads for those who look after the
+// run.
 SIMD_INLINE void scatter_loads(const struct dem *dem, int k, int at,
                                const struct pair_motion *m,
                                const struct pair_load *pair, bool keep,
@@ -113,7 +120,10 @@ SIMD_INLINE void scatter_loads(const struct dem *dem, int k, int at,
 
 // The loads of lanes AT .. AT + SIMD_WIDTH - 1 of group K, whose MOTION is known.
 // Returns how many bonds broke; BUSY is set where a pair touches, is bonded or pulls.
-// Lanes of a group that was idle and is so still are left out: their loads are 0.
+// Lanes of a group that was idle and is so still are left out: their loads are 0. In
+// this order because each needs the one before: a contact bond breaks before friction
+// acts on it, rolling friction needs the normal force, a bond's moment is added last.
+// The pull of a bridge was found before the sweep (liquid.c); here it only acts.
 SIMD_INLINE int sweep_lanes(const struct dem *dem, int k, int at,
                             const struct pair_motion *motion,
                             const struct bond_law *bonds, doublew time_step, int *busy,
@@ -157,7 +167,8 @@ SIMD_INLINE int sweep_lanes(const struct dem *dem, int k, int at,
 }
 
 // Prefetches the records of second grains, which are scattered. First grains come in
-// order, and the processor foresees them by itself.
+// order, and the processor foresees them by itself. It pays only when grains do not fit
+// into the cache, see CACHED.
 SIMD_INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
 {
     const uint32_t *second = dem->pairs.group[k].second;
@@ -170,7 +181,8 @@ SIMD_INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
     }
 }
 
-// One cycle of groups BEGIN .. END - 1. Returns how many bonds broke.
+// One cycle of groups BEGIN .. END - 1. Returns how many bonds broke. FEATURES is a
+// constant wherever this is inlined.
 SIMD_INLINE int sweep_groups(const struct dem *dem, int begin, int end,
                              unsigned features)
 {
@@ -207,7 +219,9 @@ SIMD_INLINE int sweep_groups(const struct dem *dem, int begin, int end,
 
 // Gaps of the pairs of group K in effective radii, for liquid bridges; from
 // displacements, as the overlap (pair_kinematics.h). Not fused, so that rounding is
-// that of one pair. Returns a bit for each lane that touches or has a bridge.
+// that of one pair. Returns a bit for each lane that touches or has a bridge. The gap
+// is (d - d0 - U0) / radius with d - d0 = change / (d + d0), written over one
+// denominator.
 unsigned GAPS_NAME(const struct dem *dem, int k, double gap[PAIRS_IN_GROUP])
 {
     const struct pair_group *g = &dem->pairs.group[k];

@@ -23,7 +23,9 @@
 // ends in the new plane exactly.
 #include "dem/pair_simd.h"
 
-// How the contact plane has turned in the last time step.
+// How the contact plane has turned in the last time step. All that is needed to turn
+// any vector of the plane, so that the shear force, bending and rolling moments share
+// it.
 struct plane_rotation {
     struct vectorw normal;
     struct vectorw middle; // n - t/2
@@ -43,13 +45,15 @@ SIMD_INLINE struct vectorw rotate_history(struct plane_rotation by, struct vecto
     return add_scaled3(along, by.spin, cross3(by.normal, flat));
 }
 
-// Whether the contact is as far from one grain's centre as from the other's.
+// Whether the contact is as far from one grain's centre as from the other's. Without
+// FEATURE_PAIR_LAWS all grains have one radius.
 SIMD_INLINE bool has_equal_arms(unsigned features)
 {
     return !(features & FEATURE_PAIR_LAWS);
 }
 
-// Motion of the pairs [K 4.7-4.9, 4.15, 4.17].
+// Motion of the pairs [K 4.7-4.9, 4.15, 4.17]. Velocities as in the head: V^n > 0 where
+// they part. The arms reach to the middle of the overlap [K 4.9].
 struct pair_motion {
     struct plane_rotation rotation;
     doublew stretch, overlap;
@@ -59,12 +63,14 @@ struct pair_motion {
     struct vectorw relative_spin;  // omega_j - omega_i
 };
 
-// The surfaces' velocity at the contact is that of the centres less rolling x n.
+// The surfaces' velocity at the contact is that of the centres less rolling x n. SUM is
+// w_i + w_j, ROLLING is arm_i w_i + arm_j w_j.
 struct spin_terms {
     struct vectorw sum, rolling;
     struct vectorw relative; // omega_j - omega_i
 };
 
+// Equal arms need only the sum: half the transpositions.
 SIMD_INLINE struct spin_terms find_spin_terms(const struct pair_motion *m,
                                               const double *spins, const uint32_t *i,
                                               const uint32_t *j, unsigned features)
@@ -99,7 +105,8 @@ SIMD_INLINE struct spin_terms find_bonded_spin_terms(const struct pair_motion *m
     return s;
 }
 
-// The part that only rotating grains need: V^s, and how the plane rotates.
+// The part that only rotating grains need: V^s, and how the plane rotates. Middle and
+// spin are half of the motion of one time step, as the head derives.
 SIMD_INLINE void find_shear_motion(struct pair_motion *m,
                                    const struct spin_terms *spins,
                                    struct vectorw velocity, doublew inverse,
@@ -122,6 +129,7 @@ struct inverses {
     doublew distance, sum;
 };
 
+// 1/d = (1 / (d sum)) sum and 1/sum = (1 / (d sum)) d.
 SIMD_INLINE struct inverses invert(doublew distance, doublew distance_at_start)
 {
     const doublew d = distance + 1e-300; // n = 0 if they ever coincide
@@ -130,7 +138,7 @@ SIMD_INLINE struct inverses invert(doublew distance, doublew distance_at_start)
     return (struct inverses){both * sum, both * d};
 }
 
-// Distance of the pairs.
+// Distance of the pairs. PLACE_I and PLACE_J carry the radii as their fourth number.
 struct lane_distance {
     struct vectorw separation;
     doublew inverse; // 1 / d
@@ -145,6 +153,7 @@ struct lane_distance {
 // by Taylor series to rounding while |x| is at most SMALL_CHANGE.
 #define SMALL_CHANGE 0x1p-11
 
+// Horner's rule: c0 + c1 x + ... + c4 x^4.
 SIMD_INLINE doublew series(doublew x, double c0, double c1, double c2, double c3,
                            double c4)
 {
@@ -154,6 +163,7 @@ SIMD_INLINE doublew series(doublew x, double c0, double c1, double c2, double c3
     return fmadd(sum, x, splat(c0));
 }
 
+// For any distance: stretch = (d^2 - d0^2) / (d + d0).
 SIMD_INLINE void find_stretch(struct lane_distance *pair, doublew square_change,
                               doublew distance_at_start)
 {
@@ -163,6 +173,8 @@ SIMD_INLINE void find_stretch(struct lane_distance *pair, doublew square_change,
     pair->stretch = square_change * inverses.sum;
 }
 
+// Lanes beyond the series are found in the other way, and all lanes pay for it then.
+// `not_at_most` sends NAN there, too.
 SIMD_INLINE void find_small_stretch(struct lane_distance *pair, doublew square_change,
                                     const struct pair_group *g, int at)
 {
@@ -182,6 +194,7 @@ SIMD_INLINE void find_small_stretch(struct lane_distance *pair, doublew square_c
     pair->stretch = small.stretch;
 }
 
+// Of x_j - x_i = s0 + (u_j - u_i), never of two positions.
 SIMD_INLINE struct lane_distance find_distance(const struct dem *dem, int k, int at,
                                                unsigned features)
 {

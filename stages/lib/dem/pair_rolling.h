@@ -8,10 +8,13 @@
 //     M^r = rotated M^r - k_r dt omega^r,  |M^r| <= arm F^n,
 //     moment on the second grain = M^r - c_r omega^r where it does not roll on.
 // Twisting about n is free. M^r is kept for the next step, turned and forgotten as the
-// shear force is.
+// shear force is. 9/4 is theirs, after Jiang, Yu and Harris (2005). All is in scaled
+// units.
 #include "dem/pair_contact.h"
 
-// The moment on the second grain; PUSH is the force of spring and dashpot along n.
+// The moment on the second grain; PUSH is the force of spring and dashpot along n. No
+// bond ever holds a rolling spring (FEATURE_ROLLING excludes bonds), hence the empty
+// mask. Sliding and rolling limits use one normal force.
 SIMD_INLINE struct vectorw rolling_moment(const struct dem *dem, int k, int at,
                                           const struct pair_motion *m, maskw touch,
                                           const struct lane_law *law, doublew push,

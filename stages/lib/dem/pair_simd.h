@@ -7,7 +7,10 @@
 // SIMD_WIDTH pairs, lane k being pair AT + k. `rows` lie between: for SIMD_WIDTH = 4
 // row k is the record of lane k; for 8 the rows are the records of lanes 0 and 2, 1 and
 // 3, 4 and 6, 5 and 7, as EVEN, ODD, LOWER and UPPER then put lanes in order. transpose
-// leads from rows to components, rows_of back.
+// leads from rows to components, rows_of back. Why transpose at all: a grain's numbers
+// lie together because pairs find grains at random places, so one line of the cache has
+// them all; arithmetic wants the same number of many pairs. So whole records are loaded
+// and then transposed.
 #include "dem/engine.h"
 
 #include "basics/simd.h"
@@ -17,7 +20,8 @@ struct vectorw {
     doublew x, y, z;
 };
 
-// Lanes AT .. AT + SIMD_WIDTH - 1 of a vector in a group; and back.
+// Lanes AT .. AT + SIMD_WIDTH - 1 of a vector in a group; and back. P[axis] has the
+// eight lanes of a group; AT is a multiple of SIMD_WIDTH.
 SIMD_INLINE struct vectorw load3(const double (*p)[PAIRS_IN_GROUP], int at)
 {
     return (struct vectorw){load(&p[0][at]), load(&p[1][at]), load(&p[2][at])};
@@ -30,6 +34,8 @@ SIMD_INLINE void store3(double (*p)[PAIRS_IN_GROUP], int at, struct vectorw a)
     store(&p[2][at], a.z);
 }
 
+// Component by component, in this order and fused as written; the order is part of the
+// result.
 SIMD_INLINE struct vectorw add3(struct vectorw a, struct vectorw b)
 {
     return (struct vectorw){a.x + b.x, a.y + b.y, a.z + b.z};
@@ -58,16 +64,19 @@ SIMD_INLINE struct vectorw subtract_scaled3(struct vectorw a, doublew s,
                             fnmadd(s, b.z, a.z)};
 }
 
+// 0 outside of M, also where A is NAN.
 SIMD_INLINE struct vectorw only_where3(maskw m, struct vectorw a)
 {
     return (struct vectorw){only_where(m, a.x), only_where(m, a.y), only_where(m, a.z)};
 }
 
+// x y first, then y, then z: two fused operations.
 SIMD_INLINE doublew dot3(struct vectorw a, struct vectorw b)
 {
     return fmadd(a.z, b.z, fmadd(a.y, b.y, a.x * b.x));
 }
 
+// One product of each pair is rounded, the other is not.
 SIMD_INLINE struct vectorw cross3(struct vectorw a, struct vectorw b)
 {
     return (struct vectorw){fmsub(a.y, b.z, a.z * b.y), fmsub(a.z, b.x, a.x * b.z),
@@ -90,7 +99,9 @@ struct vectorw_and_fourth {
     doublew w;
 };
 
-// The record of STRIDE doubles, 4 or 8, at a scaled INDEX (INDEX_SCALE).
+// The record of STRIDE doubles, 4 or 8, at a scaled INDEX (INDEX_SCALE). INDEX is eight
+// times the grain's number: the processor scales by 1, 2, 4 or 8 in an address, so 32
+// and 64 bytes need no multiplication.
 SIMD_INLINE double *record(const double *base, size_t stride, uint32_t index)
 {
     return (double *)((uintptr_t)base + stride * sizeof *base / INDEX_SCALE * index);
@@ -137,7 +148,8 @@ SIMD_INLINE double4 load_quad(const double *base, size_t stride, uint32_t index)
     }
 #endif
 
-// As fetched: two records of four in each (SIMD_WIDTH = 8), or one.
+// As fetched: two records of four in each (SIMD_WIDTH = 8), or one. Four registers in
+// either width.
 struct rows {
     doublew row[4];
 };
@@ -149,6 +161,7 @@ SIMD_INLINE struct rows fetch(const double *p, size_t stride, const uint32_t *i)
     return (struct rows){ROWS};
 }
 
+// Before transposing: half the shuffles of adding afterwards.
 SIMD_INLINE struct rows add_rows(struct rows a, struct rows b)
 {
     for (int k = 0; k < 4; k++)
@@ -172,7 +185,9 @@ SIMD_INLINE struct vectorw_and_fourth transpose(struct rows a)
         {LOWER(xz0, xz1), LOWER(yw0, yw1), UPPER(xz0, xz1)}, UPPER(yw0, yw1)};
 }
 
-// Differences of the records of eight at P, from I to J: two vectors of three.
+// Differences of the records of eight at P, from I to J: two vectors of three. With
+// eight lanes a record of eight doubles is one load, and both of its vectors share the
+// shuffles.
 SIMD_INLINE void fetch_changes(const double *p, const uint32_t *i, const uint32_t *j,
                                struct vectorw *first, struct vectorw *second)
 {

@@ -2,6 +2,9 @@
 // The pairs of an engine as the kernel takes them: in groups of eight, the same
 // quantity of all eight side by side (structure of arrays within a group). All in
 // scaled units (dem.h). Owner of the arrays is struct pair_list; free_pairs frees them.
+// Why eight: a group is one AVX-512 vector or two of AVX2, so one layout serves both
+// kernels, and every array of eight doubles is one cache line. Why not one array for
+// each quantity: what a group needs of one kind then lies in successive lines.
 #ifndef CRAQUELURE_DEM_PAIRS_H
 #define CRAQUELURE_DEM_PAIRS_H
 
@@ -17,6 +20,9 @@ enum { INDEX_SCALE = 8 };
 
 // Eight pairs: pair p is lane p % PAIRS_IN_GROUP of group p / PAIRS_IN_GROUP. Unused
 // lanes at the end pair the dummy grain (index n_particle) with itself, far apart.
+// Displacements are added to SEPARATION, so x_j - x_i keeps the digits of the
+// displacements (pair_kinematics.h). In a box that repeats it is that of the nearest
+// image when the pair was found.
 struct pair_group {
     _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
     uint32_t second[PAIRS_IN_GROUP];
@@ -26,7 +32,8 @@ struct pair_group {
     double inverse_distance[PAIRS_IN_GROUP]; // for parallel bonds
 };
 
-// Where the loads on the two grains of each pair are added up: rows of dem->sum.
+// Where the loads on the two grains of each pair are added up: rows of dem->sum. Scaled
+// as the grains' indices are. A row of a shared grain belongs to one pair alone.
 struct sum_group {
     _Alignas(CACHE_LINE) uint32_t first[PAIRS_IN_GROUP];
     uint32_t second[PAIRS_IN_GROUP];
@@ -34,7 +41,8 @@ struct sum_group {
 
 // What the pairs of a group did in the last cycle, if it is kept. FORCE acts on the
 // second grain, the first feels the opposite. The moment on the first grain is stored
-// with the opposite sign.
+// with the opposite sign. Kept in the last cycle of a run only: contacts, censuses and
+// loads are read from it.
 struct load_group {
     _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
 };
@@ -43,12 +51,15 @@ struct moment_group {
     double second[3][PAIRS_IN_GROUP];
 };
 
-// What a group has besides, where the scene needs it. History of the shear force:
+// What a group has besides, where the scene needs it. History of the shear force: In
+// the contact plane of the last step, on the second grain; the spring's part alone,
+// without dashpot.
 struct shear_group {
     _Alignas(CACHE_LINE) double force[3][PAIRS_IN_GROUP];
 };
 
-// Coefficients of each pair, as in struct contact_law, where pairs differ.
+// Coefficients of each pair, as in struct contact_law, where pairs differ. Without
+// FEATURE_PAIR_LAWS it is not allocated: dem->law holds for all.
 struct law_group {
     _Alignas(CACHE_LINE) double normal_stiffness[PAIRS_IN_GROUP];
     double shear_stiffness[PAIRS_IN_GROUP];
@@ -57,7 +68,8 @@ struct law_group {
     double friction[PAIRS_IN_GROUP];
 };
 
-// Bonds, and what parallel ones carry on the second grain.
+// Bonds, and what parallel ones carry on the second grain. Times A R spares the kernel
+// a division for each bond (pair_bond.h).
 struct bond_group {
     _Alignas(CACHE_LINE) double radius[PAIRS_IN_GROUP]; // 0 without an intact bond
     double normal_strength[PAIRS_IN_GROUP];             // -1 without an intact bond
@@ -68,7 +80,8 @@ struct bond_group {
     int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
 };
 
-// Energy that each pair has lost since close_pair_ledger, by the way it went.
+// Energy that each pair has lost since close_pair_ledger, by the way it went. In scaled
+// units of energy. Only with balance_energy.
 struct loss_group {
     _Alignas(CACHE_LINE) double dashpots[PAIRS_IN_GROUP];
     double slip[PAIRS_IN_GROUP];
@@ -76,7 +89,8 @@ struct loss_group {
     double bridges[PAIRS_IN_GROUP];
 };
 
-// Liquid bridges.
+// Liquid bridges. Volumes and gaps over the effective radius: then one table of the
+// force serves every pair.
 struct liquid_group {
     _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
     double radius[PAIRS_IN_GROUP];                    // effective [G 1]
@@ -86,14 +100,14 @@ struct liquid_group {
 };
 
 // Rolling resistance: coefficients, and the moment of the rolling spring on the second
-// grain.
+// grain. In the contact plane of the last step, as the shear force.
 struct rolling_group {
     _Alignas(CACHE_LINE) double moment[3][PAIRS_IN_GROUP];
     double arm[PAIRS_IN_GROUP];     // rolling friction times effective radius
     double damping[PAIRS_IN_GROUP]; // moment per angular velocity; Hertz: times U^0.25
 };
 
-// The same coefficients of one contact.
+// The same coefficients of one contact. ARM is a length, DAMPING as in rolling_group.
 struct rolling_law {
     double arm, damping;
 };
@@ -109,7 +123,9 @@ struct contact_law {
     double shear_damping;
 };
 
-// All pairs that are swept, in the order in which loads are added.
+// All pairs that are swept, in the order in which loads are added. Pairs of grains that
+// merely may come near are in it, too: most do nothing, and those that cannot for a
+// while are taken out (inactive_pairs.c).
 struct pair_list {
     int n_pair;
     int32_t (*particle)[2]; // (n_pair) sorted by first, then second
@@ -132,7 +148,8 @@ struct pair_list {
     struct rolling_group *rolling;
 };
 
-// The grains of LANE, as indices; set_grains scales them.
+// The grains of LANE, as indices; set_grains scales them. Not of an unused lane, whose
+// grain is the dummy.
 static inline int first_grain(const struct pair_group *group, int lane)
 {
     return (int)(group->first[lane] / INDEX_SCALE);
@@ -149,16 +166,18 @@ static inline void set_grains(struct pair_group *group, int lane, int first, int
     group->second[lane] = INDEX_SCALE * (uint32_t)second;
 }
 
-// The vector of LANE in a group's components.
+// The vector of LANE in a group's components. A[axis][lane].
 static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int lane)
 {
     return (struct vector){a[0][lane], a[1][lane], a[2][lane]};
 }
 
-// Frees what it owns, not the struct.
+// Frees what it owns, not the struct. The struct holds dangling pointers then: assign
+// another list to it.
 void free_pairs(struct pair_list *pairs);
 // Copies history and image of a pair that was in the old list; SWAPPED: its grains are
-// in the other order now.
+// in the other order now. Vectors of swapped pairs change sign, because they act on the
+// other grain now; the twist does not, because n turns round as well.
 void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
                 int old_pair, bool swapped);
 

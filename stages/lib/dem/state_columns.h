@@ -24,10 +24,12 @@ struct column_list {
 };
 
 // All state of DEM except which bonds are intact. The columns point into DEM and are
-// valid until its arrays change; DEM can be changed through them.
+// valid until its arrays change; DEM can be changed through them. Which columns there
+// are depends on the scene (liquid, bonds, rolling). Scaled units.
 struct column_list list_columns(struct dem *dem);
 
-// Address of number K of row ROW.
+// Address of number K of row ROW. K counts from 0 to width - 1. Of the type of the
+// column.
 char *column_address(const struct column *column, int64_t row, int k);
 
 #endif
