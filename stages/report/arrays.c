@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Whole numbers of 32 bits as one to four planes of bytes. The high bytes of numbers of
+// one size are nearly all equal, so beside each other zlib packs them to almost
+// nothing.
+//
+//     kept_k = zigzag(value_k - value_{k-1})    where RISING, kept_0 = zigzag(value_0)
+//     zigzag(d) = 2 d for d >= 0, -2 d - 1 below
+//     plane p  = (kept >> 8 p) & 0xff           one behind the other, lowest first
+//
+// The script of the page undoes this by the fields of `list`: name, count, planes,
+// delta, float. A change here needs one there (page/).
 #include "arrays.h"
 
 #include "basics/memory.h"
@@ -20,6 +30,7 @@ void arrays_free(struct arrays *arrays)
     *arrays = (struct arrays){0};
 }
 
+// Capacity doubles: appending costs O(size).
 static void put_planes(struct arrays *arrays, const uint32_t *value, size_t count,
                        int planes)
 {
@@ -33,6 +44,7 @@ static void put_planes(struct arrays *arrays, const uint32_t *value, size_t coun
             arrays->data[arrays->size++] = (unsigned char)(value[k] >> (8 * plane));
 }
 
+// The bits of all numbers together have a byte where any of them has one.
 static int planes_for(const uint32_t *value, size_t count)
 {
     uint32_t all = 0;
@@ -50,6 +62,8 @@ static void note(struct arrays *arrays, const char *name, size_t count, int plan
                                     rising, "float", is_float));
 }
 
+// Small differences of either sign become small numbers; as two's complement those
+// below 0 would fill all four planes.
 static uint32_t zigzag(int64_t difference)
 {
     return (uint32_t)(difference < 0 ? -2 * difference - 1 : 2 * difference);
@@ -68,6 +82,7 @@ void arrays_put(struct arrays *arrays, const char *name, const uint32_t *value,
     free(kept);
 }
 
+// As bits, never converted: the page reads the same float on any machine.
 void arrays_put_doubles(struct arrays *arrays, const char *name, const double *value,
                         size_t count)
 {
@@ -81,6 +96,7 @@ void arrays_put_doubles(struct arrays *arrays, const char *name, const double *v
     free(bits);
 }
 
+// Three bytes become four letters; the last group is filled up with "=".
 char *base64(const unsigned char *data, size_t size)
 {
     static const char digit[] =
@@ -98,6 +114,7 @@ char *base64(const unsigned char *data, size_t size)
     return text;
 }
 
+// zlib wants a pointer even for no bytes.
 char *arrays_text(const struct arrays *arrays)
 {
     uLongf size = compressBound(arrays->size);

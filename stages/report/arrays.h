@@ -19,18 +19,21 @@ struct arrays arrays_new(void);
 void arrays_free(struct arrays *arrays);
 
 // VALUE (COUNT) in as few planes as the largest needs. RISING: differences of
-// neighbours are kept instead, zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...).
+// neighbours are kept instead, zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...). VALUE
+// is copied, and the name too. RISING need not be strict: any sequence whose neighbours
+// are near packs well that way; differences must fit into 31 bits.
 void arrays_put(struct arrays *arrays, const char *name, const uint32_t *value,
                 size_t count, bool rising);
 
-// VALUE (COUNT) to seven digits, as the bits of floats.
+// VALUE (COUNT) to seven digits, as the bits of floats. Numbers beyond a float's range
+// become infinite.
 void arrays_put_doubles(struct arrays *arrays, const char *name, const double *value,
                         size_t count);
 
 // All of them, compressed (zlib) and in base64. The caller frees it.
 char *arrays_text(const struct arrays *arrays);
 
-// The caller frees it.
+// The caller frees it. SIZE bytes of DATA as text with a terminating 0.
 char *base64(const unsigned char *data, size_t size);
 
 #endif

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Places become whole numbers of steps from the lowest corner, for each axis
+//
+//     value = round((x - origin) / step)
+//     step  = min(R_min / 500, largest edge / 65535),
+//
+// forces become 128 + 127 f / f_max for each component, and moments become keys of the
+// course (course.h). No picture shows the difference.
+//
+// What a throat does over time is two keys: when it begins to empty and when it is
+// empty. That is enough for a drawing that shrinks its liquid between the two; what
+// refills is shown from when it last emptied.
 #include "body.h"
 
 #include "basics/memory.h"
@@ -15,6 +26,7 @@ static double smallest_radius(const struct packing *packing)
     return least;
 }
 
+// LOW and HIGH grow to hold the N points.
 static void reach(struct vector *low, struct vector *high, const struct vector *point,
                   int n)
 {
@@ -40,6 +52,9 @@ static void reach_motion(const struct run *run, struct vector *low, struct vecto
     free(touch);
 }
 
+// All that is drawn must lie on the grid, also nodes outside of the box and grains that
+// leave it. The second bound uses all of two planes of bytes where the body is less
+// than some 130 smallest radii wide; in wider ones coordinates need a third.
 static struct grid grid_of(const struct run *run, const struct vector *node, int n_node)
 {
     const struct packing *packing = &run->packing;
@@ -90,7 +105,9 @@ struct emptying {            // of each throat
 };
 
 // Replays the drying. Liquid falls linearly between steps, so that a throat begins to
-// empty at the end of the step before.
+// empty at the end of the step before. `liquid` is the saturation of each throat so
+// far; the record lists only those that change in a step. Throats that never hold
+// liquid have both keys at 0.
 static struct emptying replay(const struct run *run, const struct course *course)
 {
     const struct drying_record *record = &run->record;
@@ -120,7 +137,7 @@ static struct emptying replay(const struct run *run, const struct course *course
 }
 
 // Nodes, and behind them where throats that lead across a side of a box that repeats
-// would end.
+// would end. Without that a tube would be drawn across the whole box.
 static struct vector *points_of(const struct network *network, uint32_t *second,
                                 int *count)
 {
@@ -143,6 +160,8 @@ static struct vector *points_of(const struct network *network, uint32_t *second,
     return point;
 }
 
+// Throats without liquid at any time are not drawn, and so not written. Indices of
+// second nodes go as differences from the first, modulo 2^32; the page adds them back.
 static void put_throats(struct arrays *arrays, const struct run *run,
                         const struct course *course, const struct grid *grid,
                         const uint32_t *second, struct shown_body *body)
@@ -182,6 +201,7 @@ static void put_throats(struct arrays *arrays, const struct run *run,
 
 // ---- bonds --------------------------------------------------------------------------
 
+// The page draws a bond until its key, and its crack from then on.
 static void put_bonds(struct arrays *arrays, const struct run *run,
                       const struct course *course)
 {
@@ -209,7 +229,8 @@ static void put_bonds(struct arrays *arrays, const struct run *run,
 
 // ---- forces -------------------------------------------------------------------------
 
-// The largest force on each grain, and when.
+// The largest force on each grain, and when. `heaviest` is the grain with the largest
+// of all, the first of equals.
 static void put_largest(struct arrays *arrays, const struct run *run,
                         const struct course *course, struct shown_body *body)
 {
@@ -238,7 +259,8 @@ static void put_largest(struct arrays *arrays, const struct run *run,
     free(key);
 }
 
-// Mean and largest force over the loads.
+// Mean and largest force over the loads. The mean is over grains, of the size of the
+// force.
 static void put_load_course(struct arrays *arrays, const struct run *run,
                             const struct course *course)
 {
@@ -261,12 +283,14 @@ static void put_load_course(struct arrays *arrays, const struct run *run,
     free(key);
 }
 
+// 128 is no force, so that both signs fit into a byte.
 static uint32_t share_of(double force, double largest)
 {
     return (uint32_t)lround(128 + (largest > 0 ? 127 * force / largest : 0));
 }
 
-// Some of the loads, evenly spaced along the course.
+// Some of the loads, evenly spaced along the course. In keys, not in loads: loads may
+// crowd where the drying is fast.
 static void put_moments(struct arrays *arrays, const struct run *run,
                         const struct course *course, int most, struct shown_body *body)
 {
@@ -296,6 +320,7 @@ static void put_moments(struct arrays *arrays, const struct run *run,
 
 // ---- all ----------------------------------------------------------------------------
 
+// A motion has moments even if nothing moves: its places are shown at them.
 struct shown_body put_body(struct arrays *arrays, const struct run *run,
                            const struct course *course, int most_moments)
 {

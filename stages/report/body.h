@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The body as arrays: grains, throats, bonds, and the forces at some moments.
+// The body as arrays: grains, throats, bonds, and the forces at some moments. Arrays
+// are named by what they belong to: grain.*, node.*, throat.*, bond.*, load.*,
+// moment.*; each by the number of grains, nodes and so on. Distances are in steps of
+// `grid`, times are keys (course.h).
 #ifndef CRAQUELURE_REPORT_BODY_H
 #define CRAQUELURE_REPORT_BODY_H
 
@@ -21,16 +24,19 @@ struct shown_body {
 };
 
 // Puts RUN into ARRAYS: lengths in steps of at most 1/500 of the smallest radius, so
-// that nothing is further off than a thousandth; forces in 1/127 of the largest.
+// that nothing is further off than a thousandth; forces in 1/127 of the largest. COURSE
+// must be of RUN. MOST_MOMENTS >= 1 is how many loads are shown with all their forces.
+// The caller frees with shown_body_free.
 struct shown_body put_body(struct arrays *arrays, const struct run *run,
                            const struct course *course, int most_moments);
 void shown_body_free(struct shown_body *body);
 
-// POINT (N) as PREFIX.x, .y, .z.
+// POINT (N) as PREFIX.x, .y, .z. POINT in m must lie on GRID.
 void put_points(struct arrays *arrays, const char *prefix, const struct grid *grid,
                 const struct vector *point, int n);
 
-// The whole number of steps along AXIS at which POINT is.
+// The whole number of steps along AXIS at which POINT is. AXIS 0 to 2; rounded to the
+// nearest.
 uint32_t on_grid(const struct grid *grid, struct vector point, int axis);
 
 #endif

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The slider of the page has rows, chosen from many steps of a run: a row where
+//
+//     gone = (t - t_0) / (t_end - t_0) - saturation
+//
+// has risen by 2 / (most - 2) since the last row. Over the run `gone` rises by 1 from
+// time and by up to 1 from saturation, so that there are at most MOST rows. Rows even
+// in time would miss a fast end, rows even in saturation a long tail.
+//
+// A moment between rows is a key, key = round(row keys_a_row), with row a whole number
+// and a fraction; 65535 is kept for never, and keys of all rows fit into 16 bits.
 #include "course.h"
 
 #include "basics/memory.h"
@@ -14,7 +24,8 @@ struct steps {
 };
 
 // Rows (at most MOST) of STEPS: one wherever time and saturation together, as shares of
-// the whole, have gone on by as much as even rows would. The last step is a row.
+// the whole, have gone on by as much as even rows would. The last step is a row. The
+// first and the last step are rows always; up to MOST steps all are.
 static int *choose_rows(const struct steps *steps, int most, int *count)
 {
     int *row = NEW_ARRAY(int, most + 1);
@@ -55,6 +66,8 @@ static void get_history(struct course *course, const struct artifact *drying,
     free(clusters);
 }
 
+// A motion has no saturation: rows are even in time then. A flow has no course, and the
+// page no slider.
 struct course course_of(const struct run *run, int most)
 {
     struct course course = {0};
@@ -94,7 +107,8 @@ void course_free(struct course *course)
     *course = (struct course){0};
 }
 
-// The row at TIME, with the fraction of the way to the next.
+// The row at TIME, with the fraction of the way to the next. Bisection: rows may be far
+// from even in time. Times outside of the course get its ends.
 static double row_at(const struct course *course, double time)
 {
     const int last = course->n_row - 1;
@@ -125,6 +139,8 @@ double saturation_at(const struct course *course, double time)
            (row - low) * (course->saturation[high] - course->saturation[low]);
 }
 
+// Numbers up to each row, by mode; the last row counts what is left, which rounding may
+// put behind its time.
 static void put_cracks(struct arrays *arrays, const struct course *course,
                        const struct run *run)
 {

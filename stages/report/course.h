@@ -7,8 +7,10 @@
 #include "arrays.h"
 #include "run.h"
 
+// The largest of 16 bits; no row has it.
 enum { NEVER = 65535 }; // a key
 
+// ROW, TIME and SATURATION have n_row numbers; times rise.
 struct course {
     int n_row;          // 0: nothing changes over time
     int *row;           // (n_row) of the history it is chosen from
@@ -24,13 +26,15 @@ struct course {
 struct course course_of(const struct run *run, int most);
 void course_free(struct course *course);
 
-// When TIME is.
+// When TIME is. TIME in s; one outside of the course gets the first or the last key.
 uint32_t key_of(const struct course *course, double time);
 
-// The saturation then.
+// The saturation then. Linear between rows; NAN where there is no row.
 double saturation_at(const struct course *course, double time);
 
-// Rows, and what is counted over them: cracks by mode, suction.
+// Rows, and what is counted over them: cracks by mode, suction. Arrays course.time (s),
+// .saturation, .rate (kg/s), .clusters, .tension, .shear: (n_row) each, those that are
+// known.
 void put_course(struct arrays *arrays, const struct course *course,
                 const struct run *run);
 

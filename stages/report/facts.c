@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Every number is read from an artifact or counted here; none is made up, and what is
+// not known is left out, not written as 0. Numbers that belong to a moment carry its
+// key and grain, so that the page can lead there.
+//
+// Which artifact says what: cracks the response, rates and saturations the drying,
+// suction the forces, pieces and shrinkage crackstats.
 #include "facts.h"
 
 #include "html.h"
@@ -34,6 +40,7 @@ static void count_modes(const struct run *run, int count[2])
 
 // ---- the headline -------------------------------------------------------------------
 
+// The mode with more cracks first.
 static void say_modes(FILE *page, const struct run *run)
 {
     int count[2];
@@ -48,6 +55,7 @@ static void say_modes(FILE *page, const struct run *run)
                  mode[!more]);
 }
 
+// An interval may reach below 0, a count cannot.
 static void say_repeated(FILE *page, const json_t *repeated)
 {
     const double runs = IN(repeated, "runs"),
@@ -64,6 +72,7 @@ static void say_repeated(FILE *page, const json_t *repeated)
                  : "confidence interval");
 }
 
+// Cracks are in the order of time: half of them have broken with number (n - 1) / 2.
 static void say_cracks(FILE *page, const struct run *run)
 {
     const int bonds = run->packing.n_bond, n = run->n_crack;
@@ -100,6 +109,7 @@ void put_headline(FILE *page, const struct run *run, const struct course *course
 
 const struct where nowhere = {-1, -1};
 
+// The button carries key and grain for the script; without script it does nothing.
 void put_fact(FILE *page, struct where where, const char *term, const char *format, ...)
 {
     char text[600];
@@ -131,6 +141,7 @@ static double share_of_box(const struct packing *packing, struct vector place, i
     return (component(place, axis) - low) / (high - low);
 }
 
+// Several bonds may break under one load; the first listed stands for them.
 static void put_first_crack(FILE *page, const struct run *run,
                             const struct course *course)
 {
@@ -174,6 +185,7 @@ double counted_mean(const struct run *run, const char *group, const char *name)
     return IN(run->counted, "mean", group, name);
 }
 
+// Of rows, so it is as fine as these.
 int row_of_half_rate(const struct course *course)
 {
     int row = 0;
@@ -229,6 +241,7 @@ static void say_contact(FILE *page, const struct run *run, const struct course *
              pair[1], saturation_at(course, when));
 }
 
+// Over snapshots, not over all loads: the response keeps contact forces at those alone.
 static void put_largest_contact(FILE *page, const struct run *run,
                                 const struct course *course)
 {
@@ -253,7 +266,7 @@ static void put_largest_contact(FILE *page, const struct run *run,
     free(force);
 }
 
-// The sides that dry.
+// The sides that dry. Bits of the walls -x, +x, -y, +y, -z, +z.
 static void put_open_sides(FILE *page, const struct run *run)
 {
     static const char *const side[] = {"-x", "+x",          "-y",
@@ -301,6 +314,7 @@ static void put_pieces(FILE *page, const struct run *run)
                  100 * shrinkage);
 }
 
+// One size if all are equal to a thousandth.
 void put_makeup(FILE *page, const struct run *run)
 {
     const struct packing *packing = &run->packing;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What happened in a run, in sentences and numbers.
+// What happened in a run, in sentences and numbers. All write HTML to PAGE, escaped by
+// html.h. Numbers have SI units with a prefix.
 #ifndef CRAQUELURE_REPORT_FACTS_H
 #define CRAQUELURE_REPORT_FACTS_H
 
@@ -7,20 +8,23 @@
 
 #include <stdio.h>
 
-// Where a fact can be seen: at a moment and a grain; -1: nowhere.
+// Where a fact can be seen: at a moment and a grain; -1: nowhere. KEY as course.h has
+// it, GRAIN counts from 0.
 struct where {
     int64_t key, grain;
 };
 extern const struct where nowhere;
 
-// A term and what is known of it.
+// A term and what is known of it. FORMAT is as printf's; the text is cut at 600
+// characters.
 void put_fact(FILE *page, struct where where, const char *term, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
 // Grains, bonds, pores.
 void put_makeup(FILE *page, const struct run *run);
 
-// One sentence that says what came out.
+// One sentence that says what came out. Cracks if there is a response, else the drying,
+// else grains and bonds.
 void put_headline(FILE *page, const struct run *run, const struct course *course);
 
 // A list of terms and what is known of them, each with where to look: data-key (of the
@@ -31,7 +35,8 @@ void put_facts(FILE *page, const struct run *run, const struct course *course,
 // A number of crackstats, or NAN.
 double counted_mean(const struct run *run, const char *group, const char *name);
 
-// The first row at which the rate is half of the first; -1: none.
+// The first row at which the rate is half of the first; -1: none. Also -1 where the
+// rate is not known.
 int row_of_half_rate(const struct course *course);
 
 // Everything that a reader should know before trusting a number.

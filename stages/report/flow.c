@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pores are nodes, their throats tubes as wide as the facet between them; the arrow
 // of a grain is its drag: the force of the viscous stress and of the piezometric
-// pressure.
+// pressure. Radius of a tube for a facet of area A: sqrt(A / pi). Its colour is the
+// mean of the pressures of its two pores, or the mean speed |q| / A through it. Closed
+// throats (conductance 0) are empty tubes, which are not drawn.
+//
+// The profile is the plain mean of the pressures of the pores in each of SLICES slices
+// of the box along an axis: where it is straight, the packing resists evenly.
 #include "flow.h"
 
 #include "basics/memory.h"
@@ -13,6 +18,7 @@
 
 enum { SLICES = 20 };
 
+// One load, at time 0: a flow is steady.
 static void read_drag(struct run *run)
 {
     int n;
@@ -25,6 +31,7 @@ static void read_drag(struct run *run)
     run->n_load = 1;
 }
 
+// The network of a drying serves for the drawing: nodes, throats, radii, images.
 void read_flow(struct run *run)
 {
     struct network *network = &run->network;
@@ -67,7 +74,9 @@ static double *throat_speeds(const struct run *run)
     return speed;
 }
 
-// {"name", "y"}: the mean pressure of pores in slices along AXIS.
+// {"name", "y"}: the mean pressure of pores in slices along AXIS. Pores outside of the
+// box (beside walls) count in the outermost slices. An empty slice is a gap in the
+// line.
 static json_t *profile_along(const struct run *run, const double *pressure, int axis)
 {
     double sum[SLICES] = {0};
@@ -126,7 +135,8 @@ static double number(const struct run *run, const char *name)
                                                 : NAN;
 }
 
-// "1.2e-15 m2", of the whole box or of the tensor's diagonal.
+// "1.2e-15 m2", of the whole box or of the tensor's diagonal. A box that repeats has a
+// tensor of 9 numbers, a flow between two sides one number.
 static void say_permeability(const struct run *run, char text[100])
 {
     const double one = number(run, "/summary/permeability");

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Where the artifacts of a run lie, and how pages link to each other. `make run` writes
+// one folder a run. Runs of a study share their packing, tessellation and network:
+// these lie one or two folders higher, so find_usual looks there, too, but only for the
+// first SHARED_NAMES of the names.
+//
+// Links are relative, with %XX for what HTML or a URL would read otherwise: a folder of
+// pages can be moved or served as a whole.
 #include "folders.h"
 
 #include "basics/memory.h"
@@ -18,6 +25,7 @@ static const char *const usual[USUAL_NAMES] = {
     "packing.h5",  "tessellation.h5", "network.h5", "drying.h5", "forces.h5",
     "response.h5", "crackstats.json", "seeds.json", "check.json"};
 
+// A link to a folder is one.
 bool is_folder(const char *path)
 {
     struct stat there;
@@ -68,6 +76,8 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name);
 }
 
+// Sorted by strcmp, as scandir leaves the order to the file system. Hidden folders are
+// not runs.
 static char **folders_below(const char *top, int *count)
 {
     struct dirent **entry;
@@ -86,6 +96,8 @@ static char **folders_below(const char *top, int *count)
     return found;
 }
 
+// One folder with artifacts is a run, not a study. A folder without runs below is left
+// to keep_folder, which says what is missing.
 char **run_folders(const char *const *paths, int n, int *count)
 {
     for (int k = 0; k < n; k++)
@@ -116,7 +128,8 @@ char *link_text(const char *path)
     return link;
 }
 
-// The way from folder FROM to TO, both whole, as a link.
+// The way from folder FROM to TO, both whole, as a link. Up for each folder of FROM
+// beyond what both share, then down to TO.
 static char *way(const char *from, const char *to)
 {
     size_t same = 0;
@@ -134,6 +147,7 @@ static char *way(const char *from, const char *to)
     return link;
 }
 
+// realpath first: "..", and links of the file system, would count as folders.
 char *link_to(const char *folder, const char *name, const char *output)
 {
     char from[PATH_MAX], to[PATH_MAX], *path = find_in(folder, name);

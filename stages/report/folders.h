@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders of runs, and ways between them.
+// Folders of runs, and ways between them. Paths are the user's, in any form; nothing
+// here is opened but to be listed.
 #ifndef CRAQUELURE_REPORT_FOLDERS_H
 #define CRAQUELURE_REPORT_FOLDERS_H
 
 #include <stdbool.h>
 
+// Whether PATH is there and a folder.
 bool is_folder(const char *path);
 
 // The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
@@ -20,7 +22,8 @@ enum { SHARED_NAMES = 3, USUAL_NAMES = 9 };
 char *find_usual(const char *folder, int k);
 
 // PATHS (N) where they are several folders; the folders with runs in one that has no
-// artifact itself, by name; else NULL. Frees nothing; the caller frees all of it.
+// artifact itself, by name; else NULL. Frees nothing; the caller frees all of it. A new
+// array of *COUNT new strings.
 char **run_folders(const char *const *paths, int n, int *count);
 
 // PATH as a link: what means something else there is %XX. The caller frees it.

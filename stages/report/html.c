@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Names of files and texts of artifacts may hold anything. So every text goes through
+// put_text, which leaves no character that begins a tag, an entity or the end of an
+// attribute; and JSON in a script has "<" as \u003c, so that no "</script>" can end it.
+// Control characters, which HTML does not allow, become blanks.
 #include "html.h"
 
 #include "basics/memory.h"
@@ -9,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+// &#39;, because attributes may be in single quotes.
 void put_text(FILE *page, const char *text)
 {
     for (const char *c = text; *c; c++)
@@ -51,6 +56,7 @@ void put_cell(FILE *page, const char *before, const char *text, const char *afte
     fputs(after, page);
 }
 
+// Keys sorted and nine digits: the same run gives the same bytes.
 char *json_for_script(const json_t *json)
 {
     char *text = json_dumps(json, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_SORT_KEYS |
@@ -66,6 +72,7 @@ char *json_for_script(const json_t *json)
     return safe;
 }
 
+// Names of files need not be UTF-8, JSON must be.
 json_t *text_json(const char *text)
 {
     json_t *json = json_string(text);
@@ -78,6 +85,8 @@ json_t *text_json(const char *text)
     return json;
 }
 
+// 1.0005: what rounds up to 1000 at three digits gets the next prefix. From atto to
+// tera.
 const char *with_unit(double value, const char *unit, char text[40])
 {
     static const char *const prefix[] = {"a", "f", "p", "n", "µ", "m",

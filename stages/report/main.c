@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// report: a page on which a run shows itself.
+// report: a page on which a run shows itself. Several folders make a study: a row each,
+// groups of equal scenes, tests (study.c). Anything else is one run: its artifacts are
+// read (run.c), its moments chosen (course.c), its shapes packed into arrays (body.c,
+// motion.c or flow.c), and all of it is put into the template (page.c). The order
+// matters: keys of moments need the course, and moments of a motion need the body.
 #include "basics/file.h"
 #include "flow.h"
 #include "motion.h"
@@ -57,6 +61,8 @@ static void write_page(const struct contents *contents, const char *output)
     free(page);
 }
 
+// The page is written last and whole: nothing is left at OUTPUT if anything before
+// fails.
 static void report_run(const struct invocation *invocation,
                        const struct report_parameters *parameters)
 {

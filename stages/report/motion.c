@@ -15,6 +15,8 @@
 
 // ---- places -------------------------------------------------------------------------
 
+// Grain by grain, because one grain moves little from moment to moment: differences are
+// small numbers.
 static void put_places(struct arrays *arrays, const struct run *run,
                        const struct shown_body *body)
 {
@@ -33,6 +35,7 @@ static void put_places(struct arrays *arrays, const struct run *run,
     free(value);
 }
 
+// Nothing where all numbers are 0: there is nothing to colour then.
 static json_t *put_numbers(struct arrays *arrays, const struct run *run,
                            const char *dataset, const char *array, const char *label)
 {
@@ -60,6 +63,8 @@ struct contacts {
     int64_t *offset; // (n_load+1)
 };
 
+// The rows of snapshot s are offset[s] to offset[s + 1] - 1. They must add up, because
+// an artifact may come from elsewhere.
 static struct contacts contacts_of(const struct run *run)
 {
     struct contacts contacts = {
@@ -88,6 +93,8 @@ static void contacts_free(struct contacts *contacts)
     free(contacts->offset);
 }
 
+// Over all snapshots, also those that are not shown: the scale does not depend on the
+// choice of moments.
 static double largest_force(const struct contacts *contacts, int n_load)
 {
     double most = 0;
@@ -99,7 +106,8 @@ static double largest_force(const struct contacts *contacts, int n_load)
 enum { FIRST, SECOND, FORCE, X, COLUMNS = X + 3 };
 
 // Those of snapshot S that are not below half of a 255th of the largest force; returns
-// how many there are.
+// how many there are. COUNT is how many contacts, and how many of these with walls,
+// there are so far. Weak contacts would be drawn thinner than a pixel.
 static uint32_t add_chains(const struct contacts *contacts, int s,
                            const struct shown_body *body, double largest,
                            uint32_t *column[COLUMNS], size_t count[2], uint32_t wall)
@@ -157,6 +165,8 @@ struct line {
     const char *name;
 };
 
+// Lines have a point for each row of the course, so the slider can mark its place in
+// them.
 static void put_line_of(struct arrays *arrays, const struct run *run,
                         const struct course *course, const struct line *line,
                         const char *array)
@@ -224,7 +234,8 @@ static json_t *put_chart(struct arrays *arrays, const struct run *run,
                      "lines", lines);
 }
 
-// The size of the force on each of the first walls.
+// The size of the force on each of the first walls. Four lines are as many as a chart
+// can hold apart; walls are in the order of the scene.
 static void put_wall_forces(json_t *list, struct arrays *arrays, const struct run *run,
                             const struct course *course)
 {
@@ -306,7 +317,8 @@ static double peak(const struct run *run, const char *name, int *when)
 }
 
 // What energy is not where it should be: work done less what there is now more, and
-// less what is lost.
+// less what is lost. At the last row, over the largest energy at any row: the sum of
+// five kinds of loss, as schemas/motion.json lists them.
 static void put_balance(FILE *page, const struct run *run)
 {
     if (!artifact_has_dataset(run->motion, "/history/work") ||
@@ -336,6 +348,8 @@ static void put_balance(FILE *page, const struct run *run)
     free(lost);
 }
 
+// Speeds are those of snapshots, energies and overlaps those of the history, which has
+// more rows.
 void put_motion_facts(FILE *page, const struct run *run, const struct course *course,
                       const struct shown_body *body)
 {

@@ -8,10 +8,12 @@
 #include <stdio.h>
 
 // Places, groups, contacts at the moments of BODY and the history at the rows of
-// COURSE; returns {"fields": [...], "charts": [...]} for the script.
+// COURSE; returns {"fields": [...], "charts": [...]} for the script. RUN must have a
+// motion, BODY and COURSE be made from it. The caller owns the JSON.
 json_t *put_motion(struct arrays *arrays, const struct run *run,
                    const struct course *course, const struct shown_body *body);
 
+// How many grains moved for how long; and a list of facts, each with its moment.
 void put_motion_headline(FILE *page, const struct run *run);
 void put_motion_facts(FILE *page, const struct run *run, const struct course *course,
                       const struct shown_body *body);

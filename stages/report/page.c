@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The template (page/page.html, page/study.html) has places {{name}}. Each is filled by
+// one function of the table `places`; a name without one is an internal error. Style
+// and scripts are linked into the program (embedded.S), so that the page is one file.
+//
+// The page allows itself no network: its content security policy names the style and
+// the script by the SHA-256 of their bytes, and allows nothing from elsewhere. So a
+// text that slipped through the escaping of html.c could still not run.
 #include "page.h"
 
 #include "basics/file.h"
@@ -30,7 +37,8 @@ static void put_title(FILE *page, const struct contents *contents)
                                      : "A body of grains as it dries");
 }
 
-// What a content security policy knows an inline TEXT by.
+// What a content security policy knows an inline TEXT by. Base64 of the 32 bytes,
+// between quotes, as the policy wants it.
 static void put_hash(FILE *page, const char *text)
 {
     char digest[65];
@@ -79,6 +87,7 @@ static void put_head_line(FILE *page, const struct contents *contents)
         put_headline(page, contents->run, contents->course);
 }
 
+// STUDY_PAGE is the user's: escaped as a link, then as text.
 static void put_way(FILE *page, const struct contents *contents)
 {
     if (!contents->study_page) return;
@@ -136,6 +145,8 @@ static void put_version(FILE *page, const struct contents *contents)
 
 // ---- what the script reads ----------------------------------------------------------
 
+// Saturation in slices at some levels, with the key of each; null where the drying has
+// none.
 static json_t *profiles_of(const struct contents *contents)
 {
     const struct artifact *drying = contents->run->of[DRYING];
@@ -177,6 +188,7 @@ static double bond_radius(const struct run *run)
     return share > 0 && share <= 1 ? share : 0.5;
 }
 
+// gamma cos(theta), N/m: the page makes suctions of it, 2 gamma cos(theta) / r.
 static double tension_of(const struct run *run)
 {
     const struct artifact *drying = run->of[DRYING];
@@ -198,6 +210,7 @@ static json_t *files_of(const struct run *run)
     return files;
 }
 
+// All that is not an array: bounds, scales, names, how many rows.
 static void put_meta(FILE *page, const struct contents *contents)
 {
     const struct run *run = contents->run;

@@ -6,7 +6,8 @@
 #include "body.h"
 #include "study.h"
 
-// All that stands in a page: of a run, or of a study.
+// All that stands in a page: of a run, or of a study. Nothing is owned here. With STUDY
+// only STUDY and TITLE are read; otherwise RUN, COURSE, BODY and ARRAYS must be there.
 struct contents {
     const struct study *study; // NULL: of a run
     const struct run *run;
@@ -18,7 +19,8 @@ struct contents {
     const char *study_page; // that leads to all runs; NULL likewise
 };
 
-// The page as text of *SIZE bytes; the caller frees it.
+// The page as text of *SIZE bytes; the caller frees it. A terminating 0 follows the
+// *SIZE bytes.
 char *page_of(const struct contents *contents, size_t *size);
 
 #endif

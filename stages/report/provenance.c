@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Every artifact carries the program, the effective parameters and a description of the
+// model that made it. These texts are the only source here: what the page says of
+// models and left-out effects is what the stages said when they ran.
+//
+// Lines of a model that begin with "left out: " are what it left out, all others what
+// it modelled. Words are in the order of the chain: packing, tessellation, network,
+// drying, forces, response, then crackstats (or the flow or motion).
 #include "provenance.h"
 
 #include "basics/memory.h"
@@ -13,6 +20,7 @@ struct words {
 };
 enum { SOURCES = KINDS + 2 };
 
+// An object (parameters) as JSON, a string as it is.
 static char *member_text(const json_t *document, const char *name)
 {
     const json_t *value = json_object_get(document, name);
@@ -84,6 +92,7 @@ static bool is_made_up_for(const struct run *run, int k, const char *item)
     return k < DRYING + 1 && run->of[DRYING] && !strcmp(item, "boundary layer");
 }
 
+// strsep cuts the text into lines in place; it is freed as a whole afterwards.
 static void put_lines(FILE *page, const struct run *run, bool of_left_out)
 {
     struct words words[SOURCES];
@@ -115,6 +124,7 @@ void put_modelled(FILE *page, const struct run *run)
 
 // ---- how to make it again -----------------------------------------------------------
 
+// One object a stage, by its name: the same form as `-p scene.json` takes.
 json_t *scene_of(const struct run *run)
 {
     struct words words[SOURCES];
@@ -142,6 +152,7 @@ void put_scene(FILE *page, const struct run *run)
     json_decref(scene);
 }
 
+// With the names of `make run`; only steps whose artifact is there.
 void put_commands(FILE *page, const struct run *run)
 {
     const struct {
@@ -164,6 +175,7 @@ void put_commands(FILE *page, const struct run *run)
     put_line(page, "craquelure report %s -o report.html\n", alone);
 }
 
+// By the name under which run.c noted the source.
 static const char *program_of(const struct run *run, const char *name, char text[64])
 {
     const struct artifact *artifact = !strcmp(name, "tessellation.h5")

@@ -8,7 +8,8 @@
 
 #include <stdio.h>
 
-// What each stage left out, and what it modelled, as lists.
+// What each stage left out, and what it modelled, as lists. RUN's artifacts stay open.
+// All text is escaped.
 void put_left_out(FILE *page, const struct run *run);
 void put_modelled(FILE *page, const struct run *run);
 

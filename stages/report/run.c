@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Artifacts come in any order, from files or folders. Each is kept by what its schema
+// says it is, not by its name; two of one kind are refused. A network of which throats
+// were merged is `of[NETWORK]`, one before that is the tessellation.
+//
+// Whether they are of one run is checked by digests: an artifact lists the SHA-256 of
+// its inputs. If it has an input of the same schema as an artifact at hand, and with
+// another digest, the two do not belong together. An artifact whose input is not at
+// hand is taken on trust; the number of grains must agree in any case.
 #include "run.h"
 
 #include "artifacts/document.h"
@@ -23,6 +31,7 @@ static void note_source(struct run *run, const char *name, const char *schema,
                                                   "schema", schema, "sha256", sha256));
 }
 
+// A crackstats of one run belongs to it; one of several says how results scatter.
 static void keep_document(struct run *run, const char *path, const struct bytes *bytes)
 {
     json_t *document = document_of(path, bytes);
@@ -85,6 +94,8 @@ static void keep_artifact(struct run *run, struct artifact *artifact)
     *place = artifact;
 }
 
+// The first bytes tell JSON from HDF5. The path is copied, because artifacts keep a
+// pointer to it; close_kept frees it.
 static void keep(struct run *run, const char *path)
 {
     struct bytes bytes = read_whole_of(path, may_be_either);
@@ -97,6 +108,7 @@ static void keep(struct run *run, const char *path)
     keep_artifact(run, artifact_open_bytes(name, bytes, NULL));
 }
 
+// A flow or a motion has pictures of its own, which do not go with those of a drying.
 static void must_be_alone(const struct run *run)
 {
     const struct artifact *alone = run->flow ? run->flow : run->motion;
@@ -118,6 +130,7 @@ static void keep_folder(struct run *run, const char *folder)
 
 // ---- whether they are of one run ----------------------------------------------------
 
+// MADE may have been made from several inputs; those of other schemas are not compared.
 static void must_fit(const struct artifact *made, const struct artifact *from)
 {
     if (!made || !from) return;
@@ -139,6 +152,7 @@ static void must_fit(const struct artifact *made, const struct artifact *from)
     json_decref(inputs);
 }
 
+// Neighbours of the chain only: each knows its own inputs.
 static void check_fit(const struct run *run)
 {
     must_fit(run->tessellation, run->of[PACKING]);
@@ -169,6 +183,7 @@ static void read_grains_of(struct run *run)
     run->packing = artifact_get_packing(last);
 }
 
+// The drying's network first: it is the one that was dried.
 static void read_liquid(struct run *run)
 {
     const struct artifact *drying = run->of[DRYING];
@@ -190,6 +205,7 @@ static void read_cracks(struct run *run)
     run->crack_mode = artifact_get(response, "/cracks/mode", NULL);
 }
 
+// A motion has velocities in place of forces: the arrows of the page are these.
 static void read_loads(struct run *run)
 {
     const struct artifact *forces = run->of[FORCES];

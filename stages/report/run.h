@@ -10,6 +10,7 @@
 
 enum kind { PACKING, NETWORK, DRYING, FORCES, RESPONSE, KINDS };
 
+// It owns all of it; close_run frees it. Times in s, forces in N.
 struct run {
     struct artifact *of[KINDS];    // NULL: not there
     struct artifact *tessellation; // a network that no throats were merged in
@@ -35,7 +36,8 @@ struct run {
 };
 
 // Reads PATHS (N): artifacts, or folders of them. Exits 65 where two say different
-// things of one run, or one is not known here, and 66 where a folder has none.
+// things of one run, or one is not known here, and 66 where a folder has none. Exits 64
+// where two are of one kind, or a flow or motion is not alone.
 struct run run_of_paths(const char *const *paths, int n);
 void close_run(struct run *run);
 

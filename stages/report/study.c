@@ -2,6 +2,14 @@
 // Runs whose scenes are equal but for seeds are a group: draws of the same. Statistics
 // are those of crackstats: the mean with its interval by Student's t, Welch's t test,
 // and Mann and Whitney's U test, all two-sided.
+//
+// A scene is flattened to keys ("dry.liquid") and values. Keys whose values are not the
+// same in all runs are `differing`. The name of a group is made of the differing keys
+// that do not end in "seed" and their values, so equal names are equal scenes.
+//
+// Means are over the runs of a group that have a number: a run without cracks has no
+// saturation at the first one. p-values are of each column by itself; with twelve
+// columns one in twenty is below 0.05 by chance.
 #include "study.h"
 
 #include "basics/memory.h"
@@ -47,6 +55,7 @@ struct study {
 
 // ---- reading ------------------------------------------------------------------------
 
+// Lists count as values: they differ or they do not.
 static void flatten(json_t *flat, const char *prefix, json_t *value)
 {
     if (!json_is_object(value)) {
@@ -80,6 +89,7 @@ static void read_cracks_of(double value[COLUMNS], const struct run *run)
     value[6] = run->crack_saturation[(n - 1) / 2];
 }
 
+// Columns in the order of column_name.
 static void read_values(double value[COLUMNS], const struct run *run)
 {
     for (int c = 0; c < COLUMNS; c++)
@@ -97,6 +107,7 @@ static void read_values(double value[COLUMNS], const struct run *run)
     course_free(&done);
 }
 
+// One run in memory at a time.
 static struct row row_of(const char *path, const char *output)
 {
     struct run run = run_of_paths(&path, 1);
@@ -121,6 +132,7 @@ static bool is_seed(const char *key)
     return n >= 4 && !strcmp(key + n - 4, "seed");
 }
 
+// A key that one scene has and another has not differs, too.
 static bool differs(const struct study *study, const char *key)
 {
     for (int k = 1; k < study->n; k++) {
@@ -179,6 +191,7 @@ static char *group_name(const struct study *study, const struct row *row)
     return name;
 }
 
+// Numbered as they first occur, so that their order is that of the folders.
 static void find_groups(struct study *study)
 {
     study->group_names = json_array();
@@ -198,7 +211,8 @@ static void find_groups(struct study *study)
     }
 }
 
-// Leaves out of the names what all begin with, up to a slash.
+// Leaves out of the names what all begin with, up to a slash. Folders, not letters:
+// "run1" and "run2" stay whole.
 static void shorten_names(struct study *study)
 {
     size_t same = strlen(study->row[0].name);
@@ -389,7 +403,8 @@ static double on_axis(struct axis axis, double value)
            (WIDE - LEFT - RIGHT) * (value - axis.least) / (axis.most - axis.least);
 }
 
-// Points of one group, each a little off the line that others do not hide it.
+// Points of one group, each a little off the line that others do not hide it. Seven
+// heights in turn, the same at each making; a random offset would change the bytes.
 static void put_strip(FILE *page, const struct study *study, int column, int group,
                       struct axis axis)
 {
@@ -412,7 +427,8 @@ static void put_strip(FILE *page, const struct study *study, int column, int gro
     free((void *)sample.value);
 }
 
-// From the least to the most of points and intervals; not below 0 for what never is.
+// From the least to the most of points and intervals; not below 0 for what never is. A
+// margin of a twentieth on both sides.
 static struct axis axis_of(const struct study *study, int column)
 {
     struct axis axis = {INFINITY, -INFINITY};
@@ -482,6 +498,7 @@ void put_distributions(FILE *page, const struct study *study)
     }
 }
 
+// A row only where Welch's test can be made: with two values in each group.
 static void put_test(FILE *page, const struct study *study, int column)
 {
     const struct sample a = sample_of(study, column, 0),
@@ -497,6 +514,8 @@ static void put_test(FILE *page, const struct study *study, int column)
     free((void *)b.value);
 }
 
+// With more groups all pairs would have to be tested, and p-values corrected for their
+// number.
 void put_tests(FILE *page, const struct study *study)
 {
     if (study->n_group != 2) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What artifacts say of their own limits. Stages tell these as they run; what they
 // leave in the summaries is told here again.
+//
+// Each threshold stands where it is used. A number that an artifact does not have is
+// NAN, and no comparison with it holds (but !=, hence isnan): no warning.
 #include "facts.h"
 #include "geometry/bond_numbers.h"
 #include "html.h"
@@ -113,6 +116,7 @@ static void warn_of_liquid(FILE *page, const struct run *run,
              body->refilled);
 }
 
+// Findings of `check` that are more than a note.
 static void warn_of_grains(FILE *page, const struct run *run)
 {
     const double overlap = summary_of(run, PACKING, "max_overlap");
@@ -156,6 +160,7 @@ static void warn_of_motion(FILE *page, const struct artifact *motion)
         warn(page, "The time step is %.2g of the stability limit.", step / limit);
 }
 
+// The most important first: whether there is one run or several.
 void put_warnings(FILE *page, const struct run *run, const struct shown_body *body)
 {
     if (run->of[RESPONSE] && !run->repeated)
